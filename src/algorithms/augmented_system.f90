@@ -1,0 +1,285 @@
+!> The augmented system of dissertation eq. 2.2, solved by LAPACK's dgesv: the reference among the linear solvers.
+!>
+!> Carried are the nodes in contact and their open neighbours. Unknowns, for m carried nodes: pressures p, shear
+!> tractions tau, w - delta, s = u - U, and delta, U, P, Q; 4m + 4 in all (4n + 12 for one patch of n contact nodes).
+!> Rows: elasticity, force balance (eq. 2.1), one normal and one tangential constraint a node (Table 2.1), and the two
+!> controlled loads. While no node can carry shear (friction off or absent), tau, s, U and Q are left out: 2m + 2.
+!>
+!> The unknowns are scaled by the compliance's modulus and the mesh's length, so that units do not matter, and shear also
+!> by mu where that is small. One
+!> factorisation serves two right-hand sides: the state and its rates.
+module mfv_augmented_system
+   use, intrinsic :: ieee_arithmetic, only: ieee_is_finite
+   use mfv_compliance, only: block_up, block_ut, block_wp, block_wt, compliance_type
+   use mfv_contact_fields, only: contact_fields_type, new_contact_fields
+   use mfv_contact_model, only: contact_model_type
+   use mfv_contact_system
+   use mfv_kinds, only: wp
+   use mfv_node_status
+   use mfv_scene, only: control_force
+   implicit none
+   private
+   public :: augmented_system_type
+
+   type, extends(contact_system_type) :: augmented_system_type
+   contains
+      procedure :: solve
+   end type augmented_system_type
+
+   !> The scaled matrix with its two right-hand sides (state, rates), and where the unknowns are.
+   type :: assembly_type
+      !> Carried nodes.
+      integer, allocatable :: nodes(:)
+      !> Whether tau, s, U and Q are unknowns.
+      logical :: tangential = .false.
+      real(wp), allocatable :: matrix(:, :), right(:, :)
+      !> Unknowns before those of the first carried node, by field; and places of the scalars.
+      integer :: pressure = 0, shear = 0, normal = 0, slip = 0
+      integer :: approach = 0, shift = 0, normal_force = 0, tangential_force = 0
+      !> Units of pressure, shear traction and length.
+      real(wp) :: stress = 1.0_wp, shear_stress = 1.0_wp, length = 1.0_wp
+   end type assembly_type
+
+   interface
+      subroutine dgesv(n, nrhs, a, lda, ipiv, b, ldb, info)
+         import :: wp
+         integer, intent(in) :: n, nrhs, lda, ldb
+         real(wp), intent(inout) :: a(lda, *), b(ldb, *)
+         integer, intent(out) :: ipiv(*), info
+      end subroutine dgesv
+   end interface
+
+contains
+
+   !> See mfv_contact_system.
+   subroutine solve(self, model, constraints, response, singular)
+      class(augmented_system_type), intent(inout) :: self
+      type(contact_model_type), intent(in) :: model
+      type(constraints_type), intent(in) :: constraints
+      type(response_type), intent(out) :: response
+      logical, intent(out) :: singular
+      type(assembly_type) :: assembly
+      integer, allocatable :: pivots(:)
+      integer :: info, n
+
+      assembly = new_assembly(model, constraints%status)
+      call add_elasticity(assembly, model%compliance)
+      call add_force_balance(assembly, model%interval())
+      call add_normal_constraints(assembly, model, constraints)
+      if (assembly%tangential) call add_tangential_constraints(assembly, model, constraints)
+      call add_loads(assembly, constraints)
+
+      n = size(assembly%matrix, 1)
+      allocate (pivots(n))
+      call dgesv(n, 2, assembly%matrix, n, pivots, assembly%right, n, info)
+      self%solves = self%solves + 1
+      singular = info /= 0
+      if (.not. singular) singular = .not. all(ieee_is_finite(assembly%right))
+      if (singular) return
+      response%state = extracted(assembly, constraints%status, assembly%right(:, 1))
+      response%rate = extracted(assembly, constraints%status, assembly%right(:, 2))
+      if (.not. assembly%tangential) then
+         response%state%shift = constraints%tangential%value
+         response%rate%shift = constraints%tangential%rate
+      end if
+      call fill_displacements(response%state, model, assembly)
+      call fill_displacements(response%rate, model, assembly)
+   end subroutine solve
+
+   !> An assembly of zeros for the nodes in contact and their neighbours.
+   function new_assembly(model, status) result(assembly)
+      type(contact_model_type), intent(in) :: model
+      integer, intent(in) :: status(:)
+      type(assembly_type) :: assembly
+      logical :: carried(size(status))
+      integer :: i, m, n
+
+      n = size(status)
+      carried = in_contact(status)
+      carried(2:) = carried(2:) .or. in_contact(status(:n - 1))
+      carried(:n - 1) = carried(:n - 1) .or. in_contact(status(2:))
+      assembly%nodes = pack([(i, i=1, n)], carried)
+      assembly%tangential = any(status == node_stick .or. slips(status))
+      assembly%stress = model%compliance%modulus
+      assembly%length = model%length()
+      assembly%shear_stress = assembly%stress
+      if (assembly%tangential) assembly%shear_stress = assembly%stress*min(model%scene%friction%coefficient, 1.0_wp)
+
+      m = size(assembly%nodes)
+      assembly%pressure = 0
+      assembly%normal = m
+      assembly%approach = 2*m + 1
+      assembly%normal_force = 2*m + 2
+      n = 2*m + 2
+      if (assembly%tangential) then
+         assembly%shear = n
+         assembly%slip = n + m
+         assembly%shift = n + 2*m + 1
+         assembly%tangential_force = n + 2*m + 2
+         n = n + 2*m + 2
+      end if
+      allocate (assembly%matrix(n, n), assembly%right(n, 2), source=0.0_wp)
+   end function new_assembly
+
+   !> Rows of eq. 2.1: (w - delta) + delta - C_wp p - C_wt tau = 0 and s + U - C_up p - C_ut tau = 0.
+   subroutine add_elasticity(assembly, compliance)
+      type(assembly_type), intent(inout) :: assembly
+      class(compliance_type), intent(in) :: compliance
+      integer :: i, m
+
+      m = size(assembly%nodes)
+      associate (pressure => assembly%pressure, shear => assembly%shear)
+         call add_block(assembly, compliance, block_wp, pressure, pressure, assembly%stress)
+         do i = 1, m
+            assembly%matrix(pressure + i, assembly%normal + i) = 1.0_wp
+            assembly%matrix(pressure + i, assembly%approach) = 1.0_wp
+         end do
+         if (.not. assembly%tangential) return
+         call add_block(assembly, compliance, block_wt, pressure, shear, assembly%shear_stress)
+         call add_block(assembly, compliance, block_up, shear, pressure, assembly%stress)
+         call add_block(assembly, compliance, block_ut, shear, shear, assembly%shear_stress)
+         do i = 1, m
+            assembly%matrix(shear + i, assembly%slip + i) = 1.0_wp
+            assembly%matrix(shear + i, assembly%shift) = 1.0_wp
+         end do
+      end associate
+   end subroutine add_elasticity
+
+   !> Subtract a compliance block from the rows after `row` and the columns after `column`, of tractions in `unit`.
+   subroutine add_block(assembly, compliance, block, row, column, unit)
+      type(assembly_type), intent(inout) :: assembly
+      class(compliance_type), intent(in) :: compliance
+      integer, intent(in) :: block, row, column
+      real(wp), intent(in) :: unit
+      integer :: m
+      real(wp), allocatable :: entries(:, :)
+
+      if (.not. compliance%has_block(block)) return
+      m = size(assembly%nodes)
+      allocate (entries(m, m))
+      call compliance%entries(block, assembly%nodes, assembly%nodes, entries)
+      assembly%matrix(row + 1:row + m, column + 1:column + m) = -(unit/assembly%length)*entries
+   end subroutine add_block
+
+   !> Rows sum(p) dx - P = 0 and sum(tau) dx - Q = 0, in the rows of the rigid motions.
+   subroutine add_force_balance(assembly, interval)
+      type(assembly_type), intent(inout) :: assembly
+      real(wp), intent(in) :: interval
+      integer :: m
+
+      m = size(assembly%nodes)
+      assembly%matrix(assembly%approach, assembly%pressure + 1:assembly%pressure + m) = interval/assembly%length
+      assembly%matrix(assembly%approach, assembly%normal_force) = -1.0_wp
+      if (.not. assembly%tangential) return
+      assembly%matrix(assembly%shift, assembly%shear + 1:assembly%shear + m) = interval/assembly%length
+      assembly%matrix(assembly%shift, assembly%tangential_force) = -1.0_wp
+   end subroutine add_force_balance
+
+   !> Rows w - delta = -g0 for nodes in contact, p = 0 for open ones.
+   subroutine add_normal_constraints(assembly, model, constraints)
+      type(assembly_type), intent(inout) :: assembly
+      type(contact_model_type), intent(in) :: model
+      type(constraints_type), intent(in) :: constraints
+      integer :: i, row
+
+      do i = 1, size(assembly%nodes)
+         row = assembly%normal + i
+         if (in_contact(constraints%status(assembly%nodes(i)))) then
+            assembly%matrix(row, assembly%normal + i) = 1.0_wp
+            assembly%right(row, 1) = -model%initial_gap(assembly%nodes(i))/assembly%length
+         else
+            assembly%matrix(row, assembly%pressure + i) = 1.0_wp
+         end if
+      end do
+   end subroutine add_normal_constraints
+
+   !> Rows s = s0 for stuck nodes, tau + mu p = 0 (slip right) or tau - mu p = 0 (slip left), tau = 0 for the others.
+   subroutine add_tangential_constraints(assembly, model, constraints)
+      type(assembly_type), intent(inout) :: assembly
+      type(contact_model_type), intent(in) :: model
+      type(constraints_type), intent(in) :: constraints
+      integer :: i, row, status
+
+      do i = 1, size(assembly%nodes)
+         row = assembly%slip + i
+         status = constraints%status(assembly%nodes(i))
+         if (status == node_stick) then
+            assembly%matrix(row, assembly%slip + i) = 1.0_wp
+            assembly%right(row, 1) = constraints%stuck_slip(assembly%nodes(i))/assembly%length
+         else
+            assembly%matrix(row, assembly%shear + i) = 1.0_wp
+            if (slips(status)) assembly%matrix(row, assembly%pressure + i) = &
+               slip_sign(status)*model%scene%friction%coefficient*assembly%stress/assembly%shear_stress
+         end if
+      end do
+   end subroutine add_tangential_constraints
+
+   !> Rows that prescribe P or delta, and Q or U.
+   subroutine add_loads(assembly, constraints)
+      type(assembly_type), intent(inout) :: assembly
+      type(constraints_type), intent(in) :: constraints
+
+      call add_load(assembly, constraints%normal, assembly%normal_force, assembly%approach, assembly%stress)
+      if (assembly%tangential) call add_load(assembly, constraints%tangential, assembly%tangential_force, &
+                                             assembly%shift, assembly%shear_stress)
+   end subroutine add_loads
+
+   !> The row in the force's place: prescribe the force, or the displacement.
+   subroutine add_load(assembly, load, force, displacement, stress)
+      type(assembly_type), intent(inout) :: assembly
+      type(load_type), intent(in) :: load
+      integer, intent(in) :: force, displacement
+      real(wp), intent(in) :: stress
+      real(wp) :: unit
+
+      if (load%control == control_force) then
+         unit = stress*assembly%length
+         assembly%matrix(force, force) = 1.0_wp
+      else
+         unit = assembly%length
+         assembly%matrix(force, displacement) = 1.0_wp
+      end if
+      assembly%right(force, :) = [load%value, load%rate]/unit
+   end subroutine add_load
+
+   !> Fields from a scaled solution; displacements of the carried nodes only.
+   function extracted(assembly, status, solution) result(fields)
+      type(assembly_type), intent(in) :: assembly
+      integer, intent(in) :: status(:)
+      real(wp), intent(in) :: solution(:)
+      type(contact_fields_type) :: fields
+      integer :: m
+
+      m = size(assembly%nodes)
+      fields = new_contact_fields(size(status))
+      associate (stress => assembly%stress, length => assembly%length, nodes => assembly%nodes)
+         fields%approach = length*solution(assembly%approach)
+         fields%normal_force = stress*length*solution(assembly%normal_force)
+         fields%pressure(nodes) = stress*solution(assembly%pressure + 1:assembly%pressure + m)
+         fields%normal(nodes) = length*solution(assembly%normal + 1:assembly%normal + m) + fields%approach
+         where (.not. in_contact(status)) fields%pressure = 0.0_wp
+         if (.not. assembly%tangential) return
+         fields%shift = length*solution(assembly%shift)
+         fields%tangential_force = assembly%shear_stress*length*solution(assembly%tangential_force)
+         fields%shear(nodes) = assembly%shear_stress*solution(assembly%shear + 1:assembly%shear + m)
+         fields%tangential(nodes) = length*solution(assembly%slip + 1:assembly%slip + m) + fields%shift
+         where (.not. in_contact(status)) fields%shear = 0.0_wp
+      end associate
+   end function extracted
+
+   !> Displacements that are not among the unknowns, by products with the compliance.
+   subroutine fill_displacements(fields, model, assembly)
+      type(contact_fields_type), intent(inout) :: fields
+      type(contact_model_type), intent(in) :: model
+      type(assembly_type), intent(in) :: assembly
+      real(wp) :: normal(model%nodes()), tangential(model%nodes())
+      logical :: carried(model%nodes())
+
+      call model%compliance%displacements(fields%pressure, fields%shear, normal, tangential)
+      carried = .false.
+      carried(assembly%nodes) = .true.
+      where (.not. carried) fields%normal = normal
+      where (.not. (carried .and. assembly%tangential)) fields%tangential = tangential
+   end subroutine fill_displacements
+
+end module mfv_augmented_system

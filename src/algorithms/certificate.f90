@@ -1,0 +1,222 @@
+!> The certificate: how well every state of the load history satisfies elasticity, equilibrium and the equalities and
+!> inequalities of dissertation Table 2.1, computed from tractions, displacements and statuses alone, with the full
+!> compliance, and from nothing that the solver says of itself. Residuals are relative to the largest magnitudes of
+!> their sort so far, so that units do not matter; the largest over all increments is kept.
+module mfv_certificate
+   use mfv_compliance, only: block_ut, block_wt, coupling_goodman
+   use mfv_contact_fields, only: contact_fields_type
+   use mfv_contact_model, only: contact_model_type
+   use mfv_contact_state, only: contact_state_type
+   use mfv_kinds, only: wp
+   use mfv_node_status
+   implicit none
+   private
+   public :: certificate_type, new_certificate, residual_count, residual_name, residual_description
+
+   integer, parameter :: elasticity_normal = 1, elasticity_tangential = 2, normal_force_balance = 3, &
+                         tangential_force_balance = 4, contact_gap = 5, open_traction = 6, stick_slip = 7, &
+                         slip_traction = 8, pressure_sign = 9, gap_sign = 10, friction_limit = 11, &
+                         slip_direction = 12, continuity = 13, energy_balance = 14
+   !> Number of residuals.
+   integer, parameter :: residual_count = 14
+
+   character(*), parameter :: names(residual_count) = [character(24) :: &
+                                                       'elasticity_normal', 'elasticity_tangential', &
+                                                       'normal_force_balance', 'tangential_force_balance', &
+                                                       'contact_gap', 'open_traction', 'stick_slip', 'slip_traction', &
+                                                       'pressure_sign', 'gap_sign', 'friction_limit', &
+                                                       'slip_direction', 'continuity', 'energy_balance']
+   character(*), parameter :: descriptions(residual_count) = [character(80) :: &
+                                                              'w - C_wp p - C_wt tau', 'u - C_up p - C_ut tau', &
+                                                              'P - sum(p) dx', 'Q - sum(tau) dx', &
+                                                              'gap of nodes in contact', &
+                                                              'tractions of open nodes', 'slip of stuck nodes', &
+                                                              'distance of slipping nodes from the friction limit', &
+                                                              'negative pressure', 'negative gap', &
+                                                              'shear traction beyond the friction limit', &
+                                                              'slip with the traction instead of against it', &
+                                                              'jump of the tractions where statuses change', &
+                                                              'work of the loads - stored - dissipated energy']
+
+   type :: certificate_type
+      !> Largest relative residuals over all increments, by kind.
+      real(wp) :: residual(residual_count) = 0.0_wp
+      !> Which of them are claimed in this scene.
+      logical :: claimed(residual_count) = .true.
+      !> Number of the increment with the largest residual, by kind; and increments so far.
+      integer :: worst_increment(residual_count) = 0
+      integer :: increments = 0
+      !> Largest magnitudes so far.
+      real(wp), private :: traction = 0.0_wp, normal = 0.0_wp, tangential = 0.0_wp, normal_force = 0.0_wp, &
+                           tangential_force = 0.0_wp, energy = 0.0_wp
+      !> Work of the loads so far, force (energy per unit thickness).
+      real(wp) :: work = 0.0_wp
+   contains
+      procedure :: largest
+      procedure :: check_increment
+      procedure :: note_jump
+      procedure, private :: note
+   end type certificate_type
+
+contains
+
+   !> Name of residual `kind`, as in the result file.
+   pure function residual_name(kind) result(name)
+      integer, intent(in) :: kind
+      character(:), allocatable :: name
+
+      name = trim(names(kind))
+   end function residual_name
+
+   !> What residual `kind` is the size of.
+   pure function residual_description(kind) result(description)
+      integer, intent(in) :: kind
+      character(:), allocatable :: description
+
+      description = trim(descriptions(kind))
+   end function residual_description
+
+   !> Empty certificate. No energy balance is claimed under Goodman's coupling with friction, whose compliance is not
+   !> symmetric; nothing tangential is claimed where friction never acts.
+   function new_certificate(model) result(certificate)
+      type(contact_model_type), intent(in) :: model
+      type(certificate_type) :: certificate
+
+      if (model%compliance%has_block(block_ut)) then
+         certificate%claimed(energy_balance) = model%scene%coupling /= coupling_goodman
+      else
+         certificate%claimed([elasticity_tangential, tangential_force_balance, stick_slip, slip_traction, &
+                              friction_limit, slip_direction]) = .false.
+      end if
+   end function new_certificate
+
+   !> The largest claimed residual.
+   pure real(wp) function largest(self)
+      class(certificate_type), intent(in) :: self
+
+      largest = maxval(self%residual, mask=self%claimed)
+   end function largest
+
+   !> Check the increment from `before` to `after`, with the statuses of `after` on the way.
+   subroutine check_increment(self, model, before, after)
+      class(certificate_type), intent(inout) :: self
+      type(contact_model_type), intent(in) :: model
+      type(contact_fields_type), intent(in) :: before
+      type(contact_state_type), intent(in) :: after
+
+      self%increments = self%increments + 1
+      call check_equilibrium(self, model, after%fields)
+      call check_normal_contact(self, model, after)
+      if (self%claimed(slip_traction)) call check_friction(self, model, before, after)
+      call check_energy(self, model, before, after)
+   end subroutine check_increment
+
+   !> Note a jump of the tractions at an unchanged load.
+   subroutine note_jump(self, before, after)
+      class(certificate_type), intent(inout) :: self
+      type(contact_fields_type), intent(in) :: before, after
+      real(wp) :: jump
+
+      jump = max(maxval(abs(after%pressure - before%pressure)), maxval(abs(after%shear - before%shear)))
+      if (self%traction > 0.0_wp) call self%note(continuity, jump, self%traction)
+   end subroutine note_jump
+
+   !> Elasticity with the full compliance, and balance of forces.
+   subroutine check_equilibrium(self, model, fields)
+      class(certificate_type), intent(inout) :: self
+      type(contact_model_type), intent(in) :: model
+      type(contact_fields_type), intent(in) :: fields
+      real(wp), dimension(size(fields%pressure)) :: normal, tangential
+
+      self%traction = max(self%traction, maxval(abs(fields%pressure)), maxval(abs(fields%shear)))
+      self%normal = max(self%normal, maxval(abs(fields%normal)))
+      self%tangential = max(self%tangential, maxval(abs(fields%tangential)), abs(fields%shift))
+      self%normal_force = max(self%normal_force, abs(fields%normal_force))
+      self%tangential_force = max(self%tangential_force, model%interval()*sum(abs(fields%shear)), &
+                                  abs(fields%tangential_force))
+
+      call model%compliance%displacements(fields%pressure, fields%shear, normal, tangential)
+      call self%note(elasticity_normal, maxval(abs(fields%normal - normal)), self%normal)
+      call self%note(elasticity_tangential, maxval(abs(fields%tangential - tangential)), self%tangential)
+      call self%note(normal_force_balance, abs(fields%normal_force - model%interval()*sum(fields%pressure)), &
+                     self%normal_force)
+      call self%note(tangential_force_balance, abs(fields%tangential_force - model%interval()*sum(fields%shear)), &
+                     self%tangential_force)
+   end subroutine check_equilibrium
+
+   !> Equalities and inequalities of gap and pressure.
+   subroutine check_normal_contact(self, model, state)
+      class(certificate_type), intent(inout) :: self
+      type(contact_model_type), intent(in) :: model
+      type(contact_state_type), intent(in) :: state
+      real(wp) :: gap(size(state%status))
+      logical :: contact(size(state%status))
+
+      contact = in_contact(state%status)
+      gap = model%gap(state%fields)
+      call self%note(contact_gap, largest_of(abs(gap), contact), self%normal)
+      call self%note(gap_sign, largest_of(-gap, model%can_touch .and. .not. contact), self%normal)
+      call self%note(open_traction, largest_of(abs(state%fields%pressure) + abs(state%fields%shear), .not. contact), &
+                     self%traction)
+      call self%note(pressure_sign, largest_of(-state%fields%pressure, contact), self%traction)
+   end subroutine check_normal_contact
+
+   !> Equalities and inequalities of slip and shear traction.
+   subroutine check_friction(self, model, before, after)
+      class(certificate_type), intent(inout) :: self
+      type(contact_model_type), intent(in) :: model
+      type(contact_fields_type), intent(in) :: before
+      type(contact_state_type), intent(in) :: after
+      real(wp), dimension(size(after%status)) :: limit, shear, slipped, direction
+
+      limit = model%scene%friction%coefficient*after%fields%pressure
+      where (after%status == node_frictionless) limit = 0.0_wp
+      shear = after%fields%shear
+      slipped = after%fields%slip() - before%slip()
+      direction = slip_sign(after%status)
+      call self%note(stick_slip, largest_of(abs(slipped), after%status == node_stick), self%tangential)
+      call self%note(slip_traction, largest_of(abs(shear + direction*limit), slips(after%status) .or. &
+                                               after%status == node_frictionless), self%traction)
+      call self%note(friction_limit, largest_of(abs(shear) - limit, in_contact(after%status)), self%traction)
+      call self%note(slip_direction, largest_of(-direction*slipped, slips(after%status)), self%tangential)
+   end subroutine check_friction
+
+   !> Work of the loads = stored + dissipated energy; between events everything is linear, so the trapezoid is exact.
+   subroutine check_energy(self, model, before, after)
+      class(certificate_type), intent(inout) :: self
+      type(contact_model_type), intent(in) :: model
+      type(contact_fields_type), intent(in) :: before
+      type(contact_state_type), intent(in) :: after
+      real(wp) :: stored
+
+      associate (now => after%fields)
+         self%work = self%work + 0.5_wp*(before%normal_force + now%normal_force)*(now%approach - before%approach) &
+                     + 0.5_wp*(before%tangential_force + now%tangential_force)*(now%shift - before%shift)
+         stored = 0.5_wp*model%interval()*(dot_product(now%pressure, now%normal) &
+                                           + dot_product(now%shear, now%tangential))
+      end associate
+      self%energy = max(self%energy, abs(self%work), abs(stored))
+      call self%note(energy_balance, abs(self%work - stored - after%dissipation), self%energy)
+   end subroutine check_energy
+
+   !> Keep a residual when it is the largest of its kind; `scale` is its magnitude of reference.
+   subroutine note(self, kind, residual, scale)
+      class(certificate_type), intent(inout) :: self
+      integer, intent(in) :: kind
+      real(wp), intent(in) :: residual, scale
+
+      if (.not. scale > 0.0_wp) return
+      if (.not. residual > scale*self%residual(kind)) return
+      self%residual(kind) = residual/scale
+      self%worst_increment(kind) = self%increments
+   end subroutine note
+
+   !> Largest of the masked values, zero when there is none or none is positive.
+   pure real(wp) function largest_of(values, mask)
+      real(wp), intent(in) :: values(:)
+      logical, intent(in) :: mask(:)
+
+      largest_of = max(maxval(values, mask=mask), 0.0_wp)
+   end function largest_of
+
+end module mfv_certificate

@@ -1,0 +1,78 @@
+!> The fields of a contact state, or their rates per unit of load: tractions, surface displacements, rigid motions and
+!> forces.
+module mfv_contact_fields
+   use mfv_kinds, only: wp
+   implicit none
+   private
+   public :: contact_fields_type, new_contact_fields
+
+   type :: contact_fields_type
+      !> Pressure p >= 0 and shear traction tau on the lower body (positive to the right), force/length^2, shape (nodes).
+      real(wp), allocatable :: pressure(:), shear(:)
+      !> Displacements of the lower surface: w into the body, u to the right, length, shape (nodes).
+      real(wp), allocatable :: normal(:), tangential(:)
+      !> Rigid motion of the upper body: approach (down) and shift (right), length.
+      real(wp) :: approach = 0.0_wp, shift = 0.0_wp
+      !> Forces of the upper on the lower body per unit thickness: P (down) and Q (right), force/length.
+      real(wp) :: normal_force = 0.0_wp, tangential_force = 0.0_wp
+   contains
+      procedure :: plus
+      procedure :: slip
+      procedure :: padded
+   end type contact_fields_type
+
+contains
+
+   !> Fields of an unloaded surface with `nodes` nodes.
+   pure function new_contact_fields(nodes) result(fields)
+      integer, intent(in) :: nodes
+      type(contact_fields_type) :: fields
+
+      allocate (fields%pressure(nodes), fields%shear(nodes), fields%normal(nodes), fields%tangential(nodes), source=0.0_wp)
+   end function new_contact_fields
+
+   !> self + step*rate.
+   pure function plus(self, step, rate) result(total)
+      class(contact_fields_type), intent(in) :: self
+      real(wp), intent(in) :: step
+      type(contact_fields_type), intent(in) :: rate
+      type(contact_fields_type) :: total
+
+      total%pressure = self%pressure + step*rate%pressure
+      total%shear = self%shear + step*rate%shear
+      total%normal = self%normal + step*rate%normal
+      total%tangential = self%tangential + step*rate%tangential
+      total%approach = self%approach + step*rate%approach
+      total%shift = self%shift + step*rate%shift
+      total%normal_force = self%normal_force + step*rate%normal_force
+      total%tangential_force = self%tangential_force + step*rate%tangential_force
+   end function plus
+
+   !> Slip s = u - U of every node, length.
+   pure function slip(self)
+      class(contact_fields_type), intent(in) :: self
+      real(wp) :: slip(size(self%tangential))
+
+      slip = self%tangential - self%shift
+   end function slip
+
+   !> The same fields with `extra` unloaded nodes at either end; their displacements are left at zero.
+   pure function padded(self, extra) result(wider)
+      class(contact_fields_type), intent(in) :: self
+      integer, intent(in) :: extra
+      type(contact_fields_type) :: wider
+      integer :: n
+
+      n = size(self%pressure)
+      wider = new_contact_fields(n + 2*extra)
+      wider%pressure(extra + 1:extra + n) = self%pressure
+      wider%shear(extra + 1:extra + n) = self%shear
+      wider%normal(extra + 1:extra + n) = self%normal
+      wider%tangential(extra + 1:extra + n) = self%tangential
+      wider%approach = self%approach
+      wider%shift = self%shift
+      wider%normal_force = self%normal_force
+      wider%tangential_force = self%tangential_force
+   end function padded
+
+end module mfv_contact_fields

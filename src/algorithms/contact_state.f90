@@ -1,0 +1,81 @@
+!> A contact state: the fields and what the nodes remember.
+module mfv_contact_state
+   use mfv_contact_fields, only: contact_fields_type, new_contact_fields
+   use mfv_kinds, only: wp
+   use mfv_node_status
+   implicit none
+   private
+   public :: contact_state_type, new_contact_state
+
+   type :: contact_state_type
+      type(contact_fields_type) :: fields
+      !> Statuses, see mfv_node_status, shape (nodes).
+      integer, allocatable :: status(:)
+      !> Slip at which a stuck node holds, length, shape (nodes).
+      real(wp), allocatable :: stuck_slip(:)
+      !> Sign of the last slip rate, 0 when there was none, shape (nodes).
+      integer, allocatable :: slip_direction(:)
+      !> Work dissipated by friction so far, force (energy per unit thickness).
+      real(wp) :: dissipation = 0.0_wp
+   contains
+      procedure :: set_status
+      procedure :: widen
+      procedure :: contact_nodes
+      procedure :: stick_nodes
+      procedure :: slip_nodes
+   end type contact_state_type
+
+contains
+
+   !> Unloaded, separated state with `nodes` nodes.
+   pure function new_contact_state(nodes) result(state)
+      integer, intent(in) :: nodes
+      type(contact_state_type) :: state
+
+      state%fields = new_contact_fields(nodes)
+      allocate (state%status(nodes), source=node_open)
+      allocate (state%slip_direction(nodes), source=0)
+      allocate (state%stuck_slip(nodes), source=0.0_wp)
+   end function new_contact_state
+
+   !> Give the nodes of `mask` the new statuses; a node that sticks holds at the slip it has.
+   pure subroutine set_status(self, mask, status)
+      class(contact_state_type), intent(inout) :: self
+      logical, intent(in) :: mask(:)
+      integer, intent(in) :: status(:)
+
+      where (mask .and. status == node_stick .and. self%status /= node_stick) self%stuck_slip = self%fields%slip()
+      where (mask) self%status = status
+   end subroutine set_status
+
+   !> Add `extra` open nodes at either end; the caller fills in their displacements.
+   pure subroutine widen(self, extra)
+      class(contact_state_type), intent(inout) :: self
+      integer, intent(in) :: extra
+      integer :: i
+
+      self%fields = self%fields%padded(extra)
+      self%status = [(node_open, i=1, extra), self%status, (node_open, i=1, extra)]
+      self%slip_direction = [(0, i=1, extra), self%slip_direction, (0, i=1, extra)]
+      self%stuck_slip = [(0.0_wp, i=1, extra), self%stuck_slip, (0.0_wp, i=1, extra)]
+   end subroutine widen
+
+   pure integer function contact_nodes(self)
+      class(contact_state_type), intent(in) :: self
+
+      contact_nodes = count(in_contact(self%status))
+   end function contact_nodes
+
+   pure integer function stick_nodes(self)
+      class(contact_state_type), intent(in) :: self
+
+      stick_nodes = count(self%status == node_stick)
+   end function stick_nodes
+
+   pure integer function slip_nodes(self)
+      class(contact_state_type), intent(in) :: self
+
+      slip_nodes = count(slips(self%status))
+   end function slip_nodes
+
+end module mfv_contact_state

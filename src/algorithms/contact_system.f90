@@ -1,0 +1,53 @@
+!> What a linear solver offers to the Method of First Violation: with the status of every node and the two controlled
+!> loads given, the state and its rates per unit of load.
+module mfv_contact_system
+   use mfv_contact_fields, only: contact_fields_type
+   use mfv_contact_model, only: contact_model_type
+   use mfv_kinds, only: wp
+   use mfv_scene, only: control_displacement, control_force
+   implicit none
+   private
+   public :: contact_system_type, load_type, response_type, constraints_type
+
+   !> One controlled load: force or rigid displacement, its value now and its rate per unit of load.
+   type :: load_type
+      integer :: control = control_force
+      real(wp) :: value = 0.0_wp
+      real(wp) :: rate = 0.0_wp
+   end type load_type
+
+   !> The equality constraints of all nodes (dissertation Table 2.1).
+   type :: constraints_type
+      !> Statuses, see mfv_node_status, shape (nodes).
+      integer, allocatable :: status(:)
+      !> Slip s at which a stuck node holds, length, shape (nodes).
+      real(wp), allocatable :: stuck_slip(:)
+      !> Normal and tangential load.
+      type(load_type) :: normal, tangential
+   end type constraints_type
+
+   !> The state that the constraints determine and its rates per unit of load.
+   type :: response_type
+      type(contact_fields_type) :: state, rate
+   end type response_type
+
+   type, abstract :: contact_system_type
+      !> Linear solves so far.
+      integer :: solves = 0
+   contains
+      procedure(solve_interface), deferred :: solve
+   end type contact_system_type
+
+   abstract interface
+      !> Solve for state and rates. `singular`: the constraints do not determine them; the response is then of no use.
+      subroutine solve_interface(self, model, constraints, response, singular)
+         import :: constraints_type, contact_model_type, contact_system_type, response_type
+         class(contact_system_type), intent(inout) :: self
+         type(contact_model_type), intent(in) :: model
+         type(constraints_type), intent(in) :: constraints
+         type(response_type), intent(out) :: response
+         logical, intent(out) :: singular
+      end subroutine solve_interface
+   end interface
+
+end module mfv_contact_system

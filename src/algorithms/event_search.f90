@@ -1,0 +1,106 @@
+!> The first violation: with the rates per unit of load known, which inequality of dissertation Table 2.1 breaks first,
+!> and after which step. Equations 2.3 to 2.5 with rates in place of a trial state; a slip in the wrong direction, which
+!> on rates is seen at once, breaks after no step at all.
+module mfv_event_search
+   use mfv_contact_fields, only: contact_fields_type
+   use mfv_contact_model, only: contact_model_type
+   use mfv_kinds, only: wp
+   use mfv_node_status
+   implicit none
+   private
+   public :: violations_type, find_violations, status_after
+
+   !> For every node the first inequality that breaks.
+   type :: violations_type
+      !> What happens to the node (see mfv_node_status), `event_none` where nothing does, shape (nodes).
+      integer, allocatable :: kind(:)
+      !> Load step after which it happens, in units of the load parameter, shape (nodes).
+      real(wp), allocatable :: step(:)
+      !> How fast the inequality breaks, in units of the largest rate of its sort, shape (nodes).
+      real(wp), allocatable :: speed(:)
+   end type violations_type
+
+contains
+
+   !> All violations that the rates lead to.
+   !> `status`: shape (nodes). `state`, `rate`: fields now and their rates per unit of the load parameter. Rates below
+   !> the part `round_off` of the largest one of their sort count as zero.
+   function find_violations(model, status, state, rate, round_off) result(violations)
+      type(contact_model_type), intent(in) :: model
+      integer, intent(in) :: status(:)
+      type(contact_fields_type), intent(in) :: state, rate
+      real(wp), intent(in) :: round_off
+      type(violations_type) :: violations
+      real(wp) :: traction_scale, motion_scale, mu
+      real(wp), dimension(size(status)) :: gap, gap_rate, slip_rate
+      integer :: i, n
+
+      n = size(status)
+      allocate (violations%kind(n), source=event_none)
+      allocate (violations%step(n), violations%speed(n), source=0.0_wp)
+      violations%step = huge(1.0_wp)
+      mu = model%scene%friction%coefficient
+      gap = model%gap(state)
+      gap_rate = rate%normal - rate%approach
+      slip_rate = rate%slip()
+      traction_scale = max(maxval(abs(rate%pressure)), maxval(abs(rate%shear)))
+      motion_scale = max(maxval(abs(rate%normal)), maxval(abs(rate%tangential)), maxval(abs(gap_rate)), &
+                         abs(rate%shift))
+      do i = 1, n
+         select case (status(i))
+         case (node_open)
+            if (model%can_touch(i)) call consider(event_close, gap(i), gap_rate(i), motion_scale)
+            cycle
+         case (node_stick)
+            call consider(event_slip_right, mu*state%pressure(i) + state%shear(i), &
+                          mu*rate%pressure(i) + rate%shear(i), max(mu, 1.0_wp)*traction_scale)
+            call consider(event_slip_left, mu*state%pressure(i) - state%shear(i), &
+                          mu*rate%pressure(i) - rate%shear(i), max(mu, 1.0_wp)*traction_scale)
+         case (node_slip_right, node_slip_left)
+            call consider(event_stick, 0.0_wp, slip_sign(status(i))*slip_rate(i), motion_scale)
+         end select
+         call consider(event_open, state%pressure(i), rate%pressure(i), traction_scale)
+      end do
+
+   contains
+
+      !> Note that `slack`, which must stay >= 0 and changes at `slack_rate`, ends earlier than what was found so far.
+      subroutine consider(kind, slack, slack_rate, scale)
+         integer, intent(in) :: kind
+         real(wp), intent(in) :: slack, slack_rate, scale
+         real(wp) :: step
+
+         if (.not. slack_rate < -round_off*scale) return
+         step = max(slack, 0.0_wp)/(-slack_rate)
+         if (step > violations%step(i)) return
+         if (.not. step < violations%step(i) .and. -slack_rate/scale < violations%speed(i)) return
+         violations%kind(i) = kind
+         violations%step(i) = step
+         violations%speed(i) = -slack_rate/scale
+      end subroutine consider
+   end function find_violations
+
+   !> Status of a node after an event. `friction`: whether friction acts; `slip_direction`: sign of the slip rate that a
+   !> closing node had while open, 0 for none: it goes on slipping that way or, with none, sticks (dissertation 2.3.3).
+   elemental integer function status_after(event, friction, slip_direction) result(status)
+      integer, intent(in) :: event, slip_direction
+      logical, intent(in) :: friction
+
+      select case (event)
+      case (event_close)
+         status = node_frictionless
+         if (friction .and. slip_direction > 0) status = node_slip_right
+         if (friction .and. slip_direction < 0) status = node_slip_left
+         if (friction .and. slip_direction == 0) status = node_stick
+      case (event_slip_right)
+         status = node_slip_right
+      case (event_slip_left)
+         status = node_slip_left
+      case (event_stick)
+         status = node_stick
+      case default
+         status = node_open
+      end select
+   end function status_after
+
+end module mfv_event_search

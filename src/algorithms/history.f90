@@ -1,0 +1,67 @@
+!> The load history: one record for every event or step end.
+module mfv_history
+   use mfv_contact_state, only: contact_state_type
+   use mfv_kinds, only: wp
+   implicit none
+   private
+   public :: history_type, history_record_type
+
+   type :: history_record_type
+      real(wp) :: normal_force = 0.0_wp, tangential_force = 0.0_wp, approach = 0.0_wp, shift = 0.0_wp
+      real(wp) :: dissipation = 0.0_wp
+      integer :: contact_nodes = 0, stick_nodes = 0
+      !> What happened (see mfv_node_status), to which node first, and to how many together.
+      integer :: event_kind = 0, event_node = 0, event_count = 0
+      !> Step of the load history, and linear solves so far.
+      integer :: step = 0, linear_solves = 0
+   end type history_record_type
+
+   type :: history_type
+      !> Number of records.
+      integer :: records = 0
+      !> Storage; the first `records` entries are in use.
+      type(history_record_type), allocatable :: record(:)
+   contains
+      procedure :: append
+      procedure :: move_nodes
+   end type history_type
+
+contains
+
+   !> Append a record of `state`, after the event (`kind`, first `node`, `count` nodes together).
+   subroutine append(self, state, kind, node, count, step, linear_solves)
+      class(history_type), intent(inout) :: self
+      type(contact_state_type), intent(in) :: state
+      integer, intent(in) :: kind, node, count, step, linear_solves
+      integer, parameter :: first_capacity = 64
+
+      if (.not. allocated(self%record)) allocate (self%record(first_capacity))
+      if (self%records == size(self%record)) call double_capacity(self)
+      self%records = self%records + 1
+      self%record(self%records) = history_record_type( &
+                                  state%fields%normal_force, state%fields%tangential_force, state%fields%approach, &
+                                  state%fields%shift, state%dissipation, state%contact_nodes(), state%stick_nodes(), &
+                                  kind, node, count, step, linear_solves)
+   end subroutine append
+
+   subroutine double_capacity(self)
+      class(history_type), intent(inout) :: self
+      type(history_record_type), allocatable :: wider(:)
+
+      allocate (wider(2*size(self%record)))
+      wider(:self%records) = self%record(:self%records)
+      call move_alloc(wider, self%record)
+   end subroutine double_capacity
+
+   !> Keep the node numbers right when `extra` nodes have come in front of the first one.
+   subroutine move_nodes(self, extra)
+      class(history_type), intent(inout) :: self
+      integer, intent(in) :: extra
+      integer :: i
+
+      do i = 1, self%records
+         if (self%record(i)%event_node > 0) self%record(i)%event_node = self%record(i)%event_node + extra
+      end do
+   end subroutine move_nodes
+
+end module mfv_history

@@ -1,0 +1,27 @@
+!> How a caller watches a run, and stops it: an object of its own that is told of every increment.
+module mfv_observer
+   use mfv_contact_state, only: contact_state_type
+   use mfv_kinds, only: wp
+   implicit none
+   private
+   public :: observer_type
+
+   type, abstract :: observer_type
+   contains
+      procedure(notify_interface), deferred :: notify
+   end type observer_type
+
+   abstract interface
+      !> Told after every increment. `segment`, `segments`: which of the straight parts of the load history is on its
+      !> way; `fraction`: how much of it is done. `stop_wanted`: set to end the run here, as interrupted.
+      subroutine notify_interface(self, state, segment, segments, fraction, stop_wanted)
+         import :: contact_state_type, observer_type, wp
+         class(observer_type), intent(inout) :: self
+         type(contact_state_type), intent(in) :: state
+         integer, intent(in) :: segment, segments
+         real(wp), intent(in) :: fraction
+         logical, intent(out) :: stop_wanted
+      end subroutine notify_interface
+   end interface
+
+end module mfv_observer

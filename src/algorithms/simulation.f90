@@ -1,0 +1,200 @@
+!> A scene led through its load history: steps, their reversals, the state at the end of each, and how it all ended.
+module mfv_simulation
+   use mfv_augmented_system, only: augmented_system_type
+   use mfv_contact_model, only: new_contact_model
+   use mfv_contact_state, only: contact_state_type
+   use mfv_contact_system, only: load_type
+   use mfv_error, only: error_type
+   use mfv_first_violation
+   use mfv_kinds, only: wp
+   use mfv_node_status, only: event_none, event_step_end
+   use mfv_observer, only: observer_type
+   use mfv_scene
+   use mfv_status, only: MFV_COMPLETE
+   use mfv_strings, only: to_text
+   implicit none
+   private
+   public :: simulation_type, new_simulation, snapshot_type, history_events, history_steps, history_none
+
+   !> What the load history keeps: a record an event, a record a step end, nothing.
+   integer, parameter :: history_events = 1, history_steps = 2, history_none = 3
+
+   !> The state at the end of a step, or of one reversal of a step with cycles.
+   type :: snapshot_type
+      type(contact_state_type) :: state
+      !> Number of the step, and of the reversal in it (1 for a step without cycles).
+      integer :: step = 0, reversal = 0
+      !> Nodes added to the mesh at either end when it was taken.
+      integer :: added = 0
+   end type snapshot_type
+
+   type :: simulation_type
+      type(first_violation_type) :: contact
+      !> States at the end of every step and reversal so far.
+      type(snapshot_type), allocatable :: snapshots(:)
+      !> How it ended (see mfv_status): MFV_COMPLETE while nothing has gone wrong, and why in words.
+      integer :: outcome = MFV_COMPLETE
+      character(:), allocatable :: message
+      !> Step that could not be reached, 0 for none; and steps done.
+      integer :: failed_step = 0, steps_done = 0
+      integer :: keep_history = history_events
+      !> What the loads control now.
+      type(load_type) :: normal, tangential
+   contains
+      procedure :: run
+      procedure :: advance
+      procedure :: padded_state
+      procedure, private :: lead_to
+      procedure, private :: take_snapshot
+   end type simulation_type
+
+contains
+
+   !> A simulation of a valid scene, at its start. `keep_history`: history_events, history_steps or history_none.
+   function new_simulation(scene, keep_history) result(self)
+      type(scene_type), intent(in) :: scene
+      integer, intent(in) :: keep_history
+      type(simulation_type) :: self
+
+      self%contact = new_first_violation(new_contact_model(scene), augmented_system_type(), &
+                                         keep_history == history_events)
+      self%keep_history = keep_history
+      self%message = 'nothing has been computed yet'
+      allocate (self%snapshots(0))
+      if (keep_history /= history_none) call self%contact%record(event_none, 0, 0, 0)
+   end function new_simulation
+
+   !> Run the steps of the scene that have not been run yet. The outcome is in the object; `observer` watches.
+   subroutine run(self, observer)
+      class(simulation_type), intent(inout) :: self
+      class(observer_type), intent(inout), optional :: observer
+      integer :: i, segment, segments
+
+      associate (steps => self%contact%model%scene%steps)
+         segments = sum(reversals(steps))
+         segment = 0
+         do i = 1, size(steps)
+            segment = segment + reversals(steps(i))
+            if (i <= self%steps_done) cycle
+            call self%advance(steps(i), segment - reversals(steps(i)), segments, observer)
+            if (self%outcome /= MFV_COMPLETE) return
+         end do
+      end associate
+   end subroutine run
+
+   !> Straight parts of the load history in a step: one, or there and back for every cycle.
+   elemental integer function reversals(step)
+      type(step_type), intent(in) :: step
+
+      reversals = max(1, 2*step%cycles)
+   end function reversals
+
+   !> Lead the loads through one more step, from wherever they are. `before`, `segments`: for progress, how many straight
+   !> parts of the load history are done and how many there are.
+   subroutine advance(self, step, before, segments, observer)
+      class(simulation_type), intent(inout) :: self
+      type(step_type), intent(in) :: step
+      integer, intent(in), optional :: before, segments
+      class(observer_type), intent(inout), optional :: observer
+      type(load_type) :: there(2), back(2)
+      type(error_type), allocatable :: error
+      integer :: i
+
+      if (self%outcome /= MFV_COMPLETE) return
+      there(1) = target_of(self%normal, step%normal_control, step%normal_target)
+      there(2) = target_of(self%tangential, step%tangential_control, step%tangential_target)
+      back = [start_of(self%contact%state, there(1), 1), start_of(self%contact%state, there(2), 2)]
+      do i = 1, reversals(step)
+         call self%lead_to(merge(there, back, mod(i, 2) == 1), step, i, before, segments, observer, error)
+         if (allocated(error)) then
+            self%outcome = error%status
+            self%message = error%message
+            self%failed_step = self%steps_done + 1
+            return
+         end if
+      end do
+      self%steps_done = self%steps_done + 1
+      self%message = 'step '//to_text(self%steps_done)//' was reached'
+   end subroutine advance
+
+   !> The load that a step leads to: `value` is its target; an absent one stays as it is.
+   pure type(load_type) function target_of(load, control, value)
+      type(load_type), intent(in) :: load
+      integer, intent(in) :: control
+      real(wp), intent(in) :: value
+
+      target_of = load
+      if (control /= control_keep) target_of = load_type(control, value)
+   end function target_of
+
+   !> The same load with the value that it has in `state`; `direction`: 1 normal, 2 tangential.
+   pure type(load_type) function start_of(state, load, direction)
+      type(contact_state_type), intent(in) :: state
+      type(load_type), intent(in) :: load
+      integer, intent(in) :: direction
+      real(wp) :: forces(2), displacements(2)
+
+      forces = [state%fields%normal_force, state%fields%tangential_force]
+      displacements = [state%fields%approach, state%fields%shift]
+      start_of = load_type(load%control, merge(forces(direction), displacements(direction), &
+                                               load%control == control_force))
+   end function start_of
+
+   !> Lead both loads straight to `targets` (normal, tangential), and keep the state there.
+   subroutine lead_to(self, targets, step, reversal, before, segments, observer, error)
+      class(simulation_type), intent(inout) :: self
+      type(load_type), intent(in) :: targets(2)
+      type(step_type), intent(in) :: step
+      integer, intent(in) :: reversal
+      integer, intent(in), optional :: before, segments
+      class(observer_type), intent(inout), optional :: observer
+      type(error_type), allocatable, intent(out) :: error
+      type(segment_type) :: segment
+
+      segment%normal = load_towards(start_of(self%contact%state, targets(1), 1), targets(1))
+      segment%tangential = load_towards(start_of(self%contact%state, targets(2), 2), targets(2))
+      segment%friction = step%friction
+      segment%step = self%steps_done + 1
+      if (present(before)) segment%number = before + reversal
+      if (present(segments)) segment%segments = segments
+      call self%contact%lead(segment, observer, error)
+      self%normal = load_type(targets(1)%control, targets(1)%value)
+      self%tangential = load_type(targets(2)%control, targets(2)%value)
+      if (self%keep_history /= history_none) call self%contact%record(event_step_end, 0, 0, segment%step)
+      if (.not. allocated(error)) call self%take_snapshot(segment%step, reversal)
+   end subroutine lead_to
+
+   !> From the load `start` to `goal`, at a rate per segment.
+   pure type(load_type) function load_towards(start, goal)
+      type(load_type), intent(in) :: start, goal
+
+      load_towards = load_type(start%control, start%value, goal%value - start%value)
+   end function load_towards
+
+   subroutine take_snapshot(self, step, reversal)
+      class(simulation_type), intent(inout) :: self
+      integer, intent(in) :: step, reversal
+      type(snapshot_type), allocatable :: longer(:)
+      integer :: n
+
+      n = size(self%snapshots)
+      allocate (longer(n + 1))
+      longer(:n) = self%snapshots
+      longer(n + 1) = snapshot_type(self%contact%state, step, reversal, self%contact%model%added)
+      call move_alloc(longer, self%snapshots)
+   end subroutine take_snapshot
+
+   !> The state of snapshot `number` on the mesh as it is now: when the mesh has grown since, with its new nodes.
+   function padded_state(self, number) result(state)
+      class(simulation_type), intent(in) :: self
+      integer, intent(in) :: number
+      type(contact_state_type) :: state
+
+      state = self%snapshots(number)%state
+      if (self%contact%model%added == self%snapshots(number)%added) return
+      call state%widen(self%contact%model%added - self%snapshots(number)%added)
+      call self%contact%model%compliance%displacements(state%fields%pressure, state%fields%shear, &
+                                                       state%fields%normal, state%fields%tangential)
+   end function padded_state
+
+end module mfv_simulation

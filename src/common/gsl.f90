@@ -1,0 +1,117 @@
+!> Bindings to the parts of the GNU Scientific Library that the project uses.
+!>
+!> GSL's default error handler aborts the process and replacing it would change the state of a host program, so
+!> every caller in this project stays inside the domain in which these functions cannot fail.
+module mfv_gsl
+   use, intrinsic :: iso_c_binding, only: c_double, c_int, c_ptr, c_funptr, c_size_t
+   implicit none
+   private
+   public :: gsl_sf_ellint_RF, gsl_integration_glfixed_table_alloc, gsl_integration_glfixed_table_free, &
+             gsl_integration_glfixed_point, gsl_root_fsolver_brent, gsl_root_fsolver_alloc, gsl_root_fsolver_free, &
+             gsl_root_fsolver_set, gsl_root_fsolver_iterate, gsl_root_fsolver_root, gsl_function, &
+             gsl_interp_steffen, gsl_interp_alloc, gsl_interp_free, gsl_interp_init, gsl_interp_eval, GSL_PREC_DOUBLE
+
+   !> Precision mode of the elliptic integrals: full double precision.
+   integer(c_int), parameter :: GSL_PREC_DOUBLE = 0
+
+   !> A function of one variable with its parameters, as GSL's solvers take it.
+   type, bind(C) :: gsl_function
+      type(c_funptr) :: function
+      type(c_ptr) :: params
+   end type gsl_function
+
+   !> Brent's bracketing root solver, and Steffen's monotone cubic interpolation: constants of GSL.
+   type(c_ptr), protected, bind(C, name='gsl_root_fsolver_brent') :: gsl_root_fsolver_brent
+   type(c_ptr), protected, bind(C, name='gsl_interp_steffen') :: gsl_interp_steffen
+
+   interface
+      !> Carlson's symmetric elliptic integral of the first kind.
+      function gsl_sf_ellint_RF(x, y, z, mode) bind(C, name='gsl_sf_ellint_RF')
+         import :: c_double, c_int
+         real(c_double), value :: x, y, z
+         integer(c_int), value :: mode
+         real(c_double) :: gsl_sf_ellint_RF
+      end function gsl_sf_ellint_RF
+
+      !> Points and weights of Gauss-Legendre quadrature.
+      function gsl_integration_glfixed_table_alloc(n) bind(C, name='gsl_integration_glfixed_table_alloc')
+         import :: c_ptr, c_size_t
+         integer(c_size_t), value :: n
+         type(c_ptr) :: gsl_integration_glfixed_table_alloc
+      end function gsl_integration_glfixed_table_alloc
+
+      subroutine gsl_integration_glfixed_table_free(table) bind(C, name='gsl_integration_glfixed_table_free')
+         import :: c_ptr
+         type(c_ptr), value :: table
+      end subroutine gsl_integration_glfixed_table_free
+
+      function gsl_integration_glfixed_point(a, b, i, x, weight, table) bind(C, name='gsl_integration_glfixed_point')
+         import :: c_double, c_int, c_ptr, c_size_t
+         real(c_double), value :: a, b
+         integer(c_size_t), value :: i
+         real(c_double), intent(out) :: x, weight
+         type(c_ptr), value :: table
+         integer(c_int) :: gsl_integration_glfixed_point
+      end function gsl_integration_glfixed_point
+
+      function gsl_root_fsolver_alloc(kind) bind(C, name='gsl_root_fsolver_alloc')
+         import :: c_ptr
+         type(c_ptr), value :: kind
+         type(c_ptr) :: gsl_root_fsolver_alloc
+      end function gsl_root_fsolver_alloc
+
+      subroutine gsl_root_fsolver_free(solver) bind(C, name='gsl_root_fsolver_free')
+         import :: c_ptr
+         type(c_ptr), value :: solver
+      end subroutine gsl_root_fsolver_free
+
+      function gsl_root_fsolver_set(solver, f, lower, upper) bind(C, name='gsl_root_fsolver_set')
+         import :: c_double, c_int, c_ptr, gsl_function
+         type(c_ptr), value :: solver
+         type(gsl_function), intent(in) :: f
+         real(c_double), value :: lower, upper
+         integer(c_int) :: gsl_root_fsolver_set
+      end function gsl_root_fsolver_set
+
+      function gsl_root_fsolver_iterate(solver) bind(C, name='gsl_root_fsolver_iterate')
+         import :: c_int, c_ptr
+         type(c_ptr), value :: solver
+         integer(c_int) :: gsl_root_fsolver_iterate
+      end function gsl_root_fsolver_iterate
+
+      function gsl_root_fsolver_root(solver) bind(C, name='gsl_root_fsolver_root')
+         import :: c_double, c_ptr
+         type(c_ptr), value :: solver
+         real(c_double) :: gsl_root_fsolver_root
+      end function gsl_root_fsolver_root
+
+      function gsl_interp_alloc(kind, n) bind(C, name='gsl_interp_alloc')
+         import :: c_ptr, c_size_t
+         type(c_ptr), value :: kind
+         integer(c_size_t), value :: n
+         type(c_ptr) :: gsl_interp_alloc
+      end function gsl_interp_alloc
+
+      subroutine gsl_interp_free(interpolation) bind(C, name='gsl_interp_free')
+         import :: c_ptr
+         type(c_ptr), value :: interpolation
+      end subroutine gsl_interp_free
+
+      function gsl_interp_init(interpolation, x, y, n) bind(C, name='gsl_interp_init')
+         import :: c_double, c_int, c_ptr, c_size_t
+         type(c_ptr), value :: interpolation
+         real(c_double), intent(in) :: x(*), y(*)
+         integer(c_size_t), value :: n
+         integer(c_int) :: gsl_interp_init
+      end function gsl_interp_init
+
+      function gsl_interp_eval(interpolation, x, y, at, accelerator) bind(C, name='gsl_interp_eval')
+         import :: c_double, c_ptr
+         type(c_ptr), value :: interpolation, accelerator
+         real(c_double), intent(in) :: x(*), y(*)
+         real(c_double), value :: at
+         real(c_double) :: gsl_interp_eval
+      end function gsl_interp_eval
+   end interface
+
+end module mfv_gsl

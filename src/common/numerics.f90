@@ -1,0 +1,93 @@
+!> Roots and quadrature through GSL, with the function given as a plain procedure and its parameters as an array.
+module mfv_numerics
+   use, intrinsic :: iso_c_binding, only: c_double, c_f_pointer, c_funloc, c_int, c_loc, c_ptr, c_size_t
+   use mfv_gsl
+   use mfv_kinds, only: wp
+   implicit none
+   private
+   public :: parametric_function, root_between, gauss_legendre
+
+   abstract interface
+      !> A real function of one variable `x` and parameters.
+      pure function parametric_function(x, parameters) result(value)
+         import :: wp
+         real(wp), intent(in) :: x, parameters(:)
+         real(wp) :: value
+      end function parametric_function
+   end interface
+
+   !> What GSL hands back to `evaluate`.
+   type :: context_type
+      procedure(parametric_function), pointer, nopass :: f
+      real(wp), allocatable :: parameters(:)
+   end type context_type
+
+contains
+
+   !> Root of `f(x, parameters)` between `lower` and `upper`, by Brent's method, to round-off.
+   !> An end is returned where the sign does not change: the nearest there is to a root (no error).
+   function root_between(f, parameters, lower, upper) result(root)
+      procedure(parametric_function) :: f
+      real(wp), intent(in) :: parameters(:), lower, upper
+      real(wp) :: root
+      integer, parameter :: most_iterations = 200
+      type(context_type), target :: context
+      type(gsl_function) :: gsl_f
+      type(c_ptr) :: solver
+      real(wp) :: at_lower, at_upper, previous
+      integer(c_int) :: code
+      integer :: iteration
+
+      at_lower = f(lower, parameters)
+      at_upper = f(upper, parameters)
+      root = merge(lower, upper, abs(at_lower) < abs(at_upper))
+      if (.not. at_lower*at_upper < 0.0_wp) return
+
+      context%f => f
+      context%parameters = parameters
+      gsl_f%function = c_funloc(evaluate)
+      gsl_f%params = c_loc(context)
+      solver = gsl_root_fsolver_alloc(gsl_root_fsolver_brent)
+      code = gsl_root_fsolver_set(solver, gsl_f, lower, upper)
+      previous = huge(previous)
+      do iteration = 1, most_iterations
+         code = gsl_root_fsolver_iterate(solver)
+         root = gsl_root_fsolver_root(solver)
+         if (abs(root - previous) <= 2*epsilon(root)*abs(root)) exit
+         previous = root
+      end do
+      call gsl_root_fsolver_free(solver)
+   end function root_between
+
+   !> Integral of `f(x, parameters)` from `lower` to `upper` with `points` Gauss-Legendre points.
+   function gauss_legendre(f, parameters, lower, upper, points) result(integral)
+      procedure(parametric_function) :: f
+      real(wp), intent(in) :: parameters(:), lower, upper
+      integer, intent(in) :: points
+      real(wp) :: integral
+      type(c_ptr) :: table
+      real(wp) :: x, weight
+      integer(c_int) :: code
+      integer :: i
+
+      table = gsl_integration_glfixed_table_alloc(int(points, c_size_t))
+      integral = 0.0_wp
+      do i = 1, points
+         code = gsl_integration_glfixed_point(lower, upper, int(i - 1, c_size_t), x, weight, table)
+         if (code == 0) integral = integral + weight*f(x, parameters)
+      end do
+      call gsl_integration_glfixed_table_free(table)
+   end function gauss_legendre
+
+   !> The function as GSL calls it: a module procedure, so that no executable stack is needed.
+   function evaluate(x, params) result(value) bind(C)
+      real(c_double), value :: x
+      type(c_ptr), value :: params
+      real(c_double) :: value
+      type(context_type), pointer :: context
+
+      call c_f_pointer(params, context)
+      value = context%f(x, context%parameters)
+   end function evaluate
+
+end module mfv_numerics

@@ -1,0 +1,91 @@
+!> What every body's compliance offers to the contact algorithms: entries of the four blocks of
+!>
+!>     w = C_wp p + C_wt tau,    u = C_up p + C_ut tau        (dissertation eq. 2.1)
+!>
+!> between equally wide surface intervals, and products with them. Only blocks that the scene needs exist:
+!> C_wt only under full coupling, C_up unless there is no coupling, C_ut and C_up only where friction can act.
+module mfv_compliance
+   use mfv_kinds, only: wp
+   implicit none
+   private
+   public :: compliance_type, coupling_full, coupling_goodman, coupling_none
+   public :: block_wp, block_wt, block_up, block_ut
+
+   !> Elastic coupling of the normal and the tangential problem: both ways; none of shear on the normal problem
+   !> (Goodman 1962); none at all.
+   integer, parameter :: coupling_full = 1, coupling_goodman = 2, coupling_none = 3
+
+   !> The four blocks.
+   integer, parameter :: block_wp = 1, block_wt = 2, block_up = 3, block_ut = 4
+
+   type, abstract :: compliance_type
+      !> Number of intervals (nodes) on the surface.
+      integer :: nodes = 0
+      !> Width of an interval, length.
+      real(wp) :: interval = 0.0_wp
+      !> Stress that scales the blocks: tractions of this size over a length make displacements of that length.
+      real(wp) :: modulus = 1.0_wp
+      !> Which blocks exist.
+      logical :: has_block(4) = .false.
+   contains
+      procedure(resize_interface), deferred :: resize
+      procedure(entries_interface), deferred :: entries
+      procedure :: displacements
+      procedure :: product
+   end type compliance_type
+
+   abstract interface
+      !> Change the number of intervals; their width stays.
+      subroutine resize_interface(self, nodes)
+         import :: compliance_type
+         class(compliance_type), intent(inout) :: self
+         integer, intent(in) :: nodes
+      end subroutine resize_interface
+
+      !> `matrix(i, j)` = displacement at node `rows(i)` by a unit traction on interval `columns(j)`,
+      !> length^3/force. Only for a block that exists.
+      pure subroutine entries_interface(self, block, rows, columns, matrix)
+         import :: compliance_type, wp
+         class(compliance_type), intent(in) :: self
+         integer, intent(in) :: block, rows(:), columns(:)
+         real(wp), intent(out) :: matrix(:, :)
+      end subroutine entries_interface
+   end interface
+
+contains
+
+   !> Surface displacements w (into the body) and u (to the right), length, of every node under the tractions
+   !> `pressure` and `shear`, force/length^2, all of shape (nodes).
+   subroutine displacements(self, pressure, shear, normal, tangential)
+      class(compliance_type), intent(in) :: self
+      real(wp), intent(in) :: pressure(:), shear(:)
+      real(wp), intent(out) :: normal(:), tangential(:)
+
+      normal = 0.0_wp
+      tangential = 0.0_wp
+      call self%product(block_wp, pressure, normal)
+      call self%product(block_wt, shear, normal)
+      call self%product(block_up, pressure, tangential)
+      call self%product(block_ut, shear, tangential)
+   end subroutine displacements
+
+   !> Add block times traction to `displacement`; a block that does not exist adds nothing, an interval without
+   !> traction costs nothing.
+   subroutine product(self, block, traction, displacement)
+      class(compliance_type), intent(in) :: self
+      integer, intent(in) :: block
+      real(wp), intent(in) :: traction(:)
+      real(wp), intent(inout) :: displacement(:)
+      real(wp) :: column(self%nodes, 1)
+      integer :: rows(self%nodes), i, j
+
+      if (.not. self%has_block(block)) return
+      rows = [(i, i=1, self%nodes)]
+      do j = 1, self%nodes
+         if (.not. abs(traction(j)) > 0.0_wp) cycle
+         call self%entries(block, rows, [j], column)
+         displacement = displacement + traction(j)*column(:, 1)
+      end do
+   end subroutine product
+
+end module mfv_compliance

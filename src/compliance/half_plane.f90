@@ -1,0 +1,198 @@
+!> Compliance of an elastic half-plane under box tractions (dissertation appendix A, signs and factors as derived in
+!> docs/theory.md; Johnson 1985, section 2.5; Barber 2009, chapter 12).
+!>
+!> With h half the width of an interval and x the distance from its centre, a unit pressure gives
+!>
+!>     w = (kappa+1)/(4 pi G) h [ 2 ln(D/h) - log_kernel(x/h) ],    u = -(kappa-1)/(4 G) h step_kernel(x/h)
+!>
+!> and a unit shear the same with w and u exchanged and the sign of the second one changed. A half-plane has no
+!> rigid-body constraint of its own: displacements are measured from the surface point at the distance D (`datum`),
+!> where a concentrated normal force leaves w = 0.
+!>
+!> The print's A.10 carries -A/(2 pi) with A = 2(1-nu^2)/E in front of *squared* logarithms, which is twice too much;
+!> A.1/A.2 and A.11/A.13 disagree about the sign of the coupling terms. The signs here satisfy reciprocity,
+!> C_wt(i,j) = C_up(j,i), and a surface under pressure moves towards it.
+module mfv_half_plane
+   use mfv_compliance
+   use mfv_kinds, only: pi, wp
+   use mfv_material, only: material_type
+   implicit none
+   private
+   public :: half_plane_type, new_half_plane, log_kernel, step_kernel
+
+   !> Toeplitz blocks: one entry for every distance.
+   type, extends(compliance_type) :: half_plane_type
+      private
+      type(material_type) :: material
+      real(wp) :: datum = 1.0_wp
+      !> C_wp = C_ut by distance, and C_wt = -C_up by distance (odd).
+      real(wp), allocatable :: direct(:)
+      real(wp) :: cross = 0.0_wp
+   contains
+      procedure :: resize
+      procedure :: entries
+      procedure :: product => toeplitz_product
+   end type half_plane_type
+
+contains
+
+   !> Half-plane with `nodes` intervals of width `interval` (length).
+   !> `datum`: distance at which displacements are measured, length. `coupling`: see mfv_compliance.
+   !> `tangential`: whether friction can act in the scene; without it only C_wp is built.
+   function new_half_plane(material, nodes, interval, datum, coupling, tangential) result(self)
+      type(material_type), intent(in) :: material
+      integer, intent(in) :: nodes, coupling
+      real(wp), intent(in) :: interval, datum
+      logical, intent(in) :: tangential
+      type(half_plane_type) :: self
+
+      self%material = material
+      self%interval = interval
+      self%datum = datum
+      self%modulus = material%plane_modulus()
+      self%has_block(block_wp) = .true.
+      self%has_block(block_ut) = tangential
+      self%has_block(block_up) = tangential .and. coupling /= coupling_none
+      self%has_block(block_wt) = tangential .and. coupling == coupling_full
+      self%cross = (material%kolosov - 1.0_wp)/(8.0_wp*material%shear_modulus)*interval
+      call self%resize(nodes)
+   end function new_half_plane
+
+   !> See mfv_compliance.
+   subroutine resize(self, nodes)
+      class(half_plane_type), intent(inout) :: self
+      integer, intent(in) :: nodes
+      real(wp) :: half, factor
+      integer :: distance
+
+      half = self%interval/2.0_wp
+      factor = half/(pi*self%modulus)
+      self%nodes = nodes
+      self%direct = [(factor*(2.0_wp*log(self%datum/half) - log_kernel(2.0_wp*distance)), distance=0, nodes - 1)]
+   end subroutine resize
+
+   !> See mfv_compliance.
+   pure subroutine entries(self, block, rows, columns, matrix)
+      class(half_plane_type), intent(in) :: self
+      integer, intent(in) :: block, rows(:), columns(:)
+      real(wp), intent(out) :: matrix(:, :)
+      integer :: j
+
+      do j = 1, size(columns)
+         select case (block)
+         case (block_wp, block_ut)
+            matrix(:, j) = self%direct(abs(rows - columns(j)) + 1)
+         case (block_wt)
+            matrix(:, j) = self%cross*sign_of(rows - columns(j))
+         case (block_up)
+            matrix(:, j) = -self%cross*sign_of(rows - columns(j))
+         end select
+      end do
+   end subroutine entries
+
+   !> See mfv_compliance; the cross blocks, constant on either side of the diagonal, need only running sums.
+   subroutine toeplitz_product(self, block, traction, displacement)
+      class(half_plane_type), intent(in) :: self
+      integer, intent(in) :: block
+      real(wp), intent(in) :: traction(:)
+      real(wp), intent(inout) :: displacement(:)
+      integer :: j, n
+
+      if (.not. self%has_block(block)) return
+      n = self%nodes
+      select case (block)
+      case (block_wp, block_ut)
+         do j = 1, n
+            if (.not. abs(traction(j)) > 0.0_wp) cycle
+            displacement(:j) = displacement(:j) + traction(j)*self%direct(j:1:-1)
+            displacement(j + 1:) = displacement(j + 1:) + traction(j)*self%direct(2:n - j + 1)
+         end do
+      case (block_wt)
+         call add_cross(self%cross)
+      case (block_up)
+         call add_cross(-self%cross)
+      end select
+
+   contains
+
+      !> displacement(i) += cross (sum of tractions left of i - sum right of i).
+      subroutine add_cross(cross)
+         real(wp), intent(in) :: cross
+         real(wp) :: left, right
+         integer :: i
+
+         left = 0.0_wp
+         right = 0.0_wp
+         do i = 1, n
+            displacement(i) = displacement(i) + cross*left
+            left = left + traction(i)
+            displacement(n + 1 - i) = displacement(n + 1 - i) - cross*right
+            right = right + traction(n + 1 - i)
+         end do
+      end subroutine add_cross
+   end subroutine toeplitz_product
+
+   !> -1, 0 or 1 as `distance` is.
+   elemental real(wp) function sign_of(distance)
+      integer, intent(in) :: distance
+
+      sign_of = real(merge(1, 0, distance > 0) - merge(1, 0, distance < 0), wp)
+   end function sign_of
+
+   !> (r+1) ln|r+1| - (r-1) ln|r-1|, the normal displacement by a box traction, to a relative error near epsilon for
+   !> every r >= 0 (r = |x|/h): near 0 and far away, where the two terms cancel, by their series.
+   pure real(wp) function log_kernel(r) result(kernel)
+      real(wp), intent(in) :: r
+      real(wp), parameter :: near = 0.5_wp, far = 2.0_wp
+      real(wp) :: distance
+
+      distance = abs(r)
+      if (distance < near) then
+         kernel = even_series(distance**2)
+      else if (distance < far) then
+         kernel = x_log_x(distance + 1.0_wp) - x_log_x(distance - 1.0_wp)
+      else
+         kernel = 2.0_wp*log(distance) + 2.0_wp - 2.0_wp*odd_series(distance**(-2))
+      end if
+   end function log_kernel
+
+   !> x ln|x|, with its limit 0 at x = 0.
+   pure real(wp) function x_log_x(x)
+      real(wp), intent(in) :: x
+
+      x_log_x = 0.0_wp
+      if (abs(x) > 0.0_wp) x_log_x = x*log(abs(x))
+   end function x_log_x
+
+   !> (1+r) ln(1+r) + (1-r) ln(1-r) = sum over k >= 1 of r^(2k)/(k (2k-1)), from the smallest term up; r <= 1/2.
+   pure real(wp) function even_series(square) result(total)
+      real(wp), intent(in) :: square
+      integer, parameter :: terms = 26
+      integer :: k
+
+      total = 0.0_wp
+      do k = terms, 1, -1
+         total = (total + 1.0_wp/(k*(2.0_wp*k - 1.0_wp)))*square
+      end do
+   end function even_series
+
+   !> sum over m >= 1 of t^(2m)/(2m (2m+1)), t = 1/r; r >= 2.
+   pure real(wp) function odd_series(square) result(total)
+      real(wp), intent(in) :: square
+      integer, parameter :: terms = 26
+      integer :: m
+
+      total = 0.0_wp
+      do m = terms, 1, -1
+         total = (total + 1.0_wp/(2.0_wp*m*(2.0_wp*m + 1.0_wp)))*square
+      end do
+   end function odd_series
+
+   !> x/h inside the loaded interval, -1 or 1 outside: the tangential displacement by a box pressure.
+   pure real(wp) function step_kernel(r) result(kernel)
+      real(wp), intent(in) :: r
+
+      kernel = min(max(r, -1.0_wp), 1.0_wp)
+   end function step_kernel
+
+end module mfv_half_plane

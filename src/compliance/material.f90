@@ -1,0 +1,63 @@
+!> Plane isotropic elasticity of one body.
+module mfv_material
+   use mfv_kinds, only: wp
+   implicit none
+   private
+   public :: material_type, new_material, kolosov_constant, plane_strain, plane_stress
+
+   !> The two plane states.
+   integer, parameter :: plane_strain = 1, plane_stress = 2
+
+   !> An isotropic material in a plane state. The modulus has the unit of stress.
+   type :: material_type
+      !> Shear modulus G, force/length^2.
+      real(wp) :: shear_modulus = 0.0_wp
+      !> Poisson's ratio, in (-1, 0.5].
+      real(wp) :: poisson_ratio = 0.0_wp
+      !> Kolosov's constant kappa.
+      real(wp) :: kolosov = 0.0_wp
+   contains
+      procedure :: plane_modulus
+      procedure :: dundurs_beta
+   end type material_type
+
+contains
+
+   !> Material from its shear modulus (force/length^2), Poisson's ratio and plane state. The caller checks the ranges.
+   pure function new_material(shear_modulus, poisson_ratio, plane) result(material)
+      real(wp), intent(in) :: shear_modulus, poisson_ratio
+      integer, intent(in) :: plane
+      type(material_type) :: material
+
+      material = material_type(shear_modulus, poisson_ratio, kolosov_constant(poisson_ratio, plane))
+   end function new_material
+
+   !> Kolosov's constant: 3 - 4 nu in plane strain, (3 - nu)/(1 + nu) in plane stress (Barber 2009, eq. 3.20;
+   !> dissertation eq. 6.2).
+   pure real(wp) function kolosov_constant(poisson_ratio, plane) result(kolosov)
+      real(wp), intent(in) :: poisson_ratio
+      integer, intent(in) :: plane
+
+      if (plane == plane_stress) then
+         kolosov = (3.0_wp - poisson_ratio)/(1.0_wp + poisson_ratio)
+      else
+         kolosov = 3.0_wp - 4.0_wp*poisson_ratio
+      end if
+   end function kolosov_constant
+
+   !> 4 G/(kappa + 1) = E/(2 (1 - nu^2)) in plane strain, force/length^2: half the contact modulus against a rigid body.
+   pure real(wp) function plane_modulus(self)
+      class(material_type), intent(in) :: self
+
+      plane_modulus = 4.0_wp*self%shear_modulus/(self%kolosov + 1.0_wp)
+   end function plane_modulus
+
+   !> Dundurs' second parameter against a rigid body, (kappa - 1)/(kappa + 1). Dissertation eq. 6.3 prints kappa_2
+   !> in the denominator; eq. 6.1 with G_2 infinite gives kappa_1.
+   pure real(wp) function dundurs_beta(self)
+      class(material_type), intent(in) :: self
+
+      dundurs_beta = (self%kolosov - 1.0_wp)/(self%kolosov + 1.0_wp)
+   end function dundurs_beta
+
+end module mfv_material

@@ -1,0 +1,65 @@
+!> Closed form: a rigid cylinder pressed on an elastic half-plane without friction (Hertz; Johnson 1985, section 4.2;
+!> dissertation eqs. 3.1, 3.2).
+module mfv_reference_hertz
+   use mfv_kinds, only: pi, wp
+   use mfv_material, only: material_type
+   use mfv_numerics, only: root_between
+   implicit none
+   private
+   public :: hertz_half_width, hertz_force, hertz_pressure, hertz_approach, hertz_half_width_of_approach
+
+contains
+
+   !> Contact half-width a = sqrt(P (kappa+1) R/(2 pi G)), length, for the normal force P (force/length) and the
+   !> radius R (length). Equation 3.1.
+   pure real(wp) function hertz_half_width(normal_force, radius, material) result(a)
+      real(wp), intent(in) :: normal_force, radius
+      type(material_type), intent(in) :: material
+
+      a = sqrt(max(normal_force, 0.0_wp)*2.0_wp*radius/(pi*material%plane_modulus()))
+   end function hertz_half_width
+
+   !> Normal force (force/length) for a contact half-width a (length).
+   pure real(wp) function hertz_force(half_width, radius, material) result(normal_force)
+      real(wp), intent(in) :: half_width, radius
+      type(material_type), intent(in) :: material
+
+      normal_force = half_width**2*pi*material%plane_modulus()/(2.0_wp*radius)
+   end function hertz_force
+
+   !> Pressure 2 P sqrt(a^2 - x^2)/(pi a^2) at x (length), force/length^2; zero outside the contact. Equation 3.2.
+   elemental real(wp) function hertz_pressure(x, normal_force, half_width) result(pressure)
+      real(wp), intent(in) :: x, normal_force, half_width
+
+      pressure = 0.0_wp
+      if (abs(x) < half_width) pressure = 2.0_wp*normal_force/(pi*half_width) &
+                                          *sqrt((1.0_wp - x/half_width)*(1.0_wp + x/half_width))
+   end function hertz_pressure
+
+   !> Approach a^2/(2R) [ln(2D/a) + 1/2], length, measured from the surface point at the distance D (`datum`): the
+   !> displacement of the centre under Hertz's pressure and the kernel of mfv_half_plane.
+   elemental real(wp) function hertz_approach(half_width, radius, datum) result(approach)
+      real(wp), intent(in) :: half_width, radius, datum
+
+      approach = 0.0_wp
+      if (half_width > 0.0_wp) approach = half_width**2/(2.0_wp*radius)*(log(2.0_wp*datum/half_width) + 0.5_wp)
+   end function hertz_approach
+
+   !> Contact half-width (length) at a prescribed approach (length); at most min(R, D), where the formula ends.
+   function hertz_half_width_of_approach(approach, radius, datum) result(a)
+      real(wp), intent(in) :: approach, radius, datum
+      real(wp) :: a
+
+      a = 0.0_wp
+      if (approach > 0.0_wp) a = root_between(approach_excess, [approach, radius, datum], 0.0_wp, min(radius, datum))
+   end function hertz_half_width_of_approach
+
+   !> Hertz's approach at the half-width `a` less the wanted one; parameters: approach, radius, datum.
+   pure function approach_excess(x, parameters) result(value)
+      real(wp), intent(in) :: x, parameters(:)
+      real(wp) :: value
+
+      value = hertz_approach(x, parameters(2), parameters(3)) - parameters(1)
+   end function approach_excess
+
+end module mfv_reference_hertz
