@@ -33,7 +33,7 @@ function(mfv_add_standin_executable name source)
   get_filename_component(script "${CMAKE_CURRENT_FUNCTION_LIST_DIR}/../tests/standin/pf_preprocess.py" ABSOLUTE)
   get_filename_component(input "${source}" ABSOLUTE)
   get_filename_component(stem "${source}" NAME_WE)
-  set(output "${CMAKE_CURRENT_BINARY_DIR}/standin/${name}")
+  set(output "${CMAKE_CURRENT_BINARY_DIR}/pf/${name}")
   file(MAKE_DIRECTORY "${output}/mod")
 
   add_custom_command(

@@ -126,7 +126,7 @@ contains
             return
          end if
          violations = find_violations(self%model, self%state%status, self%state%fields, response%rate, moment%round_off)
-         step = minval(violations%step)
+         step = min(minval(violations%step), 2.0_wp)
          if (step > no_step) then
             call keep_settled(self, segment, moment)
             last = step*(1.0_wp + tie) + no_step >= 1.0_wp - done

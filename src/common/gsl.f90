@@ -26,7 +26,7 @@ module mfv_gsl
 
    interface
       !> Carlson's symmetric elliptic integral of the first kind.
-      function gsl_sf_ellint_RF(x, y, z, mode) bind(C, name='gsl_sf_ellint_RF')
+      pure function gsl_sf_ellint_RF(x, y, z, mode) bind(C, name='gsl_sf_ellint_RF')
          import :: c_double, c_int
          real(c_double), value :: x, y, z
          integer(c_int), value :: mode

@@ -69,13 +69,12 @@ contains
       logical, intent(in) :: expected(..), actual(..)
       type(SourceLocation), intent(in), optional :: location
       character(len=*), intent(in), optional :: message
-      logical, allocatable :: e(:), a(:)
+      logical :: e(size(actual)), a(size(actual))
       integer :: i
 
       if (.not. conformable(shape(expected), shape(actual), 'assertEqual', location, message)) return
-      a = flatten(actual)
-      e = flatten(expected)
-      if (rank(expected) == 0) e = spread(e(1), 1, size(a))
+      a = flatten(actual, size(a))
+      e = flatten(expected, size(e))
       i = findloc(a .eqv. e, .false., dim=1)
       if (i == 0) return
       call fail('assertEqual', detail('expected', merge('T', 'F', e(i)))//detail('actual', merge('T', 'F', a(i))) &
@@ -98,7 +97,7 @@ contains
       character(len=*), intent(in), optional :: message
       type(SourceLocation), intent(in), optional :: location
 
-      call judge('assertTrue', all(flatten(condition)), rank(condition), message, location)
+      call judge('assertTrue', all(flatten(condition, size(condition))), rank(condition), message, location)
    end subroutine assertTrue
 
    !> No condition is true.
@@ -107,7 +106,7 @@ contains
       character(len=*), intent(in), optional :: message
       type(SourceLocation), intent(in), optional :: location
 
-      call judge('assertFalse', .not. any(flatten(condition)), rank(condition), message, location)
+      call judge('assertFalse', .not. any(flatten(condition, size(condition))), rank(condition), message, location)
    end subroutine assertFalse
 
    !> Every condition is true.
@@ -116,7 +115,7 @@ contains
       character(len=*), intent(in), optional :: message
       type(SourceLocation), intent(in), optional :: location
 
-      call judge('assertAll', all(flatten(conditions)), rank(conditions), message, location)
+      call judge('assertAll', all(flatten(conditions, size(conditions))), rank(conditions), message, location)
    end subroutine assertAll
 
    !> At least one condition is true.
@@ -125,7 +124,7 @@ contains
       character(len=*), intent(in), optional :: message
       type(SourceLocation), intent(in), optional :: location
 
-      call judge('assertAny', any(flatten(conditions)), rank(conditions), message, location)
+      call judge('assertAny', any(flatten(conditions, size(conditions))), rank(conditions), message, location)
    end subroutine assertAny
 
    !> Fail unless `holds`, and where pFUnit would not take conditions of that rank.

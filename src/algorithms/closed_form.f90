@@ -1,0 +1,147 @@
+!> Which closed form holds for a scene and its load history so far, evaluated on its mesh: what a picture or a test can
+!> hold the numbers against.
+module mfv_closed_form
+   use mfv_compliance, only: coupling_full, coupling_goodman, coupling_none
+   use mfv_indenter, only: shape_disk, shape_flat_punch
+   use mfv_kinds, only: wp
+   use mfv_reference_flat_punch, only: flat_punch_pressure
+   use mfv_reference_hertz, only: hertz_half_width, hertz_pressure
+   use mfv_reference_mindlin, only: mindlin_history_type, new_mindlin_history
+   use mfv_reference_spence, only: spence_cylinder_shear, spence_flat_punch_shear
+   use mfv_scene, only: control_displacement, control_force, control_keep, scene_type, step_type
+   use mfv_simulation, only: simulation_type
+   implicit none
+   private
+   public :: closed_form_type, closed_form_of
+
+   type :: closed_form_type
+      !> Where each comes from; empty where there is none.
+      character(:), allocatable :: pressure_source, shear_source
+      !> Tractions on the nodes, force/length^2.
+      real(wp), allocatable :: pressure(:), shear(:)
+      !> Contact half-width of the closed form, length.
+      real(wp) :: half_width = 0.0_wp
+      !> Shift at every record of the load history, length; only where there is a history and Mindlin's form holds.
+      real(wp), allocatable :: shift(:)
+   end type closed_form_type
+
+contains
+
+   !> The closed form of a simulation's present state. Hertz's forms are those of the parabola: for the exact circle they
+   !> are off by the order of (a/R)^2.
+   function closed_form_of(simulation) result(form)
+      type(simulation_type), intent(in) :: simulation
+      type(closed_form_type) :: form
+
+      form%pressure_source = ''
+      form%shear_source = ''
+      associate (model => simulation%contact%model, scene => simulation%contact%model%scene, &
+                 force => simulation%contact%state%fields%normal_force)
+         if (.not. force > 0.0_wp) return
+         if (scene%coupling == coupling_full .and. scene%tangential()) return
+         select case (scene%indenter%shape)
+         case (shape_disk)
+            form%half_width = hertz_half_width(force, scene%indenter%radius, scene%material)
+            form%pressure = hertz_pressure(model%x, force, form%half_width)
+            form%pressure_source = 'Hertz; Johnson 1985, section 4.2; dissertation eqs. 3.1, 3.2'
+         case (shape_flat_punch)
+            form%half_width = scene%indenter%to
+            form%pressure = flat_punch_pressure(model%x, force, form%half_width)
+            form%pressure_source = 'Johnson 1985, section 2.8; dissertation eq. 3.3'
+         case default
+            return
+         end select
+         if (is_spence(simulation)) call add_spence(form, simulation)
+         if (is_mindlin(simulation)) call add_mindlin(form, simulation)
+      end associate
+   end function closed_form_of
+
+   !> Pressed only, ever harder, with friction from the start and Goodman's coupling.
+   logical function is_spence(simulation)
+      type(simulation_type), intent(in) :: simulation
+      real(wp) :: before
+      integer :: i
+
+      associate (scene => simulation%contact%model%scene)
+         is_spence = scene%coupling == coupling_goodman .and. scene%tangential()
+         before = 0.0_wp
+         do i = 1, size(scene%steps)
+            associate (step => scene%steps(i))
+               is_spence = is_spence .and. step%friction .and. step%cycles == 0 &
+                           .and. step%normal_control == control_force .and. step%normal_target >= before &
+                           .and. .not. abs(step%tangential_target) > 0.0_wp
+               before = step%normal_target
+            end associate
+         end do
+      end associate
+   end function is_spence
+
+   subroutine add_spence(form, simulation)
+      type(closed_form_type), intent(inout) :: form
+      type(simulation_type), intent(in) :: simulation
+
+      associate (x => simulation%contact%model%x, scene => simulation%contact%model%scene, &
+                 force => simulation%contact%state%fields%normal_force)
+         if (scene%indenter%shape == shape_disk) then
+            form%shear = spence_cylinder_shear(x, force, form%half_width, scene%friction%coefficient, &
+                                               scene%material%dundurs_beta())
+         else
+            form%shear = spence_flat_punch_shear(x, force, form%half_width, scene%friction%coefficient, &
+                                                 scene%material%dundurs_beta())
+         end if
+         form%shear_source = 'Spence 1973; dissertation eqs. 3.4 to 3.6, corrected'
+      end associate
+   end subroutine add_spence
+
+   !> A disk pressed to a constant normal force without shear (friction off, or no coupling), then sheared by forces.
+   logical function is_mindlin(simulation)
+      type(simulation_type), intent(in) :: simulation
+      logical :: pressing
+      integer :: i
+
+      associate (scene => simulation%contact%model%scene)
+         is_mindlin = scene%indenter%shape == shape_disk .and. scene%tangential()
+         pressing = .true.
+         do i = 1, size(scene%steps)
+            associate (step => scene%steps(i))
+               pressing = pressing .and. .not. abs(step%tangential_target) > 0.0_wp
+               if (pressing) then
+                  is_mindlin = is_mindlin .and. (.not. step%friction .or. scene%coupling == coupling_none) &
+                               .and. step%tangential_control /= control_displacement
+               else
+                  is_mindlin = is_mindlin .and. step%friction .and. step%normal_control == control_keep &
+                               .and. step%tangential_control == control_force
+               end if
+            end associate
+         end do
+         is_mindlin = is_mindlin .and. .not. pressing
+      end associate
+   end function is_mindlin
+
+   subroutine add_mindlin(form, simulation)
+      type(closed_form_type), intent(inout) :: form
+      type(simulation_type), intent(in) :: simulation
+      type(mindlin_history_type) :: history
+      integer :: i
+
+      associate (contact => simulation%contact, scene => simulation%contact%model%scene, &
+                 force => simulation%contact%state%fields%normal_force)
+         history = new_mindlin_history(force, form%half_width, scene%indenter%radius, scene%datum, &
+                                       scene%friction%coefficient)
+         do i = 1, size(simulation%snapshots)
+            call history%load(simulation%snapshots(i)%state%fields%tangential_force)
+         end do
+         call history%load(contact%state%fields%tangential_force)
+         form%shear = history%shear(contact%model%x)
+         form%shear_source = 'Cattaneo 1938, Mindlin 1949; dissertation eqs. 3.7, 3.8, corrected'
+
+         history%turning = [real(wp) ::]
+         allocate (form%shift(contact%history%records))
+         do i = 1, contact%history%records
+            call history%load(contact%history%record(i)%tangential_force)
+            form%shift(i) = history%shift()
+         end do
+      end associate
+   end subroutine add_mindlin
+
+end module mfv_closed_form

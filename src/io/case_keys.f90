@@ -1,0 +1,294 @@
+!> The one list of groups and keys of a case: kinds, defaults, ranges and meanings. The reader checks against it, the
+!> reference in docs/namelist.md and `mfv_run --keys` are printed from it.
+module mfv_case_keys
+   use mfv_kinds, only: wp
+   use mfv_strings, only: string_type, to_text
+   implicit none
+   private
+   public :: key_type, case_keys, case_groups, group_list, group_repeats, kind_real, kind_integer, kind_logical, kind_text, &
+             kind_choice, keys_as_markdown, allowed_text, list_of_words
+
+   integer, parameter :: kind_real = 1, kind_integer = 2, kind_logical = 3, kind_text = 4, kind_choice = 5
+
+   !> One key.
+   type :: key_type
+      character(:), allocatable :: group, name
+      integer :: kind = 0
+      !> Default as it would be written; empty: none, the key is left out or needed, as the meaning says.
+      character(:), allocatable :: default
+      !> Choices, separated by blanks.
+      character(:), allocatable :: choices
+      !> Allowed range of a number, each end open or closed.
+      real(wp) :: lower = -huge(1.0_wp), upper = huge(1.0_wp)
+      logical :: lower_open = .false.
+      character(:), allocatable :: unit, meaning
+   end type key_type
+
+   !> Groups in the order of the reference, with what they are for; and those that may come more than once.
+   character(*), parameter :: group_list = 'scene body mesh friction step solver output'
+   character(*), parameter :: repeated_groups = 'body step'
+
+   real(wp), parameter :: most_nodes = 1.0e6_wp, most_cycles = 1.0e6_wp
+
+contains
+
+   !> All keys.
+   function case_keys() result(keys)
+      type(key_type), allocatable :: keys(:)
+
+      keys = [scene_keys(), body_keys(), mesh_keys(), friction_keys(), step_keys(), solver_keys(), output_keys()]
+   end function case_keys
+
+   function scene_keys() result(keys)
+      type(key_type), allocatable :: keys(:)
+
+      keys = [text_key('scene', 'title', '', 'title of the scene, for summary, file and pictures'), &
+              choice_key('scene', 'plane', 'strain', 'strain stress', 'plane strain or plane stress'), &
+              choice_key('scene', 'coupling', 'full', 'full goodman none', &
+                         'elastic coupling: full, without the effect of shear on the normal problem (Goodman), or none'), &
+              text_key('scene', 'length_unit', 'length', 'name of the unit of length, for labels only'), &
+              text_key('scene', 'force_unit', 'force', 'name of the unit of force, for labels only')]
+   end function scene_keys
+
+   function body_keys() result(keys)
+      type(key_type), allocatable :: keys(:)
+
+      keys = [choice_key('body', 'shape', '', 'half_plane disk flat_punch profile', &
+                         'needed; first body, below: half_plane; second body, above: disk, flat_punch or profile'), &
+              logical_key('body', 'rigid', '.false.', 'needed as .true. for the second body'), &
+              positive_key('body', 'shear_modulus', '', 'force/length^2', 'shear modulus G of the half-plane'), &
+              positive_key('body', 'youngs_modulus', '', 'force/length^2', 'E = 2 G (1 + nu), in place of shear_modulus'), &
+              real_key('body', 'poisson_ratio', '', '', "Poisson's ratio of the half-plane, needed", -1.0_wp, 0.5_wp), &
+              positive_key('body', 'datum', '', 'length', 'half_plane: distance of the surface point from which '// &
+                           'displacements are measured; left out: the radius of the disk, the half-width of the '// &
+                           'punch, the largest |x| of the profile'), &
+              positive_key('body', 'radius', '', 'length', 'disk: radius, needed'), &
+              positive_key('body', 'half_width', '', 'length', 'flat_punch: half its width, needed'), &
+              text_key('body', 'file', '', 'profile: text file with two columns, x and height above the flat surface, '// &
+                       'beside the case file; needed')]
+   end function body_keys
+
+   function mesh_keys() result(keys)
+      type(key_type), allocatable :: keys(:)
+
+      keys = [integer_key('mesh', 'nodes', '101', 'number of equal intervals; nodes are their centres', 1.0_wp, most_nodes), &
+              positive_key('mesh', 'half_width', '', 'length', 'the intervals cover [-half_width, half_width]; left out: '// &
+                           'chosen from an estimate of the contact, and grown when the contact needs it'), &
+              choice_key('mesh', 'gap', 'exact', 'exact parabolic', &
+                         'gap under a disk: the exact circle, or the parabola x^2/(2R) of Hertz')]
+   end function mesh_keys
+
+   function friction_keys() result(keys)
+      type(key_type), allocatable :: keys(:)
+
+      keys = [choice_key('friction', 'law', 'none', 'none coulomb', 'friction law'), &
+              real_key('friction', 'mu', '', '', 'coulomb: coefficient of friction, needed', 0.0_wp)]
+      keys(2)%lower_open = .false.
+   end function friction_keys
+
+   function step_keys() result(keys)
+      type(key_type), allocatable :: keys(:)
+
+      keys = [real_key('step', 'normal_force', '', 'force/length', 'target of the normal force P', 0.0_wp), &
+              real_key('step', 'approach', '', 'length', 'target of the approach of the upper body, in place of normal_force'), &
+              real_key('step', 'tangential_force', '', 'force/length', 'target of the tangential force Q, positive to the right'), &
+              real_key('step', 'shift', '', 'length', 'target of the shift of the upper body to the right, in place of '// &
+                       'tangential_force'), &
+              logical_key('step', 'friction', '.true.', 'whether friction acts during this step'), &
+              integer_key('step', 'cycles', '0', '0: go to the targets; n: go there and back to where the step began, '// &
+                          'n times', 0.0_wp, most_cycles)]
+      keys(1)%lower_open = .false.
+   end function step_keys
+
+   function solver_keys() result(keys)
+      type(key_type), allocatable :: keys(:)
+
+      keys = [choice_key('solver', 'algorithm', 'mfv', 'mfv', 'mfv: Method of First Violation'), &
+              choice_key('solver', 'linear_solver', 'dgesv', 'dgesv', 'dgesv: augmented system with LAPACK')]
+   end function solver_keys
+
+   function output_keys() result(keys)
+      type(key_type), allocatable :: keys(:)
+
+      keys = [text_key('output', 'file', '', 'result file (HDF5); left out: the name of the case file with .h5, in the '// &
+                       'working directory'), &
+              choice_key('output', 'history', 'events', 'events steps none', &
+                         'a history record an event, a step end, or none')]
+   end function output_keys
+
+   function text_key(group, name, default, meaning) result(key)
+      character(*), intent(in) :: group, name, default, meaning
+      type(key_type) :: key
+
+      key = base_key(group, name, kind_text, default, '', meaning)
+   end function text_key
+
+   function logical_key(group, name, default, meaning) result(key)
+      character(*), intent(in) :: group, name, default, meaning
+      type(key_type) :: key
+
+      key = base_key(group, name, kind_logical, default, '', meaning)
+   end function logical_key
+
+   function choice_key(group, name, default, choices, meaning) result(key)
+      character(*), intent(in) :: group, name, default, choices, meaning
+      type(key_type) :: key
+
+      key = base_key(group, name, kind_choice, default, '', meaning)
+      key%choices = choices
+   end function choice_key
+
+   function integer_key(group, name, default, meaning, lower, upper) result(key)
+      character(*), intent(in) :: group, name, default, meaning
+      real(wp), intent(in) :: lower, upper
+      type(key_type) :: key
+
+      key = base_key(group, name, kind_integer, default, '', meaning)
+      key%lower = lower
+      key%upper = upper
+   end function integer_key
+
+   !> A real above `lower` (open) up to `upper`, each where present.
+   function real_key(group, name, default, unit, meaning, lower, upper) result(key)
+      character(*), intent(in) :: group, name, default, unit, meaning
+      real(wp), intent(in), optional :: lower, upper
+      type(key_type) :: key
+
+      key = base_key(group, name, kind_real, default, unit, meaning)
+      key%lower_open = present(lower)
+      if (present(lower)) key%lower = lower
+      if (present(upper)) key%upper = upper
+   end function real_key
+
+   function positive_key(group, name, default, unit, meaning) result(key)
+      character(*), intent(in) :: group, name, default, unit, meaning
+      type(key_type) :: key
+
+      key = real_key(group, name, default, unit, meaning, 0.0_wp)
+   end function positive_key
+
+   function base_key(group, name, kind, default, unit, meaning) result(key)
+      character(*), intent(in) :: group, name, default, unit, meaning
+      integer, intent(in) :: kind
+      type(key_type) :: key
+
+      key%group = group
+      key%name = name
+      key%kind = kind
+      key%default = default
+      key%choices = ''
+      key%unit = unit
+      key%meaning = meaning
+   end function base_key
+
+   !> Groups that a case may have.
+   function case_groups() result(groups)
+      type(string_type), allocatable :: groups(:)
+
+      groups = list_of_words(group_list)
+   end function case_groups
+
+   !> Whether a group may come more than once.
+   pure logical function group_repeats(group)
+      character(*), intent(in) :: group
+
+      group_repeats = index(' '//repeated_groups//' ', ' '//group//' ') > 0
+   end function group_repeats
+
+   !> The words of a text separated by blanks.
+   pure function list_of_words(text) result(words)
+      character(*), intent(in) :: text
+      type(string_type), allocatable :: words(:)
+      type(string_type) :: word
+      integer :: first, last
+
+      allocate (words(0))
+      first = verify(text, ' ')
+      do while (first > 0)
+         last = index(text(first:)//' ', ' ') + first - 2
+         word%text = text(first:last)
+         words = [words, word]
+         first = verify(text(min(last + 1, len(text)):), ' ')
+         if (last + 1 > len(text)) exit
+         if (first > 0) first = first + last
+      end do
+   end function list_of_words
+
+   !> What values a key takes, in words, for messages and the reference.
+   function allowed_text(key) result(text)
+      type(key_type), intent(in) :: key
+      character(:), allocatable :: text
+
+      select case (key%kind)
+      case (kind_choice)
+         text = alternatives(list_of_words(key%choices))
+      case (kind_logical)
+         text = '.true. or .false.'
+      case (kind_text)
+         text = "a text between quotes"
+      case (kind_integer)
+         text = 'a whole number from '//to_text(nint(key%lower))//' to '//to_text(nint(key%upper))
+      case default
+         text = 'a number'//range_text(key)
+      end select
+   end function allowed_text
+
+   function range_text(key) result(text)
+      type(key_type), intent(in) :: key
+      character(:), allocatable :: text
+
+      text = ''
+      if (key%lower > -huge(1.0_wp)) text = merge(' above   ', ' at least', key%lower_open)
+      if (key%lower > -huge(1.0_wp)) text = trim(text)//' '//to_text(key%lower)
+      if (key%upper < huge(1.0_wp)) text = text//' and at most '//to_text(key%upper)
+   end function range_text
+
+   function alternatives(words) result(text)
+      type(string_type), intent(in) :: words(:)
+      character(:), allocatable :: text
+      integer :: i
+
+      text = "'"//words(1)%text//"'"
+      do i = 2, size(words)
+         text = text//merge(' or ', ',   ', i == size(words))
+         if (i < size(words)) text = text(:len(text) - 2)
+         text = text//"'"//words(i)%text//"'"
+      end do
+   end function alternatives
+
+   !> The reference of all keys as Markdown tables.
+   function keys_as_markdown() result(text)
+      character(:), allocatable :: text
+      type(key_type), allocatable :: keys(:)
+      type(string_type), allocatable :: groups(:)
+      character(len=1), parameter :: line_feed = achar(10)
+      integer :: i, j
+
+      keys = case_keys()
+      groups = case_groups()
+      text = ''
+      do i = 1, size(groups)
+         text = text//'### &'//groups(i)%text
+         if (group_repeats(groups(i)%text)) text = text//' (may come more than once)'
+         text = text//line_feed//line_feed//'| key | value | default | unit | meaning |'//line_feed// &
+                '| --- | --- | --- | --- | --- |'//line_feed
+         do j = 1, size(keys)
+            if (keys(j)%group /= groups(i)%text) cycle
+            text = text//'| `'//keys(j)%name//'` | '//allowed_text(keys(j))//' | '//default_cell(keys(j))//' | '// &
+                   keys(j)%unit//' | '//keys(j)%meaning//' |'//line_feed
+         end do
+         if (i < size(groups)) text = text//line_feed
+      end do
+   end function keys_as_markdown
+
+   function default_cell(key) result(text)
+      type(key_type), intent(in) :: key
+      character(:), allocatable :: text
+
+      text = '-'
+      if (key%default == '') return
+      text = '`'//key%default//'`'
+      if (key%kind == kind_text .or. key%kind == kind_choice) text = "`'"//key%default//"'`"
+   end function default_cell
+
+end module mfv_case_keys

@@ -1,0 +1,690 @@
+!> From the text of a case to a valid scene, or to a message that names file, line, group, key, value and what is right.
+module mfv_case_reader
+   use, intrinsic :: ieee_arithmetic, only: ieee_is_finite
+   use mfv_case, only: case_type
+   use mfv_case_keys
+   use mfv_error, only: error_type, set_error
+   use mfv_friction, only: coulomb_friction, no_friction
+   use mfv_compliance, only: coupling_full, coupling_goodman, coupling_none
+   use mfv_indenter, only: new_disk, new_flat_punch, shape_flat_punch
+   use mfv_kinds, only: wp
+   use mfv_material, only: new_material, plane_strain, plane_stress
+   use mfv_namelist, only: entry_type, group_type, parse_namelists
+   use mfv_profile_file, only: read_profile
+   use mfv_scene
+   use mfv_simulation, only: history_events, history_none, history_steps
+   use mfv_status, only: MFV_INPUT_ERROR
+   use mfv_strings, only: lower_case, nearest_name, quoted, string_type, to_text
+   use mfv_text_file, only: directory_of, read_text
+   implicit none
+   private
+   public :: read_case_file, read_case_text
+
+   !> A text taken apart, with the list of keys to read it by.
+   type :: reader_type
+      character(:), allocatable :: source
+      type(group_type), allocatable :: groups(:)
+      type(key_type), allocatable :: keys(:)
+   contains
+      procedure :: has
+      procedure :: real_value
+      procedure :: integer_value
+      procedure :: logical_value
+      procedure :: text_value
+      procedure :: choice_value
+      procedure :: complain
+      procedure :: need
+      procedure, private :: entry_of
+      procedure, private :: written
+      procedure, private :: key_of
+   end type reader_type
+
+contains
+
+   !> The case in a file. Error MFV_INPUT_ERROR.
+   subroutine read_case_file(path, case, error)
+      character(*), intent(in) :: path
+      type(case_type), intent(out) :: case
+      type(error_type), allocatable, intent(out) :: error
+      character(:), allocatable :: text, name
+
+      call read_text(path, text, error)
+      if (allocated(error)) return
+      call read_case_text(text, path, case, error)
+      if (allocated(error)) return
+      name = path(index(path, '/', back=.true.) + 1:)
+      if (index(name, '.', back=.true.) > 1) name = name(:index(name, '.', back=.true.) - 1)
+      if (case%result_path == '') case%result_path = name//'.h5'
+   end subroutine read_case_file
+
+   !> The case in a text. `source`: its name for messages; files it names are looked for beside it.
+   !> Error MFV_INPUT_ERROR.
+   subroutine read_case_text(text, source, case, error)
+      character(*), intent(in) :: text, source
+      type(case_type), intent(out) :: case
+      type(error_type), allocatable, intent(out) :: error
+      type(reader_type) :: reader
+
+      reader%source = source
+      reader%keys = case_keys()
+      call parse_namelists(text, source, reader%groups, error)
+      if (.not. allocated(error)) call check_groups(reader, error)
+      if (.not. allocated(error)) call check_entries(reader, error)
+      if (.not. allocated(error)) call check_friction_of_steps(reader, error)
+      if (.not. allocated(error)) call read_scene(reader, case%scene, error)
+      if (allocated(error)) return
+      case%text = text
+      case%source = source
+      case%length_unit = reader%text_value('scene', 1, 'length_unit')
+      case%force_unit = reader%text_value('scene', 1, 'force_unit')
+      case%result_path = reader%text_value('output', 1, 'file')
+      case%keep_history = history_events
+      if (reader%choice_value('output', 1, 'history') == 'steps') case%keep_history = history_steps
+      if (reader%choice_value('output', 1, 'history') == 'none') case%keep_history = history_none
+   end subroutine read_case_text
+
+   !> Every group known, and those that must be alone alone.
+   subroutine check_groups(reader, error)
+      type(reader_type), intent(in) :: reader
+      type(error_type), allocatable, intent(out) :: error
+      integer :: i, j
+
+      do i = 1, size(reader%groups)
+         associate (group => reader%groups(i))
+            if (.not. any_equal(case_groups(), group%name)) then
+               call fail(reader, group%line, '&'//group%name//': unknown group'// &
+                         suggestion(group%name, case_groups(), '&')//'; groups are '//group_list, error)
+               return
+            end if
+            do j = 1, i - 1
+               if (reader%groups(j)%name /= group%name .or. group_repeats(group%name)) cycle
+               call fail(reader, group%line, '&'//group%name//': may come only once, and is already in line '// &
+                         to_text(reader%groups(j)%line), error)
+               return
+            end do
+         end associate
+      end do
+   end subroutine check_groups
+
+   !> Every key known, there once, with one value of the right kind in the right range.
+   subroutine check_entries(reader, error)
+      type(reader_type), intent(in) :: reader
+      type(error_type), allocatable, intent(out) :: error
+      character(:), allocatable :: why
+      integer :: i, j, k
+
+      do i = 1, size(reader%groups)
+         do j = 1, size(reader%groups(i)%entries)
+            associate (group => reader%groups(i)%name, entry => reader%groups(i)%entries(j))
+               k = reader%key_of(group, entry%key)
+               if (k == 0) then
+                  why = 'unknown key'//suggestion(entry%key, keys_of(reader, group), '')
+               else if (any([(reader%groups(i)%entries(k)%key == entry%key, k=1, j - 1)])) then
+                  why = 'the key is there twice'
+               else
+                  why = complaint(reader%keys(reader%key_of(group, entry%key)), entry)
+               end if
+               if (why /= '') then
+                  call fail(reader, entry%line, '&'//group//' '//as_written(entry)//': '//why, error)
+                  return
+               end if
+            end associate
+         end do
+      end do
+   end subroutine check_entries
+
+   !> What is wrong with the value of an entry; empty when nothing is.
+   function complaint(key, entry) result(why)
+      type(key_type), intent(in) :: key
+      type(entry_type), intent(in) :: entry
+      character(:), allocatable :: why
+      real(wp) :: value
+      integer :: code
+      logical :: right
+
+      right = size(entry%values) == 1
+      if (right) right = entry%is_quoted(1) .eqv. (key%kind == kind_text .or. key%kind == kind_choice)
+      if (right) then
+         select case (key%kind)
+         case (kind_choice)
+            right = any_equal(list_of_words(key%choices), entry%values(1)%text)
+         case (kind_logical)
+            right = logical_code(entry%values(1)%text) >= 0
+         case (kind_integer, kind_real)
+            call read_number(entry%values(1)%text, key%kind, value, code)
+            right = code == 0 .and. value >= key%lower .and. value <= key%upper
+            if (right .and. key%lower_open) right = value > key%lower
+         end select
+      end if
+      why = ''
+      if (.not. right) why = 'must be '//allowed_text(key)
+      if (.not. right .and. key%unit /= '') why = why//' ('//key%unit//')'
+   end function complaint
+
+   !> A finite number; `code` is not 0 where the text is none.
+   subroutine read_number(text, kind, value, code)
+      character(*), intent(in) :: text
+      integer, intent(in) :: kind
+      real(wp), intent(out) :: value
+      integer, intent(out) :: code
+      character(*), parameter :: digits = '0123456789+-'
+      integer :: whole
+
+      value = 0.0_wp
+      code = 1
+      if (kind == kind_integer) then
+         if (verify(text, digits) > 0) return
+         read (text, *, iostat=code) whole
+         if (code == 0) value = whole
+      else
+         if (verify(text, digits//'.eEdD') > 0 .or. scan(text, '0123456789') == 0) return
+         read (text, *, iostat=code) value
+         if (code == 0 .and. .not. ieee_is_finite(value)) code = 1
+      end if
+   end subroutine read_number
+
+   !> 1 for true, 0 for false, -1 for neither.
+   pure integer function logical_code(text)
+      character(*), intent(in) :: text
+
+      select case (lower_case(text))
+      case ('.true.', 't', 'true', '.t.')
+         logical_code = 1
+      case ('.false.', 'f', 'false', '.f.')
+         logical_code = 0
+      case default
+         logical_code = -1
+      end select
+   end function logical_code
+
+   !> The scene that the groups describe.
+   subroutine read_scene(reader, scene, error)
+      type(reader_type), intent(in) :: reader
+      type(scene_type), intent(out) :: scene
+      type(error_type), allocatable, intent(out) :: error
+
+      scene%title = reader%text_value('scene', 1, 'title')
+      scene%plane = merge(plane_stress, plane_strain, reader%choice_value('scene', 1, 'plane') == 'stress')
+      select case (reader%choice_value('scene', 1, 'coupling'))
+      case ('full')
+         scene%coupling = coupling_full
+      case ('goodman')
+         scene%coupling = coupling_goodman
+      case ('none')
+         scene%coupling = coupling_none
+      end select
+      call check_bodies(reader, error)
+      if (.not. allocated(error)) call read_half_plane(reader, scene, error)
+      if (.not. allocated(error)) call read_indenter(reader, scene, error)
+      if (.not. allocated(error)) call read_mesh(reader, scene, error)
+      if (.not. allocated(error)) call read_friction(reader, scene, error)
+      if (.not. allocated(error)) call read_steps(reader, scene, error)
+      if (allocated(error)) return
+      scene%datum = scene%indenter%half_extent()
+      if (reader%has('body', 1, 'datum')) scene%datum = reader%real_value('body', 1, 'datum')
+   end subroutine read_scene
+
+   !> Two bodies, an elastic half-plane below and a rigid indenter above.
+   subroutine check_bodies(reader, error)
+      type(reader_type), intent(in) :: reader
+      type(error_type), allocatable, intent(out) :: error
+      integer :: body
+
+      if (count_groups(reader, 'body') /= 2) then
+         call fail(reader, 0, '&body: two bodies are needed, the first below and the second above; there are '// &
+                   to_text(count_groups(reader, 'body')), error)
+         return
+      end if
+      do body = 1, 2
+         call reader%need('body', body, 'shape', error)
+         if (allocated(error)) return
+      end do
+      if (reader%choice_value('body', 1, 'shape') /= 'half_plane' .or. reader%logical_value('body', 1, 'rigid')) then
+         call reader%complain('body', 1, 'shape', 'the first body, below, must be an elastic half_plane', error)
+      else if (reader%choice_value('body', 2, 'shape') == 'half_plane') then
+         call reader%complain('body', 2, 'shape', "the second body, above, must be 'disk', 'flat_punch' or 'profile'", &
+                              error)
+      else if (.not. reader%logical_value('body', 2, 'rigid')) then
+         call reader%complain('body', 2, 'shape', 'the second body must be rigid=.true.; elastic ones are not '// &
+                              'available yet', error)
+      end if
+      if (.not. allocated(error)) call check_body_keys(reader, error)
+   end subroutine check_bodies
+
+   !> Keys that mean nothing for the shape of their body are mistakes.
+   subroutine check_body_keys(reader, error)
+      type(reader_type), intent(in) :: reader
+      type(error_type), allocatable, intent(out) :: error
+      type(string_type), allocatable :: keys(:)
+      character(:), allocatable :: shape, allowed
+      integer :: body, i
+
+      keys = keys_of(reader, 'body')
+      do body = 1, 2
+         shape = reader%choice_value('body', body, 'shape')
+         select case (shape)
+         case ('half_plane')
+            allowed = 'shape rigid shear_modulus youngs_modulus poisson_ratio datum'
+         case ('disk')
+            allowed = 'shape rigid radius'
+         case ('flat_punch')
+            allowed = 'shape rigid half_width'
+         case default
+            allowed = 'shape rigid file'
+         end select
+         do i = 1, size(keys)
+            if (.not. reader%has('body', body, keys(i)%text)) cycle
+            if (index(' '//allowed//' ', ' '//keys(i)%text//' ') > 0) cycle
+            call reader%complain('body', body, keys(i)%text, 'means nothing for a '//trim(merge('rigid', '     ', body == 2))// &
+                                 ' '//shape//'; its keys are '//allowed, error)
+            return
+         end do
+      end do
+   end subroutine check_body_keys
+
+   !> The elastic material.
+   subroutine read_half_plane(reader, scene, error)
+      type(reader_type), intent(in) :: reader
+      type(scene_type), intent(inout) :: scene
+      type(error_type), allocatable, intent(out) :: error
+      real(wp) :: modulus, ratio
+
+      call reader%need('body', 1, 'poisson_ratio', error)
+      if (allocated(error)) return
+      ratio = reader%real_value('body', 1, 'poisson_ratio')
+      if (reader%has('body', 1, 'youngs_modulus')) then
+         if (reader%has('body', 1, 'shear_modulus')) then
+            call reader%complain('body', 1, 'youngs_modulus', 'shear_modulus is there too; give one of them', error)
+            return
+         end if
+         modulus = reader%real_value('body', 1, 'youngs_modulus')/(2.0_wp*(1.0_wp + ratio))
+      else
+         call reader%need('body', 1, 'shear_modulus', error)
+         if (allocated(error)) return
+         modulus = reader%real_value('body', 1, 'shear_modulus')
+      end if
+      scene%material = new_material(modulus, ratio, scene%plane)
+   end subroutine read_half_plane
+
+   !> The rigid indenter.
+   subroutine read_indenter(reader, scene, error)
+      type(reader_type), intent(in) :: reader
+      type(scene_type), intent(inout) :: scene
+      type(error_type), allocatable, intent(out) :: error
+      character(:), allocatable :: path
+
+      if (reader%has('mesh', 1, 'gap') .and. reader%choice_value('body', 2, 'shape') /= 'disk') then
+         call reader%complain('mesh', 1, 'gap', 'means nothing without a disk', error)
+         return
+      end if
+      select case (reader%choice_value('body', 2, 'shape'))
+      case ('disk')
+         call reader%need('body', 2, 'radius', error)
+         if (allocated(error)) return
+         scene%indenter = new_disk(reader%real_value('body', 2, 'radius'), &
+                                   reader%choice_value('mesh', 1, 'gap') == 'parabolic')
+      case ('flat_punch')
+         call reader%need('body', 2, 'half_width', error)
+         if (allocated(error)) return
+         scene%indenter = new_flat_punch(reader%real_value('body', 2, 'half_width'))
+      case default
+         call reader%need('body', 2, 'file', error)
+         if (allocated(error)) return
+         path = reader%text_value('body', 2, 'file')
+         if (path(1:min(1, len(path))) /= '/') path = directory_of(reader%source)//path
+         call read_profile(path, scene%indenter, error)
+         if (allocated(error)) call reader%complain('body', 2, 'file', error%message, error)
+      end select
+   end subroutine read_indenter
+
+   !> The mesh, which must see the indenter.
+   subroutine read_mesh(reader, scene, error)
+      type(reader_type), intent(in) :: reader
+      type(scene_type), intent(inout) :: scene
+      type(error_type), allocatable, intent(out) :: error
+      real(wp) :: interval
+      integer :: i, nodes
+
+      nodes = reader%integer_value('mesh', 1, 'nodes')
+      scene%mesh%nodes = nodes
+      if (.not. reader%has('mesh', 1, 'half_width')) return
+      scene%mesh%half_width = reader%real_value('mesh', 1, 'half_width')
+      interval = 2.0_wp*scene%mesh%half_width/nodes
+      if (any(scene%indenter%covers([(0.5_wp*interval*(2*i - nodes - 1), i=1, nodes)]))) return
+      call reader%complain('mesh', 1, 'half_width', 'no node of this mesh is under the indenter', error)
+   end subroutine read_mesh
+
+   subroutine read_friction(reader, scene, error)
+      type(reader_type), intent(in) :: reader
+      type(scene_type), intent(inout) :: scene
+      type(error_type), allocatable, intent(out) :: error
+
+      scene%friction = no_friction()
+      if (reader%choice_value('friction', 1, 'law') == 'coulomb') then
+         call reader%need('friction', 1, 'mu', error)
+         if (allocated(error)) return
+         scene%friction = coulomb_friction(reader%real_value('friction', 1, 'mu'))
+      else if (reader%has('friction', 1, 'mu')) then
+         call reader%complain('friction', 1, 'mu', "means nothing without law='coulomb'", error)
+      end if
+   end subroutine read_friction
+
+   !> The steps of the load history.
+   subroutine read_steps(reader, scene, error)
+      type(reader_type), intent(in) :: reader
+      type(scene_type), intent(inout) :: scene
+      type(error_type), allocatable, intent(out) :: error
+      integer :: i
+
+      if (count_groups(reader, 'step') == 0) then
+         call fail(reader, 0, '&step: at least one step is needed', error)
+         return
+      end if
+      allocate (scene%steps(count_groups(reader, 'step')))
+      do i = 1, size(scene%steps)
+         associate (step => scene%steps(i))
+            call read_target(reader, i, 'normal_force', 'approach', step%normal_control, step%normal_target, error)
+            if (allocated(error)) return
+            call read_target(reader, i, 'tangential_force', 'shift', step%tangential_control, step%tangential_target, error)
+            if (allocated(error)) return
+            step%friction = reader%logical_value('step', i, 'friction')
+            step%cycles = reader%integer_value('step', i, 'cycles')
+            if (step%normal_control == control_keep .and. step%tangential_control == control_keep) then
+               call fail(reader, line_of(reader, 'step', i), '&step '//to_text(i)//': needs a target: normal_force or '// &
+                         'approach, tangential_force or shift', error)
+               return
+            end if
+         end associate
+      end do
+   end subroutine read_steps
+
+   !> The target of one direction of step `number`: a force or a displacement.
+   subroutine read_target(reader, number, force, displacement, control, target, error)
+      type(reader_type), intent(in) :: reader
+      integer, intent(in) :: number
+      character(*), intent(in) :: force, displacement
+      integer, intent(out) :: control
+      real(wp), intent(out) :: target
+      type(error_type), allocatable, intent(out) :: error
+
+      control = control_keep
+      target = 0.0_wp
+      if (reader%has('step', number, force)) then
+         control = control_force
+         target = reader%real_value('step', number, force)
+      end if
+      if (.not. reader%has('step', number, displacement)) return
+      if (control /= control_keep) then
+         call reader%complain('step', number, displacement, force//' is there too; a step controls one of them', error)
+         return
+      end if
+      control = control_displacement
+      target = reader%real_value('step', number, displacement)
+   end subroutine read_target
+
+   !> Without friction no tangential force can be carried.
+   subroutine check_friction_of_steps(reader, error)
+      type(reader_type), intent(in) :: reader
+      type(error_type), allocatable, intent(out) :: error
+      logical :: law
+      integer :: i
+
+      law = reader%choice_value('friction', 1, 'law') /= 'none'
+      if (law .and. reader%has('friction', 1, 'mu')) law = reader%real_value('friction', 1, 'mu') > 0.0_wp
+      do i = 1, count_groups(reader, 'step')
+         if (.not. reader%has('step', i, 'tangential_force')) cycle
+         if (.not. abs(reader%real_value('step', i, 'tangential_force')) > 0.0_wp) cycle
+         if (law .and. reader%logical_value('step', i, 'friction')) cycle
+         call reader%complain('step', i, 'tangential_force', 'must be 0 in a step without friction', error)
+         return
+      end do
+   end subroutine check_friction_of_steps
+
+   !> Place of a key in the list of keys, 0 for none.
+   pure integer function key_of(self, group, name)
+      class(reader_type), intent(in) :: self
+      character(*), intent(in) :: group, name
+
+      do key_of = size(self%keys), 1, -1
+         if (self%keys(key_of)%group == group .and. self%keys(key_of)%name == name) return
+      end do
+   end function key_of
+
+   !> The entry of a key in the `number`-th group of a name; `found` false where it is not written.
+   subroutine entry_of(self, group, number, name, entry, found)
+      class(reader_type), intent(in) :: self
+      character(*), intent(in) :: group, name
+      integer, intent(in) :: number
+      type(entry_type), intent(out) :: entry
+      logical, intent(out) :: found
+      integer :: i, j, seen
+
+      found = .false.
+      seen = 0
+      do i = 1, size(self%groups)
+         if (self%groups(i)%name == group) seen = seen + 1
+         if (self%groups(i)%name /= group .or. seen /= number) cycle
+         do j = 1, size(self%groups(i)%entries)
+            found = self%groups(i)%entries(j)%key == name
+            if (found) entry = self%groups(i)%entries(j)
+            if (found) return
+         end do
+      end do
+   end subroutine entry_of
+
+   !> Whether a key is written in the `number`-th group of a name.
+   logical function has(self, group, number, name)
+      class(reader_type), intent(in) :: self
+      character(*), intent(in) :: group, name
+      integer, intent(in) :: number
+      type(entry_type) :: entry
+
+      call self%entry_of(group, number, name, entry, has)
+   end function has
+
+   !> The value as written, or the default.
+   function written(self, group, number, name) result(text)
+      class(reader_type), intent(in) :: self
+      character(*), intent(in) :: group, name
+      integer, intent(in) :: number
+      character(:), allocatable :: text
+      type(entry_type) :: entry
+      logical :: found
+
+      call self%entry_of(group, number, name, entry, found)
+      if (found) then
+         text = entry%values(1)%text
+      else
+         text = self%keys(self%key_of(group, name))%default
+      end if
+   end function written
+
+   real(wp) function real_value(self, group, number, name)
+      class(reader_type), intent(in) :: self
+      character(*), intent(in) :: group, name
+      integer, intent(in) :: number
+      integer :: code
+
+      call read_number(self%written(group, number, name), kind_real, real_value, code)
+   end function real_value
+
+   integer function integer_value(self, group, number, name)
+      class(reader_type), intent(in) :: self
+      character(*), intent(in) :: group, name
+      integer, intent(in) :: number
+      real(wp) :: value
+      integer :: code
+
+      call read_number(self%written(group, number, name), kind_integer, value, code)
+      integer_value = nint(value)
+   end function integer_value
+
+   logical function logical_value(self, group, number, name)
+      class(reader_type), intent(in) :: self
+      character(*), intent(in) :: group, name
+      integer, intent(in) :: number
+
+      logical_value = logical_code(self%written(group, number, name)) == 1
+   end function logical_value
+
+   function text_value(self, group, number, name) result(text)
+      class(reader_type), intent(in) :: self
+      character(*), intent(in) :: group, name
+      integer, intent(in) :: number
+      character(:), allocatable :: text
+
+      text = self%written(group, number, name)
+   end function text_value
+
+   function choice_value(self, group, number, name) result(text)
+      class(reader_type), intent(in) :: self
+      character(*), intent(in) :: group, name
+      integer, intent(in) :: number
+      character(:), allocatable :: text
+
+      text = self%written(group, number, name)
+   end function choice_value
+
+   !> Error where a key is not written.
+   subroutine need(self, group, number, name, error)
+      class(reader_type), intent(in) :: self
+      character(*), intent(in) :: group, name
+      integer, intent(in) :: number
+      type(error_type), allocatable, intent(out) :: error
+
+      if (self%has(group, number, name)) return
+      associate (key => self%keys(self%key_of(group, name)))
+         call fail(self, line_of(self, group, number), '&'//group//numbered(group, number)//': '//name// &
+                   ' is missing; it must be '//allowed_text(key), error)
+      end associate
+   end subroutine need
+
+   !> Error about a key of the `number`-th group of a name.
+   subroutine complain(self, group, number, name, why, error)
+      class(reader_type), intent(in) :: self
+      character(*), intent(in) :: group, name, why
+      integer, intent(in) :: number
+      type(error_type), allocatable, intent(inout) :: error
+      type(entry_type) :: entry
+      logical :: found
+      character(:), allocatable :: message
+      integer :: line
+
+      message = why
+      call self%entry_of(group, number, name, entry, found)
+      line = merge(entry%line, line_of(self, group, number), found)
+      call fail(self, line, '&'//group//numbered(group, number)//' '// &
+                merge_text(found, as_written(entry), name)//': '//message, error)
+   end subroutine complain
+
+   pure function merge_text(condition, yes, no) result(text)
+      logical, intent(in) :: condition
+      character(*), intent(in) :: yes, no
+      character(:), allocatable :: text
+
+      text = no
+      if (condition) text = yes
+   end function merge_text
+
+   pure function numbered(group, number) result(text)
+      character(*), intent(in) :: group
+      integer, intent(in) :: number
+      character(:), allocatable :: text
+
+      text = ''
+      if (group_repeats(group)) text = ' '//to_text(number)
+   end function numbered
+
+   !> key=value as the user wrote it.
+   pure function as_written(entry) result(text)
+      type(entry_type), intent(in) :: entry
+      character(:), allocatable :: text
+      integer :: i
+
+      text = ''
+      if (.not. allocated(entry%key)) return
+      text = entry%key//'='
+      do i = 1, size(entry%values)
+         if (i > 1) text = text//', '
+         text = text//merge_text(entry%is_quoted(i), quoted(entry%values(i)%text), entry%values(i)%text)
+      end do
+   end function as_written
+
+   !> Number of groups of a name.
+   pure integer function count_groups(reader, name)
+      type(reader_type), intent(in) :: reader
+      character(*), intent(in) :: name
+      integer :: i
+
+      count_groups = 0
+      do i = 1, size(reader%groups)
+         if (reader%groups(i)%name == name) count_groups = count_groups + 1
+      end do
+   end function count_groups
+
+   !> Line of the `number`-th group of a name, 0 for none.
+   pure integer function line_of(reader, name, number)
+      type(reader_type), intent(in) :: reader
+      character(*), intent(in) :: name
+      integer, intent(in) :: number
+      integer :: i, seen
+
+      line_of = 0
+      seen = 0
+      do i = 1, size(reader%groups)
+         if (reader%groups(i)%name == name) seen = seen + 1
+         if (reader%groups(i)%name == name .and. seen == number) line_of = reader%groups(i)%line
+      end do
+   end function line_of
+
+   !> Names of the keys of a group.
+   pure function keys_of(reader, group) result(names)
+      type(reader_type), intent(in) :: reader
+      character(*), intent(in) :: group
+      type(string_type), allocatable :: names(:)
+      type(string_type) :: name
+      integer :: i
+
+      allocate (names(0))
+      do i = 1, size(reader%keys)
+         if (reader%keys(i)%group /= group) cycle
+         name%text = reader%keys(i)%name
+         names = [names, name]
+      end do
+   end function keys_of
+
+   pure logical function any_equal(words, text)
+      type(string_type), intent(in) :: words(:)
+      character(*), intent(in) :: text
+      integer :: i
+
+      any_equal = .false.
+      do i = 1, size(words)
+         any_equal = any_equal .or. words(i)%text == text
+      end do
+   end function any_equal
+
+   !> '; did you mean ...?' where a known name is near.
+   pure function suggestion(name, names, prefix) result(text)
+      character(*), intent(in) :: name, prefix
+      type(string_type), intent(in) :: names(:)
+      character(:), allocatable :: text
+
+      text = nearest_name(name, names)
+      if (text /= '') text = '; did you mean '//prefix//text//'?'
+   end function suggestion
+
+   subroutine fail(reader, line, message, error)
+      type(reader_type), intent(in) :: reader
+      integer, intent(in) :: line
+      character(*), intent(in) :: message
+      type(error_type), allocatable, intent(inout) :: error
+      character(:), allocatable :: place
+
+      place = reader%source//':'
+      if (line > 0) place = place//to_text(line)//':'
+      if (allocated(error)) deallocate (error)
+      call set_error(error, MFV_INPUT_ERROR, place//' '//message)
+   end subroutine fail
+
+end module mfv_case_reader

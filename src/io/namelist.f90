@@ -1,0 +1,267 @@
+!> The text of a case, in Fortran's namelist form, taken apart: groups, keys, values and their lines.
+!>
+!> The compiler's own namelist reading stops at the first error and does not say which key it met with which value;
+!> here every message can name file, line, group, key and value. Form: `&group key=value, key=value /`, comments after
+!> `!`, texts between ' or ", several values after one key, keys and groups in upper or lower case.
+module mfv_namelist
+   use mfv_error, only: error_type, set_error
+   use mfv_status, only: MFV_INPUT_ERROR
+   use mfv_strings, only: lower_case, string_type, to_text
+   implicit none
+   private
+   public :: entry_type, group_type, parse_namelists
+
+   !> One key with its value as written.
+   type :: entry_type
+      character(:), allocatable :: key
+      !> Values as written, texts without their quotes; and which of them were quoted.
+      type(string_type), allocatable :: values(:)
+      logical, allocatable :: is_quoted(:)
+      integer :: line = 0
+   end type entry_type
+
+   !> One group, from & to /.
+   type :: group_type
+      character(:), allocatable :: name
+      type(entry_type), allocatable :: entries(:)
+      integer :: line = 0
+   end type group_type
+
+   !> Where the reading of a text stands.
+   type :: cursor_type
+      character(:), allocatable :: text, source
+      integer :: at = 1, line = 1
+   end type cursor_type
+
+   character(*), parameter :: line_feed = achar(10), tab = achar(9), carriage_return = achar(13)
+   character(*), parameter :: blanks = ' '//tab//carriage_return//line_feed
+   character(*), parameter :: name_characters = 'abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_'
+
+contains
+
+   !> All groups of a text. `source`: name of the file for messages. Error MFV_INPUT_ERROR with file and line.
+   subroutine parse_namelists(text, source, groups, error)
+      character(*), intent(in) :: text, source
+      type(group_type), allocatable, intent(out) :: groups(:)
+      type(error_type), allocatable, intent(out) :: error
+      type(cursor_type) :: cursor
+      type(group_type) :: group
+
+      cursor%text = text
+      cursor%source = source
+      allocate (groups(0))
+      do
+         call skip_blanks(cursor)
+         if (cursor%at > len(cursor%text)) return
+         if (next(cursor) /= '&') then
+            call complain(cursor, "'"//rest_of_line(cursor)//"' is outside a group; a group begins with &name", error)
+            return
+         end if
+         call read_group(cursor, group, error)
+         if (allocated(error)) return
+         groups = [groups, group]
+      end do
+   end subroutine parse_namelists
+
+   !> One group; the cursor is at its &.
+   subroutine read_group(cursor, group, error)
+      type(cursor_type), intent(inout) :: cursor
+      type(group_type), intent(out) :: group
+      type(error_type), allocatable, intent(out) :: error
+      type(entry_type) :: entry
+
+      group%line = cursor%line
+      cursor%at = cursor%at + 1
+      group%name = lower_case(read_name(cursor))
+      allocate (group%entries(0))
+      if (group%name == '') then
+         call complain(cursor, 'a group name must follow &', error)
+         return
+      end if
+      do
+         call skip_separators(cursor)
+         if (cursor%at > len(cursor%text) .or. next(cursor) == '&') then
+            call complain(cursor, '&'//group%name//' (line '//to_text(group%line)//') has no / at its end', error)
+            return
+         end if
+         if (next(cursor) == '/') exit
+         call read_entry(cursor, group%name, entry, error)
+         if (allocated(error)) return
+         group%entries = [group%entries, entry]
+      end do
+      cursor%at = cursor%at + 1
+   end subroutine read_group
+
+   !> One key=value.
+   subroutine read_entry(cursor, group, entry, error)
+      type(cursor_type), intent(inout) :: cursor
+      character(*), intent(in) :: group
+      type(entry_type), intent(out) :: entry
+      type(error_type), allocatable, intent(out) :: error
+
+      entry%line = cursor%line
+      entry%key = lower_case(read_name(cursor))
+      if (entry%key == '') then
+         call complain(cursor, '&'//group//": a key=value is wanted, not '"//rest_of_line(cursor)//"'", error)
+         return
+      end if
+      call skip_blanks(cursor)
+      if (next(cursor) /= '=') then
+         call complain(cursor, '&'//group//' '//entry%key//": '=' is wanted after the key", error)
+         return
+      end if
+      cursor%at = cursor%at + 1
+      call read_values(cursor, group, entry, error)
+   end subroutine read_entry
+
+   !> The values after a key: up to the next key or the end of the group.
+   subroutine read_values(cursor, group, entry, error)
+      type(cursor_type), intent(inout) :: cursor
+      character(*), intent(in) :: group
+      type(entry_type), intent(inout) :: entry
+      type(error_type), allocatable, intent(out) :: error
+      type(string_type) :: value
+      character(len=1) :: mark
+
+      allocate (entry%values(0), entry%is_quoted(0))
+      do
+         call skip_separators(cursor)
+         mark = next(cursor)
+         if (cursor%at > len(cursor%text) .or. mark == '/' .or. mark == '&' .or. mark == '=') return
+         if (key_follows(cursor)) return
+         if (mark == "'" .or. mark == '"') then
+            call read_quoted(cursor, mark, value%text, error)
+            if (allocated(error)) then
+               error%message = cursor%source//':'//to_text(entry%line)//': &'//group//' '//entry%key// &
+                               ': the text has no closing '//mark
+               return
+            end if
+         else
+            value%text = read_bare(cursor)
+         end if
+         entry%values = [entry%values, value]
+         entry%is_quoted = [entry%is_quoted, mark == "'" .or. mark == '"']
+      end do
+   end subroutine read_values
+
+   !> A text between quotes; a doubled quote stands for one.
+   subroutine read_quoted(cursor, mark, text, error)
+      type(cursor_type), intent(inout) :: cursor
+      character(len=1), intent(in) :: mark
+      character(:), allocatable, intent(out) :: text
+      type(error_type), allocatable, intent(out) :: error
+      integer :: length
+
+      text = ''
+      cursor%at = cursor%at + 1
+      do
+         length = index(cursor%text(cursor%at:), mark) - 1
+         if (length < 0 .or. index(cursor%text(cursor%at:cursor%at + max(length, 0) - 1), line_feed) > 0) then
+            call set_error(error, MFV_INPUT_ERROR, 'no closing quote')
+            return
+         end if
+         text = text//cursor%text(cursor%at:cursor%at + length - 1)
+         cursor%at = cursor%at + length + 1
+         if (next(cursor) /= mark) return
+         text = text//mark
+         cursor%at = cursor%at + 1
+      end do
+   end subroutine read_quoted
+
+   !> A value without quotes: up to a blank, a comma, a comment or the end of the group.
+   function read_bare(cursor) result(text)
+      type(cursor_type), intent(inout) :: cursor
+      character(:), allocatable :: text
+      integer :: length
+
+      length = scan(cursor%text(cursor%at:), blanks//",/&!='""") - 1
+      if (length < 0) length = len(cursor%text) - cursor%at + 1
+      text = cursor%text(cursor%at:cursor%at + length - 1)
+      cursor%at = cursor%at + length
+   end function read_bare
+
+   !> Whether a name and then '=' come next.
+   pure logical function key_follows(cursor)
+      type(cursor_type), intent(in) :: cursor
+      integer :: after, length
+
+      length = verify(cursor%text(cursor%at:), name_characters) - 1
+      key_follows = .false.
+      if (length < 1) return
+      after = verify(cursor%text(cursor%at + length:), blanks)
+      if (after > 0) key_follows = cursor%text(cursor%at + length + after - 1:cursor%at + length + after - 1) == '='
+   end function key_follows
+
+   function read_name(cursor) result(name)
+      type(cursor_type), intent(inout) :: cursor
+      character(:), allocatable :: name
+      integer :: length
+
+      length = verify(cursor%text(cursor%at:), name_characters) - 1
+      if (length < 0) length = len(cursor%text) - cursor%at + 1
+      name = cursor%text(cursor%at:cursor%at + length - 1)
+      cursor%at = cursor%at + length
+   end function read_name
+
+   !> The character at the cursor, a blank at the end.
+   pure character(len=1) function next(cursor)
+      type(cursor_type), intent(in) :: cursor
+
+      next = ' '
+      if (cursor%at <= len(cursor%text)) next = cursor%text(cursor%at:cursor%at)
+   end function next
+
+   !> Skip blanks, line ends and comments.
+   subroutine skip_blanks(cursor)
+      type(cursor_type), intent(inout) :: cursor
+      integer :: length
+
+      do while (cursor%at <= len(cursor%text))
+         if (next(cursor) == '!') then
+            length = index(cursor%text(cursor%at:), line_feed) - 1
+            if (length < 0) length = len(cursor%text) - cursor%at + 1
+            cursor%at = cursor%at + length
+         else if (scan(next(cursor), blanks) == 1) then
+            if (next(cursor) == line_feed) cursor%line = cursor%line + 1
+            cursor%at = cursor%at + 1
+         else
+            return
+         end if
+      end do
+   end subroutine skip_blanks
+
+   !> Skip blanks, comments and commas.
+   subroutine skip_separators(cursor)
+      type(cursor_type), intent(inout) :: cursor
+
+      call skip_blanks(cursor)
+      do while (next(cursor) == ',')
+         cursor%at = cursor%at + 1
+         call skip_blanks(cursor)
+      end do
+   end subroutine skip_separators
+
+   !> What is left of the line, for messages, cut to a readable length and to printable characters.
+   pure function rest_of_line(cursor) result(text)
+      type(cursor_type), intent(in) :: cursor
+      character(:), allocatable :: text
+      integer, parameter :: longest = 40
+      integer :: i, length
+
+      length = index(cursor%text(cursor%at:), line_feed) - 1
+      if (length < 0) length = len(cursor%text) - cursor%at + 1
+      text = cursor%text(cursor%at:cursor%at + min(length, longest) - 1)
+      do i = 1, len(text)
+         if (iachar(text(i:i)) < 32 .or. iachar(text(i:i)) == 127) text(i:i) = '?'
+      end do
+   end function rest_of_line
+
+   subroutine complain(cursor, message, error)
+      type(cursor_type), intent(in) :: cursor
+      character(*), intent(in) :: message
+      type(error_type), allocatable, intent(out) :: error
+
+      call set_error(error, MFV_INPUT_ERROR, cursor%source//':'//to_text(cursor%line)//': '//message)
+   end subroutine complain
+
+end module mfv_namelist

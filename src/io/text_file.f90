@@ -1,0 +1,67 @@
+!> Reading whole text files.
+module mfv_text_file
+   use, intrinsic :: iso_fortran_env, only: int64
+   use mfv_error, only: error_type, set_error
+   use mfv_status, only: MFV_INPUT_ERROR
+   use mfv_strings, only: string_type
+   implicit none
+   private
+   public :: read_text, split_lines, directory_of
+
+contains
+
+   !> The bytes of a text file. Error MFV_INPUT_ERROR, naming the file, where it cannot be read.
+   subroutine read_text(path, text, error)
+      character(*), intent(in) :: path
+      character(:), allocatable, intent(out) :: text
+      type(error_type), allocatable, intent(out) :: error
+      character(len=256) :: why
+      integer :: code, unit
+      integer(int64) :: bytes
+
+      open (newunit=unit, file=path, access='stream', form='unformatted', action='read', status='old', &
+            iostat=code, iomsg=why)
+      if (code == 0) then
+         inquire (unit, size=bytes)
+         if (bytes < 0) bytes = 0
+         allocate (character(len=bytes) :: text)
+         read (unit, iostat=code, iomsg=why) text
+         close (unit)
+      end if
+      if (code /= 0) call set_error(error, MFV_INPUT_ERROR, path//': cannot be read: '//trim(why))
+   end subroutine read_text
+
+   !> The lines of a text, without their ends (LF or CR LF).
+   pure function split_lines(text) result(lines)
+      character(*), intent(in) :: text
+      type(string_type), allocatable :: lines(:)
+      character(*), parameter :: line_feed = achar(10), carriage_return = achar(13)
+      integer :: i, first, length, n
+
+      n = 0
+      do i = 1, len(text)
+         if (text(i:i) == line_feed) n = n + 1
+      end do
+      allocate (lines(n + 1))
+      first = 1
+      do i = 1, n + 1
+         length = index(text(first:), line_feed) - 1
+         if (length < 0) length = len(text) - first + 1
+         lines(i)%text = text(first:first + length - 1)
+         first = first + length + 1
+         length = len(lines(i)%text)
+         if (length > 0) then
+            if (lines(i)%text(length:length) == carriage_return) lines(i)%text = lines(i)%text(:length - 1)
+         end if
+      end do
+   end function split_lines
+
+   !> The directory part of a path with its final slash; empty for a bare name.
+   pure function directory_of(path) result(directory)
+      character(*), intent(in) :: path
+      character(:), allocatable :: directory
+
+      directory = path(:index(path, '/', back=.true.))
+   end function directory_of
+
+end module mfv_text_file

@@ -1,0 +1,193 @@
+!> Closed form: a cylinder pressed without shear and then sheared at constant normal force, elastically decoupled
+!> (Cattaneo 1938, Mindlin 1949; dissertation eqs. 3.7, 3.8), with any history of the tangential force: between turning
+!> points the traction changes by twice the first-loading traction of half the change (Mindlin and Deresiewicz 1953).
+module mfv_reference_mindlin
+   use mfv_kinds, only: pi, wp
+   use mfv_numerics, only: gauss_legendre
+   use mfv_reference_hertz, only: hertz_approach, hertz_pressure
+   implicit none
+   private
+   public :: mindlin_stick_ratio, mindlin_slip, mindlin_dissipation, mindlin_history_type, new_mindlin_history
+
+   !> A sheared Hertz contact and what it remembers of its tangential forces.
+   type :: mindlin_history_type
+      !> Normal force (force/length), contact half-width, radius, datum (lengths), coefficient of friction.
+      real(wp) :: normal_force, half_width, radius, datum, friction_coefficient
+      !> Turning points of the tangential force that still matter, and last the force now, force/length.
+      real(wp), allocatable :: turning(:)
+   contains
+      procedure :: load
+      procedure :: shear
+      procedure :: shift
+   end type mindlin_history_type
+
+   integer, parameter :: quadrature_points = 200
+
+contains
+
+   !> Stick ratio b/a = sqrt(1 - |Q|/(mu P)) on first loading; 0 from gross sliding on. Equation 3.7.
+   elemental real(wp) function mindlin_stick_ratio(tangential_force, normal_force, friction_coefficient) result(ratio)
+      real(wp), intent(in) :: tangential_force, normal_force, friction_coefficient
+
+      ratio = sqrt(max(1.0_wp - abs(tangential_force)/(friction_coefficient*normal_force), 0.0_wp))
+   end function mindlin_stick_ratio
+
+   !> A contact that has not been sheared yet. Arguments as the components of the type.
+   pure function new_mindlin_history(normal_force, half_width, radius, datum, friction_coefficient) result(history)
+      real(wp), intent(in) :: normal_force, half_width, radius, datum, friction_coefficient
+      type(mindlin_history_type) :: history
+
+      history = mindlin_history_type(normal_force, half_width, radius, datum, friction_coefficient, [real(wp) ::])
+   end function new_mindlin_history
+
+   !> Lead the tangential force (force/length) straight to `tangential_force`. Closed inner loops are forgotten.
+   pure subroutine load(self, tangential_force)
+      class(mindlin_history_type), intent(inout) :: self
+      real(wp), intent(in) :: tangential_force
+      integer :: n
+
+      self%turning = [self%turning, tangential_force]
+      do
+         n = size(self%turning)
+         if (n < 2) return
+         if (abs(self%turning(n)) >= abs(self%turning(1))) then
+            self%turning = [tangential_force]
+         else if (n >= 3) then
+            associate (t => self%turning)
+               if ((t(n) - t(n - 1))*(t(n - 1) - t(n - 2)) >= 0.0_wp) then
+                  self%turning = [t(:n - 2), t(n)]
+               else if (abs(t(n) - t(n - 1)) >= abs(t(n - 1) - t(n - 2))) then
+                  self%turning = [t(:n - 3), t(n)]
+               else
+                  return
+               end if
+            end associate
+         else
+            return
+         end if
+      end do
+   end subroutine load
+
+   !> Shear traction at x (length), force/length^2. Equation 3.8 (whose second line misprints sqrt(1 - x^2/b^2)) on first
+   !> loading.
+   pure function shear(self, x)
+      class(mindlin_history_type), intent(in) :: self
+      real(wp), intent(in) :: x(:)
+      real(wp) :: shear(size(x))
+      integer :: i
+
+      shear = 0.0_wp
+      if (size(self%turning) == 0) return
+      shear = first_shear(self, x, self%turning(1))
+      do i = 2, size(self%turning)
+         shear = shear + 2.0_wp*first_shear(self, x, 0.5_wp*(self%turning(i) - self%turning(i - 1)))
+      end do
+   end function shear
+
+   pure function first_shear(self, x, tangential_force) result(shear)
+      class(mindlin_history_type), intent(in) :: self
+      real(wp), intent(in) :: x(:), tangential_force
+      real(wp) :: shear(size(x))
+      real(wp) :: c
+
+      c = mindlin_stick_ratio(tangential_force, self%normal_force, self%friction_coefficient)
+      shear = hertz_pressure(x, self%normal_force, self%half_width)
+      if (c > 0.0_wp) shear = shear - hertz_pressure(x, c**2*self%normal_force, c*self%half_width)
+      shear = sign(self%friction_coefficient, tangential_force)*shear
+   end function first_shear
+
+   !> Shift of the upper body, length: mu times the difference of the approaches of two Hertz contacts, of half-widths a
+   !> and b (Jaeger 1998, Ciavarella 1998).
+   pure real(wp) function shift(self)
+      class(mindlin_history_type), intent(in) :: self
+      integer :: i
+
+      shift = 0.0_wp
+      if (size(self%turning) == 0) return
+      shift = first_shift(self, self%turning(1))
+      do i = 2, size(self%turning)
+         shift = shift + 2.0_wp*first_shift(self, 0.5_wp*(self%turning(i) - self%turning(i - 1)))
+      end do
+   end function shift
+
+   pure real(wp) function first_shift(self, tangential_force) result(shift)
+      class(mindlin_history_type), intent(in) :: self
+      real(wp), intent(in) :: tangential_force
+      real(wp) :: c
+
+      c = mindlin_stick_ratio(tangential_force, self%normal_force, self%friction_coefficient)
+      shift = sign(self%friction_coefficient, tangential_force) &
+              *(hertz_approach(self%half_width, self%radius, self%datum) &
+                - hertz_approach(c*self%half_width, self%radius, self%datum))
+   end function first_shift
+
+   !> Size of the slip on first loading at the distance x from the centre (length), for the stick half-width b (length):
+   !> mu b^2/(2R) [xi sqrt(xi^2 - 1) - arcosh xi], xi = x/b, length.
+   pure real(wp) function mindlin_slip(x, stick_half_width, radius, friction_coefficient) result(slip)
+      real(wp), intent(in) :: x, stick_half_width, radius, friction_coefficient
+      real(wp), parameter :: near = 0.3_wp
+      real(wp) :: v
+
+      if (.not. stick_half_width > 0.0_wp) then
+         slip = 0.5_wp*friction_coefficient*x**2/radius
+         return
+      end if
+      slip = 0.0_wp
+      if (abs(x) <= stick_half_width) return
+      v = acosh_from_excess(abs(x)/stick_half_width - 1.0_wp)
+      if (v < near) then
+         slip = sinh_less_argument(2.0_wp*v)/2.0_wp
+      else
+         slip = 0.5_wp*sinh(2.0_wp*v) - v
+      end if
+      slip = 0.5_wp*friction_coefficient*stick_half_width**2/radius*slip
+   end function mindlin_slip
+
+   !> arcosh(1 + e) without cancellation.
+   pure real(wp) function acosh_from_excess(e) result(v)
+      real(wp), intent(in) :: e
+
+      v = 2.0_wp*asinh(sqrt(0.5_wp*e))
+   end function acosh_from_excess
+
+   !> sinh(y) - y by its series, for small y.
+   pure real(wp) function sinh_less_argument(y) result(total)
+      real(wp), intent(in) :: y
+      integer, parameter :: terms = 9
+      integer :: k
+
+      total = 0.0_wp
+      do k = terms, 1, -1
+         total = (total + 1.0_wp)*y**2/((2*k)*(2*k + 1.0_wp))
+      end do
+      total = total*y
+   end function sinh_less_argument
+
+   !> Energy dissipated by one full cycle of the tangential force between -Q and Q at constant normal force, force
+   !> (energy per unit thickness): 4 times the integral of mu p s over the slip zones (dissertation eq. 6.4, whose
+   !> integrand is garbled in print; Fleury et al. 2017).
+   function mindlin_dissipation(tangential_force, normal_force, half_width, radius, friction_coefficient) result(dissipation)
+      real(wp), intent(in) :: tangential_force, normal_force, half_width, radius, friction_coefficient
+      real(wp) :: dissipation
+      real(wp) :: b
+
+      b = half_width*mindlin_stick_ratio(tangential_force, normal_force, friction_coefficient)
+      dissipation = 8.0_wp*gauss_legendre(friction_work, [normal_force, half_width, b, radius, friction_coefficient], &
+                                          0.0_wp, 0.5_wp*pi, quadrature_points)
+   end function mindlin_dissipation
+
+   !> mu p s dx/dphi at x = b + (a - b) sin^2(phi), which takes the square roots out of both ends;
+   !> parameters: P, a, b, R, mu.
+   pure function friction_work(x, parameters) result(value)
+      real(wp), intent(in) :: x, parameters(:)
+      real(wp) :: value
+      real(wp) :: position
+
+      associate (a => parameters(2), b => parameters(3), phi => x)
+         position = b + (a - b)*sin(phi)**2
+         value = parameters(5)*hertz_pressure(position, parameters(1), a) &
+                 *mindlin_slip(position, b, parameters(4), parameters(5))*2.0_wp*(a - b)*sin(phi)*cos(phi)
+      end associate
+   end function friction_work
+
+end module mfv_reference_mindlin
