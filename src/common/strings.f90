@@ -4,7 +4,7 @@ module mfv_strings
    use mfv_kinds, only: wp
    implicit none
    private
-   public :: string_type, to_text, lower_case, nearest_name, from_c, copy_to_c, quoted
+   public :: string_type, to_text, lower_case, nearest_name, from_c, copy_to_c, quoted, add_text, list_of_words
 
    !> A text of any length, for arrays of texts.
    type :: string_type
@@ -110,6 +110,32 @@ contains
          if (text(i:i) >= 'A' .and. text(i:i) <= 'Z') lower(i:i) = achar(iachar(text(i:i)) + 32)
       end do
    end function lower_case
+
+   !> Append `text` to a list of texts.
+   pure subroutine add_text(texts, text)
+      type(string_type), allocatable, intent(inout) :: texts(:)
+      character(*), intent(in) :: text
+      type(string_type) :: last
+
+      last%text = text
+      if (.not. allocated(texts)) allocate (texts(0))
+      texts = [texts, last]
+   end subroutine add_text
+
+   !> The words of a text separated by blanks.
+   pure function list_of_words(text) result(words)
+      character(*), intent(in) :: text
+      type(string_type), allocatable :: words(:)
+      integer :: first, length
+
+      allocate (words(0))
+      first = 1
+      do while (first <= len(text))
+         length = index(text(first:)//' ', ' ') - 1
+         if (length > 0) call add_text(words, text(first:first + length - 1))
+         first = first + length + 1
+      end do
+   end function list_of_words
 
    !> `text` between apostrophes.
    pure function quoted(text) result(with_quotes)

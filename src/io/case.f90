@@ -1,7 +1,8 @@
 !> A case: a scene with what the user wants to see of its solution, and the text it came from.
 module mfv_case
-   use mfv_scene, only: scene_type
-   use mfv_simulation, only: history_events
+   use mfv_scene, only: control_force, control_keep, scene_type, step_type
+   use mfv_simulation, only: history_events, simulation_type
+   use mfv_strings, only: to_text
    implicit none
    private
    public :: case_type
@@ -16,6 +17,37 @@ module mfv_case
       integer :: keep_history = history_events
       !> Names of the user's units, for labels.
       character(:), allocatable :: length_unit, force_unit
+   contains
+      procedure :: explained
    end type case_type
+
+contains
+
+   !> Why a simulation of this case ended early, with the file, the step and the targets that were not reached.
+   function explained(self, simulation) result(text)
+      class(case_type), intent(in) :: self
+      type(simulation_type), intent(in) :: simulation
+      character(:), allocatable :: text
+
+      text = self%source//': '
+      if (simulation%failed_step >= 1 .and. simulation%failed_step <= size(self%scene%steps)) &
+         text = text//'&step '//to_text(simulation%failed_step)// &
+                targets_text(self%scene%steps(simulation%failed_step))//' not reached: '
+      text = text//simulation%message
+   end function explained
+
+   !> The targets of a step as the user wrote them.
+   function targets_text(step) result(text)
+      type(step_type), intent(in) :: step
+      character(:), allocatable :: text
+
+      text = ''
+      if (step%normal_control /= control_keep) &
+         text = ' '//trim(merge('normal_force', 'approach    ', step%normal_control == control_force))//'='// &
+                to_text(step%normal_target, 10)
+      if (step%tangential_control /= control_keep) &
+         text = text//' '//trim(merge('tangential_force', 'shift           ', step%tangential_control == control_force))// &
+                '='//to_text(step%tangential_target, 10)
+   end function targets_text
 
 end module mfv_case

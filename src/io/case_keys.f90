@@ -2,11 +2,11 @@
 !> reference in docs/namelist.md and `mfv_run --keys` are printed from it.
 module mfv_case_keys
    use mfv_kinds, only: wp
-   use mfv_strings, only: string_type, to_text
+   use mfv_strings, only: list_of_words, string_type, to_text
    implicit none
    private
    public :: key_type, case_keys, case_groups, group_list, group_repeats, kind_real, kind_integer, kind_logical, kind_text, &
-             kind_choice, keys_as_markdown, allowed_text, list_of_words
+             kind_choice, keys_as_markdown, allowed_text
 
    integer, parameter :: kind_real = 1, kind_integer = 2, kind_logical = 3, kind_text = 4, kind_choice = 5
 
@@ -194,25 +194,6 @@ contains
 
       group_repeats = index(' '//repeated_groups//' ', ' '//group//' ') > 0
    end function group_repeats
-
-   !> The words of a text separated by blanks.
-   pure function list_of_words(text) result(words)
-      character(*), intent(in) :: text
-      type(string_type), allocatable :: words(:)
-      type(string_type) :: word
-      integer :: first, last
-
-      allocate (words(0))
-      first = verify(text, ' ')
-      do while (first > 0)
-         last = index(text(first:)//' ', ' ') + first - 2
-         word%text = text(first:last)
-         words = [words, word]
-         first = verify(text(min(last + 1, len(text)):), ' ')
-         if (last + 1 > len(text)) exit
-         if (first > 0) first = first + last
-      end do
-   end function list_of_words
 
    !> What values a key takes, in words, for messages and the reference.
    function allowed_text(key) result(text)

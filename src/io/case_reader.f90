@@ -14,7 +14,7 @@ module mfv_case_reader
    use mfv_scene
    use mfv_simulation, only: history_events, history_none, history_steps
    use mfv_status, only: MFV_INPUT_ERROR
-   use mfv_strings, only: lower_case, nearest_name, quoted, string_type, to_text
+   use mfv_strings, only: add_text, list_of_words, lower_case, nearest_name, quoted, string_type, to_text
    use mfv_text_file, only: directory_of, read_text
    implicit none
    private
@@ -162,7 +162,7 @@ contains
    end function complaint
 
    !> A finite number; `code` is not 0 where the text is none.
-   subroutine read_number(text, kind, value, code)
+   pure subroutine read_number(text, kind, value, code)
       character(*), intent(in) :: text
       integer, intent(in) :: kind
       real(wp), intent(out) :: value
@@ -311,6 +311,7 @@ contains
       type(reader_type), intent(in) :: reader
       type(scene_type), intent(inout) :: scene
       type(error_type), allocatable, intent(out) :: error
+      type(error_type), allocatable :: file_error
       character(:), allocatable :: path
 
       if (reader%has('mesh', 1, 'gap') .and. reader%choice_value('body', 2, 'shape') /= 'disk') then
@@ -332,8 +333,8 @@ contains
          if (allocated(error)) return
          path = reader%text_value('body', 2, 'file')
          if (path(1:min(1, len(path))) /= '/') path = directory_of(reader%source)//path
-         call read_profile(path, scene%indenter, error)
-         if (allocated(error)) call reader%complain('body', 2, 'file', error%message, error)
+         call read_profile(path, scene%indenter, file_error)
+         if (allocated(file_error)) call reader%complain('body', 2, 'file', file_error%message, error)
       end select
    end subroutine read_indenter
 
@@ -451,7 +452,7 @@ contains
    end function key_of
 
    !> The entry of a key in the `number`-th group of a name; `found` false where it is not written.
-   subroutine entry_of(self, group, number, name, entry, found)
+   pure subroutine entry_of(self, group, number, name, entry, found)
       class(reader_type), intent(in) :: self
       character(*), intent(in) :: group, name
       integer, intent(in) :: number
@@ -473,7 +474,7 @@ contains
    end subroutine entry_of
 
    !> Whether a key is written in the `number`-th group of a name.
-   logical function has(self, group, number, name)
+   pure logical function has(self, group, number, name)
       class(reader_type), intent(in) :: self
       character(*), intent(in) :: group, name
       integer, intent(in) :: number
@@ -483,7 +484,7 @@ contains
    end function has
 
    !> The value as written, or the default.
-   function written(self, group, number, name) result(text)
+   pure function written(self, group, number, name) result(text)
       class(reader_type), intent(in) :: self
       character(*), intent(in) :: group, name
       integer, intent(in) :: number
@@ -499,7 +500,7 @@ contains
       end if
    end function written
 
-   real(wp) function real_value(self, group, number, name)
+   pure real(wp) function real_value(self, group, number, name)
       class(reader_type), intent(in) :: self
       character(*), intent(in) :: group, name
       integer, intent(in) :: number
@@ -508,7 +509,7 @@ contains
       call read_number(self%written(group, number, name), kind_real, real_value, code)
    end function real_value
 
-   integer function integer_value(self, group, number, name)
+   pure integer function integer_value(self, group, number, name)
       class(reader_type), intent(in) :: self
       character(*), intent(in) :: group, name
       integer, intent(in) :: number
@@ -519,7 +520,7 @@ contains
       integer_value = nint(value)
    end function integer_value
 
-   logical function logical_value(self, group, number, name)
+   pure logical function logical_value(self, group, number, name)
       class(reader_type), intent(in) :: self
       character(*), intent(in) :: group, name
       integer, intent(in) :: number
@@ -527,7 +528,7 @@ contains
       logical_value = logical_code(self%written(group, number, name)) == 1
    end function logical_value
 
-   function text_value(self, group, number, name) result(text)
+   pure function text_value(self, group, number, name) result(text)
       class(reader_type), intent(in) :: self
       character(*), intent(in) :: group, name
       integer, intent(in) :: number
@@ -536,7 +537,7 @@ contains
       text = self%written(group, number, name)
    end function text_value
 
-   function choice_value(self, group, number, name) result(text)
+   pure function choice_value(self, group, number, name) result(text)
       class(reader_type), intent(in) :: self
       character(*), intent(in) :: group, name
       integer, intent(in) :: number
@@ -567,14 +568,12 @@ contains
       type(error_type), allocatable, intent(inout) :: error
       type(entry_type) :: entry
       logical :: found
-      character(:), allocatable :: message
       integer :: line
 
-      message = why
       call self%entry_of(group, number, name, entry, found)
       line = merge(entry%line, line_of(self, group, number), found)
       call fail(self, line, '&'//group//numbered(group, number)//' '// &
-                merge_text(found, as_written(entry), name)//': '//message, error)
+                merge_text(found, as_written(entry), name)//': '//why, error)
    end subroutine complain
 
    pure function merge_text(condition, yes, no) result(text)
@@ -642,14 +641,10 @@ contains
       type(reader_type), intent(in) :: reader
       character(*), intent(in) :: group
       type(string_type), allocatable :: names(:)
-      type(string_type) :: name
       integer :: i
 
-      allocate (names(0))
       do i = 1, size(reader%keys)
-         if (reader%keys(i)%group /= group) cycle
-         name%text = reader%keys(i)%name
-         names = [names, name]
+         if (reader%keys(i)%group == group) call add_text(names, reader%keys(i)%name)
       end do
    end function keys_of
 

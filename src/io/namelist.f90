@@ -6,7 +6,7 @@
 module mfv_namelist
    use mfv_error, only: error_type, set_error
    use mfv_status, only: MFV_INPUT_ERROR
-   use mfv_strings, only: lower_case, string_type, to_text
+   use mfv_strings, only: add_text, lower_case, string_type, to_text
    implicit none
    private
    public :: entry_type, group_type, parse_namelists
@@ -120,7 +120,7 @@ contains
       character(*), intent(in) :: group
       type(entry_type), intent(inout) :: entry
       type(error_type), allocatable, intent(out) :: error
-      type(string_type) :: value
+      character(:), allocatable :: value
       character(len=1) :: mark
 
       allocate (entry%values(0), entry%is_quoted(0))
@@ -130,16 +130,16 @@ contains
          if (cursor%at > len(cursor%text) .or. mark == '/' .or. mark == '&' .or. mark == '=') return
          if (key_follows(cursor)) return
          if (mark == "'" .or. mark == '"') then
-            call read_quoted(cursor, mark, value%text, error)
+            call read_quoted(cursor, mark, value, error)
             if (allocated(error)) then
                error%message = cursor%source//':'//to_text(entry%line)//': &'//group//' '//entry%key// &
                                ': the text has no closing '//mark
                return
             end if
          else
-            value%text = read_bare(cursor)
+            value = read_bare(cursor)
          end if
-         entry%values = [entry%values, value]
+         call add_text(entry%values, value)
          entry%is_quoted = [entry%is_quoted, mark == "'" .or. mark == '"']
       end do
    end subroutine read_values

@@ -1,0 +1,133 @@
+!> mfv_run CASE.nml: solve one case and write its result.
+program mfv_run
+   use, intrinsic :: iso_fortran_env, only: error_unit, output_unit
+   use mfv_case, only: case_type
+   use mfv_case_keys, only: keys_as_markdown
+   use mfv_case_reader, only: read_case_file
+   use mfv_error, only: error_type
+   use mfv_kinds, only: wp
+   use mfv_result_file, only: check_writable, write_result
+   use mfv_simulation, only: new_simulation, simulation_type
+   use mfv_status
+   use mfv_strings, only: to_text
+   use mfv_summary, only: check_text, summary_text
+   use mfv_terminal
+   use mfv_version, only: library_version
+   implicit none
+
+   character(len=1), parameter :: line_feed = achar(10)
+   character(*), parameter :: usage = &
+      'usage: mfv_run CASE.nml          solve the case, write its result file, print a summary'//line_feed// &
+      '       mfv_run --check CASE.nml  read and validate the case only'//line_feed// &
+      '       mfv_run --keys            print every group and key of a case (Markdown)'//line_feed// &
+      '       mfv_run --version'//line_feed// &
+      '       mfv_run --help'//line_feed
+   character(*), parameter :: teaching = line_feed// &
+      'A case is a text of namelist groups:'//line_feed//line_feed// &
+      "  &scene    title='Mindlin', coupling='goodman' /                        ! full | goodman | none"//line_feed// &
+      "  &body     shape='half_plane', shear_modulus=1.0, poisson_ratio=0.3 /   ! first body: below"//line_feed// &
+      "  &body     shape='disk', radius=0.25, rigid=.true. /                    ! second body: above"//line_feed// &
+      "  &friction law='coulomb', mu=0.7 /"//line_feed// &
+      "  &step     normal_force=1.0e-3, friction=.false. /                      ! press"//line_feed// &
+      "  &step     tangential_force=2.8e-4 /                                    ! shear"//line_feed// &
+      "  &output   file='mindlin.h5' /"//line_feed//line_feed// &
+      'Exit codes: 0 complete; 2 the input cannot be used; 3 the computation ended early (gross sliding, no'//line_feed// &
+      'admissible continuation, mesh exceeded), with the result up to there; 4 the result could not be written;'//line_feed// &
+      '130 interrupted, with the result up to there.'//line_feed//line_feed// &
+      'Draw a result with: python -m mfv plot RESULT.h5 -o PICTURE.png'
+   character(:), allocatable :: argument, option
+
+   option = argument_text(1)
+   select case (option)
+   case ('--help', '-h')
+      write (output_unit, '(a)') usage//teaching
+   case ('--version')
+      write (output_unit, '(a)') 'mfv_run '//library_version
+   case ('--keys')
+      write (output_unit, '(a)', advance='no') keys_as_markdown()
+   case ('--check')
+      argument = argument_text(2)
+      call expect_arguments(2)
+      call check_case(argument)
+   case default
+      call expect_arguments(1)
+      if (index(option, '-') == 1) call refuse("unknown option '"//option//"'")
+      call run_case(option)
+   end select
+
+contains
+
+   function argument_text(number) result(text)
+      integer, intent(in) :: number
+      character(:), allocatable :: text
+      integer :: length
+
+      call get_command_argument(number, length=length)
+      allocate (character(len=length) :: text)
+      if (length > 0) call get_command_argument(number, text)
+   end function argument_text
+
+   !> Refuse any other number of arguments.
+   subroutine expect_arguments(number)
+      integer, intent(in) :: number
+
+      if (command_argument_count() < number) call refuse('a case file is missing')
+      if (command_argument_count() > number) call refuse("too many arguments: '"//argument_text(number + 1)//"'")
+   end subroutine expect_arguments
+
+   subroutine refuse(why)
+      character(*), intent(in) :: why
+
+      write (error_unit, '(a)') 'mfv_run: '//why//line_feed//usage
+      call end_program(status_exit_code(MFV_INPUT_ERROR))
+   end subroutine refuse
+
+   subroutine check_case(path)
+      character(*), intent(in) :: path
+      type(case_type) :: case
+      type(error_type), allocatable :: error
+
+      call read_case_file(path, case, error)
+      if (allocated(error)) call fail(error)
+      write (output_unit, '(a)', advance='no') check_text(case)
+   end subroutine check_case
+
+   subroutine run_case(path)
+      character(*), intent(in) :: path
+      type(case_type) :: case
+      type(simulation_type) :: simulation
+      type(terminal_observer_type) :: observer
+      type(error_type), allocatable :: error
+      real(wp) :: started
+
+      call read_case_file(path, case, error)
+      if (allocated(error)) call fail(error)
+      call check_writable(case%result_path, error)
+      if (allocated(error)) then
+         error%message = path//": &output file='"//case%result_path//"': "//error%message
+         call fail(error)
+      end if
+      started = seconds_now()
+      simulation = new_simulation(case%scene, case%keep_history)
+      call catch_interrupts()
+      call observer%start()
+      call simulation%run(observer)
+      call observer%clear()
+      if (simulation%outcome /= MFV_COMPLETE) simulation%message = case%explained(simulation)
+
+      call write_result(case%result_path, case, simulation, error)
+      if (allocated(error)) call fail(error)
+      write (output_unit, '(a)', advance='no') summary_text(case, simulation, seconds_now() - started)
+      write (output_unit, '(a)') 'result              '//case%result_path
+      if (simulation%outcome /= MFV_COMPLETE) write (error_unit, '(a)') simulation%message
+      call end_program(status_exit_code(simulation%outcome))
+   end subroutine run_case
+
+   subroutine fail(error)
+      type(error_type), intent(in) :: error
+
+      write (error_unit, '(a)') error%message
+      call end_program(status_exit_code(error%status))
+   end subroutine fail
+
+end program mfv_run

@@ -1,0 +1,120 @@
+!> The terminal: output, progress that stays quiet in a pipe, and Ctrl-C.
+module mfv_terminal
+   use, intrinsic :: iso_c_binding, only: c_funloc, c_funptr, c_int
+   use, intrinsic :: iso_fortran_env, only: error_unit, int64
+   use mfv_contact_state, only: contact_state_type
+   use mfv_kinds, only: wp
+   use mfv_observer, only: observer_type
+   use mfv_strings, only: to_text
+   implicit none
+   private
+   public :: terminal_observer_type, catch_interrupts, end_program, seconds_now
+
+   !> Shows progress on a terminal, and ends the run after Ctrl-C.
+   type, extends(observer_type) :: terminal_observer_type
+      logical :: visible = .false.
+      logical :: shown = .false.
+      real(wp) :: next_time = 0.0_wp
+   contains
+      procedure :: notify
+      procedure :: start
+      procedure :: clear
+   end type terminal_observer_type
+
+   !> Set by the signal handler; a program's state, not the library's.
+   logical, volatile :: interrupted = .false.
+
+   integer(c_int), parameter :: signal_interrupt = 2, signal_terminate = 15
+   real(wp), parameter :: pause = 0.2_wp
+
+   interface
+      function c_isatty(descriptor) bind(C, name='isatty') result(yes)
+         import :: c_int
+         integer(c_int), value :: descriptor
+         integer(c_int) :: yes
+      end function c_isatty
+
+      function c_signal(number, handler) bind(C, name='signal') result(previous)
+         import :: c_funptr, c_int
+         integer(c_int), value :: number
+         type(c_funptr), value :: handler
+         type(c_funptr) :: previous
+      end function c_signal
+
+      subroutine c_exit(code) bind(C, name='exit')
+         import :: c_int
+         integer(c_int), value :: code
+      end subroutine c_exit
+   end interface
+
+contains
+
+   !> Find out whether there is a terminal to show progress on.
+   subroutine start(self)
+      class(terminal_observer_type), intent(inout) :: self
+      integer(c_int), parameter :: standard_error = 2
+
+      self%visible = c_isatty(standard_error) /= 0
+      self%next_time = seconds_now() + pause
+   end subroutine start
+
+   !> See mfv_observer.
+   subroutine notify(self, state, segment, segments, fraction, stop_wanted)
+      class(terminal_observer_type), intent(inout) :: self
+      type(contact_state_type), intent(in) :: state
+      integer, intent(in) :: segment, segments
+      real(wp), intent(in) :: fraction
+      logical, intent(out) :: stop_wanted
+
+      stop_wanted = interrupted
+      if (.not. self%visible) return
+      if (seconds_now() < self%next_time) return
+      self%next_time = seconds_now() + pause
+      self%shown = .true.
+      write (error_unit, '(a)', advance='no') achar(13)//'  '// &
+         to_text(floor(100*(segment - 1 + fraction)/segments))//' %, part '//to_text(segment)//' of '// &
+         to_text(segments)//', '//to_text(state%contact_nodes())//' nodes in contact, '// &
+         to_text(state%stick_nodes())//' stuck     '
+      flush (error_unit)
+   end subroutine notify
+
+   !> Wipe the progress off the terminal.
+   subroutine clear(self)
+      class(terminal_observer_type), intent(inout) :: self
+      integer, parameter :: width = 70
+
+      if (self%shown) write (error_unit, '(a)', advance='no') achar(13)//repeat(' ', width)//achar(13)
+      self%shown = .false.
+   end subroutine clear
+
+   !> From now on Ctrl-C and a termination request end the run at its next increment, with its result kept.
+   subroutine catch_interrupts()
+      type(c_funptr) :: previous
+
+      previous = c_signal(signal_interrupt, c_funloc(handle_signal))
+      previous = c_signal(signal_terminate, c_funloc(handle_signal))
+   end subroutine catch_interrupts
+
+   subroutine handle_signal(number) bind(C)
+      integer(c_int), value :: number
+
+      interrupted = interrupted .or. number > 0
+   end subroutine handle_signal
+
+   !> End the program with an exit code, without the words that a stop statement may print.
+   subroutine end_program(code)
+      integer, intent(in) :: code
+
+      flush (error_unit)
+      call c_exit(int(code, c_int))
+   end subroutine end_program
+
+   !> Wall-clock time in seconds, from any origin.
+   real(wp) function seconds_now()
+      integer(int64) :: count, rate
+
+      call system_clock(count, rate)
+      seconds_now = real(count, wp)/real(rate, wp)
+   end function seconds_now
+
+end module mfv_terminal

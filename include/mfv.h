@@ -1,0 +1,102 @@
+/* MFV: two-dimensional frictional elastic contact by the Method of First Violation. C interface.
+ *
+ * A case is created from a namelist text or file (docs/namelist.md), run or advanced step by step, and asked for its
+ * fields by the same names as in the result file (docs/file-format.md), "state/pressure" for one. Units: any consistent
+ * set; forces and energies per unit thickness. Every call returns a status; mfv_message tells more. The library never
+ * prints, never stops the process and has no global state: handles are independent of each other, one thread a handle at
+ * a time. Texts go out through the caller's buffer with its size, cut where they do not fit, always null-terminated.
+ */
+#ifndef MFV_H
+#define MFV_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* What a call or a run can end with: the list is mfv_status.def. */
+typedef enum mfv_status {
+#define MFV_STATUS(name, code, exit_code, outcome, explanation) name = code,
+#include "mfv_status.def"
+#undef MFV_STATUS
+  MFV_STATUS_COUNT
+} mfv_status;
+
+/* What a step does with the normal or the tangential load. */
+enum { MFV_KEEP = 0, MFV_FORCE = 1, MFV_DISPLACEMENT = 2 };
+
+/* A case with its state. Opaque. */
+typedef struct mfv_case mfv_case;
+
+/* One step: targets are reached linearly from the loads now. Set every member; start from MFV_STEP_INIT. */
+typedef struct mfv_step {
+  size_t size;              /* sizeof(mfv_step) */
+  double normal_target;     /* normal force P >= 0 [force/length] or approach [length] */
+  double tangential_target; /* tangential force Q [force/length] or shift [length], positive to the right */
+  int normal_control;       /* MFV_KEEP, MFV_FORCE or MFV_DISPLACEMENT */
+  int tangential_control;   /* the same */
+  int friction;             /* 0: friction off during this step */
+  int cycles;               /* 0: go to the targets; n: go there and back n times */
+} mfv_step;
+#define MFV_STEP_INIT {sizeof(mfv_step), 0.0, 0.0, MFV_KEEP, MFV_KEEP, 1, 0}
+
+/* Version of the library, such as "0.1.0". Since 0.1.0. */
+int mfv_version(char *buffer, size_t size);
+
+/* Outcome of a status in words, and a clause that explains it. MFV_BAD_ARGUMENT for a code not in the list. Since 0.1.0. */
+int mfv_status_text(int status, char *outcome, size_t outcome_size, char *explanation, size_t explanation_size);
+
+/* Create a case from a namelist file, or from a text (`name`: what messages call it; files named in the text are looked
+ * for beside it). On failure *handle is NULL and `message`, which may be NULL, tells why. Since 0.1.0. */
+int mfv_create_from_file(const char *path, mfv_case **handle, char *message, size_t message_size);
+int mfv_create_from_text(const char *text, const char *name, mfv_case **handle, char *message, size_t message_size);
+
+/* Free a case and set *handle to NULL. Safe on NULL. Since 0.1.0. */
+int mfv_free(mfv_case **handle);
+
+/* Run the steps of the case that have not been run. The result file of its &output is not written: see mfv_write.
+ * Returns the outcome: MFV_COMPLETE, or why the load history ended early, with the state up to there. Since 0.1.0. */
+int mfv_run(mfv_case *handle);
+
+/* Lead the loads through one more step, whatever the steps of the case are. Returns as mfv_run. Since 0.1.0. */
+int mfv_advance(mfv_case *handle, const mfv_step *step);
+
+/* Message of the last call on this handle that failed, or of its outcome. Since 0.1.0. */
+int mfv_message(const mfv_case *handle, char *buffer, size_t size);
+
+/* Number of fields of the case now, and the path of field `index` (from 0), such as "history/shift". Since 0.1.0. */
+int mfv_field_count(const mfv_case *handle, size_t *count);
+int mfv_field_path(const mfv_case *handle, size_t index, char *buffer, size_t size);
+
+/* Of the field at `path`: number of values (1 for a scalar), whether they are whole numbers, unit and description; every
+ * out argument may be NULL. Since 0.1.0. */
+int mfv_field_info(const mfv_case *handle, const char *path, size_t *count, int *is_integer,
+                   char *unit, size_t unit_size, char *description, size_t description_size);
+
+/* Copy out the values of a field; `count` must be its number of values. Since 0.1.0. */
+int mfv_copy_real(const mfv_case *handle, const char *path, double *values, size_t count);
+int mfv_copy_integer(const mfv_case *handle, const char *path, int32_t *values, size_t count);
+
+/* Write the result file (HDF5) to `path`, or where the case's &output says when `path` is NULL. An existing file is
+ * replaced only by a complete one. Since 0.1.0. */
+int mfv_write(mfv_case *handle, const char *path);
+
+/* Closed forms, for tests and pictures; NaN outside their domain. P, Q: forces per unit thickness; a: contact half-width;
+ * mu: coefficient of friction; beta: Dundurs' parameter (kappa-1)/(kappa+1). Sources: docs/theory.md. Since 0.1.0. */
+double mfv_hertz_half_width(double normal_force, double radius, double shear_modulus, double kolosov_constant);
+double mfv_hertz_pressure(double x, double normal_force, double half_width);
+double mfv_flat_punch_pressure(double x, double normal_force, double half_width);
+double mfv_spence_stick_ratio(double friction_coefficient, double beta);
+double mfv_spence_cylinder_shear(double x, double normal_force, double half_width, double friction_coefficient, double beta);
+double mfv_spence_flat_punch_shear(double x, double normal_force, double half_width, double friction_coefficient, double beta);
+double mfv_mindlin_stick_ratio(double tangential_force, double normal_force, double friction_coefficient);
+double mfv_mindlin_shear(double x, double tangential_force, double normal_force, double half_width, double friction_coefficient);
+double mfv_mindlin_dissipation(double tangential_force, double normal_force, double half_width, double radius,
+                               double friction_coefficient);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

@@ -1,0 +1,404 @@
+!> The C interface of include/mfv.h: thin walls around the library. Check the handle, unpack, call, return the status.
+module mfv_c
+   use, intrinsic :: ieee_arithmetic, only: ieee_is_finite
+   use, intrinsic :: iso_c_binding
+   use mfv_case, only: case_type
+   use mfv_case_reader, only: read_case_file, read_case_text
+   use mfv_error, only: error_type
+   use mfv_kinds, only: wp
+   use mfv_result_fields, only: field_type, find_field, group_fields, result_groups
+   use mfv_result_file, only: write_result
+   use mfv_scene, only: control_displacement, control_force, control_keep, step_type
+   use mfv_simulation, only: new_simulation, simulation_type
+   use mfv_status
+   use mfv_strings, only: add_text, copy_to_c, from_c, string_type
+   use mfv_version, only: library_version
+   implicit none
+   private
+
+   !> What a handle points to.
+   type :: handle_type
+      !> A mark by which a freed or foreign handle can be told in most cases.
+      integer :: mark = 0
+      type(case_type) :: case
+      type(simulation_type) :: simulation
+      character(:), allocatable :: message
+   end type handle_type
+
+   integer, parameter :: valid_mark = 1297499699
+
+   !> mfv_step of the header.
+   type, bind(C) :: c_step
+      integer(c_size_t) :: size
+      real(c_double) :: normal_target, tangential_target
+      integer(c_int) :: normal_control, tangential_control, friction, cycles
+   end type c_step
+
+contains
+
+   !> See include/mfv.h, as for all that follow.
+   function mfv_version(buffer, size) result(status) bind(C, name='mfv_version')
+      type(c_ptr), value :: buffer
+      integer(c_size_t), value :: size
+      integer(c_int) :: status
+
+      status = text_out(library_version, buffer, size)
+   end function mfv_version
+
+   function mfv_status_text(code, outcome, outcome_size, explanation, explanation_size) result(status) &
+      bind(C, name='mfv_status_text')
+      integer(c_int), value :: code
+      type(c_ptr), value :: outcome, explanation
+      integer(c_size_t), value :: outcome_size, explanation_size
+      integer(c_int) :: status
+
+      status = text_out(status_outcome(code), outcome, outcome_size)
+      status = max(status, text_out(status_explanation(code), explanation, explanation_size))
+      if (status_exit_code(code) < 0) status = MFV_BAD_ARGUMENT
+   end function mfv_status_text
+
+   function mfv_create_from_file(path, handle, message, message_size) result(status) bind(C, name='mfv_create_from_file')
+      type(c_ptr), value :: path, message
+      type(c_ptr), intent(out) :: handle
+      integer(c_size_t), value :: message_size
+      integer(c_int) :: status
+      type(case_type) :: case
+      type(error_type), allocatable :: error
+
+      handle = c_null_ptr
+      status = MFV_BAD_ARGUMENT
+      if (.not. c_associated(path)) return
+      call read_case_file(text_in(path), case, error)
+      call finish_creation(case, error, handle, message, message_size, status)
+   end function mfv_create_from_file
+
+   function mfv_create_from_text(text, name, handle, message, message_size) result(status) &
+      bind(C, name='mfv_create_from_text')
+      type(c_ptr), value :: text, name, message
+      type(c_ptr), intent(out) :: handle
+      integer(c_size_t), value :: message_size
+      integer(c_int) :: status
+      type(case_type) :: case
+      type(error_type), allocatable :: error
+
+      handle = c_null_ptr
+      status = MFV_BAD_ARGUMENT
+      if (.not. c_associated(text)) return
+      if (c_associated(name)) then
+         call read_case_text(text_in(text), text_in(name), case, error)
+      else
+         call read_case_text(text_in(text), 'text', case, error)
+      end if
+      call finish_creation(case, error, handle, message, message_size, status)
+   end function mfv_create_from_text
+
+   !> Make a handle of a case that was read, or tell why it was not.
+   subroutine finish_creation(case, error, handle, message, message_size, status)
+      type(case_type), intent(in) :: case
+      type(error_type), allocatable, intent(in) :: error
+      type(c_ptr), intent(inout) :: handle
+      type(c_ptr), intent(in) :: message
+      integer(c_size_t), intent(in) :: message_size
+      integer(c_int), intent(out) :: status
+      type(handle_type), pointer :: self
+      integer(c_int) :: copied
+
+      if (allocated(error)) then
+         status = error%status
+         if (c_associated(message)) copied = text_out(error%message, message, message_size)
+         return
+      end if
+      allocate (self)
+      self%mark = valid_mark
+      self%case = case
+      self%simulation = new_simulation(case%scene, case%keep_history)
+      self%message = self%simulation%message
+      handle = c_loc(self)
+      status = MFV_COMPLETE
+      if (c_associated(message)) copied = text_out('', message, message_size)
+   end subroutine finish_creation
+
+   function mfv_free(handle) result(status) bind(C, name='mfv_free')
+      type(c_ptr), value :: handle
+      integer(c_int) :: status
+      type(c_ptr), pointer :: slot
+      type(handle_type), pointer :: self
+
+      status = MFV_COMPLETE
+      if (.not. c_associated(handle)) return
+      call c_f_pointer(handle, slot)
+      if (.not. c_associated(slot)) return
+      self => handle_of(slot)
+      slot = c_null_ptr
+      status = MFV_BAD_HANDLE
+      if (.not. associated(self)) return
+      self%mark = 0
+      deallocate (self)
+      status = MFV_COMPLETE
+   end function mfv_free
+
+   function mfv_run(handle) result(status) bind(C, name='mfv_run')
+      type(c_ptr), value :: handle
+      integer(c_int) :: status
+      type(handle_type), pointer :: self
+
+      status = MFV_BAD_HANDLE
+      self => handle_of(handle)
+      if (.not. associated(self)) return
+      if (self%simulation%outcome == MFV_COMPLETE) then
+         call self%simulation%run()
+         self%message = self%simulation%message
+         if (self%simulation%outcome /= MFV_COMPLETE) self%message = self%case%explained(self%simulation)
+      end if
+      status = self%simulation%outcome
+   end function mfv_run
+
+   function mfv_advance(handle, step) result(status) bind(C, name='mfv_advance')
+      type(c_ptr), value :: handle, step
+      integer(c_int) :: status
+      type(handle_type), pointer :: self
+      type(c_step), pointer :: given
+      character(:), allocatable :: why
+
+      status = MFV_BAD_HANDLE
+      self => handle_of(handle)
+      if (.not. associated(self)) return
+      status = MFV_BAD_ARGUMENT
+      self%message = 'mfv_advance: the step is null'
+      if (.not. c_associated(step)) return
+      call c_f_pointer(step, given)
+      why = wrong_with(given)
+      self%message = 'mfv_advance: '//why
+      if (why /= '') return
+      if (self%simulation%outcome == MFV_COMPLETE) then
+         call self%simulation%advance(step_type(given%normal_control, given%tangential_control, given%normal_target, &
+                                                given%tangential_target, given%friction /= 0, given%cycles))
+      end if
+      self%message = self%simulation%message
+      status = self%simulation%outcome
+   end function mfv_advance
+
+   !> What is wrong with a step; empty when nothing is.
+   function wrong_with(step) result(why)
+      type(c_step), intent(in) :: step
+      character(:), allocatable :: why
+      integer, parameter :: controls(3) = [control_keep, control_force, control_displacement]
+
+      why = ''
+      if (step%size /= c_sizeof(step)) then
+         why = 'size is not sizeof(mfv_step)'
+      else if (.not. any(step%normal_control == controls) .or. .not. any(step%tangential_control == controls)) then
+         why = 'a control must be MFV_KEEP, MFV_FORCE or MFV_DISPLACEMENT'
+      else if (.not. ieee_is_finite(step%normal_target) .or. .not. ieee_is_finite(step%tangential_target)) then
+         why = 'a target is not finite'
+      else if (step%normal_control == control_force .and. step%normal_target < 0.0_wp) then
+         why = 'the normal force must not be negative'
+      else if (step%cycles < 0) then
+         why = 'cycles must not be negative'
+      end if
+   end function wrong_with
+
+   function mfv_message(handle, buffer, size) result(status) bind(C, name='mfv_message')
+      type(c_ptr), value :: handle, buffer
+      integer(c_size_t), value :: size
+      integer(c_int) :: status
+      type(handle_type), pointer :: self
+
+      status = MFV_BAD_HANDLE
+      self => handle_of(handle)
+      if (associated(self)) status = text_out(self%message, buffer, size)
+   end function mfv_message
+
+   function mfv_field_count(handle, count) result(status) bind(C, name='mfv_field_count')
+      type(c_ptr), value :: handle, count
+      integer(c_int) :: status
+      type(handle_type), pointer :: self
+      integer(c_size_t), pointer :: number
+
+      status = MFV_BAD_HANDLE
+      self => handle_of(handle)
+      if (.not. associated(self)) return
+      status = MFV_BAD_ARGUMENT
+      if (.not. c_associated(count)) return
+      call c_f_pointer(count, number)
+      number = size(field_paths(self), kind=c_size_t)
+      status = MFV_COMPLETE
+   end function mfv_field_count
+
+   function mfv_field_path(handle, index, buffer, size) result(status) bind(C, name='mfv_field_path')
+      type(c_ptr), value :: handle, buffer
+      integer(c_size_t), value :: index, size
+      integer(c_int) :: status
+      type(handle_type), pointer :: self
+      type(string_type), allocatable :: paths(:)
+
+      status = MFV_BAD_HANDLE
+      self => handle_of(handle)
+      if (.not. associated(self)) return
+      status = MFV_BAD_ARGUMENT
+      paths = field_paths(self)
+      if (index < 0 .or. index >= ubound(paths, 1)) return
+      status = text_out(paths(index + 1)%text, buffer, size)
+   end function mfv_field_path
+
+   !> Paths of all fields.
+   function field_paths(self) result(paths)
+      type(handle_type), intent(in) :: self
+      type(string_type), allocatable :: paths(:), groups(:)
+      type(field_type), allocatable :: fields(:)
+      integer :: i, j
+
+      groups = result_groups(self%simulation)
+      do i = 1, size(groups)
+         fields = group_fields(self%case, self%simulation, groups(i)%text)
+         do j = 1, size(fields)
+            call add_text(paths, groups(i)%text//'/'//fields(j)%name)
+         end do
+      end do
+   end function field_paths
+
+   function mfv_field_info(handle, path, count, is_integer, unit, unit_size, description, description_size) &
+      result(status) bind(C, name='mfv_field_info')
+      type(c_ptr), value :: handle, path, count, is_integer, unit, description
+      integer(c_size_t), value :: unit_size, description_size
+      integer(c_int) :: status
+      type(field_type) :: field
+      integer(c_size_t), pointer :: number
+      integer(c_int), pointer :: whole
+      integer(c_int) :: copied
+
+      call field_at(handle, path, field, status)
+      if (status /= MFV_COMPLETE) return
+      if (c_associated(count)) then
+         call c_f_pointer(count, number)
+         number = values_of(field)
+      end if
+      if (c_associated(is_integer)) then
+         call c_f_pointer(is_integer, whole)
+         whole = merge(1_c_int, 0_c_int, allocated(field%whole))
+      end if
+      if (c_associated(unit)) copied = text_out(field%unit, unit, unit_size)
+      if (c_associated(description)) copied = text_out(field%description, description, description_size)
+   end function mfv_field_info
+
+   function mfv_copy_real(handle, path, values, count) result(status) bind(C, name='mfv_copy_real')
+      type(c_ptr), value :: handle, path, values
+      integer(c_size_t), value :: count
+      integer(c_int) :: status
+      type(field_type) :: field
+      real(c_double), pointer :: copy(:)
+
+      call field_at(handle, path, field, status)
+      if (status /= MFV_COMPLETE) return
+      status = MFV_BAD_ARGUMENT
+      if (allocated(field%whole) .or. .not. c_associated(values) .or. count /= values_of(field)) return
+      call c_f_pointer(values, copy, [count])
+      copy = field%values
+      status = MFV_COMPLETE
+   end function mfv_copy_real
+
+   function mfv_copy_integer(handle, path, values, count) result(status) bind(C, name='mfv_copy_integer')
+      type(c_ptr), value :: handle, path, values
+      integer(c_size_t), value :: count
+      integer(c_int) :: status
+      type(field_type) :: field
+      integer(c_int32_t), pointer :: copy(:)
+
+      call field_at(handle, path, field, status)
+      if (status /= MFV_COMPLETE) return
+      status = MFV_BAD_ARGUMENT
+      if (.not. allocated(field%whole) .or. .not. c_associated(values) .or. count /= values_of(field)) return
+      call c_f_pointer(values, copy, [count])
+      copy = field%whole
+      status = MFV_COMPLETE
+   end function mfv_copy_integer
+
+   function mfv_write(handle, path) result(status) bind(C, name='mfv_write')
+      type(c_ptr), value :: handle, path
+      integer(c_int) :: status
+      type(handle_type), pointer :: self
+      type(error_type), allocatable :: error
+      character(:), allocatable :: where_to
+
+      status = MFV_BAD_HANDLE
+      self => handle_of(handle)
+      if (.not. associated(self)) return
+      where_to = self%case%result_path
+      if (c_associated(path)) where_to = text_in(path)
+      status = MFV_BAD_ARGUMENT
+      self%message = 'mfv_write: no path, and the case has no &output file'
+      if (where_to == '') return
+      call write_result(where_to, self%case, self%simulation, error)
+      status = MFV_COMPLETE
+      self%message = self%simulation%message
+      if (.not. allocated(error)) return
+      status = error%status
+      self%message = error%message
+   end function mfv_write
+
+   !> The object of a handle; not associated where it is none.
+   function handle_of(handle) result(self)
+      type(c_ptr), intent(in) :: handle
+      type(handle_type), pointer :: self
+
+      nullify (self)
+      if (.not. c_associated(handle)) return
+      call c_f_pointer(handle, self)
+      if (self%mark /= valid_mark) nullify (self)
+   end function handle_of
+
+   !> The field at a path of a handle; MFV_BAD_HANDLE or MFV_BAD_ARGUMENT where there is none.
+   subroutine field_at(handle, path, field, status)
+      type(c_ptr), intent(in) :: handle, path
+      type(field_type), intent(out) :: field
+      integer(c_int), intent(out) :: status
+      type(handle_type), pointer :: self
+      logical :: found
+
+      status = MFV_BAD_HANDLE
+      self => handle_of(handle)
+      if (.not. associated(self)) return
+      status = MFV_BAD_ARGUMENT
+      if (.not. c_associated(path)) return
+      call find_field(self%case, self%simulation, text_in(path), field, found)
+      if (found) status = MFV_COMPLETE
+      if (.not. found) self%message = "there is no field '"//text_in(path)//"'"
+   end subroutine field_at
+
+   pure integer(c_size_t) function values_of(field)
+      type(field_type), intent(in) :: field
+
+      if (allocated(field%whole)) then
+         values_of = size(field%whole, kind=c_size_t)
+      else
+         values_of = size(field%values, kind=c_size_t)
+      end if
+   end function values_of
+
+   !> Text of a C string.
+   function text_in(pointer_to_text) result(text)
+      type(c_ptr), intent(in) :: pointer_to_text
+      character(:), allocatable :: text
+      character(kind=c_char), pointer :: characters(:)
+      integer, parameter :: any_size = 1
+
+      call c_f_pointer(pointer_to_text, characters, [any_size])
+      text = from_c(characters)
+   end function text_in
+
+   !> Text into a caller's buffer; MFV_BAD_ARGUMENT where there is none.
+   function text_out(text, buffer, size) result(status)
+      character(*), intent(in) :: text
+      type(c_ptr), intent(in) :: buffer
+      integer(c_size_t), intent(in) :: size
+      integer(c_int) :: status
+      character(kind=c_char), pointer :: characters(:)
+
+      status = MFV_BAD_ARGUMENT
+      if (.not. c_associated(buffer) .or. size < 1) return
+      call c_f_pointer(buffer, characters, [size])
+      call copy_to_c(text, characters, int(min(size, int(huge(0), c_size_t))))
+      status = MFV_COMPLETE
+   end function text_out
+
+end module mfv_c

@@ -1,0 +1,111 @@
+!> The closed forms of src/reference for C; NaN outside their domain. See include/mfv.h.
+module mfv_reference_c
+   use, intrinsic :: ieee_arithmetic, only: ieee_quiet_nan, ieee_value
+   use, intrinsic :: iso_c_binding, only: c_double
+   use mfv_material, only: material_type
+   use mfv_reference_flat_punch, only: flat_punch_pressure
+   use mfv_reference_hertz, only: hertz_half_width, hertz_pressure
+   use mfv_reference_mindlin
+   use mfv_reference_spence, only: spence_cylinder_shear, spence_flat_punch_shear, spence_stick_ratio
+   implicit none
+   private
+
+contains
+
+   function c_hertz_half_width(normal_force, radius, shear_modulus, kolosov) result(a) bind(C, name='mfv_hertz_half_width')
+      real(c_double), value :: normal_force, radius, shear_modulus, kolosov
+      real(c_double) :: a
+
+      a = not_a_number()
+      if (normal_force >= 0 .and. radius > 0 .and. shear_modulus > 0 .and. kolosov > -1) &
+         a = hertz_half_width(normal_force, radius, material_type(shear_modulus, 0.0_c_double, kolosov))
+   end function c_hertz_half_width
+
+   function c_hertz_pressure(x, normal_force, half_width) result(pressure) bind(C, name='mfv_hertz_pressure')
+      real(c_double), value :: x, normal_force, half_width
+      real(c_double) :: pressure
+
+      pressure = not_a_number()
+      if (half_width > 0) pressure = hertz_pressure(x, normal_force, half_width)
+   end function c_hertz_pressure
+
+   function c_flat_punch_pressure(x, normal_force, half_width) result(pressure) bind(C, name='mfv_flat_punch_pressure')
+      real(c_double), value :: x, normal_force, half_width
+      real(c_double) :: pressure
+
+      pressure = not_a_number()
+      if (half_width > 0) pressure = flat_punch_pressure(x, normal_force, half_width)
+   end function c_flat_punch_pressure
+
+   function c_spence_stick_ratio(friction_coefficient, beta) result(ratio) bind(C, name='mfv_spence_stick_ratio')
+      real(c_double), value :: friction_coefficient, beta
+      real(c_double) :: ratio
+
+      ratio = not_a_number()
+      if (friction_coefficient >= 0 .and. abs(beta) <= 1) ratio = spence_stick_ratio(friction_coefficient, beta)
+   end function c_spence_stick_ratio
+
+   function c_spence_cylinder_shear(x, normal_force, half_width, friction_coefficient, beta) result(shear) &
+      bind(C, name='mfv_spence_cylinder_shear')
+      real(c_double), value :: x, normal_force, half_width, friction_coefficient, beta
+      real(c_double) :: shear
+      real(c_double) :: at(1)
+
+      at = not_a_number()
+      if (half_width > 0 .and. friction_coefficient >= 0 .and. abs(beta) <= 1) &
+         at = spence_cylinder_shear([x], normal_force, half_width, friction_coefficient, beta)
+      shear = at(1)
+   end function c_spence_cylinder_shear
+
+   function c_spence_flat_punch_shear(x, normal_force, half_width, friction_coefficient, beta) result(shear) &
+      bind(C, name='mfv_spence_flat_punch_shear')
+      real(c_double), value :: x, normal_force, half_width, friction_coefficient, beta
+      real(c_double) :: shear
+      real(c_double) :: at(1)
+
+      at = not_a_number()
+      if (half_width > 0 .and. friction_coefficient >= 0 .and. abs(beta) <= 1) &
+         at = spence_flat_punch_shear([x], normal_force, half_width, friction_coefficient, beta)
+      shear = at(1)
+   end function c_spence_flat_punch_shear
+
+   function c_mindlin_stick_ratio(tangential_force, normal_force, friction_coefficient) result(ratio) &
+      bind(C, name='mfv_mindlin_stick_ratio')
+      real(c_double), value :: tangential_force, normal_force, friction_coefficient
+      real(c_double) :: ratio
+
+      ratio = not_a_number()
+      if (normal_force > 0 .and. friction_coefficient > 0) &
+         ratio = mindlin_stick_ratio(tangential_force, normal_force, friction_coefficient)
+   end function c_mindlin_stick_ratio
+
+   function c_mindlin_shear(x, tangential_force, normal_force, half_width, friction_coefficient) result(shear) &
+      bind(C, name='mfv_mindlin_shear')
+      real(c_double), value :: x, tangential_force, normal_force, half_width, friction_coefficient
+      real(c_double) :: shear
+      real(c_double) :: at(1)
+      type(mindlin_history_type) :: history
+
+      shear = not_a_number()
+      if (.not. (normal_force > 0 .and. friction_coefficient > 0 .and. half_width > 0)) return
+      history = new_mindlin_history(normal_force, half_width, half_width, half_width, friction_coefficient)
+      call history%load(tangential_force)
+      at = history%shear([x])
+      shear = at(1)
+   end function c_mindlin_shear
+
+   function c_mindlin_dissipation(tangential_force, normal_force, half_width, radius, friction_coefficient) &
+      result(dissipation) bind(C, name='mfv_mindlin_dissipation')
+      real(c_double), value :: tangential_force, normal_force, half_width, radius, friction_coefficient
+      real(c_double) :: dissipation
+
+      dissipation = not_a_number()
+      if (normal_force > 0 .and. friction_coefficient > 0 .and. half_width > 0 .and. radius > 0) &
+         dissipation = mindlin_dissipation(tangential_force, normal_force, half_width, radius, friction_coefficient)
+   end function c_mindlin_dissipation
+
+   pure real(c_double) function not_a_number()
+      not_a_number = ieee_value(1.0_c_double, ieee_quiet_nan)
+   end function not_a_number
+
+end module mfv_reference_c

@@ -1,0 +1,301 @@
+!> The result file: HDF5, for people. Named datasets with units and descriptions, dimension scales, the input text,
+!> versions and the certificate. It is written under another name and renamed at the end, so that a failed run leaves
+!> an earlier result as it was and nothing half-written. docs/file-format.md describes it.
+module mfv_result_file
+   use, intrinsic :: iso_c_binding, only: c_char, c_int, c_loc, c_null_char, c_ptr
+   use hdf5
+   use h5ds
+   use mfv_case, only: case_type
+   use mfv_compliance, only: coupling_full, coupling_goodman
+   use mfv_error, only: error_type, set_error
+   use mfv_indenter, only: shape_disk, shape_flat_punch
+   use mfv_kinds, only: wp
+   use mfv_material, only: plane_stress
+   use mfv_result_fields
+   use mfv_simulation, only: simulation_type
+   use mfv_status, only: MFV_FILE_ERROR, MFV_INPUT_ERROR, status_outcome
+   use mfv_strings, only: string_type, to_text
+   use mfv_version, only: library_version
+   implicit none
+   private
+   public :: write_result, check_writable
+
+   !> An open file and its dimension scales.
+   type :: writer_type
+      integer(hid_t) :: file = -1
+      integer(hid_t) :: x = -1, record = -1
+      !> First failure of an HDF5 call, 0 for none.
+      integer :: code = 0
+   end type writer_type
+
+   interface
+      function c_rename(from, to) bind(C, name='rename') result(code)
+         import :: c_char, c_int
+         character(kind=c_char), intent(in) :: from(*), to(*)
+         integer(c_int) :: code
+      end function c_rename
+
+      function c_getpid() bind(C, name='getpid') result(id)
+         import :: c_int
+         integer(c_int) :: id
+      end function c_getpid
+   end interface
+
+contains
+
+   !> Whether a result could be written to `path`: error MFV_INPUT_ERROR where not, found out before a long run.
+   subroutine check_writable(path, error)
+      character(*), intent(in) :: path
+      type(error_type), allocatable, intent(out) :: error
+      character(len=200) :: why
+      logical :: is_directory
+      integer :: code, unit
+
+      inquire (file=path//'/.', exist=is_directory)
+      if (is_directory) then
+         call set_error(error, MFV_INPUT_ERROR, path//' is a directory')
+         return
+      end if
+      open (newunit=unit, file=temporary_name(path), action='write', status='replace', iostat=code, iomsg=why)
+      if (code /= 0) then
+         call set_error(error, MFV_INPUT_ERROR, path//' cannot be written: '//trim(why))
+      else
+         close (unit, status='delete')
+      end if
+   end subroutine check_writable
+
+   !> Write the result of a case to `path`. Error MFV_FILE_ERROR; what was at `path` before is then still there.
+   subroutine write_result(path, case, simulation, error)
+      character(*), intent(in) :: path
+      type(case_type), intent(in) :: case
+      type(simulation_type), intent(in) :: simulation
+      type(error_type), allocatable, intent(out) :: error
+      type(writer_type) :: writer
+      integer :: code
+
+      call h5open_f(code)
+      call h5eset_auto_f(0, code)
+      call h5fcreate_f(temporary_name(path), H5F_ACC_TRUNC_F, writer%file, writer%code)
+      if (writer%code == 0) then
+         call write_attributes(writer, case, simulation)
+         call write_groups(writer, case, simulation)
+         if (writer%record >= 0) call h5dclose_f(writer%record, code)
+         if (writer%x >= 0) call h5dclose_f(writer%x, code)
+         call h5fclose_f(writer%file, code)
+         call note(writer, code)
+      end if
+      if (writer%code == 0) writer%code = c_rename(temporary_name(path)//c_null_char, path//c_null_char)
+      if (writer%code == 0) return
+      call delete_file(temporary_name(path))
+      call set_error(error, MFV_FILE_ERROR, path//': the result could not be written')
+   end subroutine write_result
+
+   !> Name under which a result is written, in the same directory, of this process alone.
+   function temporary_name(path) result(name)
+      character(*), intent(in) :: path
+      character(:), allocatable :: name
+
+      name = path//'.part'//to_text(int(c_getpid()))
+   end function temporary_name
+
+   subroutine delete_file(path)
+      character(*), intent(in) :: path
+      integer :: code, unit
+
+      open (newunit=unit, file=path, status='old', iostat=code)
+      if (code == 0) close (unit, status='delete', iostat=code)
+   end subroutine delete_file
+
+   !> Attributes of the whole file.
+   subroutine write_attributes(writer, case, simulation)
+      type(writer_type), intent(inout) :: writer
+      type(case_type), intent(in) :: case
+      type(simulation_type), intent(in) :: simulation
+      integer :: major, minor, release, code
+
+      call h5get_libversion_f(major, minor, release, code)
+      call write_text(writer, writer%file, 'title', case%scene%title)
+      call write_text(writer, writer%file, 'outcome', status_outcome(simulation%outcome))
+      call write_text(writer, writer%file, 'message', simulation%message)
+      call write_text(writer, writer%file, 'input', case%text)
+      call write_text(writer, writer%file, 'input_file', case%source)
+      call write_text(writer, writer%file, 'mfv_version', library_version)
+      call write_text(writer, writer%file, 'hdf5_version', to_text(major)//'.'//to_text(minor)//'.'//to_text(release))
+      call write_text(writer, writer%file, 'length_unit', case%length_unit)
+      call write_text(writer, writer%file, 'force_unit', case%force_unit)
+      associate (scene => case%scene)
+         call write_text(writer, writer%file, 'plane', trim(merge('stress', 'strain', scene%plane == plane_stress)))
+         call write_text(writer, writer%file, 'coupling', &
+                         trim(merge('full   ', merge('goodman', 'none   ', scene%coupling == coupling_goodman), &
+                                    scene%coupling == coupling_full)))
+         call write_text(writer, writer%file, 'indenter', &
+                         trim(merge('disk      ', merge('flat_punch', 'profile   ', &
+                                                        scene%indenter%shape == shape_flat_punch), &
+                                    scene%indenter%shape == shape_disk)))
+      end associate
+   end subroutine write_attributes
+
+   !> All groups with their datasets. A dimension scale is one dataset, of mesh or history, which come before those that
+   !> need it, and is linked into every group whose fields run along it.
+   subroutine write_groups(writer, case, simulation)
+      type(writer_type), intent(inout) :: writer
+      type(case_type), intent(in) :: case
+      type(simulation_type), intent(in) :: simulation
+      type(string_type), allocatable :: groups(:)
+      integer :: i
+
+      groups = result_groups(simulation)
+      if (size(simulation%snapshots) > 0) call create_group(writer, 'steps')
+      do i = 1, size(groups)
+         call write_group(writer, groups(i)%text, group_fields(case, simulation, groups(i)%text))
+      end do
+   end subroutine write_groups
+
+   subroutine write_group(writer, group, fields)
+      type(writer_type), intent(inout) :: writer
+      character(*), intent(in) :: group
+      type(field_type), intent(in) :: fields(:)
+      integer :: code, i
+
+      if (size(fields) == 0) return
+      call create_group(writer, group)
+      if (group /= 'mesh' .and. any(fields%along == along_nodes)) then
+         call h5lcreate_hard_f(writer%file, '/mesh/x', writer%file, '/'//group//'/x', code)
+         call note(writer, code)
+      end if
+      if (group /= 'history' .and. any(fields%along == along_records)) then
+         call h5lcreate_hard_f(writer%file, '/history/record', writer%file, '/'//group//'/record', code)
+         call note(writer, code)
+      end if
+      do i = 1, size(fields)
+         call write_field(writer, group, fields(i))
+      end do
+   end subroutine write_group
+
+   subroutine create_group(writer, group)
+      type(writer_type), intent(inout) :: writer
+      character(*), intent(in) :: group
+      integer(hid_t) :: id
+      integer :: code
+
+      call h5gcreate_f(writer%file, '/'//group, id, code)
+      call note(writer, code)
+      if (code == 0) call h5gclose_f(id, code)
+   end subroutine create_group
+
+   !> One dataset with its unit, description, flags and dimension scale.
+   subroutine write_field(writer, group, field)
+      type(writer_type), intent(inout) :: writer
+      character(*), intent(in) :: group
+      type(field_type), intent(in) :: field
+      integer(hid_t) :: space, dataset, stored_type
+      integer(hsize_t) :: extent(1)
+      integer :: code
+
+      if (allocated(field%whole)) then
+         extent = size(field%whole)
+         stored_type = H5T_STD_I32LE
+      else
+         extent = size(field%values)
+         stored_type = H5T_IEEE_F64LE
+      end if
+      if (field%along == along_nothing) then
+         call h5screate_f(H5S_SCALAR_F, space, code)
+      else
+         call h5screate_simple_f(1, extent, space, code)
+      end if
+      call note(writer, code)
+      call h5dcreate_f(writer%file, '/'//group//'/'//field%name, stored_type, space, dataset, code)
+      call note(writer, code)
+      if (code /= 0) return
+      if (allocated(field%whole)) then
+         call h5dwrite_f(dataset, H5T_NATIVE_INTEGER, field%whole, extent, code)
+      else
+         call h5dwrite_f(dataset, H5T_NATIVE_DOUBLE, field%values, extent, code)
+      end if
+      call note(writer, code)
+      call h5sclose_f(space, code)
+      call write_text(writer, dataset, 'units', field%unit)
+      call write_text(writer, dataset, 'long_name', field%description)
+      if (field%flags /= '') call write_flags(writer, dataset, field%flags)
+      call attach_scale(writer, group, field, dataset)
+   end subroutine write_field
+
+   !> Make a dataset the scale of its dimension, or tie it to that scale; close it unless it is a scale.
+   subroutine attach_scale(writer, group, field, dataset)
+      type(writer_type), intent(inout) :: writer
+      character(*), intent(in) :: group
+      type(field_type), intent(in) :: field
+      integer(hid_t), intent(in) :: dataset
+      integer :: code
+
+      code = 0
+      if (group == 'mesh' .and. field%name == 'x') then
+         call h5dsset_scale_f(dataset, code, 'x')
+         writer%x = dataset
+      else if (group == 'history' .and. field%name == 'record') then
+         call h5dsset_scale_f(dataset, code, 'record')
+         writer%record = dataset
+      else
+         if (field%along == along_nodes) call h5dsattach_scale_f(dataset, writer%x, 1, code)
+         if (field%along == along_records) call h5dsattach_scale_f(dataset, writer%record, 1, code)
+         call note(writer, code)
+         call h5dclose_f(dataset, code)
+      end if
+      call note(writer, code)
+   end subroutine attach_scale
+
+   !> The meaning of coded values, as the CF conventions have it: flag_values and flag_meanings.
+   subroutine write_flags(writer, dataset, flags)
+      type(writer_type), intent(inout) :: writer
+      integer(hid_t), intent(in) :: dataset
+      character(*), intent(in) :: flags
+      integer(hid_t) :: space, attribute
+      integer(hsize_t) :: extent(1)
+      integer :: code, i, flag
+
+      extent = 1 + count([(flags(i:i) == ' ', i=1, len(flags))])
+      call write_text(writer, dataset, 'flag_meanings', flags)
+      call h5screate_simple_f(1, extent, space, code)
+      call h5acreate_f(dataset, 'flag_values', H5T_STD_I32LE, space, attribute, code)
+      call note(writer, code)
+      call h5awrite_f(attribute, H5T_NATIVE_INTEGER, [(flag, flag=0, int(extent(1)) - 1)], extent, code)
+      call note(writer, code)
+      call h5aclose_f(attribute, code)
+      call h5sclose_f(space, code)
+   end subroutine write_flags
+
+   !> A text attribute, UTF-8 of variable length.
+   subroutine write_text(writer, object, name, text)
+      type(writer_type), intent(inout) :: writer
+      integer(hid_t), intent(in) :: object
+      character(*), intent(in) :: name, text
+      character(len=:, kind=c_char), allocatable, target :: terminated
+      type(c_ptr), target :: pointer_to_text
+      integer(hid_t) :: text_type, space, attribute
+      integer :: code
+
+      terminated = text//c_null_char
+      pointer_to_text = c_loc(terminated)
+      call h5tcopy_f(H5T_STRING, text_type, code)
+      call h5tset_cset_f(text_type, H5T_CSET_UTF8_F, code)
+      call h5screate_f(H5S_SCALAR_F, space, code)
+      call h5acreate_f(object, name, text_type, space, attribute, code)
+      call note(writer, code)
+      if (code == 0) then
+         call h5awrite_f(attribute, text_type, c_loc(pointer_to_text), code)
+         call note(writer, code)
+         call h5aclose_f(attribute, code)
+      end if
+      call h5sclose_f(space, code)
+      call h5tclose_f(text_type, code)
+   end subroutine write_text
+
+   subroutine note(writer, code)
+      type(writer_type), intent(inout) :: writer
+      integer, intent(in) :: code
+
+      if (writer%code == 0 .and. code /= 0) writer%code = code
+   end subroutine note
+
+end module mfv_result_file
