@@ -6,7 +6,7 @@ function(mfv_compile_options target)
     $<${gnu_fortran}:-std=f2018 -fimplicit-none -Wall -Wextra -Wno-c-binding-type -Wno-uninitialized -Wno-maybe-uninitialized>)
   if(MFV_STRICT)
     target_compile_options(${target} PRIVATE
-      $<${gnu_fortran}:-Werror -fcheck=all -fbacktrace -ffpe-trap=invalid,zero,overflow>
+      $<${gnu_fortran}:-Werror -fcheck=all,no-array-temps -fbacktrace -ffpe-trap=invalid,zero,overflow>
       $<$<COMPILE_LANG_AND_ID:C,GNU>:-Wall -Wextra -Werror>)
   endif()
   if(MFV_SANITIZE)

@@ -3,7 +3,8 @@
 !> compliance, and from nothing that the solver says of itself. Residuals are relative to the largest magnitudes of
 !> their sort so far, so that units do not matter; the largest over all increments is kept.
 module mfv_certificate
-   use mfv_compliance, only: block_ut, block_wt, coupling_goodman
+   use, intrinsic :: ieee_arithmetic, only: ieee_is_finite
+   use mfv_compliance, only: block_up, block_ut, block_wp, block_wt, coupling_goodman
    use mfv_contact_fields, only: contact_fields_type
    use mfv_contact_model, only: contact_model_type
    use mfv_contact_state, only: contact_state_type
@@ -53,6 +54,7 @@ module mfv_certificate
       real(wp) :: work = 0.0_wp
    contains
       procedure :: largest
+      procedure :: traction_scale
       procedure :: check_increment
       procedure :: note_jump
       procedure, private :: note
@@ -97,6 +99,13 @@ contains
       largest = maxval(self%residual, mask=self%claimed)
    end function largest
 
+   !> The largest traction so far, force/length^2.
+   pure real(wp) function traction_scale(self)
+      class(certificate_type), intent(in) :: self
+
+      traction_scale = self%traction
+   end function traction_scale
+
    !> Check the increment from `before` to `after`, with the statuses of `after` on the way.
    subroutine check_increment(self, model, before, after)
       class(certificate_type), intent(inout) :: self
@@ -126,22 +135,34 @@ contains
       class(certificate_type), intent(inout) :: self
       type(contact_model_type), intent(in) :: model
       type(contact_fields_type), intent(in) :: fields
-      real(wp), dimension(size(fields%pressure)) :: normal, tangential
+      real(wp), dimension(size(fields%pressure)) :: by_pressure, by_shear
 
       self%traction = max(self%traction, maxval(abs(fields%pressure)), maxval(abs(fields%shear)))
-      self%normal = max(self%normal, maxval(abs(fields%normal)))
-      self%tangential = max(self%tangential, maxval(abs(fields%tangential)), abs(fields%shift))
       self%normal_force = max(self%normal_force, abs(fields%normal_force))
       self%tangential_force = max(self%tangential_force, model%interval()*sum(abs(fields%shear)), &
                                   abs(fields%tangential_force))
-
-      call model%compliance%displacements(fields%pressure, fields%shear, normal, tangential)
-      call self%note(elasticity_normal, maxval(abs(fields%normal - normal)), self%normal)
-      call self%note(elasticity_tangential, maxval(abs(fields%tangential - tangential)), self%tangential)
+      call displacement_parts(block_wp, block_wt)
+      self%normal = max(self%normal, maxval(abs(by_pressure)), maxval(abs(by_shear)))
+      call self%note(elasticity_normal, maxval(abs(fields%normal - by_pressure - by_shear)), self%normal)
+      call displacement_parts(block_up, block_ut)
+      self%tangential = max(self%tangential, maxval(abs(by_pressure)), maxval(abs(by_shear)), abs(fields%shift))
+      call self%note(elasticity_tangential, maxval(abs(fields%tangential - by_pressure - by_shear)), self%tangential)
       call self%note(normal_force_balance, abs(fields%normal_force - model%interval()*sum(fields%pressure)), &
                      self%normal_force)
       call self%note(tangential_force_balance, abs(fields%tangential_force - model%interval()*sum(fields%shear)), &
                      self%tangential_force)
+
+   contains
+
+      !> Displacements by pressure and by shear apart: their sizes are the scale, however much they cancel.
+      subroutine displacement_parts(pressure_block, shear_block)
+         integer, intent(in) :: pressure_block, shear_block
+
+         by_pressure = 0.0_wp
+         by_shear = 0.0_wp
+         call model%compliance%product(pressure_block, fields%pressure, by_pressure)
+         call model%compliance%product(shear_block, fields%shear, by_shear)
+      end subroutine displacement_parts
    end subroutine check_equilibrium
 
    !> Equalities and inequalities of gap and pressure.
@@ -205,9 +226,12 @@ contains
       integer, intent(in) :: kind
       real(wp), intent(in) :: residual, scale
 
-      if (.not. scale > 0.0_wp) return
-      if (.not. residual > scale*self%residual(kind)) return
-      self%residual(kind) = residual/scale
+      if (ieee_is_finite(residual) .and. ieee_is_finite(scale)) then
+         if (residual <= scale*self%residual(kind)) return
+         self%residual(kind) = residual/scale
+      else
+         self%residual(kind) = huge(1.0_wp)
+      end if
       self%worst_increment(kind) = self%increments
    end subroutine note
 

@@ -279,7 +279,7 @@ contains
       real(wp) :: scale
 
       before = self%state%fields
-      scale = max(maxval(abs(before%pressure)), maxval(abs(before%shear)), &
+      scale = max(self%certificate%traction_scale(), &
                   maxval(abs(response%rate%pressure)), maxval(abs(response%rate%shear)))
       if (max(maxval(abs(response%state%pressure - before%pressure)), &
               maxval(abs(response%state%shear - before%shear))) > largest_jump*scale) then

@@ -7,7 +7,7 @@ module mfv_simulation
    use mfv_error, only: error_type
    use mfv_first_violation
    use mfv_kinds, only: wp
-   use mfv_node_status, only: event_none, event_step_end
+   use mfv_node_status, only: event_none, event_step_end, event_stopped
    use mfv_observer, only: observer_type
    use mfv_scene
    use mfv_status, only: MFV_COMPLETE
@@ -160,7 +160,8 @@ contains
       call self%contact%lead(segment, observer, error)
       self%normal = load_type(targets(1)%control, targets(1)%value)
       self%tangential = load_type(targets(2)%control, targets(2)%value)
-      if (self%keep_history /= history_none) call self%contact%record(event_step_end, 0, 0, segment%step)
+      if (self%keep_history /= history_none) &
+         call self%contact%record(merge(event_stopped, event_step_end, allocated(error)), 0, 0, segment%step)
       if (.not. allocated(error)) call self%take_snapshot(segment%step, reversal)
    end subroutine lead_to
 

@@ -9,7 +9,7 @@ module mfv_numerics
 
    abstract interface
       !> A real function of one variable `x` and parameters.
-      pure function parametric_function(x, parameters) result(value)
+      function parametric_function(x, parameters) result(value)
          import :: wp
          real(wp), intent(in) :: x, parameters(:)
          real(wp) :: value

@@ -30,8 +30,8 @@ module mfv_compliance
    contains
       procedure(resize_interface), deferred :: resize
       procedure(entries_interface), deferred :: entries
+      procedure(product_interface), deferred :: product
       procedure :: displacements
-      procedure :: product
    end type compliance_type
 
    abstract interface
@@ -50,6 +50,15 @@ module mfv_compliance
          integer, intent(in) :: block, rows(:), columns(:)
          real(wp), intent(out) :: matrix(:, :)
       end subroutine entries_interface
+
+      !> Add block times `traction` to `displacement`, both of shape (nodes); a block that does not exist adds nothing.
+      subroutine product_interface(self, block, traction, displacement)
+         import :: compliance_type, wp
+         class(compliance_type), intent(in) :: self
+         integer, intent(in) :: block
+         real(wp), intent(in) :: traction(:)
+         real(wp), intent(inout) :: displacement(:)
+      end subroutine product_interface
    end interface
 
 contains
@@ -68,24 +77,5 @@ contains
       call self%product(block_up, pressure, tangential)
       call self%product(block_ut, shear, tangential)
    end subroutine displacements
-
-   !> Add block times traction to `displacement`; a block that does not exist adds nothing, an interval without
-   !> traction costs nothing.
-   subroutine product(self, block, traction, displacement)
-      class(compliance_type), intent(in) :: self
-      integer, intent(in) :: block
-      real(wp), intent(in) :: traction(:)
-      real(wp), intent(inout) :: displacement(:)
-      real(wp) :: column(self%nodes, 1)
-      integer :: rows(self%nodes), i, j
-
-      if (.not. self%has_block(block)) return
-      rows = [(i, i=1, self%nodes)]
-      do j = 1, self%nodes
-         if (.not. abs(traction(j)) > 0.0_wp) cycle
-         call self%entries(block, rows, [j], column)
-         displacement = displacement + traction(j)*column(:, 1)
-      end do
-   end subroutine product
 
 end module mfv_compliance

@@ -3,7 +3,7 @@
 !>
 !> With h half the width of an interval and x the distance from its centre, a unit pressure gives
 !>
-!>     w = (kappa+1)/(4 pi G) h [ 2 ln(D/h) - log_kernel(x/h) ],    u = -(kappa-1)/(4 G) h step_kernel(x/h)
+!>     w = (kappa+1)/(4 pi G) h [ 2 ln(D/h) + 2 - log_kernel(x/h) ],    u = -(kappa-1)/(4 G) h step_kernel(x/h)
 !>
 !> and a unit shear the same with w and u exchanged and the sign of the second one changed. A half-plane has no
 !> rigid-body constraint of its own: displacements are measured from the surface point at the distance D (`datum`),
@@ -68,7 +68,8 @@ contains
       half = self%interval/2.0_wp
       factor = half/(pi*self%modulus)
       self%nodes = nodes
-      self%direct = [(factor*(2.0_wp*log(self%datum/half) - log_kernel(2.0_wp*distance)), distance=0, nodes - 1)]
+      self%direct = [(factor*(2.0_wp*log(self%datum/half) + 2.0_wp - log_kernel(2.0_wp*distance)), &
+                      distance=0, nodes - 1)]
    end subroutine resize
 
    !> See mfv_compliance.
@@ -141,7 +142,7 @@ contains
 
    !> (r+1) ln|r+1| - (r-1) ln|r-1|, the normal displacement by a box traction, to a relative error near epsilon for
    !> every r >= 0 (r = |x|/h): near 0 and far away, where the two terms cancel, by their series.
-   pure real(wp) function log_kernel(r) result(kernel)
+   elemental real(wp) function log_kernel(r) result(kernel)
       real(wp), intent(in) :: r
       real(wp), parameter :: near = 0.5_wp, far = 2.0_wp
       real(wp) :: distance
@@ -189,7 +190,7 @@ contains
    end function odd_series
 
    !> x/h inside the loaded interval, -1 or 1 outside: the tangential displacement by a box pressure.
-   pure real(wp) function step_kernel(r) result(kernel)
+   elemental real(wp) function step_kernel(r) result(kernel)
       real(wp), intent(in) :: r
 
       kernel = min(max(r, -1.0_wp), 1.0_wp)

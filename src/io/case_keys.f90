@@ -61,7 +61,7 @@ contains
               real_key('body', 'poisson_ratio', '', '', "Poisson's ratio of the half-plane, needed", -1.0_wp, 0.5_wp), &
               positive_key('body', 'datum', '', 'length', 'half_plane: distance of the surface point from which '// &
                            'displacements are measured; left out: the radius of the disk, the half-width of the '// &
-                           'punch, the largest |x| of the profile'), &
+                           'punch, the largest distance of the profile from x = 0'), &
               positive_key('body', 'radius', '', 'length', 'disk: radius, needed'), &
               positive_key('body', 'half_width', '', 'length', 'flat_punch: half its width, needed'), &
               text_key('body', 'file', '', 'profile: text file with two columns, x and height above the flat surface, '// &

@@ -7,7 +7,7 @@ module mfv_result_fields
    use mfv_closed_form, only: closed_form_of, closed_form_type
    use mfv_contact_state, only: contact_state_type
    use mfv_kinds, only: wp
-   use mfv_node_status, only: event_names, event_step_end, node_status_names
+   use mfv_node_status, only: event_names, node_status_names
    use mfv_simulation, only: history_none, simulation_type, snapshot_type
    use mfv_strings, only: add_text, list_of_words, string_type, to_text
    implicit none

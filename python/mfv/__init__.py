@@ -1,0 +1,46 @@
+"""MFV: two-dimensional frictional elastic contact by the Method of First Violation.
+
+`run` solves a case in this process, `Case` leads one step by step, `read` reads a result file, `plot` draws results,
+`reference` has the closed forms. Only running and the closed forms need the shared library.
+"""
+
+from __future__ import annotations
+
+import importlib
+from importlib.metadata import version as _installed_version
+from pathlib import Path as _Path
+from types import ModuleType
+
+from . import errors, reference
+from ._library import library_version
+from .case import Case, run
+from .codes import EventKind, NodeStatus
+from .errors import LibraryNotFound, MfvError, NotAResult
+from .result import Group, Result, read
+
+__all__ = [
+    "Case",
+    "EventKind",
+    "Group",
+    "LibraryNotFound",
+    "MfvError",
+    "NodeStatus",
+    "NotAResult",
+    "Result",
+    "errors",
+    "library_version",
+    "plot",
+    "read",
+    "reference",
+    "run",
+]
+
+_version_file = _Path(__file__).resolve().parents[2] / "VERSION"
+__version__ = _version_file.read_text().strip() if _version_file.is_file() else _installed_version("mfv")
+
+
+def __getattr__(name: str) -> ModuleType:
+    """`plot` on first use, so that matplotlib is not loaded by those who do not draw."""
+    if name == "plot":
+        return importlib.import_module(".plot", __name__)
+    raise AttributeError(f"module 'mfv' has no attribute '{name}'")

@@ -1,0 +1,100 @@
+"""The command line: python -m mfv plot RESULT.h5, python -m mfv info RESULT.h5."""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from pathlib import Path
+
+from . import __version__
+from .errors import MfvError
+from .result import Group, Result, read
+
+UNUSABLE = 2  # exit code, as that of mfv_run for input that cannot be used
+
+PLOT_HELP = """\
+Draw a result as a picture of up to three panels: the pressure over x; the shear traction over x with the stick and slip
+zones behind it and the limits of friction around it (without friction: the surfaces of both bodies); the tangential force
+over the shift (where there is a history with a tangential force), with the ends of the steps numbered. Points are
+computed, lines are closed forms where the file has them.
+"""
+
+EXAMPLES = """\
+examples:
+  mfv_run examples/mindlin.nml              write mindlin.h5
+  python -m mfv info mindlin.h5             what is in it
+  python -m mfv plot mindlin.h5             draw mindlin.png
+  python -m mfv plot mindlin.h5 -o fig3.pdf --step 2
+                                            draw the state after step 2, for print
+"""
+
+
+def main(arguments: list[str] | None = None) -> int:
+    """Run the command line; return the exit code."""
+    options = _parser().parse_args(arguments)
+    try:
+        options.command(options)
+    except (MfvError, OSError, ValueError) as error:
+        print(f"mfv: {error}", file=sys.stderr)
+        return UNUSABLE
+    return 0
+
+
+def _parser() -> argparse.ArgumentParser:
+    raw = argparse.RawDescriptionHelpFormatter
+    parser = argparse.ArgumentParser(
+        prog="python -m mfv", description="Look at result files of mfv_run.", epilog=EXAMPLES, formatter_class=raw
+    )
+    parser.add_argument("--version", action="version", version=f"mfv {__version__}")
+    commands = parser.add_subparsers(required=True, metavar="plot | info")
+
+    plot = commands.add_parser("plot", help="draw a result", description=PLOT_HELP, epilog=EXAMPLES, formatter_class=raw)
+    plot.add_argument("file", type=Path, metavar="RESULT.h5", help="result file")
+    plot.add_argument("-o", "--output", type=Path, metavar="PICTURE", help="png, pdf or svg; else RESULT.png beside the file")
+    plot.add_argument("--step", type=int, metavar="N", help="the state in the file's group steps/000N in place of the last")
+    plot.set_defaults(command=_plot)
+
+    info = commands.add_parser("info", help="print what is in a result", epilog=EXAMPLES, formatter_class=raw)
+    info.add_argument("file", type=Path, metavar="RESULT.h5", help="result file")
+    info.set_defaults(command=_info)
+    return parser
+
+
+def _plot(options: argparse.Namespace) -> None:
+    from . import plot  # here, so that info does not load matplotlib
+
+    picture = plot.figure(read(options.file), options.step)
+    output = options.output or options.file.with_suffix(".png")
+    picture.savefig(output, dpi=200)
+    print(output)
+
+
+def _info(options: argparse.Namespace) -> None:
+    print(_description(read(options.file)))
+
+
+def _description(result: Result) -> str:
+    """A result in words and numbers, the input aside."""
+    attributes = [f"{name:20}{value}" for name, value in result.attributes.items() if name != "input"]
+    sources = [f"{name:20}{result.reference.description(name)}" for name in result.reference]
+    blocks = [
+        attributes,
+        ["summary", *_lines(result.summary)],
+        ["certificate", *_lines(result.certificate)],
+        ["closed form", *(f"  {line}" for line in sources)] if sources else ["closed form: none"],
+        [f"{result.mesh.x.size} nodes, {len(result.steps)} states in steps, {len(result.history.get('record', ()))} records in history"],
+    ]
+    return "\n\n".join("\n".join(block) for block in blocks)
+
+
+def _lines(group: Group) -> list[str]:
+    """The scalars of a group, one a line."""
+    return [f"  {name:26}{group[name]:<14.6g}{_unit(group, name):16}{group.description(name)}" for name in group]
+
+
+def _unit(group: Group, name: str) -> str:
+    return "" if group.unit(name) == "1" else group.unit(name)
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,154 @@
+"""The shared library: where it is, and the C interface of include/mfv.h as ctypes sees it."""
+
+from __future__ import annotations
+
+import ctypes
+import ctypes.util
+import functools
+import itertools
+import os
+from collections.abc import Iterator
+from ctypes import POINTER, c_char_p, c_double, c_int, c_int32, c_size_t, c_void_p
+from enum import IntEnum
+from pathlib import Path
+
+from .errors import LibraryNotFound
+
+#: Room for a text that the library hands out; a longer one is cut.
+TEXT_SIZE = 16384
+
+HOW_TO_BUILD = (
+    "build it with 'cmake --preset release && cmake --build --preset release' in the source tree, "
+    "or set MFV_LIBRARY to the path of libmfv.so"
+)
+
+
+class Control(IntEnum):
+    """What a step does with the normal or the tangential load."""
+
+    KEEP = 0
+    FORCE = 1
+    DISPLACEMENT = 2
+
+
+class Step(ctypes.Structure):
+    """`mfv_step` of the header."""
+
+    _fields_ = [
+        ("size", c_size_t),
+        ("normal_target", c_double),
+        ("tangential_target", c_double),
+        ("normal_control", c_int),
+        ("tangential_control", c_int),
+        ("friction", c_int),
+        ("cycles", c_int),
+    ]
+
+
+_handle = c_void_p
+_handle_slot = POINTER(c_void_p)
+
+#: Result and arguments of every function of the header.
+SIGNATURES: dict[str, tuple[type, ...]] = {
+    "mfv_version": (c_int, c_char_p, c_size_t),
+    "mfv_status_text": (c_int, c_int, c_char_p, c_size_t, c_char_p, c_size_t),
+    "mfv_create_from_file": (c_int, c_char_p, _handle_slot, c_char_p, c_size_t),
+    "mfv_create_from_text": (c_int, c_char_p, c_char_p, _handle_slot, c_char_p, c_size_t),
+    "mfv_free": (c_int, _handle_slot),
+    "mfv_run": (c_int, _handle),
+    "mfv_advance": (c_int, _handle, POINTER(Step)),
+    "mfv_message": (c_int, _handle, c_char_p, c_size_t),
+    "mfv_field_count": (c_int, _handle, POINTER(c_size_t)),
+    "mfv_field_path": (c_int, _handle, c_size_t, c_char_p, c_size_t),
+    "mfv_field_info": (c_int, _handle, c_char_p, POINTER(c_size_t), POINTER(c_int), c_char_p, c_size_t, c_char_p, c_size_t),
+    "mfv_copy_real": (c_int, _handle, c_char_p, POINTER(c_double), c_size_t),
+    "mfv_copy_integer": (c_int, _handle, c_char_p, POINTER(c_int32), c_size_t),
+    "mfv_write": (c_int, _handle, c_char_p),
+    "mfv_hertz_half_width": (c_double,) + (c_double,) * 4,
+    "mfv_hertz_pressure": (c_double,) + (c_double,) * 3,
+    "mfv_flat_punch_pressure": (c_double,) + (c_double,) * 3,
+    "mfv_spence_stick_ratio": (c_double,) + (c_double,) * 2,
+    "mfv_spence_cylinder_shear": (c_double,) + (c_double,) * 5,
+    "mfv_spence_flat_punch_shear": (c_double,) + (c_double,) * 5,
+    "mfv_mindlin_stick_ratio": (c_double,) + (c_double,) * 3,
+    "mfv_mindlin_shear": (c_double,) + (c_double,) * 5,
+    "mfv_mindlin_dissipation": (c_double,) + (c_double,) * 5,
+}
+
+
+@functools.lru_cache(maxsize=None)
+def library() -> ctypes.CDLL:
+    """The library, loaded when first needed, with the signatures of its functions. Raises LibraryNotFound."""
+    path = find_library()
+    try:
+        loaded = ctypes.CDLL(path)
+        for name, (result, *arguments) in SIGNATURES.items():
+            function = getattr(loaded, name)
+            function.restype = result
+            function.argtypes = arguments
+    except (OSError, AttributeError) as error:
+        raise LibraryNotFound(None, f"the MFV library {path} cannot be used: {error}; {HOW_TO_BUILD}") from error
+    return loaded
+
+
+def find_library() -> str:
+    """Path of the library: what MFV_LIBRARY says, else the first that is there. Raises LibraryNotFound."""
+    asked_for = os.environ.get("MFV_LIBRARY")
+    if asked_for:
+        if not Path(asked_for).is_file():
+            raise LibraryNotFound(None, f"there is no file {asked_for}, where MFV_LIBRARY says that the MFV library is")
+        return str(Path(asked_for).resolve())
+    found = next((str(path) for path in _usual_places() if path.is_file()), None) or ctypes.util.find_library("mfv")
+    if not found:
+        raise LibraryNotFound(None, f"the MFV library was not found: {HOW_TO_BUILD}")
+    return found
+
+
+def _usual_places() -> Iterator[Path]:
+    """In the package (an installed one), then in the builds of the source tree, the release first."""
+    package = Path(__file__).resolve().parent
+    builds = package.parents[1] / "build"
+    directories = [package, builds / "release" / "lib", *sorted(builds.glob("*/lib"))]
+    return (directory / name for directory in directories for name in ("libmfv.so", "libmfv.dylib"))
+
+
+def text_buffer() -> ctypes.Array[ctypes.c_char]:
+    """A buffer for a text from the library."""
+    return ctypes.create_string_buffer(TEXT_SIZE)
+
+
+def text_of(buffer: ctypes.Array[ctypes.c_char]) -> str:
+    """The text in a buffer."""
+    return buffer.value.decode("utf-8", errors="replace")
+
+
+def text_for(text: str | os.PathLike[str]) -> bytes:
+    """A text or path as the library takes it."""
+    encoded = os.fsencode(text)
+    if b"\0" in encoded:
+        raise ValueError("a text for the MFV library must not contain a null character")
+    return encoded
+
+
+@functools.lru_cache(maxsize=None)
+def statuses() -> tuple[tuple[int, str, str], ...]:
+    """Code, outcome and explanation of every status of the library, from its own list."""
+    found = []
+    outcome, explanation = text_buffer(), text_buffer()
+    for code in itertools.count():
+        if library().mfv_status_text(code, outcome, len(outcome), explanation, len(explanation)) != 0:
+            return tuple(found)
+        found.append((code, text_of(outcome), text_of(explanation)))
+    raise AssertionError("the list of statuses has no end")
+
+
+def outcome_of(status: int) -> str:
+    """The outcome of a status in words."""
+    return statuses()[status][1]
+
+
+def library_version() -> str:
+    """Version of the library."""
+    buffer = text_buffer()
+    library().mfv_version(buffer, len(buffer))
+    return text_of(buffer)

@@ -1,0 +1,232 @@
+"""Running cases in this process through the C interface."""
+
+from __future__ import annotations
+
+import ctypes
+import os
+import threading
+import weakref
+from ctypes import byref, c_double, c_int, c_int32, c_size_t, c_void_p
+from types import TracebackType
+
+import numpy as np
+
+from . import errors
+from ._library import Control, Step, library, library_version, outcome_of, text_buffer, text_for, text_of
+from .result import Field, Result, Values
+
+#: HDF5, which writes the result files, is in general not safe to call from two threads at once.
+_writing = threading.Lock()
+
+
+def run(
+    path: str | os.PathLike[str] | None = None,
+    *,
+    text: str | None = None,
+    output: str | os.PathLike[str] | None = None,
+    check: bool = False,
+) -> Result:
+    """Solve a case and return its result.
+
+    The case is the namelist file at `path` or the namelist `text`. `output`: where to write the result file; without it
+    none is written, whatever the &output group of the case says. A run that ends early is a result, with its `outcome`
+    and `message` and the state up to there; `check=True` raises the exception of the outcome instead, after writing.
+    Raises InputError for a case that cannot be used, FileError when the result could not be written.
+    """
+    if (path is None) == (text is None):
+        raise TypeError("mfv.run takes the path of a case or text=, one of them")
+    with Case.from_file(path) if path is not None else Case.from_text(text) as case:
+        status = case._lead("mfv_run")
+        if output is not None:
+            case.write(output)
+        case._raise_if(check, status)
+        return case.result()
+
+
+class Case:
+    """A case with its state, to be run or led step by step. Use it in a `with` statement or `close` it."""
+
+    def __init__(self, handle: c_void_p) -> None:
+        """Not to be called: see `from_file` and `from_text`."""
+        self._handle = handle
+        self._lock = threading.RLock()
+        self._free = weakref.finalize(self, library().mfv_free, byref(handle))
+        self._status = 0
+        self._message = self._library_message()
+
+    @classmethod
+    def from_file(cls, path: str | os.PathLike[str]) -> Case:
+        """The case in a namelist file. Raises InputError."""
+        return cls(_created("mfv_create_from_file", text_for(path)))
+
+    @classmethod
+    def from_text(cls, text: str, name: str = "text") -> Case:
+        """The case in a namelist text. `name`: what messages call it; files it names are looked for beside that.
+
+        Raises InputError.
+        """
+        return cls(_created("mfv_create_from_text", text_for(text), text_for(name)))
+
+    def __enter__(self) -> Case:
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, traceback: TracebackType | None
+    ) -> None:
+        self.close()
+
+    def __repr__(self) -> str:
+        return f"<mfv.Case {self.outcome}: {self.message}>" if self._handle else "<mfv.Case closed>"
+
+    def close(self) -> None:
+        """Free the case; using it afterwards raises BadHandle. Closing twice does no harm."""
+        with self._lock:
+            self._free()
+
+    @property
+    def outcome(self) -> str:
+        """How the run has gone so far, in words: 'complete' while nothing has gone wrong."""
+        return outcome_of(self._status)
+
+    @property
+    def message(self) -> str:
+        """What was reached, or why not."""
+        return self._message
+
+    def run(self, *, check: bool = False) -> str:
+        """Run the steps of the case that have not been run; return the outcome.
+
+        `check`: raise the exception of an outcome that is not 'complete'.
+        """
+        self._raise_if(check, self._lead("mfv_run"))
+        return self.outcome
+
+    def advance(
+        self,
+        *,
+        normal_force: float | None = None,
+        approach: float | None = None,
+        tangential_force: float | None = None,
+        shift: float | None = None,
+        friction: bool = True,
+        cycles: int = 0,
+        check: bool = False,
+    ) -> str:
+        """Lead the loads through one more step, whatever the steps of the case are; return the outcome.
+
+        Targets are reached linearly from the loads now; a load without a target keeps what it has. Either `normal_force`
+        [force/length] or `approach` [length], and `tangential_force` or `shift`. `friction`: whether it acts during this
+        step. `cycles`: go to the targets and back this many times. `check`: as for `run`. Raises BadArgument.
+        """
+        normal_control, normal_target = _control("normal_force", normal_force, "approach", approach)
+        tangential_control, tangential_target = _control("tangential_force", tangential_force, "shift", shift)
+        step = Step(
+            size=ctypes.sizeof(Step),
+            normal_target=normal_target,
+            tangential_target=tangential_target,
+            normal_control=normal_control,
+            tangential_control=tangential_control,
+            friction=bool(friction),
+            cycles=cycles,
+        )
+        self._raise_if(check, self._lead("mfv_advance", byref(step)))
+        return self.outcome
+
+    def fields(self) -> list[str]:
+        """Paths of the fields that the case has now, such as 'state/pressure'."""
+        count, buffer = c_size_t(), text_buffer()
+        with self._lock:
+            self._call("mfv_field_count", byref(count))
+            paths = []
+            for index in range(count.value):
+                self._call("mfv_field_path", index, buffer, len(buffer))
+                paths.append(text_of(buffer))
+        return paths
+
+    def __getitem__(self, path: str) -> Values:
+        """Values of the field at a path, copied now. Raises KeyError."""
+        try:
+            return self._field(path).values
+        except errors.BadArgument as error:
+            raise KeyError(str(error)) from None
+
+    def result(self) -> Result:
+        """Everything there is now, copied; it does not change when the case goes on."""
+        groups: dict[str, dict[str, Field]] = {}
+        with self._lock:
+            for path in self.fields():
+                group, name = path.rsplit("/", 1)
+                groups.setdefault(group, {})[name] = self._field(path)
+            attributes = {"outcome": self.outcome, "message": self.message, "mfv_version": library_version()}
+        return Result(groups, attributes)
+
+    def write(self, path: str | os.PathLike[str] | None = None) -> None:
+        """Write the result file to `path`, or where the &output group of the case says. Raises FileError."""
+        with _writing:
+            self._call("mfv_write", None if path is None else text_for(path))
+
+    def _field(self, path: str) -> Field:
+        """The field at a path. Raises BadArgument."""
+        count, is_integer = c_size_t(), c_int()
+        unit, description = text_buffer(), text_buffer()
+        name = text_for(path)
+        with self._lock:
+            self._call("mfv_field_info", name, byref(count), byref(is_integer), unit, len(unit), description, len(description))
+            if is_integer:
+                values, c_type, copy = np.empty(count.value, dtype=np.int32), c_int32, "mfv_copy_integer"
+            else:
+                values, c_type, copy = np.empty(count.value, dtype=np.float64), c_double, "mfv_copy_real"
+            self._call(copy, name, values.ctypes.data_as(ctypes.POINTER(c_type)), count.value)
+        return Field(values[0] if _is_scalar(path, values) else values, text_of(unit), text_of(description))
+
+    def _lead(self, function: str, *arguments: object) -> int:
+        """Call what leads the loads; remember and return the status, which is an outcome. Raises for a call gone wrong."""
+        with self._lock:
+            status = getattr(library(), function)(self._handle, *arguments)
+            message = self._library_message()
+            if status != 0 and errors.failures()[status] in (errors.BadHandle, errors.BadArgument):
+                raise errors.failure(status, message)
+            self._status, self._message = status, message
+        return status
+
+    def _call(self, function: str, *arguments: object) -> None:
+        """Call a function of the library on this case. Raises the exception of its status."""
+        with self._lock:
+            status = getattr(library(), function)(self._handle, *arguments)
+            self._raise_if(True, status)
+
+    def _raise_if(self, check: bool, status: int) -> None:
+        if check and status != 0:
+            raise errors.failure(status, self._library_message())
+
+    def _library_message(self) -> str:
+        """The message of the last call; empty for a closed case."""
+        buffer = text_buffer()
+        with self._lock:
+            library().mfv_message(self._handle, buffer, len(buffer))
+        return text_of(buffer)
+
+
+def _created(function: str, *arguments: bytes) -> c_void_p:
+    """A handle from one of the functions that create it."""
+    handle, message = c_void_p(), text_buffer()
+    status = getattr(library(), function)(*arguments, byref(handle), message, len(message))
+    if status != 0:
+        raise errors.failure(status, text_of(message))
+    return handle
+
+
+def _control(force_name: str, force: float | None, displacement_name: str, displacement: float | None) -> tuple[Control, float]:
+    """What a step does with a load, and its target."""
+    if force is not None and displacement is not None:
+        raise TypeError(f"give {force_name} or {displacement_name}, not both")
+    if force is not None:
+        return Control.FORCE, force
+    if displacement is not None:
+        return Control.DISPLACEMENT, displacement
+    return Control.KEEP, 0.0
+
+
+def _is_scalar(path: str, values: np.ndarray) -> bool:
+    """Whether a single value stands for itself; the fields of the load history always run along its records."""
+    return values.size == 1 and not path.startswith("history/")

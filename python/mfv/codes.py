@@ -1,0 +1,25 @@
+"""The coded quantities of a result: what `state/status` and `history/event_kind` mean (their `flag_meanings`)."""
+
+from enum import IntEnum
+
+
+class NodeStatus(IntEnum):
+    """What a surface node can be."""
+
+    OPEN = 0
+    STICK = 1
+    SLIP_RIGHT = 2  #: slips to the right: tau = -mu p
+    SLIP_LEFT = 3  #: slips to the left: tau = +mu p
+    FRICTIONLESS = 4  #: in contact while friction is off or absent
+
+
+class EventKind(IntEnum):
+    """What ended an increment of the load."""
+
+    START = 0
+    CLOSE = 1
+    OPEN = 2
+    SLIP_RIGHT = 3
+    SLIP_LEFT = 4
+    STICK = 5
+    STEP_END = 6

@@ -1,0 +1,57 @@
+"""Exceptions.
+
+Beside those below there is one for every status with which the library can fail, named after its outcome:
+`InputError` for "input error", `GrossSliding` for "gross sliding", and so on; `failures()` has them all. They are made
+from the library's own list when first asked for.
+"""
+
+from __future__ import annotations
+
+import functools
+
+
+class MfvError(Exception):
+    """What this package raises: a message for a person, and the status of the library behind it, if any."""
+
+    def __init__(self, status: int | None, message: str) -> None:
+        super().__init__(status, message)
+        self.status = status
+        self.message = message
+
+    def __str__(self) -> str:
+        return self.message
+
+
+class LibraryNotFound(MfvError, ImportError):
+    """The shared library is missing or cannot be loaded."""
+
+
+class NotAResult(MfvError):
+    """A file is not a result file of MFV."""
+
+
+@functools.lru_cache(maxsize=None)
+def failures() -> dict[int, type[MfvError]]:
+    """The exceptions of the library's failing statuses, by status."""
+    from ._library import statuses
+
+    return {code: _exception(outcome, explanation) for code, outcome, explanation in statuses() if code != 0}
+
+
+def failure(status: int, message: str) -> MfvError:
+    """The exception of a failing status; an empty message is replaced by the explanation of the status."""
+    kind = failures()[status]
+    return kind(status, message or str(kind.__doc__))
+
+
+def _exception(outcome: str, explanation: str) -> type[MfvError]:
+    name = "".join(word.capitalize() for word in outcome.split())
+    return type(name, (MfvError,), {"__doc__": explanation, "__module__": __name__})
+
+
+def __getattr__(name: str) -> type[MfvError]:
+    if not name.startswith("_"):
+        for kind in failures().values():
+            if kind.__name__ == name:
+                return kind
+    raise AttributeError(f"module '{__name__}' has no attribute '{name}'")

@@ -1,0 +1,78 @@
+"""Closed forms, evaluated by the library, NaN outside their domain. Arguments may be arrays; they are broadcast.
+
+Forces are per unit thickness. `half_width` is that of the contact. `beta` is Dundurs' parameter
+(kappa - 1)/(kappa + 1). The sources are in docs/theory.md.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from ._library import library
+
+
+def hertz_half_width(
+    normal_force: ArrayLike, radius: ArrayLike, shear_modulus: ArrayLike, kolosov_constant: ArrayLike
+) -> NDArray[np.float64]:
+    """Half-width of the contact of a rigid cylinder with a half-plane (Hertz)."""
+    return _evaluated("mfv_hertz_half_width", normal_force, radius, shear_modulus, kolosov_constant)
+
+
+def hertz_pressure(x: ArrayLike, normal_force: ArrayLike, half_width: ArrayLike) -> NDArray[np.float64]:
+    """Pressure at x under a cylinder (Hertz)."""
+    return _evaluated("mfv_hertz_pressure", x, normal_force, half_width)
+
+
+def flat_punch_pressure(x: ArrayLike, normal_force: ArrayLike, half_width: ArrayLike) -> NDArray[np.float64]:
+    """Pressure at x under a rigid flat punch without friction."""
+    return _evaluated("mfv_flat_punch_pressure", x, normal_force, half_width)
+
+
+def spence_stick_ratio(friction_coefficient: ArrayLike, beta: ArrayLike) -> NDArray[np.float64]:
+    """Width of the stuck zone over that of the contact under a growing normal force (Spence)."""
+    return _evaluated("mfv_spence_stick_ratio", friction_coefficient, beta)
+
+
+def spence_cylinder_shear(
+    x: ArrayLike, normal_force: ArrayLike, half_width: ArrayLike, friction_coefficient: ArrayLike, beta: ArrayLike
+) -> NDArray[np.float64]:
+    """Shear traction at x under a cylinder pressed with friction, Goodman's coupling (Spence)."""
+    return _evaluated("mfv_spence_cylinder_shear", x, normal_force, half_width, friction_coefficient, beta)
+
+
+def spence_flat_punch_shear(
+    x: ArrayLike, normal_force: ArrayLike, half_width: ArrayLike, friction_coefficient: ArrayLike, beta: ArrayLike
+) -> NDArray[np.float64]:
+    """Shear traction at x under a flat punch pressed with friction, Goodman's coupling (Spence)."""
+    return _evaluated("mfv_spence_flat_punch_shear", x, normal_force, half_width, friction_coefficient, beta)
+
+
+def mindlin_stick_ratio(
+    tangential_force: ArrayLike, normal_force: ArrayLike, friction_coefficient: ArrayLike
+) -> NDArray[np.float64]:
+    """Width of the stuck zone over that of the contact of a cylinder pressed, then sheared (Cattaneo, Mindlin)."""
+    return _evaluated("mfv_mindlin_stick_ratio", tangential_force, normal_force, friction_coefficient)
+
+
+def mindlin_shear(
+    x: ArrayLike, tangential_force: ArrayLike, normal_force: ArrayLike, half_width: ArrayLike, friction_coefficient: ArrayLike
+) -> NDArray[np.float64]:
+    """Shear traction at x under a cylinder pressed, then sheared by a growing force (Cattaneo, Mindlin)."""
+    return _evaluated("mfv_mindlin_shear", x, tangential_force, normal_force, half_width, friction_coefficient)
+
+
+def mindlin_dissipation(
+    tangential_force: ArrayLike,
+    normal_force: ArrayLike,
+    half_width: ArrayLike,
+    radius: ArrayLike,
+    friction_coefficient: ArrayLike,
+) -> NDArray[np.float64]:
+    """Energy that a cylinder dissipates in a cycle of shear between +Q and -Q, per unit thickness (Mindlin)."""
+    return _evaluated("mfv_mindlin_dissipation", tangential_force, normal_force, half_width, radius, friction_coefficient)
+
+
+def _evaluated(function: str, *arguments: ArrayLike) -> NDArray[np.float64]:
+    """A function of the library over arrays; a plain number for plain numbers."""
+    return np.vectorize(getattr(library(), function), otypes=[np.float64])(*arguments)[()]

@@ -1,0 +1,169 @@
+"""Results: what a run gives and what a result file holds."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterator, Mapping
+from typing import NamedTuple, Union
+
+import h5py
+import numpy as np
+
+from .errors import NotAResult
+
+Values = Union[np.ndarray, np.float64, np.int32]
+
+#: Groups that a result can be without; they are then empty.
+OPTIONAL_GROUPS = ("history", "reference")
+
+
+class Field(NamedTuple):
+    """One quantity."""
+
+    values: Values
+    unit: str
+    description: str
+
+
+class Group(Mapping[str, Values]):
+    """Named quantities, as attributes and as items: `group.pressure` is `group["pressure"]`. `in` tells what is there."""
+
+    def __init__(self, fields: Mapping[str, Field]) -> None:
+        self._fields = dict(fields)
+
+    def __getitem__(self, name: str) -> Values:
+        return self._fields[name].values
+
+    def __getattr__(self, name: str) -> Values:
+        if not name.startswith("_") and name in self._fields:
+            return self._fields[name].values
+        raise AttributeError(f"there is no '{name}' here; there is {', '.join(self) or 'nothing'}")
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._fields)
+
+    def __len__(self) -> int:
+        return len(self._fields)
+
+    def __dir__(self) -> list[str]:
+        return [*super().__dir__(), *self._fields]
+
+    def __repr__(self) -> str:
+        lines = [f"  {name:24} {_short(field.values):>14} {field.unit:16} {field.description}" for name, field in self._fields.items()]
+        return "\n".join(["<mfv.Group", *lines]) + ">"
+
+    def unit(self, name: str) -> str:
+        """Unit of a quantity."""
+        return self._fields[name].unit
+
+    def description(self, name: str) -> str:
+        """What a quantity is, in words."""
+        return self._fields[name].description
+
+
+class Result:
+    """A result: groups of quantities as attributes, `steps` with the state at the end of every step and reversal.
+
+    `attributes` are those of the file: title, outcome, message, input, ... A result that was not read from a file has
+    outcome, message and mfv_version only.
+    """
+
+    mesh: Group
+    scene: Group
+    state: Group
+    summary: Group
+    certificate: Group
+    history: Group
+    reference: Group
+    steps: list[Group]
+    attributes: dict[str, str]
+
+    def __init__(self, groups: Mapping[str, Mapping[str, Field]], attributes: Mapping[str, str]) -> None:
+        """`groups` by path, those of the steps as steps/0001 and so on."""
+        steps = sorted((path for path in groups if path.startswith("steps/")), key=lambda path: int(path.split("/")[1]))
+        self.steps = [Group(groups[path]) for path in steps]
+        self.attributes = dict(attributes)
+        for name in OPTIONAL_GROUPS:
+            setattr(self, name, Group({}))
+        for path in groups:
+            if path not in steps:
+                setattr(self, path, Group(groups[path]))
+
+    @property
+    def outcome(self) -> str:
+        """How the run ended, in words: 'complete', 'gross sliding', ..."""
+        return self.attributes["outcome"]
+
+    @property
+    def message(self) -> str:
+        """What was reached, or why not."""
+        return self.attributes["message"]
+
+    @property
+    def title(self) -> str:
+        """Title of the scene, empty where it has none."""
+        return self.attributes.get("title", "")
+
+    def __repr__(self) -> str:
+        amount = self._amount
+        lines = [
+            f"<mfv.Result {self.title}".rstrip(),
+            f"  outcome       {self.outcome}: {self.message}",
+            f"  nodes         {self.mesh.x.size}, {counts(self.summary)}",
+            f"  normal        force {amount('normal_force')}, approach {amount('approach')}",
+            f"  tangential    force {amount('tangential_force')}, shift {amount('shift')}",
+            f"  certificate   largest relative residual {amount('largest_residual')}",
+            f"  kept          {len(self.steps)} states in steps, {len(self.history.get('record', ()))} records in history",
+        ]
+        return "\n".join(lines) + ">"
+
+    def _amount(self, name: str) -> str:
+        """A value of the summary with its unit."""
+        unit = self.summary.unit(name)
+        return f"{self.summary[name]:.6g}" + ("" if unit == "1" else f" {unit}")
+
+
+def counts(loads: Group) -> str:
+    """The node counts of a state in words."""
+    text = f"{loads.contact_nodes} in contact"
+    if loads.stick_nodes + loads.slip_nodes > 0:
+        text += f" ({loads.stick_nodes} stuck, {loads.slip_nodes} slipping)"
+    return text
+
+
+def read(path: str | os.PathLike[str]) -> Result:
+    """The result in a file. Raises OSError, NotAResult."""
+    path = os.fspath(path)
+    with open(path, "rb"):  # a missing file and the like are Python's to report
+        pass
+    if not h5py.is_hdf5(path):
+        raise NotAResult(None, f"{path}: not a result file of MFV (not even HDF5)")
+    with h5py.File(path, "r") as file:
+        if "mfv_version" not in file.attrs or "state" not in file:
+            raise NotAResult(None, f"{path}: not a result file of MFV, though it is HDF5")
+        return Result(_groups(file), {name: str(value) for name, value in file.attrs.items()})
+
+
+def _groups(file: h5py.File) -> dict[str, dict[str, Field]]:
+    """All groups that have datasets, by path. Coordinates are in the group they belong to, not where they are linked."""
+    groups: dict[str, dict[str, Field]] = {}
+
+    def add(group: h5py.Group) -> None:
+        path = group.name.strip("/")
+        for name, item in group.items():
+            if isinstance(item, h5py.Group):
+                add(item)
+            elif path in ("mesh", "history") or not item.is_scale:
+                groups.setdefault(path, {})[name] = _field(item)
+
+    add(file)
+    return groups
+
+
+def _field(dataset: h5py.Dataset) -> Field:
+    return Field(dataset[()], str(dataset.attrs.get("units", "")), str(dataset.attrs.get("long_name", "")))
+
+
+def _short(values: Values) -> str:
+    """A value, or the size of an array."""
+    return f"({values.size})" if isinstance(values, np.ndarray) else f"{values:.6g}"

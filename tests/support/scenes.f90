@@ -1,0 +1,97 @@
+!> Scenes that several suites use: the dissertation's cylinder and punch on a half-plane.
+module test_scenes
+   use mfv_compliance, only: coupling_full
+   use mfv_friction, only: coulomb_friction, no_friction
+   use mfv_indenter, only: new_disk, new_flat_punch
+   use mfv_kinds, only: wp
+   use mfv_material, only: new_material, plane_strain
+   use mfv_scene
+   use mfv_simulation, only: history_events, new_simulation, simulation_type
+   implicit none
+   private
+   public :: cylinder, flat_punch, press, shear, solved, radius, shear_modulus, poisson_ratio
+
+   !> Dissertation section 3.1: R = 0.25, G = 1, nu = 0.3.
+   real(wp), parameter :: radius = 0.25_wp, shear_modulus = 1.0_wp, poisson_ratio = 0.3_wp
+
+contains
+
+   !> Rigid cylinder on the half-plane, with Hertz's parabola; mu = 0: no friction.
+   function cylinder(nodes, half_width, mu, coupling) result(scene)
+      integer, intent(in) :: nodes
+      real(wp), intent(in) :: half_width
+      real(wp), intent(in), optional :: mu
+      integer, intent(in), optional :: coupling
+      type(scene_type) :: scene
+
+      scene = base(nodes, half_width, mu, coupling)
+      scene%indenter = new_disk(radius, parabolic=.true.)
+      scene%datum = radius
+   end function cylinder
+
+   !> Rigid flat punch of half-width `punch` on the half-plane.
+   function flat_punch(nodes, punch, mu, coupling) result(scene)
+      integer, intent(in) :: nodes
+      real(wp), intent(in) :: punch
+      real(wp), intent(in), optional :: mu
+      integer, intent(in), optional :: coupling
+      type(scene_type) :: scene
+
+      scene = base(nodes, punch, mu, coupling)
+      scene%indenter = new_flat_punch(punch)
+      scene%datum = punch
+   end function flat_punch
+
+   function base(nodes, half_width, mu, coupling) result(scene)
+      integer, intent(in) :: nodes
+      real(wp), intent(in) :: half_width
+      real(wp), intent(in), optional :: mu
+      integer, intent(in), optional :: coupling
+      type(scene_type) :: scene
+
+      scene%title = 'test'
+      scene%material = new_material(shear_modulus, poisson_ratio, plane_strain)
+      scene%mesh = mesh_request_type(nodes, half_width)
+      scene%coupling = coupling_full
+      if (present(coupling)) scene%coupling = coupling
+      scene%friction = no_friction()
+      if (present(mu)) scene%friction = coulomb_friction(mu)
+      allocate (scene%steps(0))
+   end function base
+
+   !> Append a step to a normal force.
+   subroutine press(scene, normal_force, friction)
+      type(scene_type), intent(inout) :: scene
+      real(wp), intent(in) :: normal_force
+      logical, intent(in) :: friction
+      type(step_type) :: step
+
+      step%normal_control = control_force
+      step%normal_target = normal_force
+      step%friction = friction
+      scene%steps = [scene%steps, step]
+   end subroutine press
+
+   !> Append a step to a tangential force, with cycles where present.
+   subroutine shear(scene, tangential_force, cycles)
+      type(scene_type), intent(inout) :: scene
+      real(wp), intent(in) :: tangential_force
+      integer, intent(in), optional :: cycles
+      type(step_type) :: step
+
+      step%tangential_control = control_force
+      step%tangential_target = tangential_force
+      if (present(cycles)) step%cycles = cycles
+      scene%steps = [scene%steps, step]
+   end subroutine shear
+
+   !> The scene led through its steps.
+   function solved(scene) result(simulation)
+      type(scene_type), intent(in) :: scene
+      type(simulation_type) :: simulation
+
+      simulation = new_simulation(scene, history_events)
+      call simulation%run()
+   end function solved
+
+end module test_scenes
