@@ -23,3 +23,4 @@ class EventKind(IntEnum):
     SLIP_LEFT = 4
     STICK = 5
     STEP_END = 6
+    STOPPED = 7

@@ -11,12 +11,13 @@ import matplotlib
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from matplotlib.patches import Patch
 
 from .codes import EventKind, NodeStatus
 from .result import Group, Result, counts
 
 #: Colours from Okabe and Ito, told apart by the colour-blind too.
-NUMBERS, CLOSED_FORM, MARKS = "#0072B2", "#D55E00", "#000000"
+NUMBERS, CLOSED_FORM, SURFACE, MARKS = "#0072B2", "#D55E00", "#009E73", "#000000"
 ZONES = {
     NodeStatus.STICK: {"label": "stick", "facecolor": "#DCEBF5", "edgecolor": "none"},
     NodeStatus.SLIP_RIGHT: {"label": "slip to the right", "facecolor": "#FBE3B4", "edgecolor": "#C9A24B", "hatch": "///"},
@@ -25,14 +26,13 @@ ZONES = {
 }
 
 STYLE = {
-    "font.family": "serif",
-    "font.serif": ["STIXGeneral"],
+    "font.family": ["STIXGeneral"],
     "mathtext.fontset": "stix",
-    "font.size": 10,
-    "axes.titlesize": 10,
+    "font.size": 11,
+    "axes.titlesize": 11,
     "axes.linewidth": 0.6,
     "axes.formatter.use_mathtext": True,
-    "axes.formatter.limits": (-2, 4),
+    "axes.formatter.limits": (-3, 4),
     "hatch.linewidth": 0.4,
     "legend.frameon": False,
     "xtick.direction": "in",
@@ -41,7 +41,8 @@ STYLE = {
     "ytick.right": True,
 }
 
-PANEL_WIDTH, FIGURE_HEIGHT = 3.6, 3.7  # inch
+#: Sizes in inch: a panel with its labels, the space below it, a row of the legend, a row of the caption.
+PANEL_WIDTH, PANEL_HEIGHT, SPACE, LEGEND_ROW, CAPTION_ROW = 3.6, 3.3, 0.08, 0.22, 0.17
 
 #: Step ends at one place of a load-displacement curve that are all named; of more, the first and the last.
 NAMED_TOGETHER = 4
@@ -56,22 +57,21 @@ def figure(result: Result, step: int | None = None) -> Figure:
     if _is_sheared(result):
         panels.append(loop)
     with matplotlib.rc_context(STYLE):
-        picture = Figure(figsize=(PANEL_WIDTH * len(panels), FIGURE_HEIGHT), layout="constrained")
+        picture = Figure(layout="constrained")
         for panel, ax, letter in zip(panels, picture.subplots(1, len(panels)), "abc"):
             panel(result, ax, step)
-            ax.set_title(f"({letter})", loc="left")
-        picture.suptitle(_heading(result, step), fontsize=11, parse_math=False)
-        _legend(picture)
-        picture.supxlabel(_caption(result, step), fontsize=7.5, color="0.35", parse_math=False)
+            ax.set_title(f"({letter})")
+        picture.suptitle(_heading(result, step), fontsize=12, parse_math=False)
+        _add_legend_and_caption(picture, _caption(result, step))
     return picture
 
 
 def pressure(result: Result, ax: Axes, step: int | None = None) -> None:
     """Pressure over x, with its closed form where one holds."""
     state = _state(result, step)
-    if "pressure" in result.reference and _same_normal_force(result, step):
-        _draw_line(ax, result.mesh.x, result.reference.pressure)
     _draw_points(ax, result, state, state.pressure)
+    if "pressure" in result.reference and _same_normal_force(result, step):
+        _draw_closed_form(ax, result, result.reference.pressure)
     ax.set_ylim(bottom=0.0)
     ax.set_ylabel(_label("pressure", "p", state.unit("pressure")))
     _frame_contact(ax, result, state)
@@ -80,13 +80,13 @@ def pressure(result: Result, ax: Axes, step: int | None = None) -> None:
 def shear(result: Result, ax: Axes, step: int | None = None) -> None:
     """Shear traction over x between the limits of friction, stick and slip zones, closed form where one holds."""
     state = _state(result, step)
-    limit = result.scene.friction_coefficient * state.pressure
+    limit = np.where(state.status != NodeStatus.OPEN, result.scene.friction_coefficient * state.pressure, np.nan)
     _shade_zones(ax, result, state)
     for sign in (1.0, -1.0):
         ax.plot(result.mesh.x, sign * limit, color="0.35", linewidth=0.7, label=r"limit $\pm\mu p$")
-    if "shear" in result.reference and _is_last(result, state):
-        _draw_line(ax, result.mesh.x, result.reference.shear)
     _draw_points(ax, result, state, state.shear)
+    if "shear" in result.reference and _is_last(result, state):
+        _draw_closed_form(ax, result, result.reference.shear)
     ax.set_ylabel(_label("shear traction", r"\tau", state.unit("shear")))
     _frame_contact(ax, result, state)
 
@@ -97,7 +97,7 @@ def surfaces(result: Result, ax: Axes, step: int | None = None) -> None:
     lower = -state.normal_displacement
     upper = np.where(np.isfinite(state.gap), lower + state.gap, np.nan)
     ax.plot(result.mesh.x, upper, color=MARKS, linewidth=1.0, label="surface of the upper body")
-    _draw_points(ax, result, state, lower, label="surface of the lower body")
+    _draw_points(ax, result, state, lower, label="surface of the lower body", color=SURFACE)
     ax.set_ylabel(_label("height", "y", state.unit("gap")))
     _frame_contact(ax, result, state)
 
@@ -106,13 +106,15 @@ def loop(result: Result, ax: Axes, step: int | None = None) -> None:
     """Tangential force over shift, with the closed form where one holds; step ends are numbered, `step` stands out."""
     history = result.history
     shift, force = history.shift, history.tangential_force
-    complete = np.any((history.event_kind != EventKind.START) & (history.event_kind != EventKind.STEP_END))
+    has_events = not np.isin(history.event_kind, (EventKind.START, EventKind.STEP_END, EventKind.STOPPED)).all()
+    ax.plot(shift, force, color=NUMBERS, linewidth=0.8 if has_events else 0.0, **_points(len(shift)), label="computed")
     if "shift" in result.reference:
-        _draw_line(ax, result.reference.shift, force, linestyle="--" if complete else "none", marker="" if complete else "x")
-    ax.plot(shift, force, color=NUMBERS, linewidth=0.8 if complete else 0.0, **_points(len(shift)), label="computed")
+        style = {"linestyle": (0, (4, 3))} if has_events else {"linestyle": "none", "marker": "x", "markersize": 4}
+        ax.plot(result.reference.shift, force, color=CLOSED_FORM, linewidth=0.9, label="closed form", **style)
     _mark_step_ends(ax, result, step)
     ax.set_xlabel(_label("shift", "U", history.unit("shift")))
     ax.set_ylabel(_label("tangential force", "Q", history.unit("tangential_force")))
+    ax.locator_params(axis="x", nbins=5)
     ax.margins(0.12)
 
 
@@ -152,18 +154,27 @@ def _is_last(result: Result, state: Group) -> bool:
     return all(np.array_equal(state[name], result.state[name]) for name in ("pressure", "shear"))
 
 
-def _draw_line(ax: Axes, x: np.ndarray, y: np.ndarray, linestyle: str = "-", marker: str = "") -> None:
-    ax.plot(x, y, color=CLOSED_FORM, linewidth=1.2, linestyle=linestyle, marker=marker, label="closed form")
+def _draw_closed_form(ax: Axes, result: Result, values: np.ndarray) -> None:
+    """A traction in closed form over its contact, down to zero at the ends unless the pressure is singular there."""
+    half_width = result.reference.contact_half_width
+    inside = np.abs(result.mesh.x) < half_width
+    x, y = result.mesh.x[inside], values[inside]
+    touching_pressure = result.reference.pressure[inside]
+    if touching_pressure.size > 0 and touching_pressure[0] < touching_pressure.max():
+        x, y = np.pad(x, 1, constant_values=(-half_width, half_width)), np.pad(y, 1)
+    ax.plot(x, y, color=CLOSED_FORM, linewidth=0.9, label="closed form")
 
 
-def _draw_points(ax: Axes, result: Result, state: Group, values: np.ndarray, label: str = "computed") -> None:
+def _draw_points(
+    ax: Axes, result: Result, state: Group, values: np.ndarray, label: str = "computed", color: str = NUMBERS
+) -> None:
     points = _points(np.count_nonzero(state.status != NodeStatus.OPEN))
-    ax.plot(result.mesh.x, values, linestyle="none", color=NUMBERS, **points, label=label)
+    ax.plot(result.mesh.x, values, linestyle="none", color=color, **points, label=label)
 
 
 def _points(number: int) -> dict[str, object]:
     """Markers that leave each other room: smaller where there are more."""
-    return {"marker": "o", "markersize": float(np.clip(250.0 / max(number, 1), 1.0, 3.0)), "markeredgewidth": 0.0}
+    return {"marker": "o", "markersize": float(np.clip(350.0 / max(number, 1), 1.0, 3.5)), "markeredgewidth": 0.0}
 
 
 def _shade_zones(ax: Axes, result: Result, state: Group) -> None:
@@ -194,33 +205,46 @@ def _frame_contact(ax: Axes, result: Result, state: Group) -> None:
 
 
 def _mark_step_ends(ax: Axes, result: Result, step: int | None) -> None:
-    """Numbers at the ends of steps and reversals, as in `result.steps`; those at one place together."""
-    ends = np.flatnonzero(result.history.event_kind == EventKind.STEP_END)[: len(result.steps)]
-    if len(ends) == 0:
-        return
-    points = np.column_stack((result.history.shift[ends], result.history.tangential_force[ends]))
-    for place, numbers in _places(points):
-        here = step in numbers
-        ax.plot(*place, marker="o", markersize=6, markerfacecolor=MARKS if here else "white", markeredgecolor=MARKS, linestyle="none", zorder=4)
-        outward = 1 if place[1] >= np.mean(points[:, 1]) else -1
-        ax.annotate(
-            _enumeration(numbers), place, xytext=(-6 * outward, 6 * outward), textcoords="offset points", fontsize=9,
-            ha="right" if outward > 0 else "left", va="bottom" if outward > 0 else "top",
-            fontweight="bold" if here else "normal",
-        )
+    """Numbers at the ends of steps and reversals, as in `result.steps`, those at one place together; an early end."""
+    history = result.history
+    curve = np.column_stack((history.shift, history.tangential_force))
+    curve_size = np.maximum(np.ptp(curve, axis=0), np.finfo(float).tiny)
+    ends = _places(curve[history.event_kind == EventKind.STEP_END], 0.02 * curve_size)
+    marks = [(place, _enumeration(numbers), "o", step in numbers) for place, numbers in ends]
+    marks += [(place, "stopped", "s", False) for place in curve[history.event_kind == EventKind.STOPPED]]
+    relative = np.array([place for place, *_ in marks] or np.empty((0, 2))) / curve_size
+    middle = np.mean((curve.min(axis=0), curve.max(axis=0)), axis=0) / curve_size
+    for number, (place, text, marker, bold) in enumerate(marks):
+        _mark(ax, place, text, marker, bold, _is_labelled_above(relative, number, middle))
 
 
-def _places(points: np.ndarray) -> list[tuple[np.ndarray, list[int]]]:
+def _is_labelled_above(places: np.ndarray, number: int, middle: np.ndarray) -> bool:
+    """Whether the text goes above and to the left of a mark, not below and to the right: off the curve, which rises to
+    the right, inwards, and away from a neighbour."""
+    here = places[number]
+    neighbours = places[(np.abs(places - here) < 0.15).all(axis=1) & (places != here).any(axis=1)]
+    if len(neighbours) > 0:
+        return bool(here[0] <= neighbours[:, 0].min())
+    return bool(here[0] >= middle[0])
+
+
+def _mark(ax: Axes, place: np.ndarray, text: str, marker: str, bold: bool, above: bool) -> None:
+    """A mark with its text."""
+    width, weight = (1.8, "bold") if bold else (0.8, "normal")
+    side = {"ha": "right", "va": "bottom", "xytext": (-5, 5)} if above else {"ha": "left", "va": "top", "xytext": (5, -5)}
+    ax.plot(*place, marker=marker, markersize=7, markerfacecolor="none", markeredgecolor=MARKS, markeredgewidth=width)
+    ax.annotate(text, place, textcoords="offset points", fontsize=9, fontweight=weight, **side)
+
+
+def _places(points: np.ndarray, tolerance: np.ndarray) -> list[tuple[np.ndarray, list[int]]]:
     """Points that coincide in a picture, with the numbers, from 1, of all that are there."""
-    size = np.maximum(np.ptp(points, axis=0), np.finfo(float).tiny)
     places: list[tuple[np.ndarray, list[int]]] = []
     for number, point in enumerate(points, start=1):
-        for place, numbers in places:
-            if np.all(np.abs(place - point) < 0.02 * size):
-                numbers.append(number)
-                break
-        else:
+        together = next((numbers for place, numbers in places if np.all(np.abs(place - point) < tolerance)), None)
+        if together is None:
             places.append((point, [number]))
+        else:
+            together.append(number)
     return places
 
 
@@ -230,13 +254,23 @@ def _enumeration(numbers: list[int]) -> str:
     return ", ".join(str(number) for number in numbers)
 
 
-def _legend(picture: Figure) -> None:
-    """One legend below all panels."""
+def _add_legend_and_caption(picture: Figure, caption: str) -> None:
+    """One legend below all panels, lines before zones, and the caption below it; sets the size of the picture."""
     handles = {}
     for ax in picture.axes:
         for handle, label in zip(*ax.get_legend_handles_labels()):
             handles.setdefault(label, handle)
-    picture.legend(handles.values(), handles.keys(), loc="outside lower center", ncols=min(len(handles), 6), fontsize=9)
+    labels = sorted(handles, key=lambda label: isinstance(handles[label], Patch))
+    columns = 2 * len(picture.axes)
+    legend_top = 2.0 * SPACE + CAPTION_ROW * (1 + caption.count("\n")) + LEGEND_ROW * -(-len(labels) // columns)
+    height = PANEL_HEIGHT + SPACE + legend_top
+    picture.set_size_inches(PANEL_WIDTH * len(picture.axes), height)
+    picture.get_layout_engine().set(rect=(0.0, 1.0 - PANEL_HEIGHT / height, 1.0, PANEL_HEIGHT / height), w_pad=0.08)
+    picture.legend(
+        [handles[label] for label in labels], labels, ncols=columns, fontsize=10, borderaxespad=0.0, borderpad=0.0,
+        loc="upper center", bbox_to_anchor=(0.5, legend_top / height),
+    )
+    picture.text(0.5, SPACE / height, caption, ha="center", va="bottom", fontsize=9, color="0.35", parse_math=False)
 
 
 def _heading(result: Result, step: int | None) -> str:
@@ -248,22 +282,21 @@ def _heading(result: Result, step: int | None) -> str:
 
 
 def _caption(result: Result, step: int | None) -> str:
-    """Node counts, certificate, where the closed forms come from, and how the run ended unless well."""
+    """How the run ended unless well, node counts and certificate; below, where the closed forms come from."""
     parts = [
         f"{result.mesh.x.size} nodes, {counts(_loads(result, step))}",
         f"largest relative residual {result.certificate.largest:.1e}",
     ]
-    sources = [result.reference.description(name).split(";")[0] for name in ("pressure", "shear") if name in result.reference]
-    if sources:
-        parts.append("closed form: " + "; ".join(sources))
     if result.outcome != "complete":
-        parts.append(f"ended early: {result.outcome}")
-    return " \N{MIDDLE DOT} ".join(parts)
+        parts.insert(0, f"ended early: {result.outcome}")
+    names = [name for name in ("pressure", "shear") if name in result.reference]
+    sources = "; ".join(result.reference.description(name).split(";")[0] for name in names)
+    return " \N{MIDDLE DOT} ".join(parts) + (f"\nclosed form: {sources}" if sources else "")
 
 
 def _label(name: str, symbol: str, unit: str) -> str:
     """Label of an axis; the unit only where the user has named it."""
     if unit in ("", "1") or "length" in unit or "force" in unit:
         return f"{name} ${symbol}$"
-    shown = unit.replace("^2", "\N{SUPERSCRIPT TWO}").replace("$", r"\$")
+    shown = unit.replace("$", r"\$").replace("^2", "$^2$")
     return f"{name} ${symbol}$ [{shown}]"

@@ -1,0 +1,57 @@
+# Shared by the scripts: what the project needs, how to get it, how to build. Sourced, not run.
+set -eu
+root=$(cd "$(dirname "$0")/.." && pwd)
+venv=$root/build/venv
+jobs=$(nproc 2>/dev/null || echo 2)
+
+say() { printf '== %s\n' "$*"; }
+
+# Debian packages: compilers and build tools, and the libraries that MFV stands on.
+packages='gfortran gcc make cmake libopenblas-dev liblapack-dev libgsl-dev libhdf5-dev'
+
+# Install what is missing on Debian and Ubuntu; elsewhere, or without the right to, name it and go on.
+install_missing() {
+  missing=
+  if command -v dpkg-query >/dev/null 2>&1; then
+    for package in $packages; do
+      dpkg-query -W -f '${Status}' "$package" 2>/dev/null | grep -q 'ok installed' || missing="$missing $package"
+    done
+    python3 -c 'import venv, ensurepip' 2>/dev/null || missing="$missing python3 python3-venv"
+  else
+    for program in gfortran gcc make cmake python3; do
+      command -v "$program" >/dev/null 2>&1 || missing="$missing $program"
+    done
+  fi
+  [ -n "$missing" ] || return 0
+  as_root=
+  [ "$(id -u)" -eq 0 ] || as_root=sudo
+  if command -v apt-get >/dev/null 2>&1 && { [ -z "$as_root" ] || sudo -n true 2>/dev/null || [ -t 0 ]; }; then
+    say "installing:$missing"
+    $as_root apt-get update -qq
+    # shellcheck disable=SC2086
+    $as_root env DEBIAN_FRONTEND=noninteractive apt-get install -y -qq --no-install-recommends $missing >/dev/null
+  else
+    say "missing:$missing"
+    say "install them with your system's package manager (gfortran >= 11, CMake >= 3.21, LAPACK, GSL, HDF5 with"
+    say "Fortran, Python >= 3.9); on Debian or Ubuntu: apt-get install$missing. Going on with what is there."
+  fi
+}
+
+# Python environment of the project, in build/venv. $1: extra of python/pyproject.toml to install, or nothing.
+python_environment() {
+  stamp=$venv/done${1:+-$1}
+  [ "$stamp" -nt "$root/python/pyproject.toml" ] && return 0
+  say "Python packages for ${1:-pictures} in build/venv"
+  [ -x "$venv/bin/python" ] || python3 -m venv "$venv"
+  "$venv/bin/python" -m pip install --quiet --disable-pip-version-check -e "$root/python${1:+[$1]}"
+  touch "$stamp"
+}
+
+# Configure and build one preset.
+build() {
+  say "building preset $1 in build/$1"
+  cd "$root"
+  mkdir -p "build/$1"
+  log=build/$1/build.log
+  { cmake --preset "$1" && cmake --build --preset "$1" --parallel "$jobs"; } >"$log" 2>&1 || { tail -n 40 "$log"; return 1; }
+}

@@ -1,0 +1,192 @@
+/* The C interface as a host program uses it. Usage: test_c_api CASE.nml RESULT.h5. Prints what failed; exit code 0 when
+ * nothing did. */
+#include <math.h>
+#include <mfv.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+static int failures = 0;
+
+#define CHECK(condition)                                                  \
+  do {                                                                    \
+    if (!(condition)) {                                                   \
+      printf("%s:%d: failed: %s\n", __FILE__, __LINE__, #condition);      \
+      ++failures;                                                         \
+    }                                                                     \
+  } while (0)
+
+static const char *const text =
+    "&scene coupling='goodman' / &body shape='half_plane', shear_modulus=1.0, poisson_ratio=0.3 /\n"
+    "&body shape='disk', radius=0.25, rigid=.true. / &mesh nodes=41, half_width=0.0127 /\n"
+    "&friction law='coulomb', mu=0.7 / &step normal_force=1.0e-3, friction=.false. /\n"
+    "&step tangential_force=2.8e-4 /\n";
+
+static double scalar(const mfv_case *handle, const char *path) {
+  double value = NAN;
+  CHECK(mfv_copy_real(handle, path, &value, 1) == MFV_COMPLETE);
+  return value;
+}
+
+static double *array(const mfv_case *handle, const char *path, size_t *count) {
+  int is_integer = -1;
+  char unit[40], description[200];
+  CHECK(mfv_field_info(handle, path, count, &is_integer, unit, sizeof unit, description, sizeof description) == MFV_COMPLETE);
+  CHECK(is_integer == 0 && strlen(unit) > 0 && strlen(description) > 0);
+  double *values = malloc(*count * sizeof *values);
+  CHECK(mfv_copy_real(handle, path, values, *count) == MFV_COMPLETE);
+  return values;
+}
+
+static void run_a_file(const char *case_file, const char *result_file) {
+  mfv_case *handle = NULL;
+  char message[400] = "";
+  int32_t nodes = 0;
+  CHECK(mfv_create_from_file(case_file, &handle, message, sizeof message) == MFV_COMPLETE);
+  CHECK(handle != NULL && strcmp(message, "") == 0);
+  CHECK(mfv_run(handle) == MFV_COMPLETE);
+  CHECK(mfv_copy_integer(handle, "summary/contact_nodes", &nodes, 1) == MFV_COMPLETE);
+  CHECK(nodes == 87);
+  CHECK(scalar(handle, "certificate/largest") < 1e-10);
+  CHECK(mfv_write(handle, result_file) == MFV_COMPLETE);
+  FILE *file = fopen(result_file, "rb");
+  CHECK(file != NULL);
+  if (file != NULL) fclose(file);
+  CHECK(mfv_write(handle, "no/such/folder/x.h5") == MFV_FILE_ERROR);
+  CHECK(mfv_message(handle, message, sizeof message) == MFV_COMPLETE);
+  CHECK(strstr(message, "no/such/folder/x.h5") != NULL);
+  CHECK(mfv_free(&handle) == MFV_COMPLETE && handle == NULL);
+}
+
+static void step_by_step_equals_run(void) {
+  mfv_case *whole = NULL, *stepped = NULL;
+  size_t count = 0, same = 0;
+  CHECK(mfv_create_from_text(text, "text", &whole, NULL, 0) == MFV_COMPLETE);
+  CHECK(mfv_create_from_text(text, NULL, &stepped, NULL, 0) == MFV_COMPLETE);
+  CHECK(mfv_run(whole) == MFV_COMPLETE);
+
+  mfv_step press = MFV_STEP_INIT, shear = MFV_STEP_INIT;
+  press.normal_control = MFV_FORCE;
+  press.normal_target = 1.0e-3;
+  press.friction = 0;
+  shear.tangential_control = MFV_FORCE;
+  shear.tangential_target = 2.8e-4;
+  CHECK(mfv_advance(stepped, &press) == MFV_COMPLETE);
+  CHECK(mfv_advance(stepped, &shear) == MFV_COMPLETE);
+  double *a = array(whole, "state/shear", &count), *b = array(stepped, "state/shear", &same);
+  CHECK(count == 41 && same == 41 && memcmp(a, b, count * sizeof *a) == 0);
+  free(a);
+  free(b);
+
+  shear.tangential_target = 8.0e-4;
+  CHECK(mfv_advance(stepped, &shear) == MFV_GROSS_SLIDING);
+  CHECK(fabs(scalar(stepped, "summary/tangential_force") / 7.0e-4 - 1) < 1e-9);
+  CHECK(mfv_advance(stepped, &press) == MFV_GROSS_SLIDING);
+  mfv_free(&whole);
+  mfv_free(&stepped);
+}
+
+static void every_field_can_be_copied(void) {
+  mfv_case *handle = NULL;
+  size_t fields = 0;
+  CHECK(mfv_create_from_text(text, "text", &handle, NULL, 0) == MFV_COMPLETE);
+  CHECK(mfv_run(handle) == MFV_COMPLETE);
+  CHECK(mfv_field_count(handle, &fields) == MFV_COMPLETE && fields > 50);
+  for (size_t i = 0; i < fields; ++i) {
+    char path[100];
+    size_t count = 0;
+    int is_integer = 0;
+    CHECK(mfv_field_path(handle, i, path, sizeof path) == MFV_COMPLETE);
+    CHECK(mfv_field_info(handle, path, &count, &is_integer, NULL, 0, NULL, 0) == MFV_COMPLETE);
+    CHECK(count > 0);
+    if (is_integer) {
+      int32_t *values = malloc(count * sizeof *values);
+      CHECK(mfv_copy_integer(handle, path, values, count) == MFV_COMPLETE);
+      free(values);
+    } else {
+      double *values = malloc(count * sizeof *values);
+      CHECK(mfv_copy_real(handle, path, values, count) == MFV_COMPLETE);
+      free(values);
+    }
+  }
+  mfv_free(&handle);
+}
+
+static void misuse_is_told(void) {
+  mfv_case *handle = NULL;
+  char message[400] = "", tiny[4] = "";
+  double value = 0;
+  int32_t whole = 0;
+  CHECK(mfv_create_from_file("no/such/case.nml", &handle, message, sizeof message) == MFV_INPUT_ERROR);
+  CHECK(handle == NULL && strstr(message, "no/such/case.nml") != NULL);
+  CHECK(mfv_create_from_text("&body radius=-1 /", "here", &handle, tiny, sizeof tiny) == MFV_INPUT_ERROR);
+  CHECK(strcmp(tiny, "her") == 0);
+  CHECK(mfv_create_from_file(NULL, &handle, NULL, 0) == MFV_BAD_ARGUMENT);
+  CHECK(mfv_run(NULL) == MFV_BAD_HANDLE);
+  CHECK(mfv_message(NULL, message, sizeof message) == MFV_BAD_HANDLE);
+  CHECK(mfv_free(NULL) == MFV_COMPLETE);
+  CHECK(mfv_free(&handle) == MFV_COMPLETE);
+
+  CHECK(mfv_create_from_text(text, "text", &handle, NULL, 0) == MFV_COMPLETE);
+  CHECK(mfv_copy_real(handle, "state/presure", &value, 1) == MFV_BAD_ARGUMENT);
+  CHECK(mfv_message(handle, message, sizeof message) == MFV_COMPLETE && strstr(message, "state/presure") != NULL);
+  CHECK(mfv_copy_real(handle, "state/pressure", &value, 1) == MFV_BAD_ARGUMENT);
+  CHECK(mfv_copy_real(handle, "summary/contact_nodes", &value, 1) == MFV_BAD_ARGUMENT);
+  CHECK(mfv_copy_integer(handle, "summary/shift", &whole, 1) == MFV_BAD_ARGUMENT);
+  CHECK(mfv_copy_real(handle, NULL, &value, 1) == MFV_BAD_ARGUMENT);
+  CHECK(mfv_advance(handle, NULL) == MFV_BAD_ARGUMENT);
+  mfv_step step = MFV_STEP_INIT;
+  step.normal_control = 7;
+  CHECK(mfv_advance(handle, &step) == MFV_BAD_ARGUMENT);
+  step.normal_control = MFV_FORCE;
+  step.normal_target = -1;
+  CHECK(mfv_advance(handle, &step) == MFV_BAD_ARGUMENT);
+  step.normal_target = NAN;
+  CHECK(mfv_advance(handle, &step) == MFV_BAD_ARGUMENT);
+  step.size = 3;
+  CHECK(mfv_advance(handle, &step) == MFV_BAD_ARGUMENT);
+  CHECK(mfv_write(handle, NULL) == MFV_BAD_ARGUMENT);
+  mfv_free(&handle);
+}
+
+static void statuses_and_version(void) {
+  char outcome[60], explanation[200], version[20] = "";
+  for (int status = 0; status < MFV_STATUS_COUNT; ++status)
+    CHECK(mfv_status_text(status, outcome, sizeof outcome, explanation, sizeof explanation) == MFV_COMPLETE);
+  CHECK(mfv_status_text(MFV_STATUS_COUNT, outcome, sizeof outcome, explanation, sizeof explanation) == MFV_BAD_ARGUMENT);
+  CHECK(mfv_status_text(MFV_GROSS_SLIDING, outcome, sizeof outcome, NULL, 0) == MFV_BAD_ARGUMENT);
+  CHECK(strcmp(outcome, "gross sliding") == 0);
+  CHECK(mfv_version(version, sizeof version) == MFV_COMPLETE && strcmp(version, MFV_EXPECTED_VERSION) == 0);
+  CHECK(mfv_version(NULL, 3) == MFV_BAD_ARGUMENT);
+}
+
+static void closed_forms(void) {
+  double a = mfv_hertz_half_width(1e-3, 0.25, 1.0, 1.8);
+  CHECK(fabs(a - sqrt(1e-3 * 2.8 * 0.25 / (2 * 3.14159265358979323846))) < 1e-16);
+  CHECK(fabs(mfv_mindlin_stick_ratio(2.8e-4, 1e-3, 0.7) - sqrt(0.6)) < 1e-15);
+  CHECK(mfv_mindlin_shear(0.0, 2.8e-4, 1e-3, a, 0.7) > 0);
+  CHECK(mfv_spence_stick_ratio(0.3, 0.0) == 1.0);
+  CHECK(mfv_spence_cylinder_shear(0.5 * a, 1e-3, a, 0.3, 0.2) > 0);
+  CHECK(mfv_spence_flat_punch_shear(-0.5 * a, 1e-3, a, 0.3, 0.2) < 0);
+  CHECK(mfv_mindlin_dissipation(2.8e-4, 1e-3, a, 0.25, 0.7) > 0);
+  CHECK(isnan(mfv_hertz_half_width(-1.0, 0.25, 1.0, 1.8)));
+  CHECK(isnan(mfv_hertz_pressure(0.0, 1.0, 0.0)));
+  CHECK(isnan(mfv_flat_punch_pressure(0.0, 1.0, -1.0)));
+  CHECK(isnan(mfv_spence_stick_ratio(-0.1, 0.2)));
+}
+
+int main(int argc, char **argv) {
+  if (argc != 3) {
+    fprintf(stderr, "usage: test_c_api CASE.nml RESULT.h5\n");
+    return 2;
+  }
+  run_a_file(argv[1], argv[2]);
+  step_by_step_equals_run();
+  every_field_can_be_copied();
+  misuse_is_told();
+  statuses_and_version();
+  closed_forms();
+  printf(failures == 0 ? "C interface: all checks passed\n" : "C interface: %d checks failed\n", failures);
+  return failures != 0;
+}

@@ -1,0 +1,204 @@
+"""mfv_run as a user runs it: examples, messages, exit codes, files that are whole or not there, and the documents."""
+import os
+import pty
+import re
+import signal
+import subprocess
+import time
+from pathlib import Path
+
+import h5py
+import numpy as np
+import pytest
+import xarray
+
+ROOT = Path(__file__).resolve().parents[2]
+PROGRAM = os.environ.get("MFV_RUN", str(ROOT / "build/release/bin/mfv_run"))
+EXAMPLES = sorted((ROOT / "examples").glob("*.nml"))
+
+BODIES = """&body shape='half_plane', shear_modulus=1.0, poisson_ratio=0.3 /
+&body shape='disk', radius=0.25, rigid=.true. /
+"""
+COMPLETE, INPUT, EARLY = 0, 2, 3
+
+
+def mfv_run(*arguments, cwd):
+    return subprocess.run([PROGRAM, *map(str, arguments)], cwd=cwd, capture_output=True, text=True, timeout=300)
+
+
+def case(folder, text, name="case.nml"):
+    path = folder / name
+    path.write_text(text)
+    return path
+
+
+@pytest.mark.parametrize("example", EXAMPLES, ids=lambda path: path.stem)
+def test_examples_have_a_certificate(example, tmp_path):
+    run = mfv_run(example, cwd=tmp_path)
+    assert run.returncode == COMPLETE, run.stderr
+    assert run.stderr == ""
+    with h5py.File(next(tmp_path.glob("*.h5"))) as result:
+        assert result["certificate/largest"][()] < 1e-10
+        assert result.attrs["input"] == example.read_text()
+        assert result.attrs["outcome"] == "complete"
+
+
+def test_examples_are_there():
+    assert len(EXAMPLES) >= 4
+
+
+def test_file_opens_without_help(tmp_path):
+    mfv_run(ROOT / "examples/mindlin.nml", cwd=tmp_path)
+    path = tmp_path / "mindlin.h5"
+    with h5py.File(path) as result:
+        names = {"pressure", "shear", "gap", "slip", "normal_displacement", "tangential_displacement", "status", "x"}
+        assert set(result["state"]) == names
+        assert names < set(result["steps/0001"]) and len(result["steps"]) == 6
+        history = {"normal_force", "tangential_force", "approach", "shift", "contact_nodes", "stick_nodes", "dissipation",
+                   "event_kind", "event_node"}
+        assert history < set(result["history"])
+        for group in result.values():
+            for dataset in group.values():
+                if isinstance(dataset, h5py.Dataset):
+                    assert dataset.attrs["units"] and dataset.attrs["long_name"]
+        assert result["state/pressure"].dims[0][0] == result["mesh/x"]
+        np.testing.assert_array_equal(result["state/shear"][:], result["steps/0006/shear"][:])
+        for name in ("title", "mfv_version", "hdf5_version", "outcome", "message", "plane", "coupling", "indenter"):
+            assert isinstance(result.attrs[name], str) and result.attrs[name]
+    for group, dimension in (("state", "x"), ("history", "record"), ("steps/0003", "x"), ("reference", "x")):
+        with xarray.open_dataset(path, engine="h5netcdf", group=group) as dataset:
+            assert dimension in dataset.coords, group
+    dump = subprocess.run(["h5dump", "-H", str(path)], capture_output=True) if has_h5dump() else None
+    assert dump is None or dump.returncode == 0
+
+
+def has_h5dump():
+    return subprocess.run(["sh", "-c", "command -v h5dump"], capture_output=True).returncode == 0
+
+
+def test_summary_says_what_came_out(tmp_path):
+    run = mfv_run(ROOT / "examples/mindlin.nml", cwd=tmp_path)
+    for word in ("contact half-width", "in contact 87", "stuck 67", "slipping 20", "stick ratio", "normal force",
+                 "tangential force", "dissipation", "linear solves", "increments", "certificate", "mindlin.h5"):
+        assert word in run.stdout, word
+
+
+def test_help_version_keys_and_check(tmp_path):
+    assert "usage: mfv_run CASE.nml" in mfv_run("--help", cwd=tmp_path).stdout
+    version = (ROOT / "VERSION").read_text().strip()
+    assert mfv_run("--version", cwd=tmp_path).stdout == f"mfv_run {version}\n"
+    assert mfv_run("--keys", cwd=tmp_path).stdout in (ROOT / "docs/namelist.md").read_text()
+    check = mfv_run("--check", ROOT / "examples/mindlin.nml", cwd=tmp_path)
+    assert check.returncode == COMPLETE and "is valid" in check.stdout
+    assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.parametrize("arguments", [(), ("--chekc", "x.nml"), ("a.nml", "b.nml"), ("--check",)])
+def test_wrong_arguments(arguments, tmp_path):
+    run = mfv_run(*arguments, cwd=tmp_path)
+    assert run.returncode == INPUT and "usage:" in run.stderr and run.stdout == ""
+
+
+@pytest.mark.parametrize("text, message", [
+    (BODIES + "&stpe normal_force=1 /", "case.nml:3: &stpe: unknown group; did you mean &step?"),
+    (BODIES + "&step normal_forse=1 /", "case.nml:3: &step normal_forse=1: unknown key; did you mean normal_force?"),
+    (BODIES + "&step normal_force='much' /", "case.nml:3: &step normal_force='much': must be a number"),
+    ("&step normal_force=1 /", "&body: two bodies are needed"),
+    (BODIES.replace("0.25", "-0.25") + "&step normal_force=1 /", "case.nml:2: &body radius=-0.25: must be a number above 0"),
+    (BODIES.replace("0.3 ", "0.6 ") + "&step normal_force=1 /", "case.nml:1: &body poisson_ratio=0.6: must be"),
+    (BODIES + "&mesh nodes=0 / &step normal_force=1 /", "case.nml:3: &mesh nodes=0: must be"),
+    (BODIES + "&step normal_force=1e-3 / &output file='no/such/folder/x.h5' /",
+     "case.nml: &output file='no/such/folder/x.h5': no/such/folder/x.h5 cannot be written"),
+])
+def test_bad_input_ends_with_a_message(text, message, tmp_path):
+    path = case(tmp_path, text)
+    run = mfv_run(path.name, cwd=tmp_path)
+    assert run.returncode == INPUT
+    assert message in run.stderr and run.stderr.startswith("case.nml:")
+    assert run.stdout == "" and list(tmp_path.iterdir()) == [path]
+    if "output" not in text:
+        assert mfv_run("--check", path.name, cwd=tmp_path).returncode == INPUT
+
+
+@pytest.mark.parametrize("steps, outcome, message", [
+    ("&friction law='coulomb', mu=0.7 / &step normal_force=1e-3, friction=.false. / &step tangential_force=8e-4 /",
+     "gross sliding", "case.nml: &step 2 tangential_force=8e-4 not reached: gross sliding: every contact node slips"),
+    ("&mesh nodes=21, half_width=0.005 / &step normal_force=1e-3 /",
+     "mesh exceeded", "case.nml: &step 1 normal_force=0.001 not reached: the contact reached the end of the mesh"),
+])
+def test_early_ends_are_results(steps, outcome, message, tmp_path):
+    run = mfv_run(case(tmp_path, BODIES + steps).name, cwd=tmp_path)
+    assert run.returncode == EARLY
+    assert message in run.stderr
+    with h5py.File(tmp_path / "case.h5") as result:
+        assert result.attrs["outcome"] == outcome
+        assert message in result.attrs["message"]
+        assert result["certificate/largest"][()] < 1e-10
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["case.h5", "case.nml"]
+
+
+def test_existing_results_survive_failed_runs(tmp_path):
+    (tmp_path / "case.h5").write_text("precious")
+    assert mfv_run(case(tmp_path, BODIES + "&step normal_force=-1 /").name, cwd=tmp_path).returncode == INPUT
+    assert (tmp_path / "case.h5").read_text() == "precious"
+
+
+def test_profile_and_chosen_mesh(tmp_path):
+    x = np.linspace(-0.1, 0.1, 401)
+    np.savetxt(tmp_path / "profile.txt", np.column_stack([x, x**2 / 0.5]))
+    bodies = BODIES.replace("shape='disk', radius=0.25", "shape='profile', file='profile.txt'")
+    profile = bodies.replace("nu=", "").replace("poisson_ratio=0.3", "poisson_ratio=0.3, datum=0.25")
+    mesh = "&mesh nodes=101, half_width=0.0127{} / &step normal_force=1e-3 /"
+    mfv_run(case(tmp_path, profile + mesh.format(""), "profile.nml").name, cwd=tmp_path)
+    mfv_run(case(tmp_path, BODIES + mesh.format(", gap='parabolic'"), "disk.nml").name, cwd=tmp_path)
+    with h5py.File(tmp_path / "profile.h5") as a, h5py.File(tmp_path / "disk.h5") as b:
+        peak = b["state/pressure"][:].max()
+        np.testing.assert_allclose(a["state/pressure"][:], b["state/pressure"][:], atol=1e-2 * peak)
+    mfv_run(case(tmp_path, BODIES + "&step normal_force=1e-3 /", "chosen.nml").name, cwd=tmp_path)
+    with h5py.File(tmp_path / "chosen.h5") as result:
+        assert 70 < result["summary/contact_nodes"][()] < 95
+
+
+def test_interrupt_leaves_a_readable_file(tmp_path):
+    long = BODIES + ("&mesh nodes=161, half_width=0.0127 / &friction law='coulomb', mu=0.7 / &step normal_force=1e-3 /"
+                     "&step tangential_force=2e-4 / &step tangential_force=-2e-4, cycles=10000 /")
+    case(tmp_path, long)
+    run = subprocess.Popen([PROGRAM, "case.nml"], cwd=tmp_path, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+    time.sleep(2)
+    assert run.poll() is None
+    run.send_signal(signal.SIGINT)
+    output, errors = run.communicate(timeout=60)
+    assert run.returncode == 130
+    assert "interrupted" in output and "stopped on request" in errors
+    with h5py.File(tmp_path / "case.h5") as result:
+        assert result.attrs["outcome"] == "interrupted"
+        assert result["certificate/largest"][()] < 1e-10
+
+
+def test_progress_shows_on_a_terminal_only(tmp_path):
+    text = BODIES + ("&mesh nodes=161, half_width=0.0127 / &friction law='coulomb', mu=0.7 / &step normal_force=1e-3 /"
+                     "&step tangential_force=2e-4, cycles=2 /")
+    case(tmp_path, text)
+    assert mfv_run("case.nml", cwd=tmp_path).stderr == ""
+    master, slave = pty.openpty()
+    run = subprocess.Popen([PROGRAM, "case.nml"], cwd=tmp_path, stdout=subprocess.PIPE, stderr=slave)
+    os.close(slave)
+    seen = b""
+    while True:
+        try:
+            part = os.read(master, 1000)
+        except OSError:
+            break
+        if not part:
+            break
+        seen += part
+    run.communicate(timeout=60)
+    os.close(master)
+    assert re.search(rb"\d+ %, part \d of 5", seen)
+
+
+def test_documents_have_no_broken_links():
+    for document in [ROOT / "README.md", *sorted((ROOT / "docs").glob("*.md")), ROOT / "CHANGELOG.md"]:
+        for link in re.findall(r"\]\(([^)#]+)(?:#[^)]*)?\)", document.read_text()):
+            if not link.startswith("http"):
+                assert (document.parent / link).exists(), f"{document.name}: {link}"
