@@ -36,10 +36,10 @@ def run(
     if (path is None) == (text is None):
         raise TypeError("mfv.run takes the path of a case or text=, one of them")
     with Case.from_file(path) if path is not None else Case.from_text(text) as case:
-        status = case._lead("mfv_run")
+        case.run()
         if output is not None:
             case.write(output)
-        case._raise_if(check, status)
+        case._raise_early_end(check)
         return case.result()
 
 
@@ -98,8 +98,7 @@ class Case:
 
         `check`: raise the exception of an outcome that is not 'complete'.
         """
-        self._raise_if(check, self._lead("mfv_run"))
-        return self.outcome
+        return self._lead(check, "mfv_run")
 
     def advance(
         self,
@@ -129,8 +128,7 @@ class Case:
             friction=bool(friction),
             cycles=cycles,
         )
-        self._raise_if(check, self._lead("mfv_advance", byref(step)))
-        return self.outcome
+        return self._lead(check, "mfv_advance", byref(step))
 
     def fields(self) -> list[str]:
         """Paths of the fields that the case has now, such as 'state/pressure'."""
@@ -179,25 +177,27 @@ class Case:
             self._call(copy, name, values.ctypes.data_as(ctypes.POINTER(c_type)), count.value)
         return Field(values[0] if _is_scalar(path, values) else values, text_of(unit), text_of(description))
 
-    def _lead(self, function: str, *arguments: object) -> int:
-        """Call what leads the loads; remember and return the status, which is an outcome. Raises for a call gone wrong."""
+    def _lead(self, check: bool, function: str, *arguments: object) -> str:
+        """Call what leads the loads; return the outcome. Raises for a call gone wrong, and with `check` for an early end."""
         with self._lock:
             status = getattr(library(), function)(self._handle, *arguments)
             message = self._library_message()
             if status != 0 and errors.failures()[status] in (errors.BadHandle, errors.BadArgument):
                 raise errors.failure(status, message)
             self._status, self._message = status, message
-        return status
+            self._raise_early_end(check)
+            return self.outcome
+
+    def _raise_early_end(self, check: bool) -> None:
+        if check and self._status != 0:
+            raise errors.failure(self._status, self._message)
 
     def _call(self, function: str, *arguments: object) -> None:
         """Call a function of the library on this case. Raises the exception of its status."""
         with self._lock:
             status = getattr(library(), function)(self._handle, *arguments)
-            self._raise_if(True, status)
-
-    def _raise_if(self, check: bool, status: int) -> None:
-        if check and status != 0:
-            raise errors.failure(status, self._library_message())
+            if status != 0:
+                raise errors.failure(status, self._library_message())
 
     def _library_message(self) -> str:
         """The message of the last call; empty for a closed case."""

@@ -96,8 +96,8 @@ def surfaces(result: Result, ax: Axes, step: int | None = None) -> None:
     state = _state(result, step)
     lower = -state.normal_displacement
     upper = np.where(np.isfinite(state.gap), lower + state.gap, np.nan)
-    ax.plot(result.mesh.x, upper, color=MARKS, linewidth=1.0, label="surface of the upper body")
     _draw_points(ax, result, state, lower, label="surface of the lower body", color=SURFACE)
+    ax.plot(result.mesh.x, upper, color=MARKS, linewidth=0.9, label="surface of the upper body")
     ax.set_ylabel(_label("height", "y", state.unit("gap")))
     _frame_contact(ax, result, state)
 

@@ -35,7 +35,9 @@ class Group(Mapping[str, Values]):
         return self._fields[name].values
 
     def __getattr__(self, name: str) -> Values:
-        if not name.startswith("_") and name in self._fields:
+        if name.startswith("_"):  # private and special names are never quantities
+            raise AttributeError(name)
+        if name in self._fields:
             return self._fields[name].values
         raise AttributeError(f"there is no '{name}' here; there is {', '.join(self) or 'nothing'}")
 

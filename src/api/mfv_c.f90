@@ -214,6 +214,7 @@ contains
       integer(c_int) :: status
       type(handle_type), pointer :: self
       integer(c_size_t), pointer :: number
+      type(string_type), allocatable :: paths(:)
 
       status = MFV_BAD_HANDLE
       self => handle_of(handle)
@@ -221,7 +222,8 @@ contains
       status = MFV_BAD_ARGUMENT
       if (.not. c_associated(count)) return
       call c_f_pointer(count, number)
-      number = size(field_paths(self), kind=c_size_t)
+      paths = field_paths(self)
+      number = size(paths, kind=c_size_t)
       status = MFV_COMPLETE
    end function mfv_field_count
 
@@ -250,7 +252,7 @@ contains
 
       groups = result_groups(self%simulation)
       do i = 1, size(groups)
-         fields = group_fields(self%case, self%simulation, groups(i)%text)
+         call group_fields(self%case, self%simulation, groups(i)%text, fields)
          do j = 1, size(fields)
             call add_text(paths, groups(i)%text//'/'//fields(j)%name)
          end do

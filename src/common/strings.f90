@@ -111,15 +111,21 @@ contains
       end do
    end function lower_case
 
-   !> Append `text` to a list of texts.
+   !> Append `text` to a list of texts. By move_alloc: gfortran leaks the components of arrays that a constructor joins.
    pure subroutine add_text(texts, text)
       type(string_type), allocatable, intent(inout) :: texts(:)
       character(*), intent(in) :: text
-      type(string_type) :: last
+      type(string_type), allocatable :: longer(:)
+      integer :: i, n
 
-      last%text = text
-      if (.not. allocated(texts)) allocate (texts(0))
-      texts = [texts, last]
+      n = 0
+      if (allocated(texts)) n = size(texts)
+      allocate (longer(n + 1))
+      do i = 1, n
+         call move_alloc(texts(i)%text, longer(i)%text)
+      end do
+      longer(n + 1)%text = text
+      call move_alloc(longer, texts)
    end subroutine add_text
 
    !> The words of a text separated by blanks.

@@ -36,150 +36,171 @@ contains
    function case_keys() result(keys)
       type(key_type), allocatable :: keys(:)
 
-      keys = [scene_keys(), body_keys(), mesh_keys(), friction_keys(), step_keys(), solver_keys(), output_keys()]
+      allocate (keys(0))
+      call add_scene_keys(keys)
+      call add_body_keys(keys)
+      call add_mesh_keys(keys)
+      call add_friction_keys(keys)
+      call add_step_keys(keys)
+      call add_solver_keys(keys)
+      call add_output_keys(keys)
    end function case_keys
 
-   function scene_keys() result(keys)
-      type(key_type), allocatable :: keys(:)
+   subroutine add_scene_keys(keys)
+      type(key_type), allocatable, intent(inout) :: keys(:)
 
-      keys = [text_key('scene', 'title', '', 'title of the scene, for summary, file and pictures'), &
-              choice_key('scene', 'plane', 'strain', 'strain stress', 'plane strain or plane stress'), &
-              choice_key('scene', 'coupling', 'full', 'full goodman none', &
-                         'elastic coupling: full, without the effect of shear on the normal problem (Goodman), or none'), &
-              text_key('scene', 'length_unit', 'length', 'name of the unit of length, for labels only'), &
-              text_key('scene', 'force_unit', 'force', 'name of the unit of force, for labels only')]
-   end function scene_keys
+      call add_text_key(keys, 'scene', 'title', '', 'title of the scene, for summary, file and pictures')
+      call add_choice_key(keys, 'scene', 'plane', 'strain', 'strain stress', 'plane strain or plane stress')
+      call add_choice_key(keys, 'scene', 'coupling', 'full', 'full goodman none', 'elastic coupling: full, without the '// &
+                          'effect of shear on the normal problem (Goodman), or none')
+      call add_text_key(keys, 'scene', 'length_unit', 'length', 'name of the unit of length, for labels only')
+      call add_text_key(keys, 'scene', 'force_unit', 'force', 'name of the unit of force, for labels only')
+   end subroutine add_scene_keys
 
-   function body_keys() result(keys)
-      type(key_type), allocatable :: keys(:)
+   subroutine add_body_keys(keys)
+      type(key_type), allocatable, intent(inout) :: keys(:)
 
-      keys = [choice_key('body', 'shape', '', 'half_plane disk flat_punch profile', &
-                         'needed; first body, below: half_plane; second body, above: disk, flat_punch or profile'), &
-              logical_key('body', 'rigid', '.false.', 'needed as .true. for the second body'), &
-              positive_key('body', 'shear_modulus', '', 'force/length^2', 'shear modulus G of the half-plane'), &
-              positive_key('body', 'youngs_modulus', '', 'force/length^2', 'E = 2 G (1 + nu), in place of shear_modulus'), &
-              real_key('body', 'poisson_ratio', '', '', "Poisson's ratio of the half-plane, needed", -1.0_wp, 0.5_wp), &
-              positive_key('body', 'datum', '', 'length', 'half_plane: distance of the surface point from which '// &
-                           'displacements are measured; left out: the radius of the disk, the half-width of the '// &
-                           'punch, the largest distance of the profile from x = 0'), &
-              positive_key('body', 'radius', '', 'length', 'disk: radius, needed'), &
-              positive_key('body', 'half_width', '', 'length', 'flat_punch: half its width, needed'), &
-              text_key('body', 'file', '', 'profile: text file with two columns, x and height above the flat surface, '// &
-                       'beside the case file; needed')]
-   end function body_keys
+      call add_choice_key(keys, 'body', 'shape', '', 'half_plane disk flat_punch profile', 'needed; first body, below: '// &
+                          'half_plane; second body, above: disk, flat_punch or profile')
+      call add_logical_key(keys, 'body', 'rigid', '.false.', 'needed as .true. for the second body')
+      call add_positive_key(keys, 'body', 'shear_modulus', 'force/length^2', 'shear modulus G of the half-plane')
+      call add_positive_key(keys, 'body', 'youngs_modulus', 'force/length^2', &
+                            'E = 2 G (1 + nu), in place of shear_modulus')
+      call add_real_key(keys, 'body', 'poisson_ratio', '', "Poisson's ratio of the half-plane, needed", &
+                        lower=-1.0_wp, lower_open=.true., upper=0.5_wp)
+      call add_positive_key(keys, 'body', 'datum', 'length', 'half_plane: distance of the surface point from which '// &
+                            'displacements are measured; left out: the radius of the disk, the half-width of the '// &
+                            'punch, the largest distance of the profile from x = 0')
+      call add_positive_key(keys, 'body', 'radius', 'length', 'disk: radius, needed')
+      call add_positive_key(keys, 'body', 'half_width', 'length', 'flat_punch: half its width, needed')
+      call add_text_key(keys, 'body', 'file', '', 'profile: text file with two columns, x and height above the flat '// &
+                        'surface, beside the case file; needed')
+   end subroutine add_body_keys
 
-   function mesh_keys() result(keys)
-      type(key_type), allocatable :: keys(:)
+   subroutine add_mesh_keys(keys)
+      type(key_type), allocatable, intent(inout) :: keys(:)
 
-      keys = [integer_key('mesh', 'nodes', '101', 'number of equal intervals; nodes are their centres', 1.0_wp, most_nodes), &
-              positive_key('mesh', 'half_width', '', 'length', 'the intervals cover [-half_width, half_width]; left out: '// &
-                           'chosen from an estimate of the contact, and grown when the contact needs it'), &
-              choice_key('mesh', 'gap', 'exact', 'exact parabolic', &
-                         'gap under a disk: the exact circle, or the parabola x^2/(2R) of Hertz')]
-   end function mesh_keys
+      call add_integer_key(keys, 'mesh', 'nodes', '101', 'number of equal intervals; nodes are their centres', &
+                           1.0_wp, most_nodes)
+      call add_positive_key(keys, 'mesh', 'half_width', 'length', 'the intervals cover [-half_width, half_width]; left '// &
+                            'out: chosen from an estimate of the contact, and grown when the contact needs it')
+      call add_choice_key(keys, 'mesh', 'gap', 'exact', 'exact parabolic', &
+                          'gap under a disk: the exact circle, or the parabola x^2/(2R) of Hertz')
+   end subroutine add_mesh_keys
 
-   function friction_keys() result(keys)
-      type(key_type), allocatable :: keys(:)
+   subroutine add_friction_keys(keys)
+      type(key_type), allocatable, intent(inout) :: keys(:)
 
-      keys = [choice_key('friction', 'law', 'none', 'none coulomb', 'friction law'), &
-              real_key('friction', 'mu', '', '', 'coulomb: coefficient of friction, needed', 0.0_wp)]
-      keys(2)%lower_open = .false.
-   end function friction_keys
+      call add_choice_key(keys, 'friction', 'law', 'none', 'none coulomb', 'friction law')
+      call add_real_key(keys, 'friction', 'mu', '', 'coulomb: coefficient of friction, needed', lower=0.0_wp)
+   end subroutine add_friction_keys
 
-   function step_keys() result(keys)
-      type(key_type), allocatable :: keys(:)
+   subroutine add_step_keys(keys)
+      type(key_type), allocatable, intent(inout) :: keys(:)
 
-      keys = [real_key('step', 'normal_force', '', 'force/length', 'target of the normal force P', 0.0_wp), &
-              real_key('step', 'approach', '', 'length', 'target of the approach of the upper body, in place of normal_force'), &
-              real_key('step', 'tangential_force', '', 'force/length', 'target of the tangential force Q, positive to the right'), &
-              real_key('step', 'shift', '', 'length', 'target of the shift of the upper body to the right, in place of '// &
-                       'tangential_force'), &
-              logical_key('step', 'friction', '.true.', 'whether friction acts during this step'), &
-              integer_key('step', 'cycles', '0', '0: go to the targets; n: go there and back to where the step began, '// &
-                          'n times', 0.0_wp, most_cycles)]
-      keys(1)%lower_open = .false.
-   end function step_keys
+      call add_real_key(keys, 'step', 'normal_force', 'force/length', 'target of the normal force P', lower=0.0_wp)
+      call add_real_key(keys, 'step', 'approach', 'length', &
+                        'target of the approach of the upper body, in place of normal_force')
+      call add_real_key(keys, 'step', 'tangential_force', 'force/length', &
+                        'target of the tangential force Q, positive to the right')
+      call add_real_key(keys, 'step', 'shift', 'length', &
+                        'target of the shift of the upper body to the right, in place of tangential_force')
+      call add_logical_key(keys, 'step', 'friction', '.true.', 'whether friction acts during this step')
+      call add_integer_key(keys, 'step', 'cycles', '0', '0: go to the targets; n: go there and back to where the step '// &
+                           'began, n times', 0.0_wp, most_cycles)
+   end subroutine add_step_keys
 
-   function solver_keys() result(keys)
-      type(key_type), allocatable :: keys(:)
+   subroutine add_solver_keys(keys)
+      type(key_type), allocatable, intent(inout) :: keys(:)
 
-      keys = [choice_key('solver', 'algorithm', 'mfv', 'mfv', 'mfv: Method of First Violation'), &
-              choice_key('solver', 'linear_solver', 'dgesv', 'dgesv', 'dgesv: augmented system with LAPACK')]
-   end function solver_keys
+      call add_choice_key(keys, 'solver', 'algorithm', 'mfv', 'mfv', 'mfv: Method of First Violation')
+      call add_choice_key(keys, 'solver', 'linear_solver', 'dgesv', 'dgesv', 'dgesv: augmented system with LAPACK')
+   end subroutine add_solver_keys
 
-   function output_keys() result(keys)
-      type(key_type), allocatable :: keys(:)
+   subroutine add_output_keys(keys)
+      type(key_type), allocatable, intent(inout) :: keys(:)
 
-      keys = [text_key('output', 'file', '', 'result file (HDF5); left out: the name of the case file with .h5, in the '// &
-                       'working directory'), &
-              choice_key('output', 'history', 'events', 'events steps none', &
-                         'a history record an event, a step end, or none')]
-   end function output_keys
+      call add_text_key(keys, 'output', 'file', '', 'result file (HDF5); left out: the name of the case file with .h5, '// &
+                        'in the working directory')
+      call add_choice_key(keys, 'output', 'history', 'events', 'events steps none', &
+                          'a history record an event, a step end, or none')
+   end subroutine add_output_keys
 
-   function text_key(group, name, default, meaning) result(key)
+   subroutine add_text_key(keys, group, name, default, meaning)
+      type(key_type), allocatable, intent(inout) :: keys(:)
       character(*), intent(in) :: group, name, default, meaning
-      type(key_type) :: key
 
-      key = base_key(group, name, kind_text, default, '', meaning)
-   end function text_key
+      call add_key(keys, group, name, kind_text, default, '', meaning)
+   end subroutine add_text_key
 
-   function logical_key(group, name, default, meaning) result(key)
+   subroutine add_logical_key(keys, group, name, default, meaning)
+      type(key_type), allocatable, intent(inout) :: keys(:)
       character(*), intent(in) :: group, name, default, meaning
-      type(key_type) :: key
 
-      key = base_key(group, name, kind_logical, default, '', meaning)
-   end function logical_key
+      call add_key(keys, group, name, kind_logical, default, '', meaning)
+   end subroutine add_logical_key
 
-   function choice_key(group, name, default, choices, meaning) result(key)
+   subroutine add_choice_key(keys, group, name, default, choices, meaning)
+      type(key_type), allocatable, intent(inout) :: keys(:)
       character(*), intent(in) :: group, name, default, choices, meaning
-      type(key_type) :: key
 
-      key = base_key(group, name, kind_choice, default, '', meaning)
-      key%choices = choices
-   end function choice_key
+      call add_key(keys, group, name, kind_choice, default, '', meaning)
+      keys(size(keys))%choices = choices
+   end subroutine add_choice_key
 
-   function integer_key(group, name, default, meaning, lower, upper) result(key)
+   !> A whole number from `lower` to `upper`.
+   subroutine add_integer_key(keys, group, name, default, meaning, lower, upper)
+      type(key_type), allocatable, intent(inout) :: keys(:)
       character(*), intent(in) :: group, name, default, meaning
       real(wp), intent(in) :: lower, upper
-      type(key_type) :: key
 
-      key = base_key(group, name, kind_integer, default, '', meaning)
-      key%lower = lower
-      key%upper = upper
-   end function integer_key
+      call add_key(keys, group, name, kind_integer, default, '', meaning)
+      keys(size(keys))%lower = lower
+      keys(size(keys))%upper = upper
+   end subroutine add_integer_key
 
-   !> A real above `lower` (open) up to `upper`, each where present.
-   function real_key(group, name, default, unit, meaning, lower, upper) result(key)
-      character(*), intent(in) :: group, name, default, unit, meaning
+   !> A real without a default, from `lower` (itself allowed unless `lower_open`) to `upper`, each where present.
+   subroutine add_real_key(keys, group, name, unit, meaning, lower, lower_open, upper)
+      type(key_type), allocatable, intent(inout) :: keys(:)
+      character(*), intent(in) :: group, name, unit, meaning
       real(wp), intent(in), optional :: lower, upper
-      type(key_type) :: key
+      logical, intent(in), optional :: lower_open
 
-      key = base_key(group, name, kind_real, default, unit, meaning)
-      key%lower_open = present(lower)
-      if (present(lower)) key%lower = lower
-      if (present(upper)) key%upper = upper
-   end function real_key
+      call add_key(keys, group, name, kind_real, '', unit, meaning)
+      if (present(lower)) keys(size(keys))%lower = lower
+      if (present(lower_open)) keys(size(keys))%lower_open = lower_open
+      if (present(upper)) keys(size(keys))%upper = upper
+   end subroutine add_real_key
 
-   function positive_key(group, name, default, unit, meaning) result(key)
-      character(*), intent(in) :: group, name, default, unit, meaning
-      type(key_type) :: key
+   subroutine add_positive_key(keys, group, name, unit, meaning)
+      type(key_type), allocatable, intent(inout) :: keys(:)
+      character(*), intent(in) :: group, name, unit, meaning
 
-      key = real_key(group, name, default, unit, meaning, 0.0_wp)
-   end function positive_key
+      call add_real_key(keys, group, name, unit, meaning, lower=0.0_wp, lower_open=.true.)
+   end subroutine add_positive_key
 
-   function base_key(group, name, kind, default, unit, meaning) result(key)
+   !> Append a key. Element by element: gfortran leaks the components of arrays that a constructor joins.
+   subroutine add_key(keys, group, name, kind, default, unit, meaning)
+      type(key_type), allocatable, intent(inout) :: keys(:)
       character(*), intent(in) :: group, name, default, unit, meaning
       integer, intent(in) :: kind
-      type(key_type) :: key
+      type(key_type), allocatable :: longer(:)
+      integer :: i, n
 
-      key%group = group
-      key%name = name
-      key%kind = kind
-      key%default = default
-      key%choices = ''
-      key%unit = unit
-      key%meaning = meaning
-   end function base_key
+      n = size(keys)
+      allocate (longer(n + 1))
+      do i = 1, n
+         longer(i) = keys(i)
+      end do
+      longer(n + 1)%group = group
+      longer(n + 1)%name = name
+      longer(n + 1)%kind = kind
+      longer(n + 1)%default = default
+      longer(n + 1)%choices = ''
+      longer(n + 1)%unit = unit
+      longer(n + 1)%meaning = meaning
+      call move_alloc(longer, keys)
+   end subroutine add_key
 
    !> Groups that a case may have.
    function case_groups() result(groups)

@@ -59,7 +59,7 @@ contains
          end if
          call read_group(cursor, group, error)
          if (allocated(error)) return
-         groups = [groups, group]
+         call append_group(groups, group)
       end do
    end subroutine parse_namelists
 
@@ -87,10 +87,60 @@ contains
          if (next(cursor) == '/') exit
          call read_entry(cursor, group%name, entry, error)
          if (allocated(error)) return
-         group%entries = [group%entries, entry]
+         call append_entry(group%entries, entry)
       end do
       cursor%at = cursor%at + 1
    end subroutine read_group
+
+   !> Append by move_alloc: gfortran leaks the components of arrays that a constructor joins.
+   subroutine append_group(groups, group)
+      type(group_type), allocatable, intent(inout) :: groups(:)
+      type(group_type), intent(inout) :: group
+      type(group_type), allocatable :: longer(:)
+      integer :: i, n
+
+      n = size(groups)
+      allocate (longer(n + 1))
+      do i = 1, n
+         call move_group(groups(i), longer(i))
+      end do
+      call move_group(group, longer(n + 1))
+      call move_alloc(longer, groups)
+   end subroutine append_group
+
+   subroutine move_group(from, to)
+      type(group_type), intent(inout) :: from
+      type(group_type), intent(out) :: to
+
+      call move_alloc(from%name, to%name)
+      call move_alloc(from%entries, to%entries)
+      to%line = from%line
+   end subroutine move_group
+
+   subroutine append_entry(entries, entry)
+      type(entry_type), allocatable, intent(inout) :: entries(:)
+      type(entry_type), intent(inout) :: entry
+      type(entry_type), allocatable :: longer(:)
+      integer :: i, n
+
+      n = size(entries)
+      allocate (longer(n + 1))
+      do i = 1, n
+         call move_entry(entries(i), longer(i))
+      end do
+      call move_entry(entry, longer(n + 1))
+      call move_alloc(longer, entries)
+   end subroutine append_entry
+
+   subroutine move_entry(from, to)
+      type(entry_type), intent(inout) :: from
+      type(entry_type), intent(out) :: to
+
+      call move_alloc(from%key, to%key)
+      call move_alloc(from%values, to%values)
+      call move_alloc(from%is_quoted, to%is_quoted)
+      to%line = from%line
+   end subroutine move_entry
 
    !> One key=value.
    subroutine read_entry(cursor, group, entry, error)
@@ -123,7 +173,8 @@ contains
       character(:), allocatable :: value
       character(len=1) :: mark
 
-      allocate (entry%values(0), entry%is_quoted(0))
+      allocate (entry%values(0))
+      allocate (entry%is_quoted(0))
       do
          call skip_separators(cursor)
          mark = next(cursor)

@@ -32,6 +32,16 @@ module mfv_result_fields
       character(:), allocatable :: length, force, traction, energy
    end type units_type
 
+   !> Meanings that several groups share.
+   character(*), parameter :: normal_force_meaning = 'normal force P per unit thickness'
+   character(*), parameter :: tangential_force_meaning = 'tangential force Q per unit thickness'
+   character(*), parameter :: approach_meaning = 'approach of the upper body'
+   character(*), parameter :: shift_meaning = 'shift of the upper body to the right'
+   character(*), parameter :: dissipation_meaning = 'energy dissipated so far per unit thickness'
+   character(*), parameter :: contact_nodes_meaning = 'nodes in contact'
+   character(*), parameter :: stick_nodes_meaning = 'stuck nodes'
+   character(*), parameter :: linear_solves_meaning = 'linear solves so far'
+
 contains
 
    !> Paths of the groups that the result of a simulation has.
@@ -60,41 +70,39 @@ contains
    end function step_group
 
    !> The fields of one group; none for a group that does not exist.
-   function group_fields(case, simulation, group) result(fields)
+   subroutine group_fields(case, simulation, group, fields)
       type(case_type), intent(in) :: case
       type(simulation_type), intent(in) :: simulation
       character(*), intent(in) :: group
-      type(field_type), allocatable :: fields(:)
+      type(field_type), allocatable, intent(out) :: fields(:)
       type(units_type) :: units
       integer :: number, code
 
-      units = units_of(case)
+      call name_units(case, units)
+      allocate (fields(0))
       select case (group)
       case ('scene')
-         fields = scene_fields(simulation, units)
+         call add_scene(fields, simulation, units)
       case ('mesh')
-         fields = mesh_fields(simulation, units)
+         call add_mesh(fields, simulation, units)
       case ('state')
-         fields = state_fields(simulation, simulation%contact%state, units)
+         call add_state(fields, simulation, simulation%contact%state, units)
       case ('summary')
-         fields = summary_fields(simulation, simulation%contact%state, units)
+         call add_summary(fields, simulation, simulation%contact%state, units)
       case ('certificate')
-         fields = certificate_fields(simulation)
+         call add_certificate(fields, simulation)
       case ('reference')
-         fields = reference_fields(simulation, units)
+         call add_reference(fields, simulation, units)
       case ('history')
-         allocate (fields(0))
-         if (simulation%keep_history /= history_none) fields = history_fields(simulation, units)
+         if (simulation%keep_history /= history_none) call add_history(fields, simulation, units)
       case default
-         allocate (fields(0))
          if (index(group, 'steps/') /= 1) return
          read (group(len('steps/') + 1:), '(i10)', iostat=code) number
          if (code /= 0) return
          if (number < 1 .or. number > size(simulation%snapshots)) return
-         if (group /= step_group(number)) return
-         fields = step_fields(simulation, number, units)
+         if (group == step_group(number)) call add_step(fields, simulation, number, units)
       end select
-   end function group_fields
+   end subroutine group_fields
 
    !> The field at a path such as state/pressure; `found` false where there is none.
    subroutine find_field(case, simulation, path, field, found)
@@ -110,7 +118,7 @@ contains
       slash = index(path, '/', back=.true.)
       found = slash > first
       if (.not. found) return
-      fields = group_fields(case, simulation, path(first:slash - 1))
+      call group_fields(case, simulation, path(first:slash - 1), fields)
       do i = 1, size(fields)
          found = fields(i)%name == path(slash + 1:)
          if (found) field = fields(i)
@@ -119,72 +127,73 @@ contains
       found = .false.
    end subroutine find_field
 
-   function scene_fields(simulation, units) result(fields)
+   subroutine add_scene(fields, simulation, units)
+      type(field_type), allocatable, intent(inout) :: fields(:)
       type(simulation_type), intent(in) :: simulation
       type(units_type), intent(in) :: units
-      type(field_type), allocatable :: fields(:)
 
       associate (scene => simulation%contact%model%scene)
-         fields = [scalar('shear_modulus', scene%material%shear_modulus, units%traction, 'shear modulus of the half-plane'), &
-                   scalar('poisson_ratio', scene%material%poisson_ratio, '1', "Poisson's ratio of the half-plane"), &
-                   scalar('kolosov_constant', scene%material%kolosov, '1', "Kolosov's constant of the half-plane"), &
-                   scalar('dundurs_beta', scene%material%dundurs_beta(), '1', "Dundurs' parameter beta against the rigid body"), &
-                   scalar('radius', scene%indenter%radius, units%length, 'radius of the disk, 0 for another indenter'), &
-                   scalar('friction_coefficient', scene%friction%coefficient, '1', 'coefficient of friction, 0 without friction'), &
-                   scalar('datum', scene%datum, units%length, &
-                          'distance of the surface point from which displacements are measured')]
+         call add_scalar(fields, 'shear_modulus', scene%material%shear_modulus, units%traction, &
+                         'shear modulus of the half-plane')
+         call add_scalar(fields, 'poisson_ratio', scene%material%poisson_ratio, '1', "Poisson's ratio of the half-plane")
+         call add_scalar(fields, 'kolosov_constant', scene%material%kolosov, '1', "Kolosov's constant of the half-plane")
+         call add_scalar(fields, 'dundurs_beta', scene%material%dundurs_beta(), '1', &
+                         "Dundurs' parameter beta against the rigid body")
+         call add_scalar(fields, 'radius', scene%indenter%radius, units%length, &
+                         'radius of the disk, 0 for another indenter')
+         call add_scalar(fields, 'friction_coefficient', scene%friction%coefficient, '1', &
+                         'coefficient of friction, 0 without friction')
+         call add_scalar(fields, 'datum', scene%datum, units%length, &
+                         'distance of the surface point from which displacements are measured')
       end associate
-   end function scene_fields
+   end subroutine add_scene
 
-   function mesh_fields(simulation, units) result(fields)
+   subroutine add_mesh(fields, simulation, units)
+      type(field_type), allocatable, intent(inout) :: fields(:)
       type(simulation_type), intent(in) :: simulation
       type(units_type), intent(in) :: units
-      type(field_type), allocatable :: fields(:)
 
       associate (model => simulation%contact%model)
-         fields = [along('x', model%x, along_nodes, units%length, 'position of the nodes'), &
-                   along('initial_gap', visible_gap(simulation, model%initial_gap), along_nodes, units%length, &
-                         'gap of the undeformed bodies, infinite beside the indenter'), &
-                   scalar('interval', model%interval(), units%length, 'width of an interval')]
+         call add_real(fields, 'x', model%x, along_nodes, units%length, 'position of the nodes')
+         call add_real(fields, 'initial_gap', visible_gap(simulation, model%initial_gap), along_nodes, units%length, &
+                       'gap of the undeformed bodies, infinite beside the indenter')
+         call add_scalar(fields, 'interval', model%interval(), units%length, 'width of an interval')
       end associate
-   end function mesh_fields
+   end subroutine add_mesh
 
    !> The seven fields of a state.
-   function state_fields(simulation, state, units) result(fields)
+   subroutine add_state(fields, simulation, state, units)
+      type(field_type), allocatable, intent(inout) :: fields(:)
       type(simulation_type), intent(in) :: simulation
       type(contact_state_type), intent(in) :: state
       type(units_type), intent(in) :: units
-      type(field_type), allocatable :: fields(:)
-      type(field_type) :: status
 
-      status = along_whole('status', state%status, along_nodes, 'contact status of the nodes')
-      status%flags = node_status_names
       associate (model => simulation%contact%model)
-         fields = [along('pressure', state%fields%pressure, along_nodes, units%traction, 'compressive normal traction p'), &
-                   along('shear', state%fields%shear, along_nodes, units%traction, &
-                         'shear traction tau on the lower body, positive to the right'), &
-                   along('gap', visible_gap(simulation, model%gap(state%fields)), along_nodes, units%length, &
-                         'gap between the bodies, infinite beside the indenter'), &
-                   along('slip', modelled(state%fields%slip()), along_nodes, units%length, &
-                         'slip s = u - U of the lower surface against the upper body (not modelled without friction)'), &
-                   along('normal_displacement', state%fields%normal, along_nodes, units%length, &
-                         'displacement w of the lower surface into the body'), &
-                   along('tangential_displacement', modelled(state%fields%tangential), along_nodes, units%length, &
-                         'displacement u of the lower surface to the right (not modelled without friction)'), &
-                   status]
+         call add_real(fields, 'pressure', state%fields%pressure, along_nodes, units%traction, &
+                       'compressive normal traction p')
+         call add_real(fields, 'shear', state%fields%shear, along_nodes, units%traction, &
+                       'shear traction tau on the lower body, positive to the right')
+         call add_real(fields, 'gap', visible_gap(simulation, model%gap(state%fields)), along_nodes, units%length, &
+                       'gap between the bodies, infinite beside the indenter')
+         call add_real(fields, 'slip', modelled(simulation, state%fields%slip()), along_nodes, units%length, &
+                       'slip s = u - U of the lower surface against the upper body (not modelled without friction)')
+         call add_real(fields, 'normal_displacement', state%fields%normal, along_nodes, units%length, &
+                       'displacement w of the lower surface into the body')
+         call add_real(fields, 'tangential_displacement', modelled(simulation, state%fields%tangential), along_nodes, &
+                       units%length, 'displacement u of the lower surface to the right (not modelled without friction)')
+         call add_whole(fields, 'status', state%status, along_nodes, 'contact status of the nodes', node_status_names)
       end associate
+   end subroutine add_state
 
-   contains
+   !> A tangential quantity: NaN in scenes that leave the tangential problem out.
+   function modelled(simulation, values)
+      type(simulation_type), intent(in) :: simulation
+      real(wp), intent(in) :: values(:)
+      real(wp) :: modelled(size(values))
 
-      !> NaN in scenes that leave the tangential problem out.
-      function modelled(values)
-         real(wp), intent(in) :: values(:)
-         real(wp) :: modelled(size(values))
-
-         modelled = values
-         if (.not. simulation%contact%model%scene%tangential()) modelled = ieee_value(1.0_wp, ieee_quiet_nan)
-      end function modelled
-   end function state_fields
+      modelled = values
+      if (.not. simulation%contact%model%scene%tangential()) modelled = ieee_value(1.0_wp, ieee_quiet_nan)
+   end function modelled
 
    !> The gap where the indenter is, infinite elsewhere.
    function visible_gap(simulation, gap) result(visible)
@@ -197,171 +206,198 @@ contains
    end function visible_gap
 
    !> The state at the end of a step or reversal, with its loads.
-   function step_fields(simulation, number, units) result(fields)
+   subroutine add_step(fields, simulation, number, units)
+      type(field_type), allocatable, intent(inout) :: fields(:)
       type(simulation_type), intent(in) :: simulation
       integer, intent(in) :: number
       type(units_type), intent(in) :: units
-      type(field_type), allocatable :: fields(:)
       type(contact_state_type) :: state
 
       state = simulation%padded_state(number)
-      fields = [state_fields(simulation, state, units), load_fields(simulation, state, units), &
-                scalar_whole('step', simulation%snapshots(number)%step, 'number of the step'), &
-                scalar_whole('reversal', simulation%snapshots(number)%reversal, &
-                             'number of the reversal in the step, 1 for a step without cycles')]
-   end function step_fields
+      call add_state(fields, simulation, state, units)
+      call add_loads(fields, simulation, state, units)
+      call add_scalar_whole(fields, 'step', simulation%snapshots(number)%step, 'number of the step')
+      call add_scalar_whole(fields, 'reversal', simulation%snapshots(number)%reversal, &
+                            'number of the reversal in the step, 1 for a step without cycles')
+   end subroutine add_step
 
    !> Loads, rigid motions and counts of a state.
-   function load_fields(simulation, state, units) result(fields)
+   subroutine add_loads(fields, simulation, state, units)
+      type(field_type), allocatable, intent(inout) :: fields(:)
       type(simulation_type), intent(in) :: simulation
       type(contact_state_type), intent(in) :: state
       type(units_type), intent(in) :: units
-      type(field_type), allocatable :: fields(:)
 
       associate (f => state%fields)
-         fields = [scalar('normal_force', f%normal_force, units%force, 'normal force P per unit thickness'), &
-                   scalar('tangential_force', f%tangential_force, units%force, 'tangential force Q per unit thickness'), &
-                   scalar('approach', f%approach, units%length, 'approach of the upper body'), &
-                   scalar('shift', f%shift, units%length, 'shift of the upper body to the right'), &
-                   scalar('dissipation', state%dissipation, units%energy, &
-                          'energy dissipated so far per unit thickness'), &
-                   scalar_whole('contact_nodes', state%contact_nodes(), 'nodes in contact'), &
-                   scalar_whole('stick_nodes', state%stick_nodes(), 'stuck nodes'), &
-                   scalar_whole('slip_nodes', state%slip_nodes(), 'slipping nodes'), &
-                   scalar('contact_half_width', 0.5_wp*state%contact_nodes()*simulation%contact%model%interval(), &
-                          units%length, 'half the length of all intervals in contact'), &
-                   scalar('stick_ratio', real(state%stick_nodes(), wp)/max(state%contact_nodes(), 1), '1', &
-                          'stuck nodes over nodes in contact')]
+         call add_scalar(fields, 'normal_force', f%normal_force, units%force, normal_force_meaning)
+         call add_scalar(fields, 'tangential_force', f%tangential_force, units%force, tangential_force_meaning)
+         call add_scalar(fields, 'approach', f%approach, units%length, approach_meaning)
+         call add_scalar(fields, 'shift', f%shift, units%length, shift_meaning)
+         call add_scalar(fields, 'dissipation', state%dissipation, units%energy, dissipation_meaning)
+         call add_scalar_whole(fields, 'contact_nodes', state%contact_nodes(), contact_nodes_meaning)
+         call add_scalar_whole(fields, 'stick_nodes', state%stick_nodes(), stick_nodes_meaning)
+         call add_scalar_whole(fields, 'slip_nodes', state%slip_nodes(), 'slipping nodes')
+         call add_scalar(fields, 'contact_half_width', &
+                         0.5_wp*state%contact_nodes()*simulation%contact%model%interval(), units%length, &
+                         'half the length of all intervals in contact')
+         call add_scalar(fields, 'stick_ratio', real(state%stick_nodes(), wp)/max(state%contact_nodes(), 1), '1', &
+                         'stuck nodes over nodes in contact')
       end associate
-   end function load_fields
+   end subroutine add_loads
 
-   function summary_fields(simulation, state, units) result(fields)
+   subroutine add_summary(fields, simulation, state, units)
+      type(field_type), allocatable, intent(inout) :: fields(:)
       type(simulation_type), intent(in) :: simulation
       type(contact_state_type), intent(in) :: state
       type(units_type), intent(in) :: units
-      type(field_type), allocatable :: fields(:)
 
-      fields = [load_fields(simulation, state, units), &
-                scalar_whole('steps_done', simulation%steps_done, 'steps reached'), &
-                scalar_whole('increments', simulation%contact%certificate%increments, &
-                             'increments of the load, each up to an event or to the end of a step'), &
-                scalar_whole('linear_solves', simulation%contact%system%solves, 'linear solves'), &
-                scalar('largest_residual', simulation%contact%certificate%largest(), '1', &
-                       'largest relative residual of the certificate')]
-   end function summary_fields
+      call add_loads(fields, simulation, state, units)
+      call add_scalar_whole(fields, 'steps_done', simulation%steps_done, 'steps reached')
+      call add_scalar_whole(fields, 'increments', simulation%contact%certificate%increments, &
+                            'increments of the load, each up to an event or to the end of a step')
+      call add_scalar_whole(fields, 'linear_solves', simulation%contact%system%solves, linear_solves_meaning)
+      call add_scalar(fields, 'largest_residual', simulation%contact%certificate%largest(), '1', &
+                      'largest relative residual of the certificate')
+   end subroutine add_summary
 
-   function certificate_fields(simulation) result(fields)
+   subroutine add_certificate(fields, simulation)
+      type(field_type), allocatable, intent(inout) :: fields(:)
       type(simulation_type), intent(in) :: simulation
-      type(field_type), allocatable :: fields(:)
       integer :: kind
 
       associate (certificate => simulation%contact%certificate)
-         fields = [scalar('largest', certificate%largest(), '1', 'largest of the residuals below'), &
-                   scalar_whole('increments', certificate%increments, 'increments that were checked')]
+         call add_scalar(fields, 'largest', certificate%largest(), '1', 'largest of the residuals below')
+         call add_scalar_whole(fields, 'increments', certificate%increments, 'increments that were checked')
          do kind = 1, residual_count
-            if (.not. certificate%claimed(kind)) cycle
-            fields = [fields, scalar(residual_name(kind), certificate%residual(kind), '1', &
-                                     residual_description(kind)//', relative, largest over all increments')]
+            if (certificate%claimed(kind)) &
+               call add_scalar(fields, residual_name(kind), certificate%residual(kind), '1', &
+                               residual_description(kind)//', relative, largest over all increments')
          end do
       end associate
-   end function certificate_fields
+   end subroutine add_certificate
 
    !> The closed form, where one exists.
-   function reference_fields(simulation, units) result(fields)
+   subroutine add_reference(fields, simulation, units)
+      type(field_type), allocatable, intent(inout) :: fields(:)
       type(simulation_type), intent(in) :: simulation
       type(units_type), intent(in) :: units
-      type(field_type), allocatable :: fields(:)
       type(closed_form_type) :: form
 
-      allocate (fields(0))
       form = closed_form_of(simulation)
       if (form%pressure_source /= '') then
-         fields = [fields, along('pressure', form%pressure, along_nodes, units%traction, form%pressure_source), &
-                   scalar('contact_half_width', form%half_width, units%length, form%pressure_source)]
+         call add_real(fields, 'pressure', form%pressure, along_nodes, units%traction, form%pressure_source)
+         call add_scalar(fields, 'contact_half_width', form%half_width, units%length, form%pressure_source)
       end if
       if (form%shear_source /= '') &
-         fields = [fields, along('shear', form%shear, along_nodes, units%traction, form%shear_source)]
+         call add_real(fields, 'shear', form%shear, along_nodes, units%traction, form%shear_source)
       if (allocated(form%shift) .and. simulation%keep_history /= history_none) &
-         fields = [fields, along('shift', form%shift, along_records, units%length, form%shear_source)]
-   end function reference_fields
+         call add_real(fields, 'shift', form%shift, along_records, units%length, form%shear_source)
+   end subroutine add_reference
 
-   function history_fields(simulation, units) result(fields)
+   subroutine add_history(fields, simulation, units)
+      type(field_type), allocatable, intent(inout) :: fields(:)
       type(simulation_type), intent(in) :: simulation
       type(units_type), intent(in) :: units
-      type(field_type), allocatable :: fields(:)
+      integer, parameter :: along = along_records
       integer :: i
 
       associate (r => simulation%contact%history%record(:simulation%contact%history%records))
-         fields = [along_whole('record', [(i, i=0, size(r) - 1)], along_records, 'number of the record'), &
-                   along('normal_force', r%normal_force, along_records, units%force, 'normal force P per unit thickness'), &
-                   along('tangential_force', r%tangential_force, along_records, units%force, &
-                         'tangential force Q per unit thickness'), &
-                   along('approach', r%approach, along_records, units%length, 'approach of the upper body'), &
-                   along('shift', r%shift, along_records, units%length, 'shift of the upper body to the right'), &
-                   along_whole('contact_nodes', r%contact_nodes, along_records, 'nodes in contact'), &
-                   along_whole('stick_nodes', r%stick_nodes, along_records, 'stuck nodes'), &
-                   along('dissipation', r%dissipation, along_records, units%energy, &
-                         'energy dissipated so far per unit thickness'), &
-                   along_whole('event_kind', r%event_kind, along_records, 'what happened'), &
-                   along_whole('event_node', r%event_node, along_records, &
-                               'number, from 1, of the first node it happened to; 0 for none'), &
-                   along_whole('event_count', r%event_count, along_records, 'number of nodes it happened to together'), &
-                   along_whole('step', r%step, along_records, 'number of the step, 0 before the first'), &
-                   along_whole('linear_solves', r%linear_solves, along_records, 'linear solves so far')]
-         do i = 1, size(fields)
-            if (fields(i)%name == 'event_kind') fields(i)%flags = event_names
-         end do
+         call add_whole(fields, 'record', [(i, i=0, size(r) - 1)], along, 'number of the record')
+         call add_real(fields, 'normal_force', r%normal_force, along, units%force, normal_force_meaning)
+         call add_real(fields, 'tangential_force', r%tangential_force, along, units%force, tangential_force_meaning)
+         call add_real(fields, 'approach', r%approach, along, units%length, approach_meaning)
+         call add_real(fields, 'shift', r%shift, along, units%length, shift_meaning)
+         call add_real(fields, 'dissipation', r%dissipation, along, units%energy, dissipation_meaning)
+         call add_whole(fields, 'contact_nodes', r%contact_nodes, along, contact_nodes_meaning)
+         call add_whole(fields, 'stick_nodes', r%stick_nodes, along, stick_nodes_meaning)
+         call add_whole(fields, 'event_kind', r%event_kind, along, 'what happened', event_names)
+         call add_whole(fields, 'event_node', r%event_node, along, &
+                        'number, from 1, of the first node it happened to; 0 for none')
+         call add_whole(fields, 'event_count', r%event_count, along, 'number of nodes it happened to together')
+         call add_whole(fields, 'step', r%step, along, 'number of the step, 0 before the first')
+         call add_whole(fields, 'linear_solves', r%linear_solves, along, linear_solves_meaning)
       end associate
-   end function history_fields
+   end subroutine add_history
 
-   function units_of(case) result(units)
+   subroutine name_units(case, units)
       type(case_type), intent(in) :: case
-      type(units_type) :: units
+      type(units_type), intent(out) :: units
 
       units%length = case%length_unit
       units%force = case%force_unit//'/'//case%length_unit
       units%traction = case%force_unit//'/'//case%length_unit//'^2'
       units%energy = case%force_unit
-   end function units_of
+   end subroutine name_units
 
-   function along(name, values, dimension, unit, description) result(field)
-      character(*), intent(in) :: name, unit, description
-      real(wp), intent(in) :: values(:)
-      integer, intent(in) :: dimension
-      type(field_type) :: field
-
-      field%name = name
-      field%values = values
-      field%along = dimension
-      field%unit = unit
-      field%description = description
-      field%flags = ''
-   end function along
-
-   function along_whole(name, values, dimension, description) result(field)
-      character(*), intent(in) :: name, description
-      integer, intent(in) :: values(:), dimension
-      type(field_type) :: field
-
-      field = along(name, [real(wp) ::], dimension, '1', description)
-      deallocate (field%values)
-      field%whole = values
-   end function along_whole
-
-   function scalar(name, value, unit, description) result(field)
+   subroutine add_scalar(fields, name, value, unit, description)
+      type(field_type), allocatable, intent(inout) :: fields(:)
       character(*), intent(in) :: name, unit, description
       real(wp), intent(in) :: value
-      type(field_type) :: field
 
-      field = along(name, [value], along_nothing, unit, description)
-   end function scalar
+      call add_real(fields, name, [value], along_nothing, unit, description)
+   end subroutine add_scalar
 
-   function scalar_whole(name, value, description) result(field)
+   subroutine add_scalar_whole(fields, name, value, description)
+      type(field_type), allocatable, intent(inout) :: fields(:)
       character(*), intent(in) :: name, description
       integer, intent(in) :: value
-      type(field_type) :: field
 
-      field = along_whole(name, [value], along_nothing, description)
-   end function scalar_whole
+      call add_whole(fields, name, [value], along_nothing, description)
+   end subroutine add_scalar_whole
+
+   subroutine add_real(fields, name, values, along, unit, description)
+      type(field_type), allocatable, intent(inout) :: fields(:)
+      character(*), intent(in) :: name, unit, description
+      real(wp), intent(in) :: values(:)
+      integer, intent(in) :: along
+
+      call append_field(fields, name, along, unit, description)
+      fields(size(fields))%values = values
+   end subroutine add_real
+
+   subroutine add_whole(fields, name, values, along, description, flags)
+      type(field_type), allocatable, intent(inout) :: fields(:)
+      character(*), intent(in) :: name, description
+      integer, intent(in) :: values(:), along
+      character(*), intent(in), optional :: flags
+
+      call append_field(fields, name, along, '1', description)
+      fields(size(fields))%whole = values
+      if (present(flags)) fields(size(fields))%flags = flags
+   end subroutine add_whole
+
+   !> Append a field without values. By move_alloc: gfortran leaks the components of arrays that a constructor joins.
+   subroutine append_field(fields, name, along, unit, description)
+      type(field_type), allocatable, intent(inout) :: fields(:)
+      character(*), intent(in) :: name, unit, description
+      integer, intent(in) :: along
+      type(field_type), allocatable :: longer(:)
+      integer :: i, n
+
+      n = size(fields)
+      allocate (longer(n + 1))
+      do i = 1, n
+         call move_field(fields(i), longer(i))
+      end do
+      longer(n + 1)%name = name
+      longer(n + 1)%along = along
+      longer(n + 1)%unit = unit
+      longer(n + 1)%description = description
+      longer(n + 1)%flags = ''
+      call move_alloc(longer, fields)
+   end subroutine append_field
+
+   subroutine move_field(from, to)
+      type(field_type), intent(inout) :: from
+      type(field_type), intent(out) :: to
+
+      call move_alloc(from%name, to%name)
+      call move_alloc(from%description, to%description)
+      call move_alloc(from%unit, to%unit)
+      call move_alloc(from%values, to%values)
+      call move_alloc(from%whole, to%whole)
+      call move_alloc(from%flags, to%flags)
+      to%along = from%along
+   end subroutine move_field
 
 end module mfv_result_fields

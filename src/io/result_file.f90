@@ -142,12 +142,14 @@ contains
       type(case_type), intent(in) :: case
       type(simulation_type), intent(in) :: simulation
       type(string_type), allocatable :: groups(:)
+      type(field_type), allocatable :: fields(:)
       integer :: i
 
       groups = result_groups(simulation)
       if (size(simulation%snapshots) > 0) call create_group(writer, 'steps')
       do i = 1, size(groups)
-         call write_group(writer, groups(i)%text, group_fields(case, simulation, groups(i)%text))
+         call group_fields(case, simulation, groups(i)%text, fields)
+         call write_group(writer, groups(i)%text, fields)
       end do
    end subroutine write_groups
 

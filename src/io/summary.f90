@@ -23,7 +23,7 @@ contains
       character(:), allocatable :: text
       type(field_type), allocatable :: fields(:)
 
-      fields = group_fields(case, simulation, 'summary')
+      call group_fields(case, simulation, 'summary', fields)
       text = line('outcome', status_outcome(simulation%outcome)//': '//simulation%message) &
              //line('contact half-width', amount(fields, 'contact_half_width')) &
              //line('nodes', to_text(simulation%contact%model%nodes())//', in contact '//amount(fields, 'contact_nodes')// &

@@ -1,0 +1,465 @@
+"""The Python package: the C interface through ctypes, results and files, pictures, the command line."""
+
+from __future__ import annotations
+
+import copy
+import ctypes
+import os
+import pickle
+import re
+import subprocess
+import sys
+import threading
+from pathlib import Path
+
+import h5py
+import numpy as np
+import pytest
+
+import mfv
+from mfv import __main__ as command_line
+from mfv import _library, errors
+
+PROJECT = Path(__file__).resolve().parents[2]
+MINDLIN = PROJECT / "examples" / "mindlin.nml"
+
+HALF_PLANE = "&body shape='half_plane', shear_modulus=1.0, poisson_ratio=0.3 /\n"
+DISK = "&body shape='disk', radius=0.25, rigid=.true. /\n"
+MESH = "&mesh nodes=61, half_width=0.01225 /\n"
+FRICTION = "&friction law='coulomb', mu=0.7 /\n"
+
+SHEARED = (
+    "&scene title='sheared', coupling='goodman' /\n" + HALF_PLANE + DISK + MESH + FRICTION
+    + "&step normal_force=1.0e-3, friction=.false. /\n&step tangential_force=2.8e-4 /\n&step tangential_force=-1.0e-4 /\n"
+)
+SLIDING = SHEARED + "&step tangential_force=1.0e-3 /\n"
+FRICTIONLESS = "&scene title='pressed', length_unit='mm', force_unit='N' /\n" + HALF_PLANE + DISK + MESH + "&step normal_force=1.0e-3 /\n"
+FLAT_PUNCH = (
+    "&scene title='punch', coupling='goodman' /\n" + HALF_PLANE + "&body shape='flat_punch', half_width=0.4, rigid=.true. /\n"
+    + "&mesh nodes=65, half_width=0.5 /\n" + FRICTION + "&step normal_force=1.0e-3 /\n"
+)
+NO_HISTORY = SHEARED + "&output history='none' /\n"
+
+
+@pytest.fixture(scope="module")
+def sheared() -> mfv.Result:
+    """The sheared cylinder, run in this process."""
+    return mfv.run(text=SHEARED)
+
+
+def everything(result: mfv.Result) -> dict[str, np.ndarray]:
+    """All values of a result by path."""
+    groups = {name: getattr(result, name) for name in "mesh scene state summary certificate history reference".split()}
+    groups.update({f"steps/{number:04d}": group for number, group in enumerate(result.steps, start=1)})
+    return {f"{path}/{name}": group[name] for path, group in groups.items() for name in group}
+
+
+def assert_same(first: mfv.Result, second: mfv.Result, leave_out: tuple[str, ...] = ()) -> None:
+    """Two results are the same, digit for digit."""
+    one, other = everything(first), everything(second)
+    assert one.keys() == other.keys()
+    for path in one:
+        if path not in leave_out:
+            assert np.asarray(one[path]).tobytes() == np.asarray(other[path]).tobytes(), path
+
+
+# --- the C interface and its description in Python ---
+
+
+def header_text() -> str:
+    """The C header without comments."""
+    text = (PROJECT / "include" / "mfv.h").read_text()
+    return re.sub(r"/\*.*?\*/", "", text, flags=re.DOTALL)
+
+
+def as_ctypes(declaration: str) -> type:
+    """The ctypes type of a C parameter."""
+    kind = " ".join(re.sub(r"\w+$", "", declaration.replace("const", "").strip()).split())
+    return {
+        "int": ctypes.c_int,
+        "double": ctypes.c_double,
+        "size_t": ctypes.c_size_t,
+        "char *": ctypes.c_char_p,
+        "double *": ctypes.POINTER(ctypes.c_double),
+        "int32_t *": ctypes.POINTER(ctypes.c_int32),
+        "int *": ctypes.POINTER(ctypes.c_int),
+        "size_t *": ctypes.POINTER(ctypes.c_size_t),
+        "mfv_case *": ctypes.c_void_p,
+        "mfv_case **": ctypes.POINTER(ctypes.c_void_p),
+        "mfv_step *": ctypes.POINTER(_library.Step),
+    }[kind]
+
+
+def test_signatures_are_those_of_the_header() -> None:
+    declared = re.findall(r"^(int|double) (mfv_\w+)\(([^)]*)\);", header_text(), flags=re.MULTILINE)
+    assert len(declared) > 20
+    results = {"int": ctypes.c_int, "double": ctypes.c_double}
+    signatures = {name: (results[kind], *map(as_ctypes, inside.split(","))) for kind, name, inside in declared}
+    assert _library.SIGNATURES == signatures
+
+
+def test_step_is_that_of_the_header() -> None:
+    body = re.search(r"typedef struct mfv_step \{(.*?)\}", header_text(), flags=re.DOTALL).group(1)
+    members = [(name, as_ctypes(f"{kind} {name}")) for kind, name in re.findall(r"(\w+) (\w+);", body)]
+    assert _library.Step._fields_ == members
+
+
+def test_controls_are_those_of_the_header() -> None:
+    assert {f"MFV_{control.name}": control.value for control in _library.Control} == {
+        name: int(value) for name, value in re.findall(r"(MFV_\w+) = (\d+)", header_text())
+    }
+
+
+def test_exceptions_are_those_of_the_list_of_statuses() -> None:
+    entries = re.findall(r'MFV_STATUS\(\w+, (\d+), \d+, "(.*?)", "(.*?)"\)', (PROJECT / "include" / "mfv_status.def").read_text())
+    assert _library.statuses() == tuple((int(code), outcome, explanation) for code, outcome, explanation in entries)
+    assert {kind.__name__ for kind in errors.failures().values()} == {
+        "".join(word.capitalize() for word in outcome.split()) for code, outcome, _ in entries if code != "0"
+    }
+    assert errors.failures()[1] is errors.InputError
+    assert issubclass(errors.GrossSliding, mfv.MfvError)
+    with pytest.raises(AttributeError):
+        errors.NoSuchStatus
+
+
+def test_an_exception_survives_pickling() -> None:
+    error = pickle.loads(pickle.dumps(errors.InputError(1, "why")))
+    assert (type(error), error.status, str(error)) == (errors.InputError, 1, "why")
+
+
+def test_versions_are_one() -> None:
+    assert mfv.__version__ == mfv.library_version() == (PROJECT / "VERSION").read_text().strip()
+
+
+def test_a_missing_library_is_missed_only_by_those_who_need_it(tmp_path: Path) -> None:
+    path = tmp_path / "result.h5"
+    mfv.run(text=SHEARED, output=path)
+    script = f"""
+import mfv
+mfv.plot.figure(mfv.read({str(path)!r}))
+try:
+    mfv.run({str(MINDLIN)!r})
+except mfv.LibraryNotFound as error:
+    assert isinstance(error, ImportError) and "MFV_LIBRARY" in str(error)
+else:
+    raise SystemExit("it ran")
+"""
+    python_path = os.pathsep.join(filter(None, [str(Path(mfv.__file__).parents[1]), os.environ.get("PYTHONPATH")]))
+    environment = {**os.environ, "MFV_LIBRARY": str(tmp_path / "nowhere.so"), "PYTHONPATH": python_path}
+    subprocess.run([sys.executable, "-c", script], env=environment, check=True)
+
+
+# --- cases ---
+
+
+def test_file_and_text_give_the_same_result() -> None:
+    assert_same(mfv.run(MINDLIN), mfv.run(text=MINDLIN.read_text()))
+
+
+def test_run_wants_one_case() -> None:
+    with pytest.raises(TypeError):
+        mfv.run()
+    with pytest.raises(TypeError):
+        mfv.run(MINDLIN, text=SHEARED)
+
+
+def test_advancing_step_by_step_gives_the_digits_of_a_run(sheared: mfv.Result) -> None:
+    # The closed form of the shear traction is that of the steps of the case, which are the same here.
+    with mfv.Case.from_text(SHEARED) as case:
+        assert case.advance(normal_force=1.0e-3, friction=False) == "complete"
+        assert case.advance(tangential_force=2.8e-4) == "complete"
+        assert case.advance(tangential_force=-1.0e-4) == "complete"
+        assert case.message == "step 3 was reached"
+        assert_same(case.result(), sheared)
+
+
+def test_advancing_by_displacements_and_cycles(sheared: mfv.Result) -> None:
+    with mfv.Case.from_text(SHEARED) as case:
+        case.advance(approach=sheared.summary.approach, friction=False)
+        assert case["summary/normal_force"] == pytest.approx(1.0e-3, rel=1e-9)
+        case.advance(shift=sheared.steps[1].shift, cycles=2)
+        assert len(case.result().steps) == 5
+        assert case["steps/0004/tangential_force"] == pytest.approx(2.8e-4, rel=1e-9)
+
+
+def test_a_result_is_a_copy() -> None:
+    with mfv.Case.from_text(SHEARED) as case:
+        case.advance(normal_force=5.0e-4, friction=False)
+        before = case.result()
+        kept = copy.deepcopy(before)
+        case.advance(normal_force=1.0e-3, friction=False)
+        assert_same(before, kept)
+        assert case["summary/normal_force"] == pytest.approx(1.0e-3)
+    assert_same(before, kept)
+
+
+@pytest.mark.parametrize("text", [SHEARED, FRICTIONLESS, FLAT_PUNCH, SLIDING], ids=["sheared", "frictionless", "punch", "sliding"])
+def test_every_field_is_that_of_the_file(text: str, tmp_path: Path) -> None:
+    path = tmp_path / "result.h5"
+    with mfv.Case.from_text(text) as case, h5py.File(_written(case, path)) as file:
+        fields = case.fields()
+        for field in fields:
+            assert np.asarray(case[field]).tobytes() == file[field][()].tobytes(), field
+            assert np.asarray(case[field]).dtype == file[field].dtype
+            group, name = field.rsplit("/", 1)
+        in_file: list[str] = []
+        file.visititems(lambda name, item: in_file.append(name) if isinstance(item, h5py.Dataset) else None)
+        assert set(in_file) <= {*fields, *(f"{field.rsplit('/', 1)[0]}/{scale}" for field in fields for scale in ("x", "record"))}
+
+
+def _written(case: mfv.Case, path: Path) -> Path:
+    case.run()
+    case.write(path)
+    return path
+
+
+@pytest.mark.parametrize("text", [SHEARED, NO_HISTORY, FRICTIONLESS], ids=["sheared", "no history", "frictionless"])
+def test_what_is_read_is_what_was_run(text: str, tmp_path: Path) -> None:
+    path = tmp_path / "result.h5"
+    ran = mfv.run(text=text, output=path)
+    read = mfv.read(path)
+    assert_same(ran, read)
+    assert (read.outcome, read.message) == (ran.outcome, ran.message)
+    assert read.state.unit("pressure") == ran.state.unit("pressure")
+    assert read.state.description("slip") == ran.state.description("slip")
+    assert read.title in ("sheared", "pressed")
+
+
+def test_codes_are_those_of_the_file(tmp_path: Path) -> None:
+    mfv.run(text=SHEARED, output=tmp_path / "result.h5")
+    with h5py.File(tmp_path / "result.h5") as file:
+        for field, codes in (("state/status", mfv.NodeStatus), ("steps/0001/status", mfv.NodeStatus), ("history/event_kind", mfv.EventKind)):
+            flags = dict(zip(file[field].attrs["flag_meanings"].split(), file[field].attrs["flag_values"]))
+            assert flags == {code.name.lower(): code.value for code in codes}
+
+
+def test_bad_input_is_an_input_error_that_names_the_key() -> None:
+    with pytest.raises(errors.InputError, match="poisson_ratio") as caught:
+        mfv.run(text=SHEARED.replace("0.3", "0.7"))
+    assert caught.value.status == 1
+    with pytest.raises(errors.InputError, match="no_such_file.nml"):
+        mfv.run("no_such_file.nml")
+    with pytest.raises(ValueError, match="null character"):
+        mfv.Case.from_text("&scene\0/")
+
+
+def test_gross_sliding_is_a_result_unless_it_must_not_be(tmp_path: Path) -> None:
+    result = mfv.run(text=SLIDING)
+    assert result.outcome == "gross sliding"
+    assert "&step 4 tangential_force" in result.message
+    assert result.summary.stick_nodes == 0
+    assert result.summary.tangential_force == pytest.approx(7.0e-4)
+    with pytest.raises(errors.GrossSliding, match="&step 4 tangential_force"):
+        mfv.run(text=SLIDING, output=tmp_path / "sliding.h5", check=True)
+    assert mfv.read(tmp_path / "sliding.h5").outcome == "gross sliding"
+    with mfv.Case.from_text(SLIDING) as case:
+        assert case.run() == "gross sliding"
+        with pytest.raises(errors.GrossSliding):
+            case.run(check=True)
+        with pytest.raises(errors.GrossSliding):
+            case.advance(tangential_force=0.0, check=True)
+
+
+def test_bad_arguments_leave_the_case_as_it_was() -> None:
+    with mfv.Case.from_text(SHEARED) as case:
+        with pytest.raises(errors.BadArgument, match="must not be negative"):
+            case.advance(normal_force=-1.0)
+        with pytest.raises(errors.BadArgument, match="not finite"):
+            case.advance(shift=float("nan"))
+        with pytest.raises(TypeError, match="not both"):
+            case.advance(normal_force=1.0, approach=1.0)
+        with pytest.raises(KeyError, match="state/pressur"):
+            case["state/pressur"]
+        assert case.outcome == "complete"
+        assert case.run() == "complete"
+
+
+def test_a_file_that_cannot_be_written_is_a_file_error(tmp_path: Path) -> None:
+    with pytest.raises(errors.FileError, match="nowhere"):
+        mfv.run(text=SHEARED, output=tmp_path / "nowhere" / "result.h5")
+
+
+def test_two_threads_give_the_digits_of_one(sheared: mfv.Result, tmp_path: Path) -> None:
+    texts = [SHEARED, FLAT_PUNCH] * 3
+    results: list[mfv.Result | None] = [None] * len(texts)
+
+    def work(number: int) -> None:
+        results[number] = mfv.run(text=texts[number], output=tmp_path / f"{number}.h5")
+
+    threads = [threading.Thread(target=work, args=(number,)) for number in range(len(texts))]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+    alone = {SHEARED: sheared, FLAT_PUNCH: mfv.run(text=FLAT_PUNCH)}
+    for number, text in enumerate(texts):
+        assert_same(results[number], alone[text])
+        assert_same(mfv.read(tmp_path / f"{number}.h5"), alone[text])
+
+
+def test_a_closed_case_is_closed() -> None:
+    case = mfv.Case.from_text(SHEARED)
+    case.close()
+    case.close()
+    assert "closed" in repr(case)
+    for use in (case.run, case.fields, case.result, lambda: case["mesh/x"], lambda: case.advance(shift=0.0), lambda: case.write("x.h5")):
+        with pytest.raises(errors.BadHandle):
+            use()
+    assert not Path("x.h5").exists()
+
+
+# --- results ---
+
+
+def test_a_group_is_attributes_and_items(sheared: mfv.Result) -> None:
+    assert sheared.state.pressure is sheared.state["pressure"]
+    assert "pressure" in sheared.reference and "nothing" not in sheared.reference
+    assert "pressure" in dir(sheared.state)
+    assert "compressive" in sheared.state.description("pressure") and "compressive" in repr(sheared.state)
+    assert "complete" in repr(sheared)
+    with pytest.raises(AttributeError, match="pressure"):
+        sheared.state.nothing
+
+
+def test_a_result_without_closed_form_and_history_has_empty_groups() -> None:
+    result = mfv.run(text=NO_HISTORY.replace("'goodman'", "'full'"))
+    assert len(result.history) == 0 and len(result.reference) == 0
+    assert "complete" in repr(result)
+
+
+def test_the_state_of_the_last_step_is_the_state(sheared: mfv.Result) -> None:
+    assert len(sheared.steps) == 3
+    for name in sheared.state:
+        np.testing.assert_array_equal(sheared.steps[-1][name], sheared.state[name])
+
+
+def test_xarray_finds_coordinates(tmp_path: Path) -> None:
+    xarray = pytest.importorskip("xarray")
+    pytest.importorskip("h5netcdf")
+    mfv.run(text=SHEARED, output=tmp_path / "result.h5")
+    for group, coordinate in (("state", "x"), ("steps/0001", "x"), ("mesh", "x"), ("history", "record"), ("reference", "x")):
+        with xarray.open_dataset(tmp_path / "result.h5", engine="h5netcdf", group=group) as dataset:
+            assert coordinate in dataset.coords
+
+
+# --- closed forms ---
+
+
+def test_closed_forms_are_those_of_the_result(sheared: mfv.Result) -> None:
+    scene, loads = sheared.scene, sheared.summary
+    half_width = mfv.reference.hertz_half_width(loads.normal_force, scene.radius, scene.shear_modulus, scene.kolosov_constant)
+    assert half_width == pytest.approx(sheared.reference.contact_half_width)
+    np.testing.assert_allclose(
+        mfv.reference.hertz_pressure(sheared.mesh.x, loads.normal_force, half_width), sheared.reference.pressure
+    )
+    assert mfv.reference.mindlin_stick_ratio(2.8e-4, 1.0e-3, 0.7) == pytest.approx(np.sqrt(0.6))
+    assert np.isnan(mfv.reference.hertz_pressure(0.0, 1.0, -1.0))
+
+
+def test_closed_forms_take_arrays() -> None:
+    x = np.array([[-0.5], [0.0], [0.3]])
+    shear = mfv.reference.mindlin_shear(x, [0.0, 0.2], 1.0, 1.0, 0.5)
+    assert shear.shape == (3, 2)
+    np.testing.assert_allclose(shear[:, 0], 0.0, atol=1e-15)
+    assert shear[1, 1] == mfv.reference.mindlin_shear(0.0, 0.2, 1.0, 1.0, 0.5)
+    assert mfv.reference.flat_punch_pressure(0.0, 1.0, 2.0) == pytest.approx(1.0 / (2.0 * np.pi))
+    assert 0.0 < mfv.reference.spence_stick_ratio(0.3, 0.2) < 1.0
+    assert mfv.reference.spence_cylinder_shear(0.5, 1.0, 1.0, 0.3, 0.2) == -mfv.reference.spence_cylinder_shear(-0.5, 1.0, 1.0, 0.3, 0.2)
+    assert mfv.reference.spence_flat_punch_shear(0.0, 1.0, 1.0, 0.3, 0.2) == pytest.approx(0.0, abs=1e-12)
+    assert mfv.reference.mindlin_dissipation(0.2, 1.0, 1.0, 10.0, 0.5) > 0.0
+
+
+# --- pictures and the command line ---
+
+
+@pytest.mark.parametrize(
+    ("text", "panels"),
+    [(MINDLIN.read_text(), 3), (SLIDING, 3), (FRICTIONLESS, 2), (FLAT_PUNCH, 2), (NO_HISTORY, 2)],
+    ids=["mindlin", "sliding", "frictionless", "punch", "no history"],
+)
+def test_plot_draws(text: str, panels: int, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    mfv.run(text=text, output=tmp_path / "x.h5")
+    assert command_line.main(["plot", str(tmp_path / "x.h5")]) == 0
+    assert capsys.readouterr().out.strip() == str(tmp_path / "x.png")
+    picture = (tmp_path / "x.png").read_bytes()
+    assert picture.startswith(b"\x89PNG") and len(picture) > 20000
+    assert len(mfv.plot.figure(mfv.read(tmp_path / "x.h5")).axes) == panels
+    assert command_line.main(["plot", str(tmp_path / "x.h5"), "--step", "1", "-o", str(tmp_path / "y.svg")]) == 0
+    assert b"<svg" in (tmp_path / "y.svg").read_bytes()
+
+
+def test_a_case_that_was_not_run_can_be_drawn() -> None:
+    with mfv.Case.from_text(SHEARED) as case:
+        assert len(mfv.plot.figure(case.result()).axes) == 2
+
+
+def test_panels_show_numbers_and_closed_forms(sheared: mfv.Result) -> None:
+    picture = mfv.plot.figure(sheared)
+    for ax in picture.axes:
+        assert {"computed", "closed form"} <= set(ax.get_legend_handles_labels()[1])
+    (computed,) = (line for line in picture.axes[0].lines if line.get_label() == "computed")
+    np.testing.assert_array_equal(computed.get_ydata(), sheared.state.pressure)
+    assert {"stick", "slip to the right"} <= set(picture.axes[1].get_legend_handles_labels()[1])
+
+
+def test_the_closed_form_of_the_shear_is_drawn_for_its_own_state_only(sheared: mfv.Result) -> None:
+    assert "closed form" in mfv.plot.figure(sheared, 3).axes[1].get_legend_handles_labels()[1]
+    second = mfv.plot.figure(sheared, 2)
+    assert "closed form" in second.axes[0].get_legend_handles_labels()[1]
+    assert "closed form" not in second.axes[1].get_legend_handles_labels()[1]
+
+
+def test_units_are_shown_where_the_user_named_them(sheared: mfv.Result) -> None:
+    assert "[" not in mfv.plot.figure(sheared).axes[0].get_ylabel()
+    assert mfv.plot.figure(mfv.run(text=FRICTIONLESS)).axes[0].get_ylabel().endswith("[N/mm$^2$]")
+
+
+def test_info_tells_what_is_there(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    mfv.run(text=SHEARED, output=tmp_path / "x.h5")
+    assert command_line.main(["info", str(tmp_path / "x.h5")]) == 0
+    printed = capsys.readouterr().out
+    for word in ("sheared", "complete", "stick_ratio", "Hertz", "61 nodes", "3 states"):
+        assert word in printed
+
+
+def test_unusable_input_ends_with_one_line_and_code_2(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    mfv.run(text=SHEARED, output=tmp_path / "x.h5")
+    (tmp_path / "text.h5").write_text("no HDF5\n")
+    with h5py.File(tmp_path / "other.h5", "w") as file:
+        file["data"] = 1
+    good = str(tmp_path / "x.h5")
+    for arguments, complaint in (
+        (["plot", str(tmp_path / "missing.h5")], "No such file"),
+        (["info", str(tmp_path / "text.h5")], "not a result file"),
+        (["plot", str(tmp_path / "other.h5")], "not a result file"),
+        (["info", str(tmp_path)], "directory"),
+        (["plot", good, "--step", "9"], "there is no step 9"),
+        (["plot", good, "--step", "0"], "there is no step 0"),
+        (["plot", good, "-o", str(tmp_path / "nowhere" / "x.png")], "nowhere"),
+        (["plot", good, "-o", str(tmp_path / "x.tiffany")], "tiffany"),
+    ):
+        assert command_line.main(arguments) == 2, arguments
+        printed = capsys.readouterr()
+        assert complaint in printed.err and printed.err.count("\n") == 1 and printed.out == ""
+
+
+@pytest.mark.parametrize("arguments", [[], ["draw"], ["plot"], ["plot", "x.h5", "--step", "two"]])
+def test_a_wrong_command_line_ends_with_code_2(arguments: list[str]) -> None:
+    with pytest.raises(SystemExit) as caught:
+        command_line.main(arguments)
+    assert caught.value.code == 2
+
+
+def test_help_teaches(capsys: pytest.CaptureFixture[str]) -> None:
+    with pytest.raises(SystemExit) as caught:
+        command_line.main(["--help"])
+    assert caught.value.code == 0
+    assert "python -m mfv plot mindlin.h5" in capsys.readouterr().out
+
+
+def test_the_module_runs_as_a_program(tmp_path: Path) -> None:
+    ended = subprocess.run(
+        [sys.executable, "-m", "mfv", "info", str(tmp_path / "missing.h5")],
+        env={**os.environ, "PYTHONPATH": str(Path(mfv.__file__).parents[1])}, capture_output=True, text=True,
+    )
+    assert ended.returncode == 2 and ended.stderr.startswith("mfv: ")
