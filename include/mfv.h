@@ -49,7 +49,7 @@ int mfv_version(char *buffer, size_t size);
 int mfv_status_text(int status, char *outcome, size_t outcome_size, char *explanation, size_t explanation_size);
 
 /* Create a case from a namelist file, or from a text (`name`: what messages call it; files named in the text are looked
- * for beside it). On failure *handle is NULL and `message`, which may be NULL, tells why. Since 0.1.0. */
+ * for beside it). It may have no &step when mfv_advance is to lead the loads. On failure *handle is NULL and `message`, which may be NULL, tells why. Since 0.1.0. */
 int mfv_create_from_file(const char *path, mfv_case **handle, char *message, size_t message_size);
 int mfv_create_from_text(const char *text, const char *name, mfv_case **handle, char *message, size_t message_size);
 

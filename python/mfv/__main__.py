@@ -8,15 +8,15 @@ from pathlib import Path
 
 from . import __version__
 from .errors import MfvError
-from .result import Group, Result, read
+from .result import Group, Result, kept, read
 
 UNUSABLE = 2  # exit code, as that of mfv_run for input that cannot be used
 
 PLOT_HELP = """\
-Draw a result as a picture of up to three panels: the pressure over x; the shear traction over x with the stick and slip
-zones behind it and the limits of friction around it (without friction: the surfaces of both bodies); the tangential force
-over the shift (where there is a history with a tangential force), with the ends of the steps numbered. Points are
-computed, lines are closed forms where the file has them.
+Draw a result as a picture of up to three panels: the pressure over x; the shear traction over x with the stick and
+slip zones behind it and the limits of friction around it (without friction: the surfaces of both bodies); the
+tangential force over the shift (where there is a history with a tangential force), with the ends of the steps
+numbered. Points are computed, lines are closed forms where the file has them.
 """
 
 EXAMPLES = """\
@@ -48,10 +48,16 @@ def _parser() -> argparse.ArgumentParser:
     parser.add_argument("--version", action="version", version=f"mfv {__version__}")
     commands = parser.add_subparsers(required=True, metavar="plot | info")
 
-    plot = commands.add_parser("plot", help="draw a result", description=PLOT_HELP, epilog=EXAMPLES, formatter_class=raw)
+    plot = commands.add_parser(
+        "plot", help="draw a result", description=PLOT_HELP, epilog=EXAMPLES, formatter_class=raw
+    )
     plot.add_argument("file", type=Path, metavar="RESULT.h5", help="result file")
-    plot.add_argument("-o", "--output", type=Path, metavar="PICTURE", help="png, pdf or svg; else RESULT.png beside the file")
-    plot.add_argument("--step", type=int, metavar="N", help="the state in the file's group steps/000N in place of the last")
+    plot.add_argument(
+        "-o", "--output", type=Path, metavar="PICTURE", help="png, pdf or svg; else RESULT.png beside the file"
+    )
+    plot.add_argument(
+        "--step", type=int, metavar="N", help="the state in the file's group steps/000N in place of the last"
+    )
     plot.set_defaults(command=_plot)
 
     info = commands.add_parser("info", help="print what is in a result", epilog=EXAMPLES, formatter_class=raw)
@@ -82,7 +88,7 @@ def _description(result: Result) -> str:
         ["summary", *_lines(result.summary)],
         ["certificate", *_lines(result.certificate)],
         ["closed form", *(f"  {line}" for line in sources)] if sources else ["closed form: none"],
-        [f"{result.mesh.x.size} nodes, {len(result.steps)} states in steps, {len(result.history.get('record', ()))} records in history"],
+        [f"{result.mesh.x.size} nodes, {kept(result)}"],
     ]
     return "\n\n".join("\n".join(block) for block in blocks)
 

@@ -60,7 +60,17 @@ SIGNATURES: dict[str, tuple[type, ...]] = {
     "mfv_message": (c_int, _handle, c_char_p, c_size_t),
     "mfv_field_count": (c_int, _handle, POINTER(c_size_t)),
     "mfv_field_path": (c_int, _handle, c_size_t, c_char_p, c_size_t),
-    "mfv_field_info": (c_int, _handle, c_char_p, POINTER(c_size_t), POINTER(c_int), c_char_p, c_size_t, c_char_p, c_size_t),
+    "mfv_field_info": (
+        c_int,
+        _handle,
+        c_char_p,
+        POINTER(c_size_t),
+        POINTER(c_int),
+        c_char_p,
+        c_size_t,
+        c_char_p,
+        c_size_t,
+    ),
     "mfv_copy_real": (c_int, _handle, c_char_p, POINTER(c_double), c_size_t),
     "mfv_copy_integer": (c_int, _handle, c_char_p, POINTER(c_int32), c_size_t),
     "mfv_write": (c_int, _handle, c_char_p),
@@ -76,7 +86,7 @@ SIGNATURES: dict[str, tuple[type, ...]] = {
 }
 
 
-@functools.lru_cache(maxsize=None)
+@functools.cache
 def library() -> ctypes.CDLL:
     """The library, loaded when first needed, with the signatures of its functions. Raises LibraryNotFound."""
     path = find_library()
@@ -130,10 +140,10 @@ def text_for(text: str | os.PathLike[str]) -> bytes:
     return encoded
 
 
-@functools.lru_cache(maxsize=None)
+@functools.cache
 def statuses() -> tuple[tuple[int, str, str], ...]:
     """Code, outcome and explanation of every status of the library, from its own list."""
-    found = []
+    found: list[tuple[int, str, str]] = []
     outcome, explanation = text_buffer(), text_buffer()
     for code in itertools.count():
         if library().mfv_status_text(code, outcome, len(outcome), explanation, len(explanation)) != 0:

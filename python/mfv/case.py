@@ -6,7 +6,7 @@ import ctypes
 import os
 import threading
 import weakref
-from ctypes import byref, c_double, c_int, c_int32, c_size_t, c_void_p
+from ctypes import POINTER, byref, c_double, c_int, c_int32, c_size_t, c_void_p
 from types import TracebackType
 
 import numpy as np
@@ -33,9 +33,13 @@ def run(
     and `message` and the state up to there; `check=True` raises the exception of the outcome instead, after writing.
     Raises InputError for a case that cannot be used, FileError when the result could not be written.
     """
-    if (path is None) == (text is None):
+    if path is not None and text is None:
+        case = Case.from_file(path)
+    elif text is not None and path is None:
+        case = Case.from_text(text)
+    else:
         raise TypeError("mfv.run takes the path of a case or text=, one of them")
-    with Case.from_file(path) if path is not None else Case.from_text(text) as case:
+    with case:
         case.run()
         if output is not None:
             case.write(output)
@@ -113,9 +117,10 @@ class Case:
     ) -> str:
         """Lead the loads through one more step, whatever the steps of the case are; return the outcome.
 
-        Targets are reached linearly from the loads now; a load without a target keeps what it has. Either `normal_force`
-        [force/length] or `approach` [length], and `tangential_force` or `shift`. `friction`: whether it acts during this
-        step. `cycles`: go to the targets and back this many times. `check`: as for `run`. Raises BadArgument.
+        Targets are reached linearly from the loads now; a load without a target keeps what it has. Give `normal_force`
+        [force/length] or `approach` [length], and `tangential_force` or `shift` likewise. `friction`: whether it acts
+        during this step. `cycles`: go to the targets and back this many times. `check`: as for `run`.
+        Raises BadArgument.
         """
         normal_control, normal_target = _control("normal_force", normal_force, "approach", approach)
         tangential_control, tangential_target = _control("tangential_force", tangential_force, "shift", shift)
@@ -169,16 +174,20 @@ class Case:
         unit, description = text_buffer(), text_buffer()
         name = text_for(path)
         with self._lock:
-            self._call("mfv_field_info", name, byref(count), byref(is_integer), unit, len(unit), description, len(description))
+            self._call(
+                "mfv_field_info", name, byref(count), byref(is_integer), unit, len(unit), description, len(description)
+            )
+            values: Values
             if is_integer:
-                values, c_type, copy = np.empty(count.value, dtype=np.int32), c_int32, "mfv_copy_integer"
+                values = np.empty(count.value, dtype=np.int32)
+                self._call("mfv_copy_integer", name, values.ctypes.data_as(POINTER(c_int32)), count.value)
             else:
-                values, c_type, copy = np.empty(count.value, dtype=np.float64), c_double, "mfv_copy_real"
-            self._call(copy, name, values.ctypes.data_as(ctypes.POINTER(c_type)), count.value)
+                values = np.empty(count.value, dtype=np.float64)
+                self._call("mfv_copy_real", name, values.ctypes.data_as(POINTER(c_double)), count.value)
         return Field(values[0] if _is_scalar(path, values) else values, text_of(unit), text_of(description))
 
     def _lead(self, check: bool, function: str, *arguments: object) -> str:
-        """Call what leads the loads; return the outcome. Raises for a call gone wrong, and with `check` for an early end."""
+        """Call what leads the loads; return the outcome. Raises for a bad call, and with `check` for an early end."""
         with self._lock:
             status = getattr(library(), function)(self._handle, *arguments)
             message = self._library_message()
@@ -216,7 +225,9 @@ def _created(function: str, *arguments: bytes) -> c_void_p:
     return handle
 
 
-def _control(force_name: str, force: float | None, displacement_name: str, displacement: float | None) -> tuple[Control, float]:
+def _control(
+    force_name: str, force: float | None, displacement_name: str, displacement: float | None
+) -> tuple[Control, float]:
     """What a step does with a load, and its target."""
     if force is not None and displacement is not None:
         raise TypeError(f"give {force_name} or {displacement_name}, not both")

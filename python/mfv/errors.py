@@ -30,7 +30,7 @@ class NotAResult(MfvError):
     """A file is not a result file of MFV."""
 
 
-@functools.lru_cache(maxsize=None)
+@functools.cache
 def failures() -> dict[int, type[MfvError]]:
     """The exceptions of the library's failing statuses, by status."""
     from ._library import statuses

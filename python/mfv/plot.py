@@ -6,11 +6,14 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from typing import Any
 
 import matplotlib
 import numpy as np
+from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from matplotlib.layout_engine import ConstrainedLayoutEngine
 from matplotlib.patches import Patch
 
 from .codes import EventKind, NodeStatus
@@ -18,14 +21,15 @@ from .result import Group, Result, counts
 
 #: Colours from Okabe and Ito, told apart by the colour-blind too.
 NUMBERS, CLOSED_FORM, SURFACE, MARKS = "#0072B2", "#D55E00", "#009E73", "#000000"
-ZONES = {
-    NodeStatus.STICK: {"label": "stick", "facecolor": "#DCEBF5", "edgecolor": "none"},
-    NodeStatus.SLIP_RIGHT: {"label": "slip to the right", "facecolor": "#FBE3B4", "edgecolor": "#C9A24B", "hatch": "///"},
-    NodeStatus.SLIP_LEFT: {"label": "slip to the left", "facecolor": "#EBD3E1", "edgecolor": "#B98AA6", "hatch": "\\\\\\"},
-    NodeStatus.FRICTIONLESS: {"label": "frictionless contact", "facecolor": "#EEEEEE", "edgecolor": "none"},
+STICK, RIGHT, LEFT, WITHOUT_FRICTION = "#DCEBF5", "#FBE3B4", "#EBD3E1", "#EEEEEE"
+ZONES: dict[int, dict[str, Any]] = {
+    NodeStatus.STICK: dict(label="stick", facecolor=STICK, edgecolor="none"),
+    NodeStatus.SLIP_RIGHT: dict(label="slip to the right", facecolor=RIGHT, edgecolor="#C9A24B", hatch="///"),
+    NodeStatus.SLIP_LEFT: dict(label="slip to the left", facecolor=LEFT, edgecolor="#B98AA6", hatch="\\\\\\"),
+    NodeStatus.FRICTIONLESS: dict(label="frictionless contact", facecolor=WITHOUT_FRICTION, edgecolor="none"),
 }
 
-STYLE = {
+STYLE: dict[Any, Any] = {
     "font.family": ["STIXGeneral"],
     "mathtext.fontset": "stix",
     "font.size": 11,
@@ -51,13 +55,13 @@ NAMED_TOGETHER = 4
 def figure(result: Result, step: int | None = None) -> Figure:
     """A picture of a result: pressure; shear traction, or the surfaces without friction; load-displacement curve.
 
-    `step`: draw the state in `result.steps[step - 1]` in place of the last state. Raises ValueError where there is none.
+    `step`: draw the state in `result.steps[step - 1]` not the last one. Raises ValueError where there is none.
     """
     panels = [pressure, shear if _has_friction(result) else surfaces]
     if _is_sheared(result):
         panels.append(loop)
     with matplotlib.rc_context(STYLE):
-        picture = Figure(layout="constrained")
+        picture = Figure()
         for panel, ax, letter in zip(panels, picture.subplots(1, len(panels)), "abc"):
             panel(result, ax, step)
             ax.set_title(f"({letter})")
@@ -109,8 +113,10 @@ def loop(result: Result, ax: Axes, step: int | None = None) -> None:
     has_events = not np.isin(history.event_kind, (EventKind.START, EventKind.STEP_END, EventKind.STOPPED)).all()
     ax.plot(shift, force, color=NUMBERS, linewidth=0.8 if has_events else 0.0, **_points(len(shift)), label="computed")
     if "shift" in result.reference:
-        style = {"linestyle": (0, (4, 3))} if has_events else {"linestyle": "none", "marker": "x", "markersize": 4}
-        ax.plot(result.reference.shift, force, color=CLOSED_FORM, linewidth=0.9, label="closed form", **style)
+        style: dict[str, Any] = dict(linestyle=(0, (4, 3))) if has_events else dict(linestyle="none", marker="x")
+        ax.plot(
+            result.reference.shift, force, color=CLOSED_FORM, linewidth=0.9, label="closed form", markersize=4, **style
+        )
     _mark_step_ends(ax, result, step)
     ax.set_xlabel(_label("shift", "U", history.unit("shift")))
     ax.set_ylabel(_label("tangential force", "Q", history.unit("tangential_force")))
@@ -133,7 +139,8 @@ def _loads(result: Result, step: int | None) -> Group:
 
 
 def _has_friction(result: Result) -> bool:
-    return result.scene.friction_coefficient > 0.0
+    """Whether the tangential problem was solved; slip is not a number where it was not."""
+    return not bool(np.isnan(result.state.slip).all())
 
 
 def _is_sheared(result: Result) -> bool:
@@ -168,13 +175,13 @@ def _draw_closed_form(ax: Axes, result: Result, values: np.ndarray) -> None:
 def _draw_points(
     ax: Axes, result: Result, state: Group, values: np.ndarray, label: str = "computed", color: str = NUMBERS
 ) -> None:
-    points = _points(np.count_nonzero(state.status != NodeStatus.OPEN))
+    points = _points(int(np.count_nonzero(state.status != NodeStatus.OPEN)))
     ax.plot(result.mesh.x, values, linestyle="none", color=color, **points, label=label)
 
 
-def _points(number: int) -> dict[str, object]:
+def _points(number: int) -> dict[str, Any]:
     """Markers that leave each other room: smaller where there are more."""
-    return {"marker": "o", "markersize": float(np.clip(350.0 / max(number, 1), 1.0, 3.5)), "markeredgewidth": 0.0}
+    return dict(marker="o", markersize=float(np.clip(350.0 / max(number, 1), 1.0, 3.5)), markeredgewidth=0.0)
 
 
 def _shade_zones(ax: Axes, result: Result, state: Group) -> None:
@@ -182,7 +189,9 @@ def _shade_zones(ax: Axes, result: Result, state: Group) -> None:
     half = 0.5 * result.mesh.interval
     for status, first, last in _runs(state.status):
         if status in ZONES:
-            ax.axvspan(result.mesh.x[first] - half, result.mesh.x[last] + half, linewidth=0.0, zorder=0, **ZONES[status])
+            ax.axvspan(
+                result.mesh.x[first] - half, result.mesh.x[last] + half, linewidth=0.0, zorder=0, **ZONES[status]
+            )
 
 
 def _runs(values: np.ndarray) -> Iterator[tuple[int, int, int]]:
@@ -193,7 +202,7 @@ def _runs(values: np.ndarray) -> Iterator[tuple[int, int, int]]:
 
 
 def _frame_contact(ax: Axes, result: Result, state: Group) -> None:
-    """Show the contact and a quarter of its length on either side, as far as there are nodes; all of the mesh without one."""
+    """Show the contact and a quarter of its length on either side, as far as the mesh goes; else all of it."""
     half = 0.5 * result.mesh.interval
     left, right = result.mesh.x[0] - half, result.mesh.x[-1] + half
     touching = result.mesh.x[state.status != NodeStatus.OPEN]
@@ -201,6 +210,7 @@ def _frame_contact(ax: Axes, result: Result, state: Group) -> None:
         margin = 0.25 * (touching[-1] - touching[0] + 2.0 * half)
         left, right = max(left, touching[0] - half - margin), min(right, touching[-1] + half + margin)
     ax.set_xlim(left, right)
+    ax.locator_params(axis="x", nbins=5)
     ax.set_xlabel(_label("position", "x", result.mesh.unit("x")))
 
 
@@ -231,9 +241,11 @@ def _is_labelled_above(places: np.ndarray, number: int, middle: np.ndarray) -> b
 def _mark(ax: Axes, place: np.ndarray, text: str, marker: str, bold: bool, above: bool) -> None:
     """A mark with its text."""
     width, weight = (1.8, "bold") if bold else (0.8, "normal")
-    side = {"ha": "right", "va": "bottom", "xytext": (-5, 5)} if above else {"ha": "left", "va": "top", "xytext": (5, -5)}
+    ha, va, offset = ("right", "bottom", (-5, 5)) if above else ("left", "top", (5, -5))
     ax.plot(*place, marker=marker, markersize=7, markerfacecolor="none", markeredgecolor=MARKS, markeredgewidth=width)
-    ax.annotate(text, place, textcoords="offset points", fontsize=9, fontweight=weight, **side)
+    ax.annotate(
+        text, tuple(place), xytext=offset, textcoords="offset points", ha=ha, va=va, fontsize=9, fontweight=weight
+    )
 
 
 def _places(points: np.ndarray, tolerance: np.ndarray) -> list[tuple[np.ndarray, list[int]]]:
@@ -256,7 +268,7 @@ def _enumeration(numbers: list[int]) -> str:
 
 def _add_legend_and_caption(picture: Figure, caption: str) -> None:
     """One legend below all panels, lines before zones, and the caption below it; sets the size of the picture."""
-    handles = {}
+    handles: dict[str, Artist] = {}
     for ax in picture.axes:
         for handle, label in zip(*ax.get_legend_handles_labels()):
             handles.setdefault(label, handle)
@@ -265,10 +277,17 @@ def _add_legend_and_caption(picture: Figure, caption: str) -> None:
     legend_top = 2.0 * SPACE + CAPTION_ROW * (1 + caption.count("\n")) + LEGEND_ROW * -(-len(labels) // columns)
     height = PANEL_HEIGHT + SPACE + legend_top
     picture.set_size_inches(PANEL_WIDTH * len(picture.axes), height)
-    picture.get_layout_engine().set(rect=(0.0, 1.0 - PANEL_HEIGHT / height, 1.0, PANEL_HEIGHT / height), w_pad=0.08)
+    panels = (0.0, 1.0 - PANEL_HEIGHT / height, 1.0, PANEL_HEIGHT / height)
+    picture.set_layout_engine(ConstrainedLayoutEngine(rect=panels, w_pad=0.08))
     picture.legend(
-        [handles[label] for label in labels], labels, ncols=columns, fontsize=10, borderaxespad=0.0, borderpad=0.0,
-        loc="upper center", bbox_to_anchor=(0.5, legend_top / height),
+        [handles[label] for label in labels],
+        labels,
+        ncols=columns,
+        fontsize=10,
+        borderaxespad=0.0,
+        borderpad=0.0,
+        loc="upper center",
+        bbox_to_anchor=(0.5, legend_top / height),
     )
     picture.text(0.5, SPACE / height, caption, ha="center", va="bottom", fontsize=9, color="0.35", parse_math=False)
 

@@ -56,7 +56,11 @@ def mindlin_stick_ratio(
 
 
 def mindlin_shear(
-    x: ArrayLike, tangential_force: ArrayLike, normal_force: ArrayLike, half_width: ArrayLike, friction_coefficient: ArrayLike
+    x: ArrayLike,
+    tangential_force: ArrayLike,
+    normal_force: ArrayLike,
+    half_width: ArrayLike,
+    friction_coefficient: ArrayLike,
 ) -> NDArray[np.float64]:
     """Shear traction at x under a cylinder pressed, then sheared by a growing force (Cattaneo, Mindlin)."""
     return _evaluated("mfv_mindlin_shear", x, tangential_force, normal_force, half_width, friction_coefficient)
@@ -70,9 +74,12 @@ def mindlin_dissipation(
     friction_coefficient: ArrayLike,
 ) -> NDArray[np.float64]:
     """Energy that a cylinder dissipates in a cycle of shear between +Q and -Q, per unit thickness (Mindlin)."""
-    return _evaluated("mfv_mindlin_dissipation", tangential_force, normal_force, half_width, radius, friction_coefficient)
+    return _evaluated(
+        "mfv_mindlin_dissipation", tangential_force, normal_force, half_width, radius, friction_coefficient
+    )
 
 
 def _evaluated(function: str, *arguments: ArrayLike) -> NDArray[np.float64]:
     """A function of the library over arrays; a plain number for plain numbers."""
-    return np.vectorize(getattr(library(), function), otypes=[np.float64])(*arguments)[()]
+    values: NDArray[np.float64] = np.vectorize(getattr(library(), function), otypes=[np.float64])(*arguments)
+    return values[()]

@@ -4,14 +4,15 @@ from __future__ import annotations
 
 import os
 from collections.abc import Iterator, Mapping
-from typing import NamedTuple, Union
+from typing import Any, NamedTuple
 
 import h5py
 import numpy as np
 
 from .errors import NotAResult
 
-Values = Union[np.ndarray, np.float64, np.int32]
+Values = Any
+"""What a quantity is: an array of float64 or int32, or one such number."""
 
 #: Groups that a result can be without; they are then empty.
 OPTIONAL_GROUPS = ("history", "reference")
@@ -26,7 +27,7 @@ class Field(NamedTuple):
 
 
 class Group(Mapping[str, Values]):
-    """Named quantities, as attributes and as items: `group.pressure` is `group["pressure"]`. `in` tells what is there."""
+    """Named quantities, as attributes and items: `group.pressure` is `group["pressure"]`; `in` tells what is there."""
 
     def __init__(self, fields: Mapping[str, Field]) -> None:
         self._fields = dict(fields)
@@ -51,7 +52,10 @@ class Group(Mapping[str, Values]):
         return [*super().__dir__(), *self._fields]
 
     def __repr__(self) -> str:
-        lines = [f"  {name:24} {_short(field.values):>14} {field.unit:16} {field.description}" for name, field in self._fields.items()]
+        lines = [
+            f"  {name:24} {_short(field.values):>14} {field.unit:16} {field.description}"
+            for name, field in self._fields.items()
+        ]
         return "\n".join(["<mfv.Group", *lines]) + ">"
 
     def unit(self, name: str) -> str:
@@ -115,7 +119,7 @@ class Result:
             f"  normal        force {amount('normal_force')}, approach {amount('approach')}",
             f"  tangential    force {amount('tangential_force')}, shift {amount('shift')}",
             f"  certificate   largest relative residual {amount('largest_residual')}",
-            f"  kept          {len(self.steps)} states in steps, {len(self.history.get('record', ()))} records in history",
+            f"  kept          {kept(self)}",
         ]
         return "\n".join(lines) + ">"
 
@@ -123,6 +127,11 @@ class Result:
         """A value of the summary with its unit."""
         unit = self.summary.unit(name)
         return f"{self.summary[name]:.6g}" + ("" if unit == "1" else f" {unit}")
+
+
+def kept(result: Result) -> str:
+    """What a result keeps of the load history, in words."""
+    return f"{len(result.steps)} states in steps, {len(result.history.get('record', ()))} records in history"
 
 
 def counts(loads: Group) -> str:
@@ -147,7 +156,7 @@ def read(path: str | os.PathLike[str]) -> Result:
 
 
 def _groups(file: h5py.File) -> dict[str, dict[str, Field]]:
-    """All groups that have datasets, by path. Coordinates are in the group they belong to, not where they are linked."""
+    """All groups that have datasets, by path. Coordinates are in the group they belong to, not where they are links."""
     groups: dict[str, dict[str, Field]] = {}
 
     def add(group: h5py.Group) -> None:

@@ -55,6 +55,7 @@ module mfv_certificate
    contains
       procedure :: largest
       procedure :: traction_scale
+      procedure :: claim
       procedure :: check_increment
       procedure :: note_jump
       procedure, private :: note
@@ -78,19 +79,24 @@ contains
       description = trim(descriptions(kind))
    end function residual_description
 
-   !> Empty certificate. No energy balance is claimed under Goodman's coupling with friction, whose compliance is not
-   !> symmetric; nothing tangential is claimed where friction never acts.
+   !> Empty certificate of a model.
    function new_certificate(model) result(certificate)
       type(contact_model_type), intent(in) :: model
       type(certificate_type) :: certificate
 
-      if (model%compliance%has_block(block_ut)) then
-         certificate%claimed(energy_balance) = model%scene%coupling /= coupling_goodman
-      else
-         certificate%claimed([elasticity_tangential, tangential_force_balance, stick_slip, slip_traction, &
-                              friction_limit, slip_direction]) = .false.
-      end if
+      call certificate%claim(model)
    end function new_certificate
+
+   !> Find out what can be claimed. No energy balance under Goodman's coupling with friction, whose compliance is not
+   !> symmetric; nothing tangential where friction has not acted yet.
+   subroutine claim(self, model)
+      class(certificate_type), intent(inout) :: self
+      type(contact_model_type), intent(in) :: model
+
+      self%claimed(energy_balance) = .not. model%tangential .or. model%scene%coupling /= coupling_goodman
+      self%claimed([elasticity_tangential, tangential_force_balance, stick_slip, slip_traction, friction_limit, &
+                    slip_direction]) = model%tangential
+   end subroutine claim
 
    !> The largest claimed residual.
    pure real(wp) function largest(self)

@@ -38,7 +38,7 @@ contains
       associate (model => simulation%contact%model, scene => simulation%contact%model%scene, &
                  force => simulation%contact%state%fields%normal_force)
          if (.not. force > 0.0_wp) return
-         if (scene%coupling == coupling_full .and. scene%tangential()) return
+         if (scene%coupling == coupling_full .and. model%tangential) return
          select case (scene%indenter%shape)
          case (shape_disk)
             form%half_width = hertz_half_width(force, scene%indenter%radius, scene%material)
@@ -62,11 +62,11 @@ contains
       real(wp) :: before
       integer :: i
 
-      associate (scene => simulation%contact%model%scene)
-         is_spence = scene%coupling == coupling_goodman .and. scene%tangential()
+      associate (model => simulation%contact%model)
+         is_spence = model%scene%coupling == coupling_goodman .and. model%tangential
          before = 0.0_wp
-         do i = 1, size(scene%steps)
-            associate (step => scene%steps(i))
+         do i = 1, size(simulation%taken)
+            associate (step => simulation%taken(i))
                is_spence = is_spence .and. step%friction .and. step%cycles == 0 &
                            .and. step%normal_control == control_force .and. step%normal_target >= before &
                            .and. .not. abs(step%tangential_target) > 0.0_wp
@@ -99,11 +99,11 @@ contains
       logical :: pressing
       integer :: i
 
-      associate (scene => simulation%contact%model%scene)
-         is_mindlin = scene%indenter%shape == shape_disk .and. scene%tangential()
+      associate (model => simulation%contact%model, scene => simulation%contact%model%scene)
+         is_mindlin = scene%indenter%shape == shape_disk .and. model%tangential
          pressing = .true.
-         do i = 1, size(scene%steps)
-            associate (step => scene%steps(i))
+         do i = 1, size(simulation%taken)
+            associate (step => simulation%taken(i))
                pressing = pressing .and. .not. abs(step%tangential_target) > 0.0_wp
                if (pressing) then
                   is_mindlin = is_mindlin .and. (.not. step%friction .or. scene%coupling == coupling_none) &

@@ -20,6 +20,8 @@ module mfv_contact_model
       !> Whether the indenter covers the node, so that it can touch at all.
       logical, allocatable :: can_touch(:)
       class(compliance_type), allocatable :: compliance
+      !> Whether the tangential problem is modelled: friction acts in some step.
+      logical :: tangential = .false.
       !> Whether the mesh may grow with the contact.
       logical :: growing = .false.
       !> How many nodes have been added at either end.
@@ -31,6 +33,8 @@ module mfv_contact_model
       procedure :: gap
       procedure :: reaches_end
       procedure :: grow
+      procedure :: add_tangential
+      procedure, private :: build_compliance
       procedure, private :: place_nodes
    end type contact_model_type
 
@@ -52,10 +56,28 @@ contains
          model%growing = .true.
       end if
       interval = 2.0_wp*half_width/scene%mesh%nodes
-      allocate (model%compliance, source=new_half_plane(scene%material, scene%mesh%nodes, interval, scene%datum, &
-                                                        scene%coupling, scene%tangential()))
+      model%tangential = scene%tangential()
+      call model%build_compliance(scene%mesh%nodes, interval)
       call model%place_nodes()
    end function new_contact_model
+
+   !> Model the tangential problem from now on: friction acts in a step that the scene did not have.
+   subroutine add_tangential(self)
+      class(contact_model_type), intent(inout) :: self
+
+      self%tangential = .true.
+      call self%build_compliance(self%nodes(), self%interval())
+   end subroutine add_tangential
+
+   subroutine build_compliance(self, nodes, interval)
+      class(contact_model_type), intent(inout) :: self
+      integer, intent(in) :: nodes
+      real(wp), intent(in) :: interval
+
+      if (allocated(self%compliance)) deallocate (self%compliance)
+      allocate (self%compliance, source=new_half_plane(self%scene%material, nodes, interval, self%scene%datum, &
+                                                       self%scene%coupling, self%tangential))
+   end subroutine build_compliance
 
    pure integer function nodes(self)
       class(contact_model_type), intent(in) :: self

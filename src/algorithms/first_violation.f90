@@ -44,10 +44,13 @@ module mfv_first_violation
       type(certificate_type) :: certificate
       !> Whether every event is recorded, or only what the caller records.
       logical :: record_events = .true.
+      !> Events so far: loads at which statuses changed.
+      integer :: events = 0
    contains
       procedure :: lead
       procedure :: record
       procedure, private :: start_segment
+      procedure, private :: begin_tangential
       procedure, private :: settle_loads
       procedure, private :: advance
       procedure, private :: change_statuses
@@ -152,14 +155,16 @@ contains
       end do
    end subroutine lead
 
-   !> Turn friction on or off in the nodes that touch. Error MFV_INADMISSIBLE_STEP: friction off where there is shear.
+   !> Turn friction on or off in the nodes that touch; with the first friction the tangential problem begins to be
+   !> modelled. Error MFV_INADMISSIBLE_STEP: friction off where there is shear.
    subroutine start_segment(self, segment, error)
       class(first_violation_type), intent(inout) :: self
       type(segment_type), intent(in) :: segment
       type(error_type), allocatable, intent(out) :: error
       integer :: status(size(self%state%status))
 
-      if (self%model%scene%tangential() .and. segment%friction) then
+      if (segment%friction .and. self%model%scene%friction%acts()) then
+         if (.not. self%model%tangential .or. any(self%state%status == node_frictionless)) call self%begin_tangential()
          status = node_stick
          call self%state%set_status(self%state%status == node_frictionless, status)
          return
@@ -172,6 +177,18 @@ contains
       status = node_frictionless
       call self%state%set_status(in_contact(self%state%status), status)
    end subroutine start_segment
+
+   !> Friction comes on: model the tangential problem if that has not been done yet, and begin it from the present
+   !> pressures.
+   subroutine begin_tangential(self)
+      class(first_violation_type), intent(inout) :: self
+      real(wp) :: normal(self%model%nodes())
+
+      if (.not. self%model%tangential) call self%model%add_tangential()
+      call self%certificate%claim(self%model)
+      call self%model%compliance%displacements(self%state%fields%pressure, self%state%fields%shear, normal, &
+                                               self%state%fields%tangential)
+   end subroutine begin_tangential
 
    !> The constraints at the part `done` of the segment. A load that nothing in the present contact determines is held
    !> (its displacement stays): the tangential one without friction, both without contact.
@@ -261,7 +278,7 @@ contains
       self%state%fields%approach = self%state%fields%approach + smallest
       round_off = 8*epsilon(1.0_wp)*max(maxval(abs(self%model%initial_gap)), abs(self%state%fields%approach))
       touching = self%model%can_touch .and. gap - smallest <= round_off
-      status = status_after(event_close, segment%friction .and. self%model%scene%tangential(), 0)
+      status = status_after(event_close, segment%friction .and. self%model%tangential, 0)
       call note_change(moment, event_close, touching)
       call self%state%set_status(touching, status)
    end subroutine close_nearest
@@ -329,7 +346,7 @@ contains
       end if
       call note_change(moment, violations%kind(first_true(changing)), changing)
       call self%state%set_status(changing, status_after(violations%kind, segment%friction .and. &
-                                                        self%model%scene%tangential(), self%state%slip_direction))
+                                                        self%model%tangential, self%state%slip_direction))
       if (.not. self%model%reaches_end(in_contact(self%state%status))) return
       if (self%model%growing) then
          call self%widen(moment)
@@ -379,14 +396,15 @@ contains
       call self%history%append(self%state, kind, node, count, step, self%system%solves)
    end subroutine record
 
-   !> The statuses at this load have settled: record what changed them.
+   !> The statuses at this load have settled: count and record what changed them.
    subroutine keep_settled(self, segment, moment)
       class(first_violation_type), intent(inout) :: self
       type(segment_type), intent(in) :: segment
       type(moment_type), intent(in) :: moment
 
-      if (.not. self%record_events .or. moment%event == event_none) return
-      call self%record(moment%event, moment%node, moment%count, segment%step)
+      if (moment%event == event_none) return
+      self%events = self%events + 1
+      if (self%record_events) call self%record(moment%event, moment%node, moment%count, segment%step)
    end subroutine keep_settled
 
    !> The load at the part `done` of its way.

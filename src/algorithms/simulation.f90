@@ -38,6 +38,8 @@ module mfv_simulation
       !> Step that could not be reached, 0 for none; and steps done.
       integer :: failed_step = 0, steps_done = 0
       integer :: keep_history = history_events
+      !> The steps that were taken, the last one perhaps not to its end.
+      type(step_type), allocatable :: taken(:)
       !> What the loads control now.
       type(load_type) :: normal, tangential
    contains
@@ -61,6 +63,7 @@ contains
       self%keep_history = keep_history
       self%message = 'nothing has been computed yet'
       allocate (self%snapshots(0))
+      allocate (self%taken(0))
       if (keep_history /= history_none) call self%contact%record(event_none, 0, 0, 0)
    end function new_simulation
 
@@ -101,6 +104,7 @@ contains
       integer :: i
 
       if (self%outcome /= MFV_COMPLETE) return
+      self%taken = [self%taken, step]
       there(1) = target_of(self%normal, step%normal_control, step%normal_target)
       there(2) = target_of(self%tangential, step%tangential_control, step%tangential_target)
       back = [start_of(self%contact%state, there(1), 1), start_of(self%contact%state, there(2), 2)]

@@ -68,7 +68,7 @@ contains
       handle = c_null_ptr
       status = MFV_BAD_ARGUMENT
       if (.not. c_associated(path)) return
-      call read_case_file(text_in(path), case, error)
+      call read_case_file(text_in(path), case, error, without_steps=.true.)
       call finish_creation(case, error, handle, message, message_size, status)
    end function mfv_create_from_file
 
@@ -85,9 +85,9 @@ contains
       status = MFV_BAD_ARGUMENT
       if (.not. c_associated(text)) return
       if (c_associated(name)) then
-         call read_case_text(text_in(text), text_in(name), case, error)
+         call read_case_text(text_in(text), text_in(name), case, error, without_steps=.true.)
       else
-         call read_case_text(text_in(text), 'text', case, error)
+         call read_case_text(text_in(text), 'text', case, error, without_steps=.true.)
       end if
       call finish_creation(case, error, handle, message, message_size, status)
    end function mfv_create_from_text

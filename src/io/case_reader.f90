@@ -25,6 +25,7 @@ module mfv_case_reader
       character(:), allocatable :: source
       type(group_type), allocatable :: groups(:)
       type(key_type), allocatable :: keys(:)
+      logical :: without_steps = .false.
    contains
       procedure :: has
       procedure :: real_value
@@ -41,30 +42,33 @@ module mfv_case_reader
 
 contains
 
-   !> The case in a file. Error MFV_INPUT_ERROR.
-   subroutine read_case_file(path, case, error)
+   !> The case in a file. `without_steps`: whether it may have no &step. Error MFV_INPUT_ERROR.
+   subroutine read_case_file(path, case, error, without_steps)
       character(*), intent(in) :: path
       type(case_type), intent(out) :: case
       type(error_type), allocatable, intent(out) :: error
+      logical, intent(in), optional :: without_steps
       character(:), allocatable :: text, name
 
       call read_text(path, text, error)
       if (allocated(error)) return
-      call read_case_text(text, path, case, error)
+      call read_case_text(text, path, case, error, without_steps)
       if (allocated(error)) return
       name = path(index(path, '/', back=.true.) + 1:)
       if (index(name, '.', back=.true.) > 1) name = name(:index(name, '.', back=.true.) - 1)
       if (case%result_path == '') case%result_path = name//'.h5'
    end subroutine read_case_file
 
-   !> The case in a text. `source`: its name for messages; files it names are looked for beside it.
-   !> Error MFV_INPUT_ERROR.
-   subroutine read_case_text(text, source, case, error)
+   !> The case in a text. `source`: its name for messages; files it names are looked for beside it. `without_steps`:
+   !> whether it may have no &step, for callers who take steps of their own. Error MFV_INPUT_ERROR.
+   subroutine read_case_text(text, source, case, error, without_steps)
       character(*), intent(in) :: text, source
       type(case_type), intent(out) :: case
       type(error_type), allocatable, intent(out) :: error
+      logical, intent(in), optional :: without_steps
       type(reader_type) :: reader
 
+      if (present(without_steps)) reader%without_steps = without_steps
       reader%source = source
       reader%keys = case_keys()
       call parse_namelists(text, source, reader%groups, error)
@@ -377,7 +381,7 @@ contains
       type(error_type), allocatable, intent(out) :: error
       integer :: i
 
-      if (count_groups(reader, 'step') == 0) then
+      if (count_groups(reader, 'step') == 0 .and. .not. reader%without_steps) then
          call fail(reader, 0, '&step: at least one step is needed', error)
          return
       end if

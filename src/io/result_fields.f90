@@ -192,7 +192,7 @@ contains
       real(wp) :: modelled(size(values))
 
       modelled = values
-      if (.not. simulation%contact%model%scene%tangential()) modelled = ieee_value(1.0_wp, ieee_quiet_nan)
+      if (.not. simulation%contact%model%tangential) modelled = ieee_value(1.0_wp, ieee_quiet_nan)
    end function modelled
 
    !> The gap where the indenter is, infinite elsewhere.
@@ -253,8 +253,7 @@ contains
 
       call add_loads(fields, simulation, state, units)
       call add_scalar_whole(fields, 'steps_done', simulation%steps_done, 'steps reached')
-      call add_scalar_whole(fields, 'increments', simulation%contact%certificate%increments, &
-                            'increments of the load, each up to an event or to the end of a step')
+      call add_scalar_whole(fields, 'events', simulation%contact%events, 'loads at which nodes changed their status')
       call add_scalar_whole(fields, 'linear_solves', simulation%contact%system%solves, linear_solves_meaning)
       call add_scalar(fields, 'largest_residual', simulation%contact%certificate%largest(), '1', &
                       'largest relative residual of the certificate')

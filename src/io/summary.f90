@@ -28,12 +28,12 @@ contains
              //line('contact half-width', amount(fields, 'contact_half_width')) &
              //line('nodes', to_text(simulation%contact%model%nodes())//', in contact '//amount(fields, 'contact_nodes')// &
                     ', stuck '//amount(fields, 'stick_nodes')//', slipping '//amount(fields, 'slip_nodes'))
-      if (case%scene%tangential()) text = text//line('stick ratio', amount(fields, 'stick_ratio'))
+      if (simulation%contact%model%tangential) text = text//line('stick ratio', amount(fields, 'stick_ratio'))
       text = text//line('normal force', amount(fields, 'normal_force')//', approach '//amount(fields, 'approach'))
-      if (case%scene%tangential()) text = text//line('tangential force', amount(fields, 'tangential_force')// &
+      if (simulation%contact%model%tangential) text = text//line('tangential force', amount(fields, 'tangential_force')// &
                                                      ', shift '//amount(fields, 'shift')) &
                                           //line('dissipation', amount(fields, 'dissipation'))
-      text = text//line('work', amount(fields, 'increments')//' increments, '//amount(fields, 'linear_solves')// &
+      text = text//line('work', amount(fields, 'events')//' events, '//amount(fields, 'linear_solves')// &
                         ' linear solves, '//to_text(seconds, 3)//' s') &
              //line('certificate', 'largest relative residual '//amount(fields, 'largest_residual'))
       if (simulation%contact%model%added > 0) text = text//line('mesh', 'grew by '// &

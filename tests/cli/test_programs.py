@@ -79,7 +79,7 @@ def has_h5dump():
 def test_summary_says_what_came_out(tmp_path):
     run = mfv_run(ROOT / "examples/mindlin.nml", cwd=tmp_path)
     for word in ("contact half-width", "in contact 87", "stuck 67", "slipping 20", "stick ratio", "normal force",
-                 "tangential force", "dissipation", "linear solves", "increments", "certificate", "mindlin.h5"):
+                 "tangential force", "dissipation", "linear solves", "events", "certificate", "mindlin.h5"):
         assert word in run.stdout, word
 
 
