@@ -93,6 +93,7 @@ def draw(meshes: list[int], table: dict[str, list[float]], path: str) -> None:
         ax.loglog(meshes, errors, marker=marker, markersize=5, linewidth=1.2, label=name)
     reach = np.array([meshes[0], meshes[-1]])
     ax.loglog(reach, 0.5 * table["Hertz: pressure"][0] * reach[0] / reach, "k--", linewidth=1, label="first order")
+    ax.loglog(reach, 2 * table["Mindlin: shift"][0] * (reach[0] / reach) ** 2, "k:", linewidth=1, label="second order")
     ax.set_xticks(meshes, [str(nodes) for nodes in meshes])
     ax.minorticks_off()
     ax.set(xlabel="intervals of the mesh", ylabel="relative error", title="Errors against closed forms")

@@ -1,10 +1,12 @@
 /* MFV: two-dimensional frictional elastic contact by the Method of First Violation. C interface.
  *
  * A case is created from a namelist text or file (docs/namelist.md), run or advanced step by step, and asked for its
- * fields by the same names as in the result file (docs/file-format.md), "state/pressure" for one. Units: any consistent
- * set; forces and energies per unit thickness. Every call returns a status; mfv_message tells more. The library never
- * prints, never stops the process and has no global state: handles are independent of each other, one thread a handle at
- * a time. Texts go out through the caller's buffer with its size, cut where they do not fit, always null-terminated.
+ * fields by the same paths as in the result file (docs/file-format.md), "state/pressure" for one; the scales that the
+ * file links into every group are "mesh/x" and "history/record" alone. Units: any consistent set; forces and energies
+ * per unit thickness. Every call returns a status; mfv_message tells more. The library never prints, never stops the
+ * process and has no global state: handles are independent of each other, one thread a handle at a time (mfv_write in
+ * two threads at once needs an HDF5 that is thread-safe, as Debian's is). Texts go out through the caller's buffer with
+ * its size, cut where they do not fit, always null-terminated.
  */
 #ifndef MFV_H
 #define MFV_H
@@ -49,7 +51,8 @@ int mfv_version(char *buffer, size_t size);
 int mfv_status_text(int status, char *outcome, size_t outcome_size, char *explanation, size_t explanation_size);
 
 /* Create a case from a namelist file, or from a text (`name`: what messages call it; files named in the text are looked
- * for beside it). It may have no &step when mfv_advance is to lead the loads. On failure *handle is NULL and `message`, which may be NULL, tells why. Since 0.1.0. */
+ * for beside it). It may have no &step when mfv_advance is to lead the loads. On failure *handle is NULL and `message`,
+ * which may be NULL, tells why. Since 0.1.0. */
 int mfv_create_from_file(const char *path, mfv_case **handle, char *message, size_t message_size);
 int mfv_create_from_text(const char *text, const char *name, mfv_case **handle, char *message, size_t message_size);
 
@@ -70,10 +73,19 @@ int mfv_message(const mfv_case *handle, char *buffer, size_t size);
 int mfv_field_count(const mfv_case *handle, size_t *count);
 int mfv_field_path(const mfv_case *handle, size_t index, char *buffer, size_t size);
 
-/* Of the field at `path`: number of values (1 for a scalar), whether they are whole numbers, unit and description; every
- * out argument may be NULL. Since 0.1.0. */
-int mfv_field_info(const mfv_case *handle, const char *path, size_t *count, int *is_integer,
+/* What the values of a field run along. */
+enum { MFV_ALONG_NOTHING = 0, MFV_ALONG_NODES = 1, MFV_ALONG_RECORDS = 2 };
+
+/* Of the field at `path`: number of values (1 for a scalar), whether they are whole numbers, what they run along, unit and
+ * description; every out argument may be NULL. Since 0.1.0. */
+int mfv_field_info(const mfv_case *handle, const char *path, size_t *count, int *is_integer, int *along,
                    char *unit, size_t unit_size, char *description, size_t description_size);
+
+/* Attributes of the result, texts such as title, outcome, plane or input: name of attribute `index` (from 0;
+ * MFV_BAD_ARGUMENT beyond the last), and text of a named one. `length`: its characters, without the terminating null.
+ * `buffer` and `length` may be NULL. Since 0.1.0. */
+int mfv_attribute_name(const mfv_case *handle, size_t index, char *buffer, size_t size);
+int mfv_attribute(const mfv_case *handle, const char *name, char *buffer, size_t size, size_t *length);
 
 /* Copy out the values of a field; `count` must be its number of values. Since 0.1.0. */
 int mfv_copy_real(const mfv_case *handle, const char *path, double *values, size_t count);

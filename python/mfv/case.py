@@ -6,13 +6,13 @@ import ctypes
 import os
 import threading
 import weakref
-from ctypes import POINTER, byref, c_double, c_int, c_int32, c_size_t, c_void_p
+from ctypes import POINTER, byref, c_double, c_int, c_int32, c_size_t, c_void_p, create_string_buffer
 from types import TracebackType
 
 import numpy as np
 
 from . import errors
-from ._library import Control, Step, library, library_version, outcome_of, text_buffer, text_for, text_of
+from ._library import Control, Step, library, outcome_of, text_buffer, text_for, text_of
 from .result import Field, Result, Values
 
 #: HDF5, which writes the result files, is in general not safe to call from two threads at once.
@@ -160,7 +160,7 @@ class Case:
             for path in self.fields():
                 group, name = path.rsplit("/", 1)
                 groups.setdefault(group, {})[name] = self._field(path)
-            attributes = {"outcome": self.outcome, "message": self.message, "mfv_version": library_version()}
+            attributes = {name: self._attribute(name) for name in self._attribute_names()}
         return Result(groups, attributes)
 
     def write(self, path: str | os.PathLike[str] | None = None) -> None:
@@ -170,13 +170,12 @@ class Case:
 
     def _field(self, path: str) -> Field:
         """The field at a path. Raises BadArgument."""
-        count, is_integer = c_size_t(), c_int()
+        count, is_integer, along = c_size_t(), c_int(), c_int()
         unit, description = text_buffer(), text_buffer()
         name = text_for(path)
         with self._lock:
-            self._call(
-                "mfv_field_info", name, byref(count), byref(is_integer), unit, len(unit), description, len(description)
-            )
+            numbers = byref(count), byref(is_integer), byref(along)
+            self._call("mfv_field_info", name, *numbers, unit, len(unit), description, len(description))
             values: Values
             if is_integer:
                 values = np.empty(count.value, dtype=np.int32)
@@ -184,7 +183,23 @@ class Case:
             else:
                 values = np.empty(count.value, dtype=np.float64)
                 self._call("mfv_copy_real", name, values.ctypes.data_as(POINTER(c_double)), count.value)
-        return Field(values[0] if _is_scalar(path, values) else values, text_of(unit), text_of(description))
+        return Field(values if along else values[0], text_of(unit), text_of(description))
+
+    def _attribute_names(self) -> list[str]:
+        """Names of the attributes of the result."""
+        names: list[str] = []
+        buffer = text_buffer()
+        while library().mfv_attribute_name(self._handle, len(names), buffer, len(buffer)) == 0:
+            names.append(text_of(buffer))
+        return names
+
+    def _attribute(self, name: str) -> str:
+        """Text of an attribute, of any length."""
+        length = c_size_t()
+        self._call("mfv_attribute", text_for(name), None, 0, byref(length))
+        buffer = create_string_buffer(length.value + 1)
+        self._call("mfv_attribute", text_for(name), buffer, len(buffer), None)
+        return text_of(buffer)
 
     def _lead(self, check: bool, function: str, *arguments: object) -> str:
         """Call what leads the loads; return the outcome. Raises for a bad call, and with `check` for an early end."""
@@ -236,8 +251,3 @@ def _control(
     if displacement is not None:
         return Control.DISPLACEMENT, displacement
     return Control.KEEP, 0.0
-
-
-def _is_scalar(path: str, values: np.ndarray) -> bool:
-    """Whether a single value stands for itself; the fields of the load history always run along its records."""
-    return values.size == 1 and not path.startswith("history/")

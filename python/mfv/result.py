@@ -70,8 +70,7 @@ class Group(Mapping[str, Values]):
 class Result:
     """A result: groups of quantities as attributes, `steps` with the state at the end of every step and reversal.
 
-    `attributes` are those of the file: title, outcome, message, input, ... A result that was not read from a file has
-    outcome, message and mfv_version only.
+    `attributes` are the texts of the result: title, outcome, message, input, ...
     """
 
     mesh: Group

@@ -6,12 +6,12 @@ module mfv_c
    use mfv_case_reader, only: read_case_file, read_case_text
    use mfv_error, only: error_type
    use mfv_kinds, only: wp
-   use mfv_result_fields, only: field_type, find_field, group_fields, result_groups
+   use mfv_result_fields, only: field_named, field_type, group_fields, result_attributes, result_groups
    use mfv_result_file, only: write_result
    use mfv_scene, only: control_displacement, control_force, control_keep, step_type
    use mfv_simulation, only: new_simulation, simulation_type
    use mfv_status
-   use mfv_strings, only: add_text, copy_to_c, from_c, string_type
+   use mfv_strings, only: add_text, copy_to_c, from_c, string_type, to_text
    use mfv_version, only: library_version
    implicit none
    private
@@ -23,6 +23,10 @@ module mfv_c
       type(case_type) :: case
       type(simulation_type) :: simulation
       character(:), allocatable :: message
+      !> Paths of all fields, and the group that was looked at last: made when asked for, dropped when the state changes.
+      type(string_type), allocatable :: paths(:)
+      character(:), allocatable :: group
+      type(field_type), allocatable :: fields(:)
    end type handle_type
 
    integer, parameter :: valid_mark = 1297499699
@@ -146,10 +150,11 @@ contains
       self => handle_of(handle)
       if (.not. associated(self)) return
       if (self%simulation%outcome == MFV_COMPLETE) then
+         call forget(self)
          call self%simulation%run()
-         self%message = self%simulation%message
-         if (self%simulation%outcome /= MFV_COMPLETE) self%message = self%case%explained(self%simulation)
+         if (self%simulation%outcome /= MFV_COMPLETE) self%simulation%message = self%case%explained(self%simulation)
       end if
+      self%message = self%simulation%message
       status = self%simulation%outcome
    end function mfv_run
 
@@ -163,14 +168,14 @@ contains
       status = MFV_BAD_HANDLE
       self => handle_of(handle)
       if (.not. associated(self)) return
-      status = MFV_BAD_ARGUMENT
-      self%message = 'mfv_advance: the step is null'
+      status = refused(self, 'mfv_advance: the step is null')
       if (.not. c_associated(step)) return
       call c_f_pointer(step, given)
       why = wrong_with(given)
-      self%message = 'mfv_advance: '//why
+      status = refused(self, 'mfv_advance: '//why)
       if (why /= '') return
       if (self%simulation%outcome == MFV_COMPLETE) then
+         call forget(self)
          call self%simulation%advance(step_type(given%normal_control, given%tangential_control, given%normal_target, &
                                                 given%tangential_target, given%friction /= 0, given%cycles))
       end if
@@ -214,16 +219,15 @@ contains
       integer(c_int) :: status
       type(handle_type), pointer :: self
       integer(c_size_t), pointer :: number
-      type(string_type), allocatable :: paths(:)
 
       status = MFV_BAD_HANDLE
       self => handle_of(handle)
       if (.not. associated(self)) return
-      status = MFV_BAD_ARGUMENT
+      status = refused(self, 'mfv_field_count: count is null')
       if (.not. c_associated(count)) return
       call c_f_pointer(count, number)
-      paths = field_paths(self)
-      number = size(paths, kind=c_size_t)
+      call list_paths(self)
+      number = size(self%paths, kind=c_size_t)
       status = MFV_COMPLETE
    end function mfv_field_count
 
@@ -232,41 +236,103 @@ contains
       integer(c_size_t), value :: index, size
       integer(c_int) :: status
       type(handle_type), pointer :: self
-      type(string_type), allocatable :: paths(:)
 
       status = MFV_BAD_HANDLE
       self => handle_of(handle)
       if (.not. associated(self)) return
-      status = MFV_BAD_ARGUMENT
-      paths = field_paths(self)
-      if (index < 0 .or. index >= ubound(paths, 1)) return
-      status = text_out(paths(index + 1)%text, buffer, size)
+      call list_paths(self)
+      status = refused(self, 'mfv_field_path: there are '//to_text(ubound(self%paths, 1))//' fields')
+      if (index < 0 .or. index >= ubound(self%paths, 1)) return
+      status = text_out(self%paths(index + 1)%text, buffer, size)
    end function mfv_field_path
 
-   !> Paths of all fields.
-   function field_paths(self) result(paths)
-      type(handle_type), intent(in) :: self
-      type(string_type), allocatable :: paths(:), groups(:)
+   !> Make the list of the paths of all fields.
+   subroutine list_paths(self)
+      type(handle_type), intent(inout) :: self
+      type(string_type), allocatable :: groups(:)
       type(field_type), allocatable :: fields(:)
       integer :: i, j
 
+      if (allocated(self%paths)) return
       groups = result_groups(self%simulation)
       do i = 1, size(groups)
          call group_fields(self%case, self%simulation, groups(i)%text, fields)
          do j = 1, size(fields)
-            call add_text(paths, groups(i)%text//'/'//fields(j)%name)
+            call add_text(self%paths, groups(i)%text//'/'//fields(j)%name)
          end do
       end do
-   end function field_paths
+   end subroutine list_paths
 
-   function mfv_field_info(handle, path, count, is_integer, unit, unit_size, description, description_size) &
+   !> The state is about to change: drop what was made from it.
+   subroutine forget(self)
+      type(handle_type), intent(inout) :: self
+
+      if (allocated(self%paths)) deallocate (self%paths)
+      if (allocated(self%group)) deallocate (self%group)
+      if (allocated(self%fields)) deallocate (self%fields)
+   end subroutine forget
+
+   !> MFV_BAD_ARGUMENT, with its reason as the handle's message.
+   function refused(self, why) result(status)
+      type(handle_type), intent(inout) :: self
+      character(*), intent(in) :: why
+      integer(c_int) :: status
+
+      self%message = why
+      status = MFV_BAD_ARGUMENT
+   end function refused
+
+   function mfv_attribute_name(handle, index, buffer, size) result(status) bind(C, name='mfv_attribute_name')
+      type(c_ptr), value :: handle, buffer
+      integer(c_size_t), value :: index, size
+      integer(c_int) :: status
+      type(handle_type), pointer :: self
+      type(string_type), allocatable :: names(:), texts(:)
+
+      status = MFV_BAD_HANDLE
+      self => handle_of(handle)
+      if (.not. associated(self)) return
+      call result_attributes(self%case, self%simulation, names, texts)
+      status = refused(self, 'mfv_attribute_name: there are '//to_text(ubound(names, 1))//' attributes')
+      if (index < 0 .or. index >= ubound(names, 1)) return
+      status = text_out(names(index + 1)%text, buffer, size)
+   end function mfv_attribute_name
+
+   function mfv_attribute(handle, name, buffer, size, length) result(status) bind(C, name='mfv_attribute')
+      type(c_ptr), value :: handle, name, buffer, length
+      integer(c_size_t), value :: size
+      integer(c_int) :: status
+      type(handle_type), pointer :: self
+      type(string_type), allocatable :: names(:), texts(:)
+      integer(c_size_t), pointer :: characters
+      integer :: i
+
+      status = MFV_BAD_HANDLE
+      self => handle_of(handle)
+      if (.not. associated(self)) return
+      status = refused(self, 'mfv_attribute: the name is null')
+      if (.not. c_associated(name)) return
+      call result_attributes(self%case, self%simulation, names, texts)
+      status = refused(self, "there is no attribute '"//text_in(name)//"'")
+      do i = 1, ubound(names, 1)
+         if (names(i)%text /= text_in(name)) cycle
+         if (c_associated(length)) then
+            call c_f_pointer(length, characters)
+            characters = len(texts(i)%text, kind=c_size_t)
+         end if
+         status = MFV_COMPLETE
+         if (c_associated(buffer)) status = text_out(texts(i)%text, buffer, size)
+         return
+      end do
+   end function mfv_attribute
+
+   function mfv_field_info(handle, path, count, is_integer, along, unit, unit_size, description, description_size) &
       result(status) bind(C, name='mfv_field_info')
-      type(c_ptr), value :: handle, path, count, is_integer, unit, description
+      type(c_ptr), value :: handle, path, count, is_integer, along, unit, description
       integer(c_size_t), value :: unit_size, description_size
       integer(c_int) :: status
-      type(field_type) :: field
+      type(field_type), pointer :: field
       integer(c_size_t), pointer :: number
-      integer(c_int), pointer :: whole
       integer(c_int) :: copied
 
       call field_at(handle, path, field, status)
@@ -275,10 +341,8 @@ contains
          call c_f_pointer(count, number)
          number = values_of(field)
       end if
-      if (c_associated(is_integer)) then
-         call c_f_pointer(is_integer, whole)
-         whole = merge(1_c_int, 0_c_int, allocated(field%whole))
-      end if
+      call integer_out(merge(1, 0, allocated(field%whole)), is_integer)
+      call integer_out(field%along, along)
       if (c_associated(unit)) copied = text_out(field%unit, unit, unit_size)
       if (c_associated(description)) copied = text_out(field%description, description, description_size)
    end function mfv_field_info
@@ -287,33 +351,51 @@ contains
       type(c_ptr), value :: handle, path, values
       integer(c_size_t), value :: count
       integer(c_int) :: status
-      type(field_type) :: field
+      type(field_type), pointer :: field
       real(c_double), pointer :: copy(:)
 
       call field_at(handle, path, field, status)
       if (status /= MFV_COMPLETE) return
-      status = MFV_BAD_ARGUMENT
-      if (allocated(field%whole) .or. .not. c_associated(values) .or. count /= values_of(field)) return
+      status = fit_for_copy(handle, path, field, .false., values, count)
+      if (status /= MFV_COMPLETE) return
       call c_f_pointer(values, copy, [count])
       copy = field%values
-      status = MFV_COMPLETE
    end function mfv_copy_real
 
    function mfv_copy_integer(handle, path, values, count) result(status) bind(C, name='mfv_copy_integer')
       type(c_ptr), value :: handle, path, values
       integer(c_size_t), value :: count
       integer(c_int) :: status
-      type(field_type) :: field
+      type(field_type), pointer :: field
       integer(c_int32_t), pointer :: copy(:)
 
       call field_at(handle, path, field, status)
       if (status /= MFV_COMPLETE) return
-      status = MFV_BAD_ARGUMENT
-      if (.not. allocated(field%whole) .or. .not. c_associated(values) .or. count /= values_of(field)) return
+      status = fit_for_copy(handle, path, field, .true., values, count)
+      if (status /= MFV_COMPLETE) return
       call c_f_pointer(values, copy, [count])
       copy = field%whole
-      status = MFV_COMPLETE
    end function mfv_copy_integer
+
+   !> Whether a field can be copied as reals or whole numbers into `count` places; if not, MFV_BAD_ARGUMENT and why.
+   function fit_for_copy(handle, path, field, whole, values, count) result(status)
+      type(c_ptr), intent(in) :: handle, path, values
+      type(field_type), intent(in) :: field
+      logical, intent(in) :: whole
+      integer(c_size_t), intent(in) :: count
+      integer(c_int) :: status
+      type(handle_type), pointer :: self
+
+      status = MFV_COMPLETE
+      self => handle_of(handle)
+      if (allocated(field%whole) .neqv. whole) then
+         status = refused(self, text_in(path)//' has '//trim(merge('whole numbers', 'reals        ', .not. whole)))
+      else if (.not. c_associated(values)) then
+         status = refused(self, text_in(path)//': values is null')
+      else if (count /= values_of(field)) then
+         status = refused(self, text_in(path)//' has '//to_text(int(values_of(field)))//' values, count is another number')
+      end if
+   end function fit_for_copy
 
    function mfv_write(handle, path) result(status) bind(C, name='mfv_write')
       type(c_ptr), value :: handle, path
@@ -327,8 +409,7 @@ contains
       if (.not. associated(self)) return
       where_to = self%case%result_path
       if (c_associated(path)) where_to = text_in(path)
-      status = MFV_BAD_ARGUMENT
-      self%message = 'mfv_write: no path, and the case has no &output file'
+      status = refused(self, 'mfv_write: no path, and the case has no &output file')
       if (where_to == '') return
       call write_result(where_to, self%case, self%simulation, error)
       status = MFV_COMPLETE
@@ -349,23 +430,55 @@ contains
       if (self%mark /= valid_mark) nullify (self)
    end function handle_of
 
-   !> The field at a path of a handle; MFV_BAD_HANDLE or MFV_BAD_ARGUMENT where there is none.
+   !> The field at a path of a handle; MFV_BAD_HANDLE or MFV_BAD_ARGUMENT where there is none. The group it is in is kept,
+   !> for the next field of it.
    subroutine field_at(handle, path, field, status)
       type(c_ptr), intent(in) :: handle, path
-      type(field_type), intent(out) :: field
+      type(field_type), pointer, intent(out) :: field
       integer(c_int), intent(out) :: status
       type(handle_type), pointer :: self
-      logical :: found
+      character(:), allocatable :: name
+      integer :: number, slash
 
+      nullify (field)
       status = MFV_BAD_HANDLE
       self => handle_of(handle)
       if (.not. associated(self)) return
-      status = MFV_BAD_ARGUMENT
+      status = refused(self, 'the path is null')
       if (.not. c_associated(path)) return
-      call find_field(self%case, self%simulation, text_in(path), field, found)
-      if (found) status = MFV_COMPLETE
-      if (.not. found) self%message = "there is no field '"//text_in(path)//"'"
+      name = text_in(path)
+      status = refused(self, "there is no field '"//name//"'")
+      slash = index(name, '/', back=.true.)
+      if (slash < 2) return
+      call keep_group(self, name(:slash - 1))
+      number = field_named(self%fields, name(slash + 1:))
+      if (number == 0) return
+      field => self%fields(number)
+      status = MFV_COMPLETE
    end subroutine field_at
+
+   !> Have the fields of a group at hand.
+   subroutine keep_group(self, group)
+      type(handle_type), intent(inout) :: self
+      character(*), intent(in) :: group
+
+      if (allocated(self%group)) then
+         if (self%group == group) return
+      end if
+      call group_fields(self%case, self%simulation, group, self%fields)
+      self%group = group
+   end subroutine keep_group
+
+   !> A number through a pointer that may be null.
+   subroutine integer_out(value, pointer_to_integer)
+      integer, intent(in) :: value
+      type(c_ptr), intent(in) :: pointer_to_integer
+      integer(c_int), pointer :: place
+
+      if (.not. c_associated(pointer_to_integer)) return
+      call c_f_pointer(pointer_to_integer, place)
+      place = value
+   end subroutine integer_out
 
    pure integer(c_size_t) function values_of(field)
       type(field_type), intent(in) :: field

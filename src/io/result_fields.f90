@@ -8,11 +8,14 @@ module mfv_result_fields
    use mfv_contact_state, only: contact_state_type
    use mfv_kinds, only: wp
    use mfv_node_status, only: event_names, node_status_names
-   use mfv_simulation, only: history_none, simulation_type, snapshot_type
+   use mfv_simulation, only: history_none, simulation_type
+   use mfv_status, only: status_outcome
    use mfv_strings, only: add_text, list_of_words, string_type, to_text
+   use mfv_version, only: library_version
    implicit none
    private
-   public :: field_type, result_groups, group_fields, find_field, step_group, along_nodes, along_records, along_nothing
+   public :: field_type, result_groups, group_fields, field_named, step_group, along_nodes, along_records, along_nothing
+   public :: result_attributes
 
    !> What the values of a field run along.
    integer, parameter :: along_nothing = 0, along_nodes = 1, along_records = 2
@@ -104,28 +107,56 @@ contains
       end select
    end subroutine group_fields
 
-   !> The field at a path such as state/pressure; `found` false where there is none.
-   subroutine find_field(case, simulation, path, field, found)
+   !> Place of the field with a name, 0 for none.
+   pure integer function field_named(fields, name)
+      type(field_type), intent(in) :: fields(:)
+      character(*), intent(in) :: name
+
+      do field_named = size(fields), 1, -1
+         if (fields(field_named)%name == name) return
+      end do
+   end function field_named
+
+   !> Names and texts of the attributes of a result.
+   subroutine result_attributes(case, simulation, names, texts)
       type(case_type), intent(in) :: case
       type(simulation_type), intent(in) :: simulation
-      character(*), intent(in) :: path
-      type(field_type), intent(out) :: field
-      logical, intent(out) :: found
-      type(field_type), allocatable :: fields(:)
-      integer :: i, slash, first
+      type(string_type), allocatable, intent(out) :: names(:), texts(:)
+      character(*), parameter :: planes = 'strain stress', couplings = 'full goodman none', &
+                                 indenters = 'disk flat_punch profile'
 
-      first = merge(2, 1, index(path, '/') == 1)
-      slash = index(path, '/', back=.true.)
-      found = slash > first
-      if (.not. found) return
-      call group_fields(case, simulation, path(first:slash - 1), fields)
-      do i = 1, size(fields)
-         found = fields(i)%name == path(slash + 1:)
-         if (found) field = fields(i)
-         if (found) return
-      end do
-      found = .false.
-   end subroutine find_field
+      call add('title', case%scene%title)
+      call add('outcome', status_outcome(simulation%outcome))
+      call add('message', simulation%message)
+      call add('input', case%text)
+      call add('input_file', case%source)
+      call add('mfv_version', library_version)
+      call add('length_unit', case%length_unit)
+      call add('force_unit', case%force_unit)
+      call add('plane', word(planes, case%scene%plane))
+      call add('coupling', word(couplings, case%scene%coupling))
+      call add('indenter', word(indenters, case%scene%indenter%shape))
+
+   contains
+
+      subroutine add(name, text)
+         character(*), intent(in) :: name, text
+
+         call add_text(names, name)
+         call add_text(texts, text)
+      end subroutine add
+   end subroutine result_attributes
+
+   !> Word `number` of a list of words.
+   function word(words, number) result(text)
+      character(*), intent(in) :: words
+      integer, intent(in) :: number
+      character(:), allocatable :: text
+      type(string_type), allocatable :: list(:)
+
+      list = list_of_words(words)
+      text = list(number)%text
+   end function word
 
    subroutine add_scene(fields, simulation, units)
       type(field_type), allocatable, intent(inout) :: fields(:)

@@ -6,16 +6,11 @@ module mfv_result_file
    use hdf5
    use h5ds
    use mfv_case, only: case_type
-   use mfv_compliance, only: coupling_full, coupling_goodman
    use mfv_error, only: error_type, set_error
-   use mfv_indenter, only: shape_disk, shape_flat_punch
-   use mfv_kinds, only: wp
-   use mfv_material, only: plane_stress
    use mfv_result_fields
    use mfv_simulation, only: simulation_type
-   use mfv_status, only: MFV_FILE_ERROR, MFV_INPUT_ERROR, status_outcome
+   use mfv_status, only: MFV_FILE_ERROR, MFV_INPUT_ERROR
    use mfv_strings, only: string_type, to_text
-   use mfv_version, only: library_version
    implicit none
    private
    public :: write_result, check_writable
@@ -111,28 +106,15 @@ contains
       type(writer_type), intent(inout) :: writer
       type(case_type), intent(in) :: case
       type(simulation_type), intent(in) :: simulation
-      integer :: major, minor, release, code
+      type(string_type), allocatable :: names(:), texts(:)
+      integer :: i, major, minor, release, code
 
+      call result_attributes(case, simulation, names, texts)
+      do i = 1, size(names)
+         call write_text(writer, writer%file, names(i)%text, texts(i)%text)
+      end do
       call h5get_libversion_f(major, minor, release, code)
-      call write_text(writer, writer%file, 'title', case%scene%title)
-      call write_text(writer, writer%file, 'outcome', status_outcome(simulation%outcome))
-      call write_text(writer, writer%file, 'message', simulation%message)
-      call write_text(writer, writer%file, 'input', case%text)
-      call write_text(writer, writer%file, 'input_file', case%source)
-      call write_text(writer, writer%file, 'mfv_version', library_version)
       call write_text(writer, writer%file, 'hdf5_version', to_text(major)//'.'//to_text(minor)//'.'//to_text(release))
-      call write_text(writer, writer%file, 'length_unit', case%length_unit)
-      call write_text(writer, writer%file, 'force_unit', case%force_unit)
-      associate (scene => case%scene)
-         call write_text(writer, writer%file, 'plane', trim(merge('stress', 'strain', scene%plane == plane_stress)))
-         call write_text(writer, writer%file, 'coupling', &
-                         trim(merge('full   ', merge('goodman', 'none   ', scene%coupling == coupling_goodman), &
-                                    scene%coupling == coupling_full)))
-         call write_text(writer, writer%file, 'indenter', &
-                         trim(merge('disk      ', merge('flat_punch', 'profile   ', &
-                                                        scene%indenter%shape == shape_flat_punch), &
-                                    scene%indenter%shape == shape_disk)))
-      end associate
    end subroutine write_attributes
 
    !> All groups with their datasets. A dimension scale is one dataset, of mesh or history, which come before those that

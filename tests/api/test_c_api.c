@@ -31,10 +31,10 @@ static double scalar(const mfv_case *handle, const char *path) {
 }
 
 static double *array(const mfv_case *handle, const char *path, size_t *count) {
-  int is_integer = -1;
+  int is_integer = -1, along = -1;
   char unit[40], description[200];
-  CHECK(mfv_field_info(handle, path, count, &is_integer, unit, sizeof unit, description, sizeof description) == MFV_COMPLETE);
-  CHECK(is_integer == 0 && strlen(unit) > 0 && strlen(description) > 0);
+  CHECK(mfv_field_info(handle, path, count, &is_integer, &along, unit, sizeof unit, description, sizeof description) == MFV_COMPLETE);
+  CHECK(is_integer == 0 && along == MFV_ALONG_NODES && strlen(unit) > 0 && strlen(description) > 0);
   double *values = malloc(*count * sizeof *values);
   CHECK(mfv_copy_real(handle, path, values, *count) == MFV_COMPLETE);
   return values;
@@ -99,7 +99,7 @@ static void every_field_can_be_copied(void) {
     size_t count = 0;
     int is_integer = 0;
     CHECK(mfv_field_path(handle, i, path, sizeof path) == MFV_COMPLETE);
-    CHECK(mfv_field_info(handle, path, &count, &is_integer, NULL, 0, NULL, 0) == MFV_COMPLETE);
+    CHECK(mfv_field_info(handle, path, &count, &is_integer, NULL, NULL, 0, NULL, 0) == MFV_COMPLETE);
     CHECK(count > 0);
     if (is_integer) {
       int32_t *values = malloc(count * sizeof *values);
@@ -111,6 +111,17 @@ static void every_field_can_be_copied(void) {
       free(values);
     }
   }
+  mfv_free(&handle);
+}
+
+static void attributes_are_texts(void) {
+  mfv_case *handle = NULL;
+  size_t length = 0;
+  char buffer[20];
+  CHECK(mfv_create_from_text(text, "text", &handle, NULL, 0) == MFV_COMPLETE);
+  CHECK(mfv_attribute(handle, "input", NULL, 0, &length) == MFV_COMPLETE && length == strlen(text));
+  CHECK(mfv_attribute(handle, "coupling", buffer, sizeof buffer, NULL) == MFV_COMPLETE && strcmp(buffer, "goodman") == 0);
+  CHECK(mfv_attribute(handle, "indenter", buffer, sizeof buffer, NULL) == MFV_COMPLETE && strcmp(buffer, "disk") == 0);
   mfv_free(&handle);
 }
 
@@ -148,6 +159,10 @@ static void misuse_is_told(void) {
   step.size = 3;
   CHECK(mfv_advance(handle, &step) == MFV_BAD_ARGUMENT);
   CHECK(mfv_write(handle, NULL) == MFV_BAD_ARGUMENT);
+  CHECK(mfv_field_path(handle, 9999, message, sizeof message) == MFV_BAD_ARGUMENT);
+  CHECK(mfv_attribute(handle, "colour", message, sizeof message, NULL) == MFV_BAD_ARGUMENT);
+  CHECK(mfv_copy_real(handle, "state/pressure", &value, 1) == MFV_BAD_ARGUMENT);
+  CHECK(mfv_message(handle, message, sizeof message) == MFV_COMPLETE && strstr(message, "has 41 values") != NULL);
   mfv_free(&handle);
 }
 
@@ -185,6 +200,7 @@ int main(int argc, char **argv) {
   run_a_file(argv[1], argv[2]);
   step_by_step_equals_run();
   every_field_can_be_copied();
+  attributes_are_texts();
   misuse_is_told();
   statuses_and_version();
   closed_forms();

@@ -4,6 +4,7 @@ import pty
 import re
 import signal
 import subprocess
+import sys
 import time
 from pathlib import Path
 
@@ -195,6 +196,16 @@ def test_progress_shows_on_a_terminal_only(tmp_path):
     run.communicate(timeout=60)
     os.close(master)
     assert re.search(rb"\d+ %, part \d of 5", seen)
+
+
+def test_mesh_study_converges(tmp_path):
+    run = subprocess.run([sys.executable, ROOT / "examples/mesh_study.py", "--finest", "101", "-o", tmp_path / "study.png"],
+                         capture_output=True, text=True, timeout=300)
+    assert run.returncode == 0, run.stderr
+    orders = {row[1].strip(): float(row[-2]) for row in (line.split("|") for line in run.stdout.splitlines()[2:])}
+    assert len(orders) == 10 and min(orders.values()) > 0.6, run.stdout
+    assert orders["Mindlin: shift"] > 1.5 and orders["Mindlin: dissipation of a cycle"] > 1.5
+    assert (tmp_path / "study.png").stat().st_size > 10000
 
 
 def test_documents_have_no_broken_links():
