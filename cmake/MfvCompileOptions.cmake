@@ -1,7 +1,7 @@
-# mfv_compile_options(target): the language standard, warnings, and what MFV_STRICT and MFV_SANITIZE ask for.
+# mfv_compile_options(target): the language standard, warnings, and what MFV_STRICT asks for.
 # -frecursive keeps local variables of every size off static memory: two threads may be in one procedure (for which reason
 # the check of recursion, a static flag, is left out).
-# -Wno-uninitialized: gfortran takes the reallocation of an allocatable on assignment for a use of it (GCC bug 77504).
+# -Wno-uninitialized: gfortran takes the reallocation of an allocatable on assignment for a use of it.
 function(mfv_compile_options target)
   set(gnu_fortran $<COMPILE_LANG_AND_ID:Fortran,GNU>)
   target_compile_options(${target} PRIVATE
@@ -11,8 +11,10 @@ function(mfv_compile_options target)
       $<${gnu_fortran}:-Werror -fcheck=all,no-array-temps,no-recursion -fbacktrace -ffpe-trap=invalid,zero,overflow>
       $<$<COMPILE_LANG_AND_ID:C,GNU>:-Wall -Wextra -Werror>)
   endif()
-  if(MFV_SANITIZE)
-    target_compile_options(${target} PRIVATE -fsanitize=${MFV_SANITIZE} -fno-omit-frame-pointer)
-    target_link_options(${target} PRIVATE -fsanitize=${MFV_SANITIZE})
-  endif()
 endfunction()
+
+# Sanitizers: everything must be linked with them, the tests too.
+if(MFV_SANITIZE)
+  add_compile_options(-fsanitize=${MFV_SANITIZE} -fno-omit-frame-pointer)
+  add_link_options(-fsanitize=${MFV_SANITIZE})
+endif()

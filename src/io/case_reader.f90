@@ -32,11 +32,9 @@ module mfv_case_reader
       procedure :: integer_value
       procedure :: logical_value
       procedure :: text_value
-      procedure :: choice_value
       procedure :: complain
       procedure :: need
       procedure, private :: entry_of
-      procedure, private :: written
       procedure, private :: key_of
    end type reader_type
 
@@ -83,8 +81,8 @@ contains
       case%force_unit = reader%text_value('scene', 1, 'force_unit')
       case%result_path = reader%text_value('output', 1, 'file')
       case%keep_history = history_events
-      if (reader%choice_value('output', 1, 'history') == 'steps') case%keep_history = history_steps
-      if (reader%choice_value('output', 1, 'history') == 'none') case%keep_history = history_none
+      if (reader%text_value('output', 1, 'history') == 'steps') case%keep_history = history_steps
+      if (reader%text_value('output', 1, 'history') == 'none') case%keep_history = history_none
    end subroutine read_case_text
 
    !> Every group known, and those that must be alone alone.
@@ -208,8 +206,8 @@ contains
       type(error_type), allocatable, intent(out) :: error
 
       scene%title = reader%text_value('scene', 1, 'title')
-      scene%plane = merge(plane_stress, plane_strain, reader%choice_value('scene', 1, 'plane') == 'stress')
-      select case (reader%choice_value('scene', 1, 'coupling'))
+      scene%plane = merge(plane_stress, plane_strain, reader%text_value('scene', 1, 'plane') == 'stress')
+      select case (reader%text_value('scene', 1, 'coupling'))
       case ('full')
          scene%coupling = coupling_full
       case ('goodman')
@@ -243,9 +241,9 @@ contains
          call reader%need('body', body, 'shape', error)
          if (allocated(error)) return
       end do
-      if (reader%choice_value('body', 1, 'shape') /= 'half_plane' .or. reader%logical_value('body', 1, 'rigid')) then
+      if (reader%text_value('body', 1, 'shape') /= 'half_plane' .or. reader%logical_value('body', 1, 'rigid')) then
          call reader%complain('body', 1, 'shape', 'the first body, below, must be an elastic half_plane', error)
-      else if (reader%choice_value('body', 2, 'shape') == 'half_plane') then
+      else if (reader%text_value('body', 2, 'shape') == 'half_plane') then
          call reader%complain('body', 2, 'shape', "the second body, above, must be 'disk', 'flat_punch' or 'profile'", &
                               error)
       else if (.not. reader%logical_value('body', 2, 'rigid')) then
@@ -265,7 +263,7 @@ contains
 
       keys = keys_of(reader, 'body')
       do body = 1, 2
-         shape = reader%choice_value('body', body, 'shape')
+         shape = reader%text_value('body', body, 'shape')
          select case (shape)
          case ('half_plane')
             allowed = 'shape rigid shear_modulus youngs_modulus poisson_ratio datum'
@@ -279,8 +277,8 @@ contains
          do i = 1, size(keys)
             if (.not. reader%has('body', body, keys(i)%text)) cycle
             if (index(' '//allowed//' ', ' '//keys(i)%text//' ') > 0) cycle
-            call reader%complain('body', body, keys(i)%text, 'means nothing for a '//trim(merge('rigid', '     ', body == 2))// &
-                                 ' '//shape//'; its keys are '//allowed, error)
+            call reader%complain('body', body, keys(i)%text, 'means nothing for a '// &
+                                 merge_text(body == 2, 'rigid ', '')//shape//'; its keys are '//allowed, error)
             return
          end do
       end do
@@ -318,16 +316,16 @@ contains
       type(error_type), allocatable :: file_error
       character(:), allocatable :: path
 
-      if (reader%has('mesh', 1, 'gap') .and. reader%choice_value('body', 2, 'shape') /= 'disk') then
+      if (reader%has('mesh', 1, 'gap') .and. reader%text_value('body', 2, 'shape') /= 'disk') then
          call reader%complain('mesh', 1, 'gap', 'means nothing without a disk', error)
          return
       end if
-      select case (reader%choice_value('body', 2, 'shape'))
+      select case (reader%text_value('body', 2, 'shape'))
       case ('disk')
          call reader%need('body', 2, 'radius', error)
          if (allocated(error)) return
          scene%indenter = new_disk(reader%real_value('body', 2, 'radius'), &
-                                   reader%choice_value('mesh', 1, 'gap') == 'parabolic')
+                                   reader%text_value('mesh', 1, 'gap') == 'parabolic')
       case ('flat_punch')
          call reader%need('body', 2, 'half_width', error)
          if (allocated(error)) return
@@ -365,7 +363,7 @@ contains
       type(error_type), allocatable, intent(out) :: error
 
       scene%friction = no_friction()
-      if (reader%choice_value('friction', 1, 'law') == 'coulomb') then
+      if (reader%text_value('friction', 1, 'law') == 'coulomb') then
          call reader%need('friction', 1, 'mu', error)
          if (allocated(error)) return
          scene%friction = coulomb_friction(reader%real_value('friction', 1, 'mu'))
@@ -434,7 +432,7 @@ contains
       logical :: law
       integer :: i
 
-      law = reader%choice_value('friction', 1, 'law') /= 'none'
+      law = reader%text_value('friction', 1, 'law') /= 'none'
       if (law .and. reader%has('friction', 1, 'mu')) law = reader%real_value('friction', 1, 'mu') > 0.0_wp
       do i = 1, count_groups(reader, 'step')
          if (.not. reader%has('step', i, 'tangential_force')) cycle
@@ -488,7 +486,7 @@ contains
    end function has
 
    !> The value as written, or the default.
-   pure function written(self, group, number, name) result(text)
+   pure function text_value(self, group, number, name) result(text)
       class(reader_type), intent(in) :: self
       character(*), intent(in) :: group, name
       integer, intent(in) :: number
@@ -502,7 +500,7 @@ contains
       else
          text = self%keys(self%key_of(group, name))%default
       end if
-   end function written
+   end function text_value
 
    pure real(wp) function real_value(self, group, number, name)
       class(reader_type), intent(in) :: self
@@ -510,7 +508,7 @@ contains
       integer, intent(in) :: number
       integer :: code
 
-      call read_number(self%written(group, number, name), kind_real, real_value, code)
+      call read_number(self%text_value(group, number, name), kind_real, real_value, code)
    end function real_value
 
    pure integer function integer_value(self, group, number, name)
@@ -520,7 +518,7 @@ contains
       real(wp) :: value
       integer :: code
 
-      call read_number(self%written(group, number, name), kind_integer, value, code)
+      call read_number(self%text_value(group, number, name), kind_integer, value, code)
       integer_value = nint(value)
    end function integer_value
 
@@ -529,26 +527,8 @@ contains
       character(*), intent(in) :: group, name
       integer, intent(in) :: number
 
-      logical_value = logical_code(self%written(group, number, name)) == 1
+      logical_value = logical_code(self%text_value(group, number, name)) == 1
    end function logical_value
-
-   pure function text_value(self, group, number, name) result(text)
-      class(reader_type), intent(in) :: self
-      character(*), intent(in) :: group, name
-      integer, intent(in) :: number
-      character(:), allocatable :: text
-
-      text = self%written(group, number, name)
-   end function text_value
-
-   pure function choice_value(self, group, number, name) result(text)
-      class(reader_type), intent(in) :: self
-      character(*), intent(in) :: group, name
-      integer, intent(in) :: number
-      character(:), allocatable :: text
-
-      text = self%written(group, number, name)
-   end function choice_value
 
    !> Error where a key is not written.
    subroutine need(self, group, number, name, error)
