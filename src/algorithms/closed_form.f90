@@ -128,7 +128,7 @@ contains
                  force => simulation%contact%state%fields%normal_force)
          history = new_mindlin_history(force, form%half_width, scene%indenter%radius, scene%datum, &
                                        scene%friction%coefficient)
-         do i = 1, size(simulation%snapshots)
+         do i = 1, simulation%snapshot_count
             call history%load(simulation%snapshots(i)%state%fields%tangential_force)
          end do
          call history%load(contact%state%fields%tangential_force)

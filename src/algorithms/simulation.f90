@@ -30,8 +30,9 @@ module mfv_simulation
 
    type :: simulation_type
       type(first_violation_type) :: contact
-      !> States at the end of every step and reversal so far.
+      !> States at the end of every step and reversal so far: the first `snapshot_count` entries are in use.
       type(snapshot_type), allocatable :: snapshots(:)
+      integer :: snapshot_count = 0
       !> How it ended (see mfv_status): MFV_COMPLETE while nothing has gone wrong, and why in words.
       integer :: outcome = MFV_COMPLETE
       character(:), allocatable :: message
@@ -62,7 +63,7 @@ contains
                                          keep_history == history_events)
       self%keep_history = keep_history
       self%message = 'nothing has been computed yet'
-      allocate (self%snapshots(0))
+      allocate (self%snapshots(8))
       allocate (self%taken(0))
       if (keep_history /= history_none) call self%contact%record(event_none, 0, 0, 0)
    end function new_simulation
@@ -180,13 +181,14 @@ contains
       class(simulation_type), intent(inout) :: self
       integer, intent(in) :: step, reversal
       type(snapshot_type), allocatable :: longer(:)
-      integer :: n
 
-      n = size(self%snapshots)
-      allocate (longer(n + 1))
-      longer(:n) = self%snapshots
-      longer(n + 1) = snapshot_type(self%contact%state, step, reversal, self%contact%model%added)
-      call move_alloc(longer, self%snapshots)
+      if (self%snapshot_count == size(self%snapshots)) then
+         allocate (longer(2*self%snapshot_count))
+         longer(:self%snapshot_count) = self%snapshots
+         call move_alloc(longer, self%snapshots)
+      end if
+      self%snapshot_count = self%snapshot_count + 1
+      self%snapshots(self%snapshot_count) = snapshot_type(self%contact%state, step, reversal, self%contact%model%added)
    end subroutine take_snapshot
 
    !> The state of snapshot `number` on the mesh as it is now: when the mesh has grown since, with its new nodes.

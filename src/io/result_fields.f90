@@ -56,7 +56,7 @@ contains
       groups = list_of_words('mesh scene state summary certificate')
       if (simulation%keep_history /= history_none) call add_text(groups, 'history')
       call add_text(groups, 'reference')
-      do i = 1, size(simulation%snapshots)
+      do i = 1, simulation%snapshot_count
          call add_text(groups, step_group(i))
       end do
    end function result_groups
@@ -102,7 +102,7 @@ contains
          if (index(group, 'steps/') /= 1) return
          read (group(len('steps/') + 1:), '(i10)', iostat=code) number
          if (code /= 0) return
-         if (number < 1 .or. number > size(simulation%snapshots)) return
+         if (number < 1 .or. number > simulation%snapshot_count) return
          if (group == step_group(number)) call add_step(fields, simulation, number, units)
       end select
    end subroutine group_fields

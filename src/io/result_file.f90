@@ -38,18 +38,29 @@ module mfv_result_file
 
 contains
 
-   !> Whether a result could be written to `path`: error MFV_INPUT_ERROR where not, found out before a long run.
+   !> Whether a result could be written to `path`: error MFV_INPUT_ERROR where not, found out before a long run. A file that
+   !> is no HDF5 file, the case itself for one, is not replaced.
    subroutine check_writable(path, error)
       character(*), intent(in) :: path
       type(error_type), allocatable, intent(out) :: error
       character(len=200) :: why
-      logical :: is_directory
+      logical :: is_directory, is_there, is_hdf5
       integer :: code, unit
 
       inquire (file=path//'/.', exist=is_directory)
       if (is_directory) then
          call set_error(error, MFV_INPUT_ERROR, path//' is a directory')
          return
+      end if
+      inquire (file=path, exist=is_there)
+      if (is_there) then
+         call h5open_f(code)
+         call h5eset_auto_f(0, code)
+         call h5fis_hdf5_f(path, is_hdf5, code)
+         if (code /= 0 .or. .not. is_hdf5) then
+            call set_error(error, MFV_INPUT_ERROR, path//' is there and is no HDF5 file; it is not replaced')
+            return
+         end if
       end if
       open (newunit=unit, file=temporary_name(path), action='write', status='replace', iostat=code, iomsg=why)
       if (code /= 0) then
@@ -59,7 +70,8 @@ contains
       end if
    end subroutine check_writable
 
-   !> Write the result of a case to `path`. Error MFV_FILE_ERROR; what was at `path` before is then still there.
+   !> Write the result of a case to `path`. Error MFV_FILE_ERROR; what was at `path` before is then still there. See
+   !> check_writable for what is not replaced.
    subroutine write_result(path, case, simulation, error)
       character(*), intent(in) :: path
       type(case_type), intent(in) :: case
@@ -68,6 +80,11 @@ contains
       type(writer_type) :: writer
       integer :: code
 
+      call check_writable(path, error)
+      if (allocated(error)) then
+         error%status = MFV_FILE_ERROR
+         return
+      end if
       call h5open_f(code)
       call h5eset_auto_f(0, code)
       call h5fcreate_f(temporary_name(path), H5F_ACC_TRUNC_F, writer%file, writer%code)
@@ -128,7 +145,7 @@ contains
       integer :: i
 
       groups = result_groups(simulation)
-      if (size(simulation%snapshots) > 0) call create_group(writer, 'steps')
+      if (simulation%snapshot_count > 0) call create_group(writer, 'steps')
       do i = 1, size(groups)
          call group_fields(case, simulation, groups(i)%text, fields)
          call write_group(writer, groups(i)%text, fields)

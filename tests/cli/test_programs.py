@@ -144,6 +144,17 @@ def test_existing_results_survive_failed_runs(tmp_path):
     assert (tmp_path / "case.h5").read_text() == "precious"
 
 
+def test_other_files_are_not_replaced(tmp_path):
+    path = case(tmp_path, BODIES + "&step normal_force=1e-3 / &output file='case.nml' /")
+    before = path.read_text()
+    run = mfv_run(path.name, cwd=tmp_path)
+    assert run.returncode == INPUT and "is no HDF5 file; it is not replaced" in run.stderr
+    assert path.read_text() == before
+    path.write_text(BODIES + "&step normal_force=1e-3 /")
+    assert mfv_run(path.name, cwd=tmp_path).returncode == COMPLETE
+    assert mfv_run(path.name, cwd=tmp_path).returncode == COMPLETE
+
+
 def test_profile_and_chosen_mesh(tmp_path):
     x = np.linspace(-0.1, 0.1, 401)
     np.savetxt(tmp_path / "profile.txt", np.column_stack([x, x**2 / 0.5]))
