@@ -155,7 +155,7 @@ def read(path: str | os.PathLike[str]) -> Result:
 
 
 def _groups(file: h5py.File) -> dict[str, dict[str, Field]]:
-    """All groups that have datasets, by path. Coordinates are in the group they belong to, not where they are links."""
+    """All groups that have datasets, by path. Coordinates are in mesh and history alone, not where they are repeated."""
     groups: dict[str, dict[str, Field]] = {}
 
     def add(group: h5py.Group) -> None:

@@ -15,10 +15,9 @@ module mfv_result_file
    private
    public :: write_result, check_writable
 
-   !> An open file and its dimension scales.
+   !> An open file.
    type :: writer_type
       integer(hid_t) :: file = -1
-      integer(hid_t) :: x = -1, record = -1
       !> First failure of an HDF5 call, 0 for none.
       integer :: code = 0
    end type writer_type
@@ -91,8 +90,6 @@ contains
       if (writer%code == 0) then
          call write_attributes(writer, case, simulation)
          call write_groups(writer, case, simulation)
-         if (writer%record >= 0) call h5dclose_f(writer%record, code)
-         if (writer%x >= 0) call h5dclose_f(writer%x, code)
          call h5fclose_f(writer%file, code)
          call note(writer, code)
       end if
@@ -134,42 +131,67 @@ contains
       call write_text(writer, writer%file, 'hdf5_version', to_text(major)//'.'//to_text(minor)//'.'//to_text(release))
    end subroutine write_attributes
 
-   !> All groups with their datasets. A dimension scale is one dataset, of mesh or history, which come before those that
-   !> need it, and is linked into every group whose fields run along it.
+   !> All groups with their datasets.
    subroutine write_groups(writer, case, simulation)
       type(writer_type), intent(inout) :: writer
       type(case_type), intent(in) :: case
       type(simulation_type), intent(in) :: simulation
       type(string_type), allocatable :: groups(:)
-      type(field_type), allocatable :: fields(:)
+      type(field_type), allocatable :: fields(:), scales(:)
       integer :: i
 
+      call find_scales(case, simulation, scales)
       groups = result_groups(simulation)
       if (simulation%snapshot_count > 0) call create_group(writer, 'steps')
       do i = 1, size(groups)
          call group_fields(case, simulation, groups(i)%text, fields)
-         call write_group(writer, groups(i)%text, fields)
+         if (size(fields) > 0) call write_group(writer, groups(i)%text, fields, scales)
       end do
    end subroutine write_groups
 
-   subroutine write_group(writer, group, fields)
+   !> The fields that are dimension scales: x of the nodes, record of the load history.
+   subroutine find_scales(case, simulation, scales)
+      type(case_type), intent(in) :: case
+      type(simulation_type), intent(in) :: simulation
+      type(field_type), allocatable, intent(out) :: scales(:)
+      type(field_type), allocatable :: fields(:)
+
+      allocate (scales(2))
+      call group_fields(case, simulation, 'mesh', fields)
+      scales(along_nodes) = fields(field_named(fields, 'x'))
+      call group_fields(case, simulation, 'history', fields)
+      scales(along_records)%name = ''
+      if (size(fields) > 0) scales(along_records) = fields(field_named(fields, 'record'))
+   end subroutine find_scales
+
+   !> One group, with dimension scales of its own: a group can be read alone, and no scale has to list all the datasets of a
+   !> long load history (HDF5 allows 64 KiB for that).
+   subroutine write_group(writer, group, fields, scales)
       type(writer_type), intent(inout) :: writer
       character(*), intent(in) :: group
-      type(field_type), intent(in) :: fields(:)
+      type(field_type), intent(in) :: fields(:), scales(:)
+      integer(hid_t) :: dataset, scale(size(scales))
       integer :: code, i
 
-      if (size(fields) == 0) return
       call create_group(writer, group)
-      if (group /= 'mesh' .and. any(fields%along == along_nodes)) then
-         call h5lcreate_hard_f(writer%file, '/mesh/x', writer%file, '/'//group//'/x', code)
+      scale = -1
+      do i = 1, size(scales)
+         if (.not. any(fields%along == i)) cycle
+         call write_dataset(writer, group, scales(i), scale(i))
+         call h5dsset_scale_f(scale(i), code, scales(i)%name)
          call note(writer, code)
-      end if
-      if (group /= 'history' .and. any(fields%along == along_records)) then
-         call h5lcreate_hard_f(writer%file, '/history/record', writer%file, '/'//group//'/record', code)
-         call note(writer, code)
-      end if
+      end do
       do i = 1, size(fields)
-         call write_field(writer, group, fields(i))
+         if (field_named(scales, fields(i)%name) > 0) cycle
+         call write_dataset(writer, group, fields(i), dataset)
+         if (fields(i)%along /= along_nothing) then
+            call h5dsattach_scale_f(dataset, scale(fields(i)%along), 1, code)
+            call note(writer, code)
+         end if
+         call h5dclose_f(dataset, code)
+      end do
+      do i = 1, size(scales)
+         if (scale(i) >= 0) call h5dclose_f(scale(i), code)
       end do
    end subroutine write_group
 
@@ -184,12 +206,13 @@ contains
       if (code == 0) call h5gclose_f(id, code)
    end subroutine create_group
 
-   !> One dataset with its unit, description, flags and dimension scale.
-   subroutine write_field(writer, group, field)
+   !> One dataset with its unit, description and flags; it is left open.
+   subroutine write_dataset(writer, group, field, dataset)
       type(writer_type), intent(inout) :: writer
       character(*), intent(in) :: group
       type(field_type), intent(in) :: field
-      integer(hid_t) :: space, dataset, stored_type
+      integer(hid_t), intent(out) :: dataset
+      integer(hid_t) :: space, stored_type
       integer(hsize_t) :: extent(1)
       integer :: code
 
@@ -219,32 +242,7 @@ contains
       call write_text(writer, dataset, 'units', field%unit)
       call write_text(writer, dataset, 'long_name', field%description)
       if (field%flags /= '') call write_flags(writer, dataset, field%flags)
-      call attach_scale(writer, group, field, dataset)
-   end subroutine write_field
-
-   !> Make a dataset the scale of its dimension, or tie it to that scale; close it unless it is a scale.
-   subroutine attach_scale(writer, group, field, dataset)
-      type(writer_type), intent(inout) :: writer
-      character(*), intent(in) :: group
-      type(field_type), intent(in) :: field
-      integer(hid_t), intent(in) :: dataset
-      integer :: code
-
-      code = 0
-      if (group == 'mesh' .and. field%name == 'x') then
-         call h5dsset_scale_f(dataset, code, 'x')
-         writer%x = dataset
-      else if (group == 'history' .and. field%name == 'record') then
-         call h5dsset_scale_f(dataset, code, 'record')
-         writer%record = dataset
-      else
-         if (field%along == along_nodes) call h5dsattach_scale_f(dataset, writer%x, 1, code)
-         if (field%along == along_records) call h5dsattach_scale_f(dataset, writer%record, 1, code)
-         call note(writer, code)
-         call h5dclose_f(dataset, code)
-      end if
-      call note(writer, code)
-   end subroutine attach_scale
+   end subroutine write_dataset
 
    !> The meaning of coded values, as the CF conventions have it: flag_values and flag_meanings.
    subroutine write_flags(writer, dataset, flags)

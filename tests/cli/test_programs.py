@@ -62,7 +62,8 @@ def test_file_opens_without_help(tmp_path):
             for dataset in group.values():
                 if isinstance(dataset, h5py.Dataset):
                     assert dataset.attrs["units"] and dataset.attrs["long_name"]
-        assert result["state/pressure"].dims[0][0] == result["mesh/x"]
+        assert result["state/pressure"].dims[0][0] == result["state/x"]
+        np.testing.assert_array_equal(result["state/x"][:], result["mesh/x"][:])
         np.testing.assert_array_equal(result["state/shear"][:], result["steps/0006/shear"][:])
         for name in ("title", "mfv_version", "hdf5_version", "outcome", "message", "plane", "coupling", "indenter"):
             assert isinstance(result.attrs[name], str) and result.attrs[name]
@@ -142,6 +143,14 @@ def test_existing_results_survive_failed_runs(tmp_path):
     (tmp_path / "case.h5").write_text("precious")
     assert mfv_run(case(tmp_path, BODIES + "&step normal_force=-1 /").name, cwd=tmp_path).returncode == INPUT
     assert (tmp_path / "case.h5").read_text() == "precious"
+
+
+def test_long_load_histories_fit_into_a_file(tmp_path):
+    text = BODIES + ("&mesh nodes=3, half_width=0.01 / &friction law='coulomb', mu=0.7 / &step normal_force=1e-4 /"
+                     "&step tangential_force=2e-5, cycles=1500 / &output history='steps' /")
+    assert mfv_run(case(tmp_path, text).name, cwd=tmp_path).returncode == COMPLETE
+    with h5py.File(tmp_path / "case.h5") as result:
+        assert len(result["steps"]) == 3001
 
 
 def test_other_files_are_not_replaced(tmp_path):
