@@ -84,9 +84,9 @@ contains
          case (block_wp, block_ut)
             matrix(:, j) = self%direct(abs(rows - columns(j)) + 1)
          case (block_wt)
-            matrix(:, j) = self%cross*sign_of(rows - columns(j))
+            matrix(:, j) = self%cross*step_kernel(2.0_wp*(rows - columns(j)))
          case (block_up)
-            matrix(:, j) = -self%cross*sign_of(rows - columns(j))
+            matrix(:, j) = -self%cross*step_kernel(2.0_wp*(rows - columns(j)))
          end select
       end do
    end subroutine entries
@@ -132,13 +132,6 @@ contains
          end do
       end subroutine add_cross
    end subroutine toeplitz_product
-
-   !> -1, 0 or 1 as `distance` is.
-   elemental real(wp) function sign_of(distance)
-      integer, intent(in) :: distance
-
-      sign_of = real(merge(1, 0, distance > 0) - merge(1, 0, distance < 0), wp)
-   end function sign_of
 
    !> (r+1) ln|r+1| - (r-1) ln|r-1|, the normal displacement by a box traction, to a relative error near epsilon for
    !> every r >= 0 (r = |x|/h): near 0 and far away, where the two terms cancel, by their series.
