@@ -67,8 +67,6 @@ module mfv_first_violation
       real(wp) :: round_off = 1.0e-12_wp
       !> One change at a time, after a cycle.
       logical :: one_at_a_time = .false.
-      !> All slipping nodes have been tried as stuck.
-      logical :: tried_all_stuck = .false.
       !> First change at this load: event and node; and how many nodes changed with it.
       integer :: event = event_none, node = 0, count = 0
    end type moment_type
@@ -203,7 +201,6 @@ contains
       logical, intent(out) :: settled
       type(error_type), allocatable, intent(out) :: error
       logical :: contact, slides
-      integer :: stuck(size(self%state%status))
 
       settled = .true.
       constraints%normal = at_part(segment%normal, done)
@@ -220,33 +217,30 @@ contains
 
       slides = .not. any(self%state%status == node_stick)
       if (slides .and. constraints%tangential%control == control_force) then
-         if (any(slips(self%state%status)) .and. .not. moment%tried_all_stuck) then
-            moment%tried_all_stuck = .true.
-            stuck = node_stick
-            call self%state%set_status(slips(self%state%status), stuck)
-            settled = .false.
-            return
-         end if
-         call hold_shift(self, constraints, error)
-         if (allocated(error)) return
+         call hold_shift(self, constraints, settled, error)
+         if (allocated(error) .or. .not. settled) return
       end if
       constraints%status = self%state%status
       constraints%stuck_slip = self%state%stuck_slip
    end subroutine settle_loads
 
    !> No node is stuck and the tangential force is prescribed, so that no equation determines the shift. Hold it where
-   !> friction balances the force all the same (no friction, no contact, or equal slip to both sides).
-   !> Error MFV_GROSS_SLIDING where it does not.
-   subroutine hold_shift(self, constraints, error)
+   !> friction balances the force all the same: no friction, no contact, or equal slip to both sides. Otherwise the upper
+   !> body moves towards the missing force; nodes that slip with it will stick first: let them (`settled` is then false).
+   !> Error MFV_GROSS_SLIDING where there are none: every contact node already gives all it has against the force.
+   subroutine hold_shift(self, constraints, settled, error)
       class(first_violation_type), intent(inout) :: self
       type(constraints_type), intent(inout) :: constraints
+      logical, intent(out) :: settled
       type(error_type), allocatable, intent(out) :: error
       real(wp), parameter :: balanced = 1.0e-9_wp
       type(constraints_type) :: trial
       type(response_type) :: response
-      real(wp) :: wanted, scale
-      logical :: singular
+      real(wp) :: wanted, missing, scale
+      integer :: stuck(size(self%state%status))
+      logical :: yielding(size(self%state%status)), singular
 
+      settled = .true.
       wanted = constraints%tangential%rate
       constraints%tangential = load_type(control_displacement, self%state%fields%shift, 0.0_wp)
       if (.not. any(slips(self%state%status))) then
@@ -259,9 +253,18 @@ contains
       trial%status = self%state%status
       trial%stuck_slip = self%state%stuck_slip
       call self%system%solve(self%model, trial, response, singular)
+      missing = wanted - response%rate%tangential_force
       scale = max(abs(wanted), self%model%interval()*sum(abs(response%rate%shear)))
-      if (singular .or. abs(response%rate%tangential_force - wanted) > balanced*scale) &
+      if (.not. singular .and. abs(missing) <= balanced*scale) return
+      yielding = slips(self%state%status)
+      if (.not. singular) yielding = yielding .and. slip_sign(self%state%status)*missing > 0.0_wp
+      if (any(yielding)) then
+         stuck = node_stick
+         call self%state%set_status(yielding, stuck)
+         settled = .false.
+      else
          call set_error(error, MFV_GROSS_SLIDING, 'gross sliding: every contact node slips '//self%where_it_is())
+      end if
    end subroutine hold_shift
 
    !> Force control without contact: move the upper body, free of load, until its nearest nodes touch.

@@ -139,6 +139,22 @@ def test_early_ends_are_results(steps, outcome, message, tmp_path):
     assert sorted(path.name for path in tmp_path.iterdir()) == ["case.h5", "case.nml"]
 
 
+@pytest.mark.parametrize("text", [
+    "&scene coupling='goodman', plane='stress' / &body shape='half_plane', shear_modulus=1.0, poisson_ratio=-0.428 /"
+    "&body shape='disk', radius=1.0, rigid=.true. / &mesh nodes=21, half_width=0.049291 / &friction law='coulomb', mu=0.7 /"
+    "&step normal_force=0.00063458, tangential_force=0.0004129, cycles=2 /",
+    "&body shape='half_plane', shear_modulus=1.0, poisson_ratio=-0.596 / &body shape='disk', radius=1.0, rigid=.true. /"
+    "&mesh nodes=43, half_width=0.020276 / &friction law='coulomb', mu=0.3 /"
+    "&step normal_force=0.00016664, tangential_force=-3.8765e-05 / &step tangential_force=3.4583e-05 / &step shift=-0.00014163 /",
+])
+def test_slip_to_both_sides_is_not_gross_sliding(text, tmp_path):
+    """Pressed and sheared together: while few nodes are in contact, all of them slip, but not all against the force."""
+    run = mfv_run(case(tmp_path, text).name, cwd=tmp_path)
+    assert run.returncode == COMPLETE, run.stderr
+    with h5py.File(tmp_path / "case.h5") as result:
+        assert result["certificate/largest"][()] < 1e-11
+
+
 def test_existing_results_survive_failed_runs(tmp_path):
     (tmp_path / "case.h5").write_text("precious")
     assert mfv_run(case(tmp_path, BODIES + "&step normal_force=-1 /").name, cwd=tmp_path).returncode == INPUT
