@@ -15,6 +15,8 @@ module mfv_reference_spence
 
    !> Stick ratios are looked for between exp(-300) and 1 - 1e-290, where elliptic integrals are in double range.
    real(wp), parameter :: log_smallest = -300.0_wp, log_largest = -1.0e-290_wp
+   !> Arguments of R_F are kept above this, inside the domain outside of which GSL would abort.
+   real(wp), parameter :: domain_edge = 1.0e-300_wp
 
 contains
 
@@ -52,19 +54,20 @@ contains
    end function one_less_square
 
    !> Complete elliptic integral of the first kind by its complementary parameter, K = R_F(0, 1 - k^2, 1), for
-   !> 1 - k^2 in (0, 1].
+   !> 1 - k^2 in [0, 1]; at 0, where K is infinite, about 346.
    pure real(wp) function elliptic_k(complementary_parameter)
       real(wp), intent(in) :: complementary_parameter
 
-      elliptic_k = gsl_sf_ellint_RF(0.0_wp, complementary_parameter, 1.0_wp, GSL_PREC_DOUBLE)
+      elliptic_k = gsl_sf_ellint_RF(0.0_wp, max(complementary_parameter, domain_edge), 1.0_wp, GSL_PREC_DOUBLE)
    end function elliptic_k
 
-   !> Incomplete elliptic integral of the first kind F(asin(s), k), for s in [-1, 1] and k in [0, 1), not both at 1.
+   !> Incomplete elliptic integral of the first kind F(asin(s), k), for s in [-1, 1] and k in [0, 1].
    pure real(wp) function elliptic_f(sine, modulus)
       real(wp), intent(in) :: sine, modulus
 
-      elliptic_f = sine*gsl_sf_ellint_RF((1.0_wp - sine)*(1.0_wp + sine), &
-                                         (1.0_wp - modulus*sine)*(1.0_wp + modulus*sine), 1.0_wp, GSL_PREC_DOUBLE)
+      elliptic_f = sine*gsl_sf_ellint_RF(max((1.0_wp - sine)*(1.0_wp + sine), domain_edge), &
+                                         max((1.0_wp - modulus*sine)*(1.0_wp + modulus*sine), domain_edge), 1.0_wp, &
+                                         GSL_PREC_DOUBLE)
    end function elliptic_f
 
    !> Shear traction under a cylinder pressed with the normal force P (force/length) to the contact half-width a
@@ -72,20 +75,20 @@ contains
    function spence_cylinder_shear(x, normal_force, half_width, friction_coefficient, beta) result(shear)
       real(wp), intent(in) :: x(:), normal_force, half_width, friction_coefficient, beta
       real(wp) :: shear(size(x))
-      real(wp) :: ratio, b, peak, distance
+      real(wp) :: ratio, b, complete, peak, distance
       integer :: i
 
       ratio = spence_stick_ratio(friction_coefficient, beta)
       b = ratio*half_width
+      complete = stick_ratio_k(ratio, friction_coefficient, beta)
       peak = 2.0_wp*friction_coefficient*normal_force/(pi*half_width)
       shear = 0.0_wp
       if (.not. abs(beta) > 0.0_wp) return
       do i = 1, size(x)
          distance = abs(x(i))
-         if (distance >= half_width) cycle
+         if (.not. distance < half_width) cycle
          shear(i) = peak*sqrt((1.0_wp - distance/half_width)*(1.0_wp + distance/half_width))
-         if (distance < b) shear(i) = shear(i)*stick_factor(distance/b, ratio) &
-                                      + peak*growth_term(distance/b)/elliptic_k((1.0_wp - ratio)*(1.0_wp + ratio))
+         if (distance < b) shear(i) = (shear(i)*elliptic_f(distance/b, ratio) + peak*growth_term(distance/b))/complete
          shear(i) = sign(shear(i), beta*x(i))
       end do
    end function spence_cylinder_shear
@@ -94,28 +97,30 @@ contains
    function spence_flat_punch_shear(x, normal_force, half_width, friction_coefficient, beta) result(shear)
       real(wp), intent(in) :: x(:), normal_force, half_width, friction_coefficient, beta
       real(wp) :: shear(size(x))
-      real(wp) :: ratio, distance
+      real(wp) :: ratio, b, complete, distance
       integer :: i
 
       ratio = spence_stick_ratio(friction_coefficient, beta)
+      b = ratio*half_width
+      complete = stick_ratio_k(ratio, friction_coefficient, beta)
       shear = 0.0_wp
       if (.not. abs(beta) > 0.0_wp) return
       do i = 1, size(x)
          distance = abs(x(i))
-         if (distance >= half_width) cycle
+         if (.not. distance < half_width) cycle
          shear(i) = friction_coefficient*normal_force/(pi*sqrt((half_width - distance)*(half_width + distance)))
-         if (distance < ratio*half_width) shear(i) = shear(i)*stick_factor(distance/(ratio*half_width), ratio)
+         if (distance < b) shear(i) = shear(i)*elliptic_f(distance/b, ratio)/complete
          shear(i) = sign(shear(i), beta*x(i))
       end do
    end function spence_flat_punch_shear
 
-   !> F(asin(xi), c)/K(c) for xi = |x|/b in [0, 1].
-   pure real(wp) function stick_factor(xi, ratio)
-      real(wp), intent(in) :: xi, ratio
-      real(wp), parameter :: nearly_all = 1.0_wp - 1.0e-15_wp
+   !> K(c) at the stick ratio c: by equation 3.4 it is mu K'(c)/beta, which stays accurate where c is 1 to round-off.
+   pure real(wp) function stick_ratio_k(ratio, friction_coefficient, beta)
+      real(wp), intent(in) :: ratio, friction_coefficient, beta
 
-      stick_factor = elliptic_f(xi, min(ratio, nearly_all))/elliptic_k((1.0_wp - min(ratio, nearly_all))*(1.0_wp + ratio))
-   end function stick_factor
+      stick_ratio_k = 1.0_wp
+      if (abs(beta) > 0.0_wp) stick_ratio_k = friction_coefficient*elliptic_k(ratio**2)/abs(beta)
+   end function stick_ratio_k
 
    !> xi arcosh(1/xi) = -(xi/2) ln[(1 - sqrt(1 - xi^2))/(1 + sqrt(1 - xi^2))], with its limit 0 at 0.
    pure real(wp) function growth_term(xi)
