@@ -136,22 +136,26 @@ contains
       if (self%traction > 0.0_wp) call self%note(continuity, jump, self%traction)
    end subroutine note_jump
 
-   !> Elasticity with the full compliance, and balance of forces.
+   !> Elasticity with the full compliance, and balance of forces. Tangential magnitudes count as no smaller than what friction
+   !> could make of the normal ones, so that round-off of a shear that should be zero is not held against itself.
    subroutine check_equilibrium(self, model, fields)
       class(certificate_type), intent(inout) :: self
       type(contact_model_type), intent(in) :: model
       type(contact_fields_type), intent(in) :: fields
       real(wp), dimension(size(fields%pressure)) :: by_pressure, by_shear
+      real(wp) :: grip
 
+      grip = min(model%scene%friction%coefficient, 1.0_wp)
       self%traction = max(self%traction, maxval(abs(fields%pressure)), maxval(abs(fields%shear)))
       self%normal_force = max(self%normal_force, abs(fields%normal_force))
-      self%tangential_force = max(self%tangential_force, model%interval()*sum(abs(fields%shear)), &
-                                  abs(fields%tangential_force))
+      self%tangential_force = max(self%tangential_force, grip*self%normal_force, &
+                                  model%interval()*sum(abs(fields%shear)), abs(fields%tangential_force))
       call displacement_parts(block_wp, block_wt)
       self%normal = max(self%normal, maxval(abs(by_pressure)), maxval(abs(by_shear)))
       call self%note(elasticity_normal, maxval(abs(fields%normal - by_pressure - by_shear)), self%normal)
       call displacement_parts(block_up, block_ut)
-      self%tangential = max(self%tangential, maxval(abs(by_pressure)), maxval(abs(by_shear)), abs(fields%shift))
+      self%tangential = max(self%tangential, grip*self%normal, maxval(abs(by_pressure)), maxval(abs(by_shear)), &
+                            abs(fields%shift))
       call self%note(elasticity_tangential, maxval(abs(fields%tangential - by_pressure - by_shear)), self%tangential)
       call self%note(normal_force_balance, abs(fields%normal_force - model%interval()*sum(fields%pressure)), &
                      self%normal_force)
