@@ -77,6 +77,8 @@ module mfv_first_violation
    integer, parameter :: most_tiny_steps = 1000
    !> The rates' round-off where a cycle of statuses suggests that some of them are noise.
    real(wp), parameter :: larger_round_off = 1.0e-9_wp
+   !> A certificate beyond this is no result.
+   real(wp), parameter :: failed_certificate = 1.0e-6_wp
    !> A jump of the tractions beyond this, in parts of the largest, is no continuation.
    real(wp), parameter :: largest_jump = 1.0e-6_wp
 
@@ -287,7 +289,8 @@ contains
    end subroutine close_nearest
 
    !> Take a step of the load with the rates of `response`, and check the increment.
-   !> Error MFV_NO_CONTINUATION: the statuses would make the tractions jump.
+   !> Errors MFV_NO_CONTINUATION: the statuses would make the tractions jump, or the certificate fails by far (loads out of
+   !> all proportion, for example).
    subroutine advance(self, response, step, error)
       class(first_violation_type), intent(inout) :: self
       type(response_type), intent(in) :: response
@@ -316,6 +319,9 @@ contains
       where (abs(slip_rate) > moving*maxval(abs(slip_rate))) &
          self%state%slip_direction = nint(sign(1.0_wp, slip_rate))
       call self%certificate%check_increment(self%model, before, self%state)
+      if (self%certificate%largest() > failed_certificate) &
+         call no_continuation(self, 'the equations are no longer satisfied (certificate '// &
+                              to_text(self%certificate%largest())//')', error)
    end subroutine advance
 
    !> Change the statuses of the nodes whose inequalities break first, together.
