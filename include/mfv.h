@@ -26,7 +26,7 @@ typedef enum mfv_status {
   MFV_STATUS_COUNT
 } mfv_status;
 
-/* What a step does with the normal or the tangential load. */
+/* What a step does with the normal, the tangential or the rotational load. */
 enum { MFV_KEEP = 0, MFV_FORCE = 1, MFV_DISPLACEMENT = 2 };
 
 /* A case with its state. Opaque. */
@@ -41,8 +41,11 @@ typedef struct mfv_step {
   int tangential_control;   /* the same */
   int friction;             /* 0: friction off during this step */
   int cycles;               /* 0: go to the targets; n: go there and back n times */
+  double rotational_target; /* moment M [force] or rotation [radians], counterclockwise */
+  int rotational_control;   /* MFV_KEEP, MFV_FORCE (moment) or MFV_DISPLACEMENT (rotation) */
+  int unused;               /* 0 */
 } mfv_step;
-#define MFV_STEP_INIT {sizeof(mfv_step), 0.0, 0.0, MFV_KEEP, MFV_KEEP, 1, 0}
+#define MFV_STEP_INIT {sizeof(mfv_step), 0.0, 0.0, MFV_KEEP, MFV_KEEP, 1, 0, 0.0, MFV_KEEP, 0}
 
 /* Version of the library, such as "0.1.0". Since 0.1.0. */
 int mfv_version(char *buffer, size_t size);

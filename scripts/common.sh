@@ -7,7 +7,7 @@ jobs=$(nproc 2>/dev/null || echo 2)
 say() { printf '== %s\n' "$*"; }
 
 # Debian packages: compilers and build tools, and the libraries that MFV stands on.
-packages='gfortran gcc make cmake libopenblas-dev liblapack-dev libgsl-dev libhdf5-dev'
+packages='gfortran gcc make cmake libopenblas-dev liblapack-dev libgsl-dev libfftw3-dev libhdf5-dev'
 
 # Install what is missing on Debian and Ubuntu; elsewhere, or without the right to, name it and go on.
 install_missing() {
@@ -32,7 +32,7 @@ install_missing() {
     $as_root env DEBIAN_FRONTEND=noninteractive apt-get install -y -qq --no-install-recommends $missing >/dev/null
   else
     say "missing:$missing"
-    say "install them with your system's package manager (gfortran >= 11, CMake >= 3.21, LAPACK, GSL, HDF5 with"
+    say "install them with your system's package manager (gfortran >= 11, CMake >= 3.21, LAPACK, GSL, FFTW, HDF5 with"
     say "Fortran, Python >= 3.9); on Debian or Ubuntu: apt-get install$missing. Going on with what is there."
   fi
 }

@@ -24,7 +24,7 @@ HOW_TO_BUILD = (
 
 
 class Control(IntEnum):
-    """What a step does with the normal or the tangential load."""
+    """What a step does with the normal, the tangential or the rotational load."""
 
     KEEP = 0
     FORCE = 1
@@ -42,6 +42,9 @@ class Step(ctypes.Structure):
         ("tangential_control", c_int),
         ("friction", c_int),
         ("cycles", c_int),
+        ("rotational_target", c_double),
+        ("rotational_control", c_int),
+        ("unused", c_int),
     ]
 
 

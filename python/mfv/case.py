@@ -111,6 +111,8 @@ class Case:
         approach: float | None = None,
         tangential_force: float | None = None,
         shift: float | None = None,
+        moment: float | None = None,
+        rotation: float | None = None,
         friction: bool = True,
         cycles: int = 0,
         check: bool = False,
@@ -118,12 +120,14 @@ class Case:
         """Lead the loads through one more step, whatever the steps of the case are; return the outcome.
 
         Targets are reached linearly from the loads now; a load without a target keeps what it has. Give `normal_force`
-        [force/length] or `approach` [length], and `tangential_force` or `shift` likewise. `friction`: whether it acts
+        [force/length] or `approach` [length], `tangential_force` or `shift` likewise, `moment` [force] or `rotation`
+        [radians]. `friction`: whether it acts
         during this step. `cycles`: go to the targets and back this many times. `check`: as for `run`.
         Raises BadArgument.
         """
         normal_control, normal_target = _control("normal_force", normal_force, "approach", approach)
         tangential_control, tangential_target = _control("tangential_force", tangential_force, "shift", shift)
+        rotational_control, rotational_target = _control("moment", moment, "rotation", rotation)
         step = Step(
             size=ctypes.sizeof(Step),
             normal_target=normal_target,
@@ -132,6 +136,8 @@ class Case:
             tangential_control=tangential_control,
             friction=bool(friction),
             cycles=cycles,
+            rotational_target=rotational_target,
+            rotational_control=rotational_control,
         )
         return self._lead(check, "mfv_advance", byref(step))
 

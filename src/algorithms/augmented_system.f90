@@ -4,6 +4,7 @@
 !> tractions tau, w - delta, s = u - U, and delta, U, P, Q; 4m + 4 in all (4n + 12 for one patch of n contact nodes).
 !> Rows: elasticity, force balance (eq. 2.1), one normal and one tangential constraint a node (Table 2.1), and the two
 !> controlled loads. While no node can carry shear (friction off or absent), tau, s, U and Q are left out: 2m + 2.
+!> Where rotation is modelled it and the moment come as well (eq. 4.24): w and s then contain what it does.
 !>
 !> The unknowns are scaled by the compliance's modulus and the mesh's length, so that units do not matter, and shear also
 !> by mu where that is small. One
@@ -35,7 +36,7 @@ module mfv_augmented_system
       real(wp), allocatable :: matrix(:, :), right(:, :)
       !> Unknowns before those of the first carried node, by field; and places of the scalars.
       integer :: pressure = 0, shear = 0, normal = 0, slip = 0
-      integer :: approach = 0, shift = 0, normal_force = 0, tangential_force = 0
+      integer :: approach = 0, shift = 0, normal_force = 0, tangential_force = 0, rotation = 0, moment = 0
       !> Units of pressure, shear traction and length.
       real(wp) :: stress = 1.0_wp, shear_stress = 1.0_wp, length = 1.0_wp
    end type assembly_type
@@ -64,7 +65,8 @@ contains
 
       assembly = new_assembly(model, constraints%status)
       call add_elasticity(assembly, model%compliance)
-      call add_force_balance(assembly, model%interval())
+      call add_force_balance(assembly, model)
+      if (model%rotational) call add_rotation(assembly, model)
       call add_normal_constraints(assembly, model, constraints)
       if (assembly%tangential) call add_tangential_constraints(assembly, model, constraints)
       call add_loads(assembly, constraints)
@@ -118,6 +120,11 @@ contains
          assembly%tangential_force = n + 2*m + 2
          n = n + 2*m + 2
       end if
+      if (model%rotational) then
+         assembly%rotation = n + 1
+         assembly%moment = n + 2
+         n = n + 2
+      end if
       allocate (assembly%matrix(n, n), assembly%right(n, 2), source=0.0_wp)
    end function new_assembly
 
@@ -162,18 +169,40 @@ contains
    end subroutine add_block
 
    !> Rows sum(p) dx - P = 0 and sum(tau) dx - Q = 0, in the rows of the rigid motions.
-   subroutine add_force_balance(assembly, interval)
+   subroutine add_force_balance(assembly, model)
       type(assembly_type), intent(inout) :: assembly
-      real(wp), intent(in) :: interval
+      type(contact_model_type), intent(in) :: model
       integer :: m
 
       m = size(assembly%nodes)
-      assembly%matrix(assembly%approach, assembly%pressure + 1:assembly%pressure + m) = interval/assembly%length
-      assembly%matrix(assembly%approach, assembly%normal_force) = -1.0_wp
-      if (.not. assembly%tangential) return
-      assembly%matrix(assembly%shift, assembly%shear + 1:assembly%shear + m) = interval/assembly%length
-      assembly%matrix(assembly%shift, assembly%tangential_force) = -1.0_wp
+      associate (weight => model%width(assembly%nodes)/assembly%length)
+         assembly%matrix(assembly%approach, assembly%pressure + 1:assembly%pressure + m) = weight
+         assembly%matrix(assembly%approach, assembly%normal_force) = -1.0_wp
+         if (.not. assembly%tangential) return
+         assembly%matrix(assembly%shift, assembly%shear + 1:assembly%shear + m) = weight
+         assembly%matrix(assembly%shift, assembly%tangential_force) = -1.0_wp
+      end associate
    end subroutine add_force_balance
+
+   !> The rotation in the elasticity rows, the balance of moments in its own (eq. 4.24).
+   subroutine add_rotation(assembly, model)
+      type(assembly_type), intent(inout) :: assembly
+      type(contact_model_type), intent(in) :: model
+      integer :: m
+
+      m = size(assembly%nodes)
+      associate (weight => model%width(assembly%nodes)/assembly%length, &
+                 normal_arm => model%normal_arm(assembly%nodes)/assembly%length, &
+                 tangential_arm => model%tangential_arm(assembly%nodes)/assembly%length)
+         assembly%matrix(assembly%pressure + 1:assembly%pressure + m, assembly%rotation) = normal_arm
+         assembly%matrix(assembly%rotation, assembly%pressure + 1:assembly%pressure + m) = weight*normal_arm
+         assembly%matrix(assembly%rotation, assembly%moment) = -1.0_wp
+         if (.not. assembly%tangential) return
+         assembly%matrix(assembly%shear + 1:assembly%shear + m, assembly%rotation) = tangential_arm
+         assembly%matrix(assembly%rotation, assembly%shear + 1:assembly%shear + m) = &
+            weight*tangential_arm*assembly%shear_stress/assembly%stress
+      end associate
+   end subroutine add_rotation
 
    !> Rows w - delta = -g0 for nodes in contact, p = 0 for open ones.
    subroutine add_normal_constraints(assembly, model, constraints)
@@ -214,29 +243,34 @@ contains
       end do
    end subroutine add_tangential_constraints
 
-   !> Rows that prescribe P or delta, and Q or U.
+   !> Rows that prescribe P or delta, Q or U, M or the rotation.
    subroutine add_loads(assembly, constraints)
       type(assembly_type), intent(inout) :: assembly
       type(constraints_type), intent(in) :: constraints
 
-      call add_load(assembly, constraints%normal, assembly%normal_force, assembly%approach, assembly%stress)
-      if (assembly%tangential) call add_load(assembly, constraints%tangential, assembly%tangential_force, &
-                                             assembly%shift, assembly%shear_stress)
+      associate (length => assembly%length)
+         call add_load(assembly, constraints%normal, assembly%normal_force, assembly%approach, &
+                       assembly%stress*length, length)
+         if (assembly%tangential) call add_load(assembly, constraints%tangential, assembly%tangential_force, &
+                                                assembly%shift, assembly%shear_stress*length, length)
+         if (assembly%rotation > 0) call add_load(assembly, constraints%rotational, assembly%moment, &
+                                                  assembly%rotation, assembly%stress*length**2, 1.0_wp)
+      end associate
    end subroutine add_loads
 
-   !> The row in the force's place: prescribe the force, or the displacement.
-   subroutine add_load(assembly, load, force, displacement, stress)
+   !> The row in the force's place: prescribe the force, or the displacement, each with its unit.
+   subroutine add_load(assembly, load, force, displacement, force_unit, displacement_unit)
       type(assembly_type), intent(inout) :: assembly
       type(load_type), intent(in) :: load
       integer, intent(in) :: force, displacement
-      real(wp), intent(in) :: stress
+      real(wp), intent(in) :: force_unit, displacement_unit
       real(wp) :: unit
 
       if (load%control == control_force) then
-         unit = stress*assembly%length
+         unit = force_unit
          assembly%matrix(force, force) = 1.0_wp
       else
-         unit = assembly%length
+         unit = displacement_unit
          assembly%matrix(force, displacement) = 1.0_wp
       end if
       assembly%right(force, :) = [load%value, load%rate]/unit
@@ -258,6 +292,10 @@ contains
          fields%pressure(nodes) = stress*solution(assembly%pressure + 1:assembly%pressure + m)
          fields%normal(nodes) = length*solution(assembly%normal + 1:assembly%normal + m) + fields%approach
          where (.not. in_contact(status)) fields%pressure = 0.0_wp
+         if (assembly%rotation > 0) then
+            fields%rotation = solution(assembly%rotation)
+            fields%moment = stress*length**2*solution(assembly%moment)
+         end if
          if (.not. assembly%tangential) return
          fields%shift = length*solution(assembly%shift)
          fields%tangential_force = assembly%shear_stress*length*solution(assembly%tangential_force)
@@ -275,7 +313,7 @@ contains
       real(wp) :: normal(model%nodes()), tangential(model%nodes())
       logical :: carried(model%nodes())
 
-      call model%compliance%displacements(fields%pressure, fields%shear, normal, tangential)
+      call model%relative_displacements(fields, normal, tangential)
       carried = .false.
       carried(assembly%nodes) = .true.
       where (.not. carried) fields%normal = normal

@@ -17,16 +17,16 @@ module mfv_certificate
    integer, parameter :: elasticity_normal = 1, elasticity_tangential = 2, normal_force_balance = 3, &
                          tangential_force_balance = 4, contact_gap = 5, open_traction = 6, stick_slip = 7, &
                          slip_traction = 8, pressure_sign = 9, gap_sign = 10, friction_limit = 11, &
-                         slip_direction = 12, continuity = 13, energy_balance = 14
+                         slip_direction = 12, continuity = 13, energy_balance = 14, moment_balance = 15
    !> Number of residuals.
-   integer, parameter :: residual_count = 14
+   integer, parameter :: residual_count = 15
 
    character(*), parameter :: names(residual_count) = [character(24) :: &
                                                        'elasticity_normal', 'elasticity_tangential', &
                                                        'normal_force_balance', 'tangential_force_balance', &
                                                        'contact_gap', 'open_traction', 'stick_slip', 'slip_traction', &
                                                        'pressure_sign', 'gap_sign', 'friction_limit', &
-                                                       'slip_direction', 'continuity', 'energy_balance']
+                                                       'slip_direction', 'continuity', 'energy_balance', 'moment_balance']
    character(*), parameter :: descriptions(residual_count) = [character(80) :: &
                                                               'w - C_wp p - C_wt tau', 'u - C_up p - C_ut tau', &
                                                               'P - sum(p) dx', 'Q - sum(tau) dx', &
@@ -37,7 +37,8 @@ module mfv_certificate
                                                               'shear traction beyond the friction limit', &
                                                               'slip with the traction instead of against it', &
                                                               'jump of the tractions where statuses change', &
-                                                              'work of the loads - stored - dissipated energy']
+                                                              'work of the loads - stored - dissipated energy', &
+                                                              'M - moment of the tractions']
 
    type :: certificate_type
       !> Largest relative residuals over all increments, by kind.
@@ -49,7 +50,7 @@ module mfv_certificate
       integer :: increments = 0
       !> Largest magnitudes so far.
       real(wp), private :: traction = 0.0_wp, normal = 0.0_wp, tangential = 0.0_wp, normal_force = 0.0_wp, &
-                           tangential_force = 0.0_wp, energy = 0.0_wp
+                           tangential_force = 0.0_wp, moment = 0.0_wp, energy = 0.0_wp
       !> Work of the loads so far, force (energy per unit thickness).
       real(wp) :: work = 0.0_wp
    contains
@@ -93,7 +94,9 @@ contains
       class(certificate_type), intent(inout) :: self
       type(contact_model_type), intent(in) :: model
 
-      self%claimed(energy_balance) = .not. model%tangential .or. model%scene%coupling /= coupling_goodman
+      self%claimed(energy_balance) = .not. model%tangential .or. model%scene%coupling /= coupling_goodman .or. &
+                                     .not. model%compliance%has_block(block_up)
+      self%claimed(moment_balance) = model%rotational
       self%claimed([elasticity_tangential, tangential_force_balance, stick_slip, slip_traction, friction_limit, &
                     slip_direction]) = model%tangential
    end subroutine claim
@@ -142,25 +145,33 @@ contains
       class(certificate_type), intent(inout) :: self
       type(contact_model_type), intent(in) :: model
       type(contact_fields_type), intent(in) :: fields
-      real(wp), dimension(size(fields%pressure)) :: by_pressure, by_shear
+      real(wp), dimension(size(fields%pressure)) :: by_pressure, by_shear, rigid
       real(wp) :: grip
 
       grip = min(model%scene%friction%coefficient, 1.0_wp)
       self%traction = max(self%traction, maxval(abs(fields%pressure)), maxval(abs(fields%shear)))
       self%normal_force = max(self%normal_force, abs(fields%normal_force))
       self%tangential_force = max(self%tangential_force, grip*self%normal_force, &
-                                  model%interval()*sum(abs(fields%shear)), abs(fields%tangential_force))
+                                  model%force(abs(fields%shear)), abs(fields%tangential_force))
       call displacement_parts(block_wp, block_wt)
       self%normal = max(self%normal, maxval(abs(by_pressure)), maxval(abs(by_shear)))
-      call self%note(elasticity_normal, maxval(abs(fields%normal - by_pressure - by_shear)), self%normal)
+      rigid = fields%rotation*model%normal_arm
+      call self%note(elasticity_normal, maxval(abs(fields%normal + rigid - by_pressure - by_shear)), &
+                     max(self%normal, maxval(abs(rigid))))
       call displacement_parts(block_up, block_ut)
       self%tangential = max(self%tangential, grip*self%normal, maxval(abs(by_pressure)), maxval(abs(by_shear)), &
                             abs(fields%shift))
-      call self%note(elasticity_tangential, maxval(abs(fields%tangential - by_pressure - by_shear)), self%tangential)
-      call self%note(normal_force_balance, abs(fields%normal_force - model%interval()*sum(fields%pressure)), &
+      rigid = fields%rotation*model%tangential_arm
+      call self%note(elasticity_tangential, maxval(abs(fields%tangential + rigid - by_pressure - by_shear)), &
+                     max(self%tangential, maxval(abs(rigid))))
+      call self%note(normal_force_balance, abs(fields%normal_force - model%force(fields%pressure)), &
                      self%normal_force)
-      call self%note(tangential_force_balance, abs(fields%tangential_force - model%interval()*sum(fields%shear)), &
+      call self%note(tangential_force_balance, abs(fields%tangential_force - model%force(fields%shear)), &
                      self%tangential_force)
+      if (.not. self%claimed(moment_balance)) return
+      self%moment = max(self%moment, abs(fields%moment), model%force(abs(model%normal_arm*fields%pressure)) &
+                        + model%force(abs(model%tangential_arm*fields%shear)))
+      call self%note(moment_balance, abs(fields%moment - model%moment(fields%pressure, fields%shear)), self%moment)
 
    contains
 
@@ -222,9 +233,10 @@ contains
 
       associate (now => after%fields)
          self%work = self%work + 0.5_wp*(before%normal_force + now%normal_force)*(now%approach - before%approach) &
-                     + 0.5_wp*(before%tangential_force + now%tangential_force)*(now%shift - before%shift)
-         stored = 0.5_wp*model%interval()*(dot_product(now%pressure, now%normal) &
-                                           + dot_product(now%shear, now%tangential))
+                     + 0.5_wp*(before%tangential_force + now%tangential_force)*(now%shift - before%shift) &
+                     + 0.5_wp*(before%moment + now%moment)*(now%rotation - before%rotation)
+         stored = 0.5_wp*(model%force(now%pressure*now%normal) + model%force(now%shear*now%tangential) &
+                          + now%rotation*model%moment(now%pressure, now%shear))
       end associate
       self%energy = max(self%energy, abs(self%work), abs(stored))
       call self%note(energy_balance, abs(self%work - stored - after%dissipation), self%energy)

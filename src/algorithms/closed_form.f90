@@ -1,8 +1,8 @@
 !> Which closed form holds for a scene and its load history so far, evaluated on its mesh: what a picture or a test can
 !> hold the numbers against.
 module mfv_closed_form
-   use mfv_compliance, only: coupling_full, coupling_goodman, coupling_none
-   use mfv_indenter, only: shape_disk, shape_flat_punch
+   use mfv_body, only: shape_flat_punch, shape_half_plane
+   use mfv_compliance, only: block_up, block_wt
    use mfv_kinds, only: wp
    use mfv_reference_flat_punch, only: flat_punch_pressure
    use mfv_reference_hertz, only: hertz_half_width, hertz_pressure
@@ -25,10 +25,13 @@ module mfv_closed_form
       real(wp), allocatable :: shift(:)
    end type closed_form_type
 
+   !> Beyond this part of the radius of a circle a contact half-width is too large for Hertz's forms.
+   real(wp), parameter :: widest_hertz = 0.2_wp
+
 contains
 
-   !> The closed form of a simulation's present state. Hertz's forms are those of the parabola: for the exact circle they
-   !> are off by the order of (a/R)^2.
+   !> The closed form of a simulation's present state. Hertz's forms are those of parabolas on half-planes: for the exact
+   !> circle they are off by the order of (a/R)^2, for elastic disks and holes by that of a/R or less.
    function closed_form_of(simulation) result(form)
       type(simulation_type), intent(in) :: simulation
       type(closed_form_type) :: form
@@ -37,24 +40,45 @@ contains
       form%shear_source = ''
       associate (model => simulation%contact%model, scene => simulation%contact%model%scene, &
                  force => simulation%contact%state%fields%normal_force)
-         if (.not. force > 0.0_wp) return
-         if (scene%coupling == coupling_full .and. model%tangential) return
-         select case (scene%indenter%shape)
-         case (shape_disk)
-            form%half_width = hertz_half_width(force, scene%indenter%radius, scene%material)
+         if (.not. (force > 0.0_wp .and. scene%modulus() > 0.0_wp)) return
+         if (model%compliance%has_block(block_wt) .and. model%tangential) return
+         if (is_rotated(simulation)) return
+         if (is_hertz(scene)) then
+            form%half_width = hertz_half_width(force, 1.0_wp/scene%curvature(), scene%modulus())
+            if (form%half_width > widest_hertz*min(scene%lower%half_extent(), scene%upper%half_extent())) return
             form%pressure = hertz_pressure(model%x, force, form%half_width)
-            form%pressure_source = 'Hertz; Johnson 1985, section 4.2; dissertation eqs. 3.1, 3.2'
-         case (shape_flat_punch)
-            form%half_width = scene%indenter%to
+            form%pressure_source = 'Hertz; Johnson 1985, section 4.2; dissertation eqs. 3.1, 3.2, 5.1'
+         else if (scene%lower%shape == shape_half_plane .and. scene%upper%shape == shape_flat_punch &
+                  .and. scene%upper%rigid) then
+            form%half_width = scene%upper%to
             form%pressure = flat_punch_pressure(model%x, force, form%half_width)
             form%pressure_source = 'Johnson 1985, section 2.8; dissertation eq. 3.3'
-         case default
+         else
             return
-         end select
+         end if
          if (is_spence(simulation)) call add_spence(form, simulation)
          if (is_mindlin(simulation)) call add_mindlin(form, simulation)
       end associate
    end function closed_form_of
+
+   !> Circles and half-planes that touch at a point.
+   pure logical function is_hertz(scene)
+      type(scene_type), intent(in) :: scene
+
+      is_hertz = (scene%lower%circular() .or. scene%lower%shape == shape_half_plane) .and. &
+                 (scene%upper%circular() .or. scene%upper%shape == shape_half_plane) .and. scene%curvature() > 0.0_wp
+   end function is_hertz
+
+   !> Whether there is a rotation or a moment to speak of.
+   pure logical function is_rotated(simulation)
+      type(simulation_type), intent(in) :: simulation
+      integer :: i
+
+      is_rotated = .false.
+      do i = 1, size(simulation%taken)
+         is_rotated = is_rotated .or. simulation%taken(i)%rotational_control /= control_keep
+      end do
+   end function is_rotated
 
    !> Pressed only, ever harder, with friction from the start and Goodman's coupling.
    logical function is_spence(simulation)
@@ -63,7 +87,7 @@ contains
       integer :: i
 
       associate (model => simulation%contact%model)
-         is_spence = model%scene%coupling == coupling_goodman .and. model%tangential
+         is_spence = model%compliance%has_block(block_up) .and. model%tangential
          before = 0.0_wp
          do i = 1, size(simulation%taken)
             associate (step => simulation%taken(i))
@@ -82,13 +106,14 @@ contains
 
       associate (x => simulation%contact%model%x, scene => simulation%contact%model%scene, &
                  force => simulation%contact%state%fields%normal_force)
-         if (scene%indenter%shape == shape_disk) then
+         if (is_hertz(scene)) then
             form%shear = spence_cylinder_shear(x, force, form%half_width, scene%friction%coefficient, &
-                                               scene%material%dundurs_beta())
+                                               abs(scene%dundurs_beta()))
          else
             form%shear = spence_flat_punch_shear(x, force, form%half_width, scene%friction%coefficient, &
-                                                 scene%material%dundurs_beta())
+                                                 abs(scene%dundurs_beta()))
          end if
+         form%shear = sign(1.0_wp, scene%dundurs_beta())*form%shear
          form%shear_source = 'Spence 1973; dissertation eqs. 3.4 to 3.6, corrected'
       end associate
    end subroutine add_spence
@@ -100,13 +125,13 @@ contains
       integer :: i
 
       associate (model => simulation%contact%model, scene => simulation%contact%model%scene)
-         is_mindlin = scene%indenter%shape == shape_disk .and. model%tangential
+         is_mindlin = is_hertz(scene) .and. model%tangential
          pressing = .true.
          do i = 1, size(simulation%taken)
             associate (step => simulation%taken(i))
                pressing = pressing .and. .not. abs(step%tangential_target) > 0.0_wp
                if (pressing) then
-                  is_mindlin = is_mindlin .and. (.not. step%friction .or. scene%coupling == coupling_none) &
+                  is_mindlin = is_mindlin .and. (.not. step%friction .or. .not. model%compliance%has_block(block_up)) &
                                .and. step%tangential_control /= control_displacement
                else
                   is_mindlin = is_mindlin .and. step%friction .and. step%normal_control == control_keep &
@@ -126,7 +151,7 @@ contains
 
       associate (contact => simulation%contact, scene => simulation%contact%model%scene, &
                  force => simulation%contact%state%fields%normal_force)
-         history = new_mindlin_history(force, form%half_width, scene%indenter%radius, scene%datum, &
+         history = new_mindlin_history(force, form%half_width, 1.0_wp/scene%curvature(), scene%datum(), &
                                        scene%friction%coefficient)
          do i = 1, simulation%snapshot_count
             call history%load(simulation%snapshots(i)%state%fields%tangential_force)

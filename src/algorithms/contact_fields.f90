@@ -9,12 +9,15 @@ module mfv_contact_fields
    type :: contact_fields_type
       !> Pressure p >= 0 and shear traction tau on the lower body (positive to the right), force/length^2, shape (nodes).
       real(wp), allocatable :: pressure(:), shear(:)
-      !> Displacements of the lower surface: w into the body, u to the right, length, shape (nodes).
+      !> Displacements of the surfaces against each other but for approach and shift, length, shape (nodes): how far the
+      !> surfaces draw apart, w of both bodies into themselves, and how far the lower one moves to the right of the upper
+      !> one, u of the lower less u of the upper. What the upper body's rotation does is in them.
       real(wp), allocatable :: normal(:), tangential(:)
-      !> Rigid motion of the upper body: approach (down) and shift (right), length.
-      real(wp) :: approach = 0.0_wp, shift = 0.0_wp
-      !> Forces of the upper on the lower body per unit thickness: P (down) and Q (right), force/length.
-      real(wp) :: normal_force = 0.0_wp, tangential_force = 0.0_wp
+      !> Rigid motion of the upper body: approach (down) and shift (right), length; rotation (counterclockwise), radians.
+      real(wp) :: approach = 0.0_wp, shift = 0.0_wp, rotation = 0.0_wp
+      !> Forces of the upper on the lower body per unit thickness: P (down) and Q (right), force/length; moment M
+      !> (counterclockwise) about the centre of rotation, force.
+      real(wp) :: normal_force = 0.0_wp, tangential_force = 0.0_wp, moment = 0.0_wp
    contains
       procedure :: plus
       procedure :: slip
@@ -44,8 +47,10 @@ contains
       total%tangential = self%tangential + step*rate%tangential
       total%approach = self%approach + step*rate%approach
       total%shift = self%shift + step*rate%shift
+      total%rotation = self%rotation + step*rate%rotation
       total%normal_force = self%normal_force + step*rate%normal_force
       total%tangential_force = self%tangential_force + step*rate%tangential_force
+      total%moment = self%moment + step*rate%moment
    end function plus
 
    !> Slip s = u - U of every node, length.
@@ -71,8 +76,10 @@ contains
       wider%tangential(extra + 1:extra + n) = self%tangential
       wider%approach = self%approach
       wider%shift = self%shift
+      wider%rotation = self%rotation
       wider%normal_force = self%normal_force
       wider%tangential_force = self%tangential_force
+      wider%moment = self%moment
    end function padded
 
 end module mfv_contact_fields

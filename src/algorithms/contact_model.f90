@@ -1,27 +1,36 @@
 !> A scene on its mesh: node positions, undeformed gaps and the compliance between the nodes.
+!>
+!> Nodes are at equal arc lengths from the pole on both bodies. Gaps are the exact vertical ones at the nodes' x, that of
+!> the circle of scene%arc_radius; another radius would put the other body's nodes at other x, off by the third power of
+!> the angle. Normals are vertical (docs/theory.md has the limits).
 module mfv_contact_model
+   use mfv_body, only: gap_between, shape_matrix, shape_profile
+   use mfv_body_pair, only: body_pair_type, new_body_pair
+   use mfv_circle, only: circle_intervals, kernel_fourier
    use mfv_compliance, only: compliance_type
    use mfv_contact_fields, only: contact_fields_type
-   use mfv_half_plane, only: new_half_plane
-   use mfv_indenter, only: shape_disk, shape_flat_punch
-   use mfv_kinds, only: wp
+   use mfv_kinds, only: pi, wp
    use mfv_reference_hertz, only: hertz_half_width, hertz_half_width_of_approach
    use mfv_scene, only: control_displacement, control_force, scene_type
    implicit none
    private
-   public :: contact_model_type, new_contact_model
+   public :: contact_model_type, new_contact_model, choose_mesh
 
    type :: contact_model_type
       type(scene_type) :: scene
-      !> Positions of the nodes, length.
-      real(wp), allocatable :: x(:)
-      !> Undeformed gaps g0, length; zero where the indenter does not cover the node.
+      !> Positions of the nodes: x, and along the surface from the pole; lengths.
+      real(wp), allocatable :: x(:), arc(:)
+      !> Length of the surface that belongs to each node.
+      real(wp), allocatable :: width(:)
+      !> Undeformed gaps g0, length; zero where a node has no surface opposite.
       real(wp), allocatable :: initial_gap(:)
-      !> Whether the indenter covers the node, so that it can touch at all.
+      !> Whether both bodies have a surface at the node, so that it can touch at all.
       logical, allocatable :: can_touch(:)
-      class(compliance_type), allocatable :: compliance
-      !> Whether the tangential problem is modelled: friction acts in some step.
-      logical :: tangential = .false.
+      !> By how much a unit of rotation of the upper body lessens the gap, and carries its surface to the right; lengths.
+      real(wp), allocatable :: normal_arm(:), tangential_arm(:)
+      type(body_pair_type) :: compliance
+      !> Whether the tangential problem is modelled: friction acts in some step; and whether rotation is.
+      logical :: tangential = .false., rotational = .false.
       !> Whether the mesh may grow with the contact.
       logical :: growing = .false.
       !> How many nodes have been added at either end.
@@ -31,11 +40,17 @@ module mfv_contact_model
       procedure :: interval
       procedure :: length
       procedure :: gap
+      procedure :: relative_displacements
+      procedure :: force
+      procedure :: moment
       procedure :: reaches_end
+      procedure :: spare_nodes
       procedure :: grow
       procedure :: add_tangential
+      procedure :: add_rotation
       procedure, private :: build_compliance
       procedure, private :: place_nodes
+      procedure, private :: touchable
    end type contact_model_type
 
    !> Contact estimates leave this much room to the end of a chosen mesh.
@@ -47,19 +62,52 @@ contains
    function new_contact_model(scene) result(model)
       type(scene_type), intent(in) :: scene
       type(contact_model_type) :: model
-      real(wp) :: half_width, interval
+      real(wp) :: interval
+      integer :: nodes
 
       model%scene = scene
-      half_width = scene%mesh%half_width
-      if (.not. half_width > 0.0_wp) then
-         half_width = estimated_half_width(scene)
-         model%growing = .true.
-      end if
-      interval = 2.0_wp*half_width/scene%mesh%nodes
       model%tangential = scene%tangential()
-      call model%build_compliance(scene%mesh%nodes, interval)
+      model%rotational = scene%rotational()
+      call choose_mesh(scene, nodes, interval, model%growing)
+      call model%build_compliance(nodes, interval)
       call model%place_nodes()
    end function new_contact_model
+
+   !> Number and width (length) of the intervals of a scene's mesh, and whether they may become more.
+   subroutine choose_mesh(scene, nodes, interval, growing)
+      type(scene_type), intent(in) :: scene
+      integer, intent(out) :: nodes
+      real(wp), intent(out) :: interval
+      logical, intent(out) :: growing
+      integer :: circle
+
+      nodes = scene%mesh%nodes
+      growing = .false.
+      if (scene%lower%shape == shape_matrix) then
+         nodes = size(scene%lower%position)
+         interval = sum(scene%lower%width)/nodes
+      else if (scene%mesh%whole_circle) then
+         interval = 2.0_wp*pi*scene%arc_radius()/nodes
+         growing = .true.
+         circle = nodes
+         nodes = 2*ceiling(estimated_half_width(scene)/interval) + modulo(circle, 2)
+         nodes = min(nodes, circle)
+      else if (scene%mesh%half_width > 0.0_wp) then
+         interval = 2.0_wp*scene%mesh%half_width/nodes
+      else
+         interval = 2.0_wp*estimated_half_width(scene)/nodes
+         growing = .true.
+         if (by_fourier(scene)) interval = 2.0_wp*pi*scene%arc_radius()/circle_intervals(scene%arc_radius(), interval)
+      end if
+   end subroutine choose_mesh
+
+   !> Whether a body's kernel needs a whole number of intervals on its circle.
+   pure logical function by_fourier(scene)
+      type(scene_type), intent(in) :: scene
+
+      by_fourier = scene%arc_radius() > 0.0_wp .and. &
+                   any([scene%lower%kernel, scene%upper%kernel] == kernel_fourier)
+   end function by_fourier
 
    !> Model the tangential problem from now on: friction acts in a step that the scene did not have.
    subroutine add_tangential(self)
@@ -69,14 +117,22 @@ contains
       call self%build_compliance(self%nodes(), self%interval())
    end subroutine add_tangential
 
+   !> Model the rotation from now on.
+   subroutine add_rotation(self)
+      class(contact_model_type), intent(inout) :: self
+
+      self%rotational = .true.
+   end subroutine add_rotation
+
    subroutine build_compliance(self, nodes, interval)
       class(contact_model_type), intent(inout) :: self
       integer, intent(in) :: nodes
       real(wp), intent(in) :: interval
+      class(compliance_type), allocatable :: lower, upper
 
-      if (allocated(self%compliance)) deallocate (self%compliance)
-      allocate (self%compliance, source=new_half_plane(self%scene%material, nodes, interval, self%scene%datum, &
-                                                       self%scene%coupling, self%tangential))
+      call self%scene%lower%make_compliance(nodes, interval, self%scene%coupling, self%tangential, lower)
+      call self%scene%upper%make_compliance(nodes, interval, self%scene%coupling, self%tangential, upper)
+      call new_body_pair(lower, upper, self%compliance)
    end subroutine build_compliance
 
    pure integer function nodes(self)
@@ -85,7 +141,7 @@ contains
       nodes = self%compliance%nodes
    end function nodes
 
-   !> Width of an interval, length.
+   !> Width of an interval, length (of a matrix body's: the mean).
    pure real(wp) function interval(self)
       class(contact_model_type), intent(in) :: self
 
@@ -99,7 +155,7 @@ contains
       length = 0.5_wp*self%interval()*self%nodes()
    end function length
 
-   !> Gap g0 - delta + w of every node, length (where the indenter does not cover a node: of no meaning).
+   !> Gap g0 - delta + w of every node, length (where a node has no surface opposite: of no meaning).
    pure function gap(self, fields)
       class(contact_model_type), intent(in) :: self
       type(contact_fields_type), intent(in) :: fields
@@ -108,16 +164,67 @@ contains
       gap = self%initial_gap - fields%approach + fields%normal
    end function gap
 
-   !> Whether the contact statuses (true: in contact) reach an end of the mesh beyond which the indenter goes on.
+   !> Displacements of the surfaces against each other by deformation and, where it is modelled, rotation, as
+   !> contact_fields_type has them, from the tractions and the rotation in `fields`; shape (nodes), length.
+   subroutine relative_displacements(self, fields, normal, tangential)
+      class(contact_model_type), intent(in) :: self
+      type(contact_fields_type), intent(in) :: fields
+      real(wp), intent(out) :: normal(:), tangential(:)
+
+      call self%compliance%displacements(fields%pressure, fields%shear, normal, tangential)
+      if (.not. self%rotational) return
+      normal = normal - fields%rotation*self%normal_arm
+      tangential = tangential - fields%rotation*self%tangential_arm
+   end subroutine relative_displacements
+
+   !> Resultant of a traction, force/length.
+   pure real(wp) function force(self, traction)
+      class(contact_model_type), intent(in) :: self
+      real(wp), intent(in) :: traction(:)
+
+      force = dot_product(self%width, traction)
+   end function force
+
+   !> Moment of the tractions about the centre of rotation, counterclockwise on the lower body, force.
+   pure real(wp) function moment(self, pressure, shear)
+      class(contact_model_type), intent(in) :: self
+      real(wp), intent(in) :: pressure(:), shear(:)
+
+      moment = self%force(self%normal_arm*pressure) + self%force(self%tangential_arm*shear)
+   end function moment
+
+   !> Whether the contact statuses (true: in contact) reach an end of the mesh beyond which both bodies go on.
    pure logical function reaches_end(self, contact)
       class(contact_model_type), intent(in) :: self
       logical, intent(in) :: contact(:)
       integer :: n
 
       n = self%nodes()
-      reaches_end = contact(1) .and. self%scene%indenter%covers(self%x(1) - self%interval()) &
-                    .or. contact(n) .and. self%scene%indenter%covers(self%x(n) + self%interval())
+      reaches_end = contact(1) .and. self%touchable(self%arc(1) - self%interval()) &
+                    .or. contact(n) .and. self%touchable(self%arc(n) + self%interval())
    end function reaches_end
+
+   !> Whether both bodies have a surface at an arc length from the pole.
+   pure logical function touchable(self, arc)
+      class(contact_model_type), intent(in) :: self
+      real(wp), intent(in) :: arc
+      real(wp) :: x, radius
+
+      radius = self%scene%arc_radius()
+      x = arc
+      if (radius > 0.0_wp) x = radius*sin(arc/radius)
+      touchable = self%scene%lower%covers(x) .and. self%scene%upper%covers(x)
+      if (radius > 0.0_wp) touchable = touchable .and. abs(arc) < 0.5_wp*pi*radius
+   end function touchable
+
+   !> How many nodes there could still be at either end: a circle ends.
+   pure integer function spare_nodes(self)
+      class(contact_model_type), intent(in) :: self
+
+      spare_nodes = huge(1)
+      if (self%scene%arc_radius() > 0.0_wp) &
+         spare_nodes = max(0, (circle_intervals(self%scene%arc_radius(), self%interval()) - self%nodes())/2)
+   end function spare_nodes
 
    !> Lengthen the mesh by `extra` nodes at either end, with the same intervals.
    subroutine grow(self, extra)
@@ -132,37 +239,68 @@ contains
    !> Positions symmetric to the last bit.
    subroutine place_nodes(self)
       class(contact_model_type), intent(inout) :: self
+      real(wp) :: radius
       integer :: i, n
 
       n = self%nodes()
-      self%x = [(0.5_wp*self%interval()*(2*i - n - 1), i=1, n)]
-      self%initial_gap = self%scene%indenter%gap(self%x)
-      self%can_touch = self%scene%indenter%covers(self%x)
+      radius = self%scene%arc_radius()
+      self%arc = [(0.5_wp*self%interval()*(2*i - n - 1), i=1, n)]
+      self%x = self%arc
+      self%width = spread(self%interval(), 1, n)
+      if (self%scene%lower%shape == shape_matrix) then
+         self%x = self%scene%lower%position
+         self%arc = self%x
+         self%width = self%scene%lower%width
+      else if (radius > 0.0_wp) then
+         self%x = radius*sin(self%arc/radius)
+      end if
+      self%initial_gap = gap_between(self%scene%lower, self%scene%upper, self%x, self%scene%mesh%parabolic)
+      self%can_touch = [(self%touchable(self%arc(i)), i=1, n)]
+      call place_arms(self)
    end subroutine place_nodes
 
-   !> Half-width of a mesh for a scene that asks for none: the punch itself, the whole profile, or Hertz's contact under
-   !> the largest load with some room.
+   !> Arms of the rotation of the upper body: about the centre of the upper body where it is a circle, else of the lower
+   !> one where that is, else about the pole. Counterclockwise it lifts the right side: the gap grows by x; and a surface
+   !> below the centre goes to the right (eq. 4.24, M there in units of R and with its own signs).
+   subroutine place_arms(self)
+      class(contact_model_type), intent(inout) :: self
+      real(wp) :: height
+
+      height = 0.0_wp
+      if (self%scene%upper%circular()) then
+         height = sign(self%scene%upper%radius, self%scene%upper%curvature())
+      else if (self%scene%lower%circular()) then
+         height = -sign(self%scene%lower%radius, self%scene%lower%curvature())
+      end if
+      self%normal_arm = -self%x
+      self%tangential_arm = spread(height, 1, self%nodes())
+      if (abs(height) > 0.0_wp) self%tangential_arm = sign(sqrt(max((height - self%x)*(height + self%x), 0.0_wp)), height)
+   end subroutine place_arms
+
+   !> Half-width of a mesh for a scene that asks for none, length along the surface: the punch itself, the whole profile, or
+   !> Hertz's contact under the largest load with some room.
    function estimated_half_width(scene) result(half_width)
       type(scene_type), intent(in) :: scene
-      real(wp) :: half_width
+      real(wp) :: half_width, largest, radius
       integer :: i
 
-      half_width = scene%indenter%half_extent()
-      if (scene%indenter%shape /= shape_disk) return
+      largest = min(scene%lower%half_extent(), scene%upper%half_extent())
+      half_width = largest
+      if (any([scene%lower%shape, scene%upper%shape] == shape_profile) .or. .not. scene%curvature() > 0.0_wp) return
+      radius = 1.0_wp/scene%curvature()
       half_width = 0.0_wp
       do i = 1, size(scene%steps)
          associate (step => scene%steps(i))
             select case (step%normal_control)
             case (control_force)
-               half_width = max(half_width, hertz_half_width(step%normal_target, scene%indenter%radius, scene%material))
+               half_width = max(half_width, hertz_half_width(step%normal_target, radius, scene%modulus()))
             case (control_displacement)
-               half_width = max(half_width, hertz_half_width_of_approach(step%normal_target, scene%indenter%radius, &
-                                                                         scene%datum))
+               half_width = max(half_width, hertz_half_width_of_approach(step%normal_target, radius, scene%datum()))
             end select
          end associate
       end do
-      if (.not. half_width > 0.0_wp) half_width = 1.0e-2_wp*scene%indenter%radius
-      half_width = min(room*half_width, scene%indenter%radius)
+      if (.not. half_width > 0.0_wp) half_width = 1.0e-2_wp*largest
+      half_width = min(room*half_width, largest)
    end function estimated_half_width
 
 end module mfv_contact_model

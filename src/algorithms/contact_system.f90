@@ -9,7 +9,7 @@ module mfv_contact_system
    private
    public :: contact_system_type, load_type, response_type, constraints_type
 
-   !> One controlled load: force or rigid displacement, its value now and its rate per unit of load.
+   !> One controlled load: force (moment) or rigid displacement (rotation), its value now and its rate per unit of load.
    type :: load_type
       integer :: control = control_force
       real(wp) :: value = 0.0_wp
@@ -22,8 +22,8 @@ module mfv_contact_system
       integer, allocatable :: status(:)
       !> Slip s at which a stuck node holds, length, shape (nodes).
       real(wp), allocatable :: stuck_slip(:)
-      !> Normal and tangential load.
-      type(load_type) :: normal, tangential
+      !> Normal, tangential and rotational load; the last one of no meaning where rotation is not modelled.
+      type(load_type) :: normal, tangential, rotational
    end type constraints_type
 
    !> The state that the constraints determine and its rates per unit of load.

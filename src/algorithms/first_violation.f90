@@ -27,9 +27,10 @@ module mfv_first_violation
    private
    public :: first_violation_type, new_first_violation, segment_type
 
-   !> A straight part of the load history: two controlled loads with their targets, and whether friction acts.
+   !> A straight part of the load history: the controlled loads with their targets, and whether friction acts.
    type :: segment_type
       type(load_type) :: normal, tangential
+      type(load_type) :: rotational = load_type(control_displacement)
       logical :: friction = .true.
       !> Number of this segment, how many there are, and the step that it belongs to: for records and progress.
       integer :: number = 1, segments = 1, step = 1
@@ -51,6 +52,7 @@ module mfv_first_violation
       procedure :: record
       procedure, private :: start_segment
       procedure, private :: begin_tangential
+      procedure :: begin_rotation
       procedure, private :: settle_loads
       procedure, private :: advance
       procedure, private :: change_statuses
@@ -186,12 +188,22 @@ contains
 
       if (.not. self%model%tangential) call self%model%add_tangential()
       call self%certificate%claim(self%model)
-      call self%model%compliance%displacements(self%state%fields%pressure, self%state%fields%shear, normal, &
-                                               self%state%fields%tangential)
+      call self%model%relative_displacements(self%state%fields, normal, self%state%fields%tangential)
    end subroutine begin_tangential
 
+   !> Model the rotation from now on, from the moment that the tractions have.
+   subroutine begin_rotation(self)
+      class(first_violation_type), intent(inout) :: self
+
+      if (self%model%rotational) return
+      call self%model%add_rotation()
+      call self%certificate%claim(self%model)
+      self%state%fields%moment = self%model%moment(self%state%fields%pressure, self%state%fields%shear)
+   end subroutine begin_rotation
+
    !> The constraints at the part `done` of the segment. A load that nothing in the present contact determines is held
-   !> (its displacement stays): the tangential one without friction, both without contact.
+   !> (its displacement stays): the tangential one without friction, all without contact; the rotation while no two nodes
+   !> are in contact.
    !> `settled`: false when statuses changed here and the loads must be looked at again.
    !> Error MFV_GROSS_SLIDING: a tangential force that nothing can carry.
    subroutine settle_loads(self, segment, done, moment, constraints, settled, error)
@@ -207,6 +219,9 @@ contains
       settled = .true.
       constraints%normal = at_part(segment%normal, done)
       constraints%tangential = at_part(segment%tangential, done)
+      constraints%rotational = at_part(segment%rotational, done)
+      if (constraints%rotational%control == control_force .and. self%state%contact_nodes() < 2) &
+         constraints%rotational = load_type(control_displacement, self%state%fields%rotation, 0.0_wp)
       contact = any(in_contact(self%state%status))
       if (.not. contact .and. constraints%normal%control == control_force) then
          if (constraints%normal%rate > 0.0_wp) then
@@ -256,7 +271,7 @@ contains
       trial%stuck_slip = self%state%stuck_slip
       call self%system%solve(self%model, trial, response, singular)
       missing = wanted - response%rate%tangential_force
-      scale = max(abs(wanted), self%model%interval()*sum(abs(response%rate%shear)))
+      scale = max(abs(wanted), self%model%force(abs(response%rate%shear)))
       if (.not. singular .and. abs(missing) <= balanced*scale) return
       yielding = slips(self%state%status)
       if (.not. singular) yielding = yielding .and. slip_sign(self%state%status)*missing > 0.0_wp
@@ -313,7 +328,7 @@ contains
       self%state%fields = response%state%plus(step, response%rate)
       slipped = self%state%fields%slip() - before%slip()
       self%state%dissipation = self%state%dissipation &
-                               - 0.5_wp*self%model%interval()*sum((before%shear + self%state%fields%shear)*slipped)
+                               - 0.5_wp*self%model%force((before%shear + self%state%fields%shear)*slipped)
       slip_rate = response%rate%slip()
       self%state%slip_direction = 0
       where (abs(slip_rate) > moving*maxval(abs(slip_rate))) &
@@ -373,7 +388,8 @@ contains
       integer :: extra, n
 
       n = self%model%nodes()
-      extra = max(n/4, fewest)
+      extra = min(max(n/4, fewest), self%model%spare_nodes())
+      if (extra == 0) return
       call self%model%grow(extra)
       call self%state%widen(extra)
       call self%history%move_nodes(extra)
@@ -390,7 +406,7 @@ contains
       real(wp) :: normal(model%nodes()), tangential(model%nodes())
       logical :: new(model%nodes())
 
-      call model%compliance%displacements(fields%pressure, fields%shear, normal, tangential)
+      call model%relative_displacements(fields, normal, tangential)
       new = .true.
       new(extra + 1:model%nodes() - extra) = .false.
       where (new) fields%normal = normal

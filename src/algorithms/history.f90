@@ -9,6 +9,7 @@ module mfv_history
    type :: history_record_type
       real(wp) :: normal_force = 0.0_wp, tangential_force = 0.0_wp, approach = 0.0_wp, shift = 0.0_wp
       real(wp) :: dissipation = 0.0_wp
+      real(wp) :: moment = 0.0_wp, rotation = 0.0_wp
       integer :: contact_nodes = 0, stick_nodes = 0
       !> What happened (see mfv_node_status), to which node first, and to how many together.
       integer :: event_kind = 0, event_node = 0, event_count = 0
@@ -40,7 +41,8 @@ contains
       self%records = self%records + 1
       self%record(self%records) = history_record_type( &
                                   state%fields%normal_force, state%fields%tangential_force, state%fields%approach, &
-                                  state%fields%shift, state%dissipation, state%contact_nodes(), state%stick_nodes(), &
+                                  state%fields%shift, state%dissipation, &
+                                  state%fields%moment, state%fields%rotation, state%contact_nodes(), state%stick_nodes(), &
                                   kind, node, count, step, linear_solves)
    end subroutine append
 

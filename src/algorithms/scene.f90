@@ -1,16 +1,16 @@
 !> A scene: what touches what, on which mesh, with which friction, and how it is loaded. No files, no solution.
 module mfv_scene
+   use mfv_body, only: body_type
    use mfv_compliance, only: coupling_full
    use mfv_friction, only: friction_type
-   use mfv_indenter, only: indenter_type
    use mfv_kinds, only: wp
-   use mfv_material, only: material_type, plane_strain
+   use mfv_material, only: plane_strain
    implicit none
    private
    public :: scene_type, mesh_request_type, step_type, control_keep, control_force, control_displacement
 
-   !> What a step does with the normal or the tangential load: leave it as it is, lead the force to a target, or lead
-   !> the rigid displacement (approach, shift) to a target.
+   !> What a step does with the normal, the tangential or the rotational load: leave it as it is, lead the force (moment) to
+   !> a target, or lead the rigid displacement (approach, shift, rotation) to a target.
    integer, parameter :: control_keep = 0, control_force = 1, control_displacement = 2
 
    !> One step of the load history; targets are reached linearly from the step before.
@@ -24,31 +24,40 @@ module mfv_scene
       logical :: friction = .true.
       !> 0: go to the targets and stay; n: go there and back to where the step began, n times.
       integer :: cycles = 0
+      integer :: rotational_control = control_keep
+      !> Moment M (force) or rotation (radians), counterclockwise.
+      real(wp) :: rotational_target = 0.0_wp
    end type step_type
 
    !> What the user asked of the mesh. Unset: chosen from an estimate of the contact.
    type :: mesh_request_type
       integer :: nodes = 101
-      !> Nodes are the centres of equal intervals over [-half_width, half_width], length; 0: chosen, and grown when the
-      !> contact needs it.
+      !> Nodes are the centres of equal intervals over [-half_width, half_width], length along the surface; 0: chosen, and
+      !> grown when the contact needs it.
       real(wp) :: half_width = 0.0_wp
+      !> Whether `nodes` intervals make up the whole circle: only those near the contact are carried.
+      logical :: whole_circle = .false.
+      !> Hertz's parabolas in place of circles in the gap.
+      logical :: parabolic = .false.
    end type mesh_request_type
 
    type :: scene_type
       character(:), allocatable :: title
       integer :: plane = plane_strain
       integer :: coupling = coupling_full
-      !> The elastic half-plane below.
-      type(material_type) :: material
-      !> The rigid body above.
-      type(indenter_type) :: indenter
-      !> Distance of the surface point from which displacements are measured, length.
-      real(wp) :: datum = 0.0_wp
+      !> The bodies below and above; at least one is elastic.
+      type(body_type) :: lower, upper
       type(mesh_request_type) :: mesh
       type(friction_type) :: friction
       type(step_type), allocatable :: steps(:)
    contains
       procedure :: tangential
+      procedure :: rotational
+      procedure :: modulus
+      procedure :: curvature
+      procedure :: dundurs_beta
+      procedure :: datum
+      procedure :: arc_radius
    end type scene_type
 
 contains
@@ -60,5 +69,82 @@ contains
       tangential = self%friction%acts()
       if (allocated(self%steps)) tangential = tangential .and. any(self%steps%friction)
    end function tangential
+
+   !> Whether the scene needs the rotation: a step names it or the moment.
+   pure logical function rotational(self)
+      class(scene_type), intent(in) :: self
+
+      rotational = .false.
+      if (allocated(self%steps)) rotational = any(self%steps%rotational_control /= control_keep)
+   end function rotational
+
+   !> Contact modulus of both bodies, force/length^2: 1/m = 1/m1 + 1/m2 with m = 4 G/(kappa + 1) of each elastic one; the
+   !> A of dissertation eq. 6.1, less its misprint, is 1/m. Zero where a body has no material of its own.
+   pure real(wp) function modulus(self)
+      class(scene_type), intent(in) :: self
+      real(wp) :: flexibility
+
+      flexibility = 0.0_wp
+      if (self%lower%material%shear_modulus > 0.0_wp) flexibility = 1.0_wp/self%lower%material%plane_modulus()
+      if (self%upper%material%shear_modulus > 0.0_wp) flexibility = flexibility + 1.0_wp/self%upper%material%plane_modulus()
+      modulus = 0.0_wp
+      if (flexibility > 0.0_wp) modulus = 1.0_wp/flexibility
+   end function modulus
+
+   !> Relative curvature K = 1/R1 + 1/R2 of dissertation eq. 6.1, 1/length.
+   pure real(wp) function curvature(self)
+      class(scene_type), intent(in) :: self
+
+      curvature = self%lower%curvature() + self%upper%curvature()
+   end function curvature
+
+   !> Dundurs' second parameter, eq. 6.1: positive where the lower body couples more.
+   pure real(wp) function dundurs_beta(self)
+      class(scene_type), intent(in) :: self
+
+      dundurs_beta = 0.0_wp
+      if (self%lower%material%shear_modulus > 0.0_wp) dundurs_beta = part(self%lower)
+      if (self%upper%material%shear_modulus > 0.0_wp) dundurs_beta = dundurs_beta - part(self%upper)
+
+   contains
+
+      pure real(wp) function part(body)
+         type(body_type), intent(in) :: body
+
+         part = self%modulus()*(body%material%kolosov - 1.0_wp)/(4.0_wp*body%material%shear_modulus)
+      end function part
+   end function dundurs_beta
+
+   !> Distance, length, at which the displacements of both bodies together are measured: the mean of the logarithms of
+   !> their datums, weighed with their flexibilities.
+   pure real(wp) function datum(self)
+      class(scene_type), intent(in) :: self
+      real(wp) :: logarithm
+
+      logarithm = 0.0_wp
+      if (self%lower%material%shear_modulus > 0.0_wp) logarithm = weighed(self%lower)
+      if (self%upper%material%shear_modulus > 0.0_wp) logarithm = logarithm + weighed(self%upper)
+      datum = exp(logarithm)
+      if (.not. self%upper%material%shear_modulus > 0.0_wp) datum = self%lower%datum
+      if (.not. self%lower%material%shear_modulus > 0.0_wp) datum = self%upper%datum
+
+   contains
+
+      pure real(wp) function weighed(body)
+         type(body_type), intent(in) :: body
+
+         weighed = self%modulus()/body%material%plane_modulus()*log(body%datum)
+      end function weighed
+   end function datum
+
+   !> Radius of the circle on which the nodes lie, length: that of the lower body where it is an elastic circle, else of the
+   !> upper one; 0 where the nodes lie on a straight line.
+   pure real(wp) function arc_radius(self)
+      class(scene_type), intent(in) :: self
+
+      arc_radius = 0.0_wp
+      if (self%upper%circular() .and. .not. self%upper%rigid) arc_radius = self%upper%radius
+      if (self%lower%circular() .and. .not. self%lower%rigid) arc_radius = self%lower%radius
+   end function arc_radius
 
 end module mfv_scene

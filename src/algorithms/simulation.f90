@@ -43,6 +43,7 @@ module mfv_simulation
       type(step_type), allocatable :: taken(:)
       !> What the loads control now.
       type(load_type) :: normal, tangential
+      type(load_type) :: rotational = load_type(control_displacement)
    contains
       procedure :: run
       procedure :: advance
@@ -100,7 +101,7 @@ contains
       type(step_type), intent(in) :: step
       integer, intent(in), optional :: before, segments
       class(observer_type), intent(inout), optional :: observer
-      type(load_type) :: there(2), back(2)
+      type(load_type) :: there(3), back(3)
       type(error_type), allocatable :: error
       integer :: i
 
@@ -108,7 +109,9 @@ contains
       self%taken = [self%taken, step]
       there(1) = target_of(self%normal, step%normal_control, step%normal_target)
       there(2) = target_of(self%tangential, step%tangential_control, step%tangential_target)
-      back = [start_of(self%contact%state, there(1), 1), start_of(self%contact%state, there(2), 2)]
+      there(3) = target_of(self%rotational, step%rotational_control, step%rotational_target)
+      if (step%rotational_control /= control_keep) call self%contact%begin_rotation()
+      back = [(start_of(self%contact%state, there(i), i), i=1, 3)]
       do i = 1, reversals(step)
          call self%lead_to(merge(there, back, mod(i, 2) == 1), step, i, before, segments, observer, error)
          if (allocated(error)) then
@@ -132,23 +135,23 @@ contains
       if (control /= control_keep) target_of = load_type(control, value)
    end function target_of
 
-   !> The same load with the value that it has in `state`; `direction`: 1 normal, 2 tangential.
+   !> The same load with the value that it has in `state`; `direction`: 1 normal, 2 tangential, 3 rotational.
    pure type(load_type) function start_of(state, load, direction)
       type(contact_state_type), intent(in) :: state
       type(load_type), intent(in) :: load
       integer, intent(in) :: direction
-      real(wp) :: forces(2), displacements(2)
+      real(wp) :: forces(3), displacements(3)
 
-      forces = [state%fields%normal_force, state%fields%tangential_force]
-      displacements = [state%fields%approach, state%fields%shift]
+      forces = [state%fields%normal_force, state%fields%tangential_force, state%fields%moment]
+      displacements = [state%fields%approach, state%fields%shift, state%fields%rotation]
       start_of = load_type(load%control, merge(forces(direction), displacements(direction), &
                                                load%control == control_force))
    end function start_of
 
-   !> Lead both loads straight to `targets` (normal, tangential), and keep the state there.
+   !> Lead the loads straight to `targets` (normal, tangential, rotational), and keep the state there.
    subroutine lead_to(self, targets, step, reversal, before, segments, observer, error)
       class(simulation_type), intent(inout) :: self
-      type(load_type), intent(in) :: targets(2)
+      type(load_type), intent(in) :: targets(3)
       type(step_type), intent(in) :: step
       integer, intent(in) :: reversal
       integer, intent(in), optional :: before, segments
@@ -158,6 +161,7 @@ contains
 
       segment%normal = load_towards(start_of(self%contact%state, targets(1), 1), targets(1))
       segment%tangential = load_towards(start_of(self%contact%state, targets(2), 2), targets(2))
+      segment%rotational = load_towards(start_of(self%contact%state, targets(3), 3), targets(3))
       segment%friction = step%friction
       segment%step = self%steps_done + 1
       if (present(before)) segment%number = before + reversal
@@ -165,6 +169,7 @@ contains
       call self%contact%lead(segment, observer, error)
       self%normal = load_type(targets(1)%control, targets(1)%value)
       self%tangential = load_type(targets(2)%control, targets(2)%value)
+      self%rotational = load_type(targets(3)%control, targets(3)%value)
       if (self%keep_history /= history_none) &
          call self%contact%record(merge(event_stopped, event_step_end, allocated(error)), 0, 0, segment%step)
       if (.not. allocated(error)) call self%take_snapshot(segment%step, reversal)
@@ -196,12 +201,14 @@ contains
       class(simulation_type), intent(in) :: self
       integer, intent(in) :: number
       type(contact_state_type) :: state
+      real(wp), dimension(self%contact%model%nodes()) :: normal, tangential
 
       state = self%snapshots(number)%state
       if (self%contact%model%added == self%snapshots(number)%added) return
       call state%widen(self%contact%model%added - self%snapshots(number)%added)
-      call self%contact%model%compliance%displacements(state%fields%pressure, state%fields%shear, &
-                                                       state%fields%normal, state%fields%tangential)
+      call self%contact%model%relative_displacements(state%fields, normal, tangential)
+      state%fields%normal = normal
+      state%fields%tangential = tangential
    end function padded_state
 
 end module mfv_simulation

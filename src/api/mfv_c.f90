@@ -36,6 +36,8 @@ module mfv_c
       integer(c_size_t) :: size
       real(c_double) :: normal_target, tangential_target
       integer(c_int) :: normal_control, tangential_control, friction, cycles
+      real(c_double) :: rotational_target
+      integer(c_int) :: rotational_control, unused
    end type c_step
 
 contains
@@ -177,7 +179,8 @@ contains
       if (self%simulation%outcome == MFV_COMPLETE) then
          call forget(self)
          call self%simulation%advance(step_type(given%normal_control, given%tangential_control, given%normal_target, &
-                                                given%tangential_target, given%friction /= 0, given%cycles))
+                                                given%tangential_target, given%friction /= 0, given%cycles, &
+                                                given%rotational_control, given%rotational_target))
       end if
       self%message = self%simulation%message
       status = self%simulation%outcome
@@ -192,9 +195,10 @@ contains
       why = ''
       if (step%size /= c_sizeof(step)) then
          why = 'size is not sizeof(mfv_step)'
-      else if (.not. any(step%normal_control == controls) .or. .not. any(step%tangential_control == controls)) then
+      else if (.not. any(step%normal_control == controls) .or. .not. any(step%tangential_control == controls) .or. &
+               .not. any(step%rotational_control == controls)) then
          why = 'a control must be MFV_KEEP, MFV_FORCE or MFV_DISPLACEMENT'
-      else if (.not. ieee_is_finite(step%normal_target) .or. .not. ieee_is_finite(step%tangential_target)) then
+      else if (.not. all(ieee_is_finite([step%normal_target, step%tangential_target, step%rotational_target]))) then
          why = 'a target is not finite'
       else if (step%normal_control == control_force .and. step%normal_target < 0.0_wp) then
          why = 'the normal force must not be negative'

@@ -2,7 +2,6 @@
 module mfv_reference_c
    use, intrinsic :: ieee_arithmetic, only: ieee_quiet_nan, ieee_value
    use, intrinsic :: iso_c_binding, only: c_double
-   use mfv_material, only: material_type
    use mfv_reference_flat_punch, only: flat_punch_pressure
    use mfv_reference_hertz, only: hertz_half_width, hertz_pressure
    use mfv_reference_mindlin
@@ -18,7 +17,7 @@ contains
 
       a = not_a_number()
       if (normal_force >= 0 .and. radius > 0 .and. shear_modulus > 0 .and. kolosov > -1) &
-         a = hertz_half_width(normal_force, radius, material_type(shear_modulus, 0.0_c_double, kolosov))
+         a = hertz_half_width(normal_force, radius, 4.0_c_double*shear_modulus/(kolosov + 1.0_c_double))
    end function c_hertz_half_width
 
    function c_hertz_pressure(x, normal_force, half_width) result(pressure) bind(C, name='mfv_hertz_pressure')

@@ -5,6 +5,7 @@
 !> between equally wide surface intervals, and products with them. Only blocks that the scene needs exist:
 !> C_wt only under full coupling, C_up unless there is no coupling, C_ut and C_up only where friction can act.
 module mfv_compliance
+   use, intrinsic :: iso_fortran_env, only: int64
    use mfv_kinds, only: wp
    implicit none
    private
@@ -27,11 +28,16 @@ module mfv_compliance
       real(wp) :: modulus = 1.0_wp
       !> Which blocks exist.
       logical :: has_block(4) = .false.
+      !> Reals stored for the blocks that exist.
+      integer :: block_values = 0
    contains
       procedure(resize_interface), deferred :: resize
       procedure(entries_interface), deferred :: entries
       procedure(product_interface), deferred :: product
+      procedure(signature_interface), deferred :: signature
       procedure :: displacements
+      procedure :: choose_blocks
+      procedure :: bytes
    end type compliance_type
 
    abstract interface
@@ -59,6 +65,14 @@ module mfv_compliance
          real(wp), intent(in) :: traction(:)
          real(wp), intent(inout) :: displacement(:)
       end subroutine product_interface
+
+      !> What the coupling blocks depend on: two bodies with equal signatures pressed together do not couple. Zero where
+      !> there is no coupling, enormous where it equals no other.
+      pure function signature_interface(self) result(signature)
+         import :: compliance_type, wp
+         class(compliance_type), intent(in) :: self
+         real(wp) :: signature(4)
+      end function signature_interface
    end interface
 
 contains
@@ -77,5 +91,24 @@ contains
       call self%product(block_up, pressure, tangential)
       call self%product(block_ut, shear, tangential)
    end subroutine displacements
+
+   !> Which blocks a scene needs. `tangential`: whether friction can act in it.
+   pure subroutine choose_blocks(self, coupling, tangential)
+      class(compliance_type), intent(inout) :: self
+      integer, intent(in) :: coupling
+      logical, intent(in) :: tangential
+
+      self%has_block(block_wp) = .true.
+      self%has_block(block_ut) = tangential
+      self%has_block(block_up) = tangential .and. coupling /= coupling_none
+      self%has_block(block_wt) = tangential .and. coupling == coupling_full
+   end subroutine choose_blocks
+
+   !> Memory of the stored kernels or matrices, bytes.
+   pure integer(int64) function bytes(self)
+      class(compliance_type), intent(in) :: self
+
+      bytes = int(self%block_values, int64)*(storage_size(1.0_wp)/8)
+   end function bytes
 
 end module mfv_compliance

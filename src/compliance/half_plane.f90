@@ -32,6 +32,7 @@ module mfv_half_plane
       procedure :: resize
       procedure :: entries
       procedure :: product => toeplitz_product
+      procedure :: signature
    end type half_plane_type
 
 contains
@@ -50,10 +51,7 @@ contains
       self%interval = interval
       self%datum = datum
       self%modulus = material%plane_modulus()
-      self%has_block(block_wp) = .true.
-      self%has_block(block_ut) = tangential
-      self%has_block(block_up) = tangential .and. coupling /= coupling_none
-      self%has_block(block_wt) = tangential .and. coupling == coupling_full
+      call self%choose_blocks(coupling, tangential)
       self%cross = (material%kolosov - 1.0_wp)/(8.0_wp*material%shear_modulus)*interval
       call self%resize(nodes)
    end function new_half_plane
@@ -70,7 +68,17 @@ contains
       self%nodes = nodes
       self%direct = [(factor*(2.0_wp*log(self%datum/half) + 2.0_wp - log_kernel(2.0_wp*distance)), &
                       distance=0, nodes - 1)]
+      self%block_values = nodes
    end subroutine resize
+
+   !> See mfv_compliance.
+   pure function signature(self)
+      class(half_plane_type), intent(in) :: self
+      real(wp) :: signature(4)
+
+      signature = 0.0_wp
+      if (abs(self%cross) > 0.0_wp) signature(:2) = [1.0_wp, self%cross]
+   end function signature
 
    !> See mfv_compliance.
    pure subroutine entries(self, block, rows, columns, matrix)

@@ -48,6 +48,9 @@ contains
       if (step%tangential_control /= control_keep) &
          text = text//' '//trim(merge('tangential_force', 'shift           ', step%tangential_control == control_force))// &
                 '='//to_text(step%tangential_target, 10)
+      if (step%rotational_control /= control_keep) &
+         text = text//' '//trim(merge('moment  ', 'rotation', step%rotational_control == control_force))// &
+                '='//to_text(step%rotational_target, 10)
    end function targets_text
 
 end module mfv_case

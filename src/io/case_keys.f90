@@ -1,6 +1,7 @@
 !> The one list of groups and keys of a case: kinds, defaults, ranges and meanings. The reader checks against it, the
 !> reference in docs/namelist.md and `mfv_run --keys` are printed from it.
 module mfv_case_keys
+   use mfv_body, only: shape_names
    use mfv_kinds, only: wp
    use mfv_strings, only: list_of_words, string_type, to_text
    implicit none
@@ -28,7 +29,7 @@ module mfv_case_keys
    character(*), parameter :: group_list = 'scene body mesh friction step solver output'
    character(*), parameter :: repeated_groups = 'body step'
 
-   real(wp), parameter :: most_nodes = 1.0e6_wp, most_cycles = 1.0e6_wp
+   real(wp), parameter :: most_nodes = 1.0e8_wp, most_cycles = 1.0e6_wp, most_harmonics = 2.0e9_wp
 
 contains
 
@@ -60,21 +61,27 @@ contains
    subroutine add_body_keys(keys)
       type(key_type), allocatable, intent(inout) :: keys(:)
 
-      call add_choice_key(keys, 'body', 'shape', '', 'half_plane disk flat_punch profile', 'needed; first body, below: '// &
-                          'half_plane; second body, above: disk, flat_punch or profile')
-      call add_logical_key(keys, 'body', 'rigid', '.false.', 'needed as .true. for the second body')
-      call add_positive_key(keys, 'body', 'shear_modulus', 'force/length^2', 'shear modulus G of the half-plane')
+      call add_choice_key(keys, 'body', 'shape', '', shape_names, 'needed; first body below, second body above')
+      call add_logical_key(keys, 'body', 'rigid', '.false.', 'whether the body is rigid; at least one is not; a '// &
+                           'flat_punch must be')
+      call add_positive_key(keys, 'body', 'shear_modulus', 'force/length^2', 'shear modulus G of an elastic body')
       call add_positive_key(keys, 'body', 'youngs_modulus', 'force/length^2', &
                             'E = 2 G (1 + nu), in place of shear_modulus')
-      call add_real_key(keys, 'body', 'poisson_ratio', '', "Poisson's ratio of the half-plane, needed", &
+      call add_real_key(keys, 'body', 'poisson_ratio', '', "Poisson's ratio, needed for an elastic body", &
                         lower=-1.0_wp, lower_open=.true., upper=0.5_wp)
-      call add_positive_key(keys, 'body', 'datum', 'length', 'half_plane: distance of the surface point from which '// &
-                            'displacements are measured; left out: the radius of the disk, the half-width of the '// &
-                            'punch, the largest distance of the profile from x = 0')
-      call add_positive_key(keys, 'body', 'radius', 'length', 'disk: radius, needed')
+      call add_positive_key(keys, 'body', 'yield_strength', 'force/length^2', 'elastic body: a warning is given when '// &
+                            'the largest von Mises stress of the last state is beyond it')
+      call add_positive_key(keys, 'body', 'datum', 'length', 'elastic body: distance from the contact at which '// &
+                            'displacements are measured; left out: the radius of a disk or hole; else the radius, '// &
+                            'half-width or extent of the other body')
+      call add_positive_key(keys, 'body', 'radius', 'length', 'disk, hole: radius, needed')
       call add_positive_key(keys, 'body', 'half_width', 'length', 'flat_punch: half its width, needed')
+      call add_choice_key(keys, 'body', 'kernel', 'exact', 'exact fourier', 'elastic disk, hole: closed forms, or the '// &
+                          'Fourier series')
+      call add_integer_key(keys, 'body', 'harmonics', '', "kernel='fourier': terms of the series; left out: 4 for each "// &
+                           'interval of the whole circle', 2.0_wp, most_harmonics)
       call add_text_key(keys, 'body', 'file', '', 'profile: text file with two columns, x and height above the flat '// &
-                        'surface, beside the case file; needed')
+                        'surface; matrix: HDF5 file, see below; beside the case file; needed')
    end subroutine add_body_keys
 
    subroutine add_mesh_keys(keys)
@@ -82,10 +89,13 @@ contains
 
       call add_integer_key(keys, 'mesh', 'nodes', '101', 'number of equal intervals; nodes are their centres', &
                            1.0_wp, most_nodes)
-      call add_positive_key(keys, 'mesh', 'half_width', 'length', 'the intervals cover [-half_width, half_width]; left '// &
-                            'out: chosen from an estimate of the contact, and grown when the contact needs it')
+      call add_positive_key(keys, 'mesh', 'half_width', 'length', 'the intervals cover [-half_width, half_width] along '// &
+                            'the surface; left out: chosen from an estimate of the contact, and grown when the contact needs it')
+      call add_real_key(keys, 'mesh', 'half_angle', 'degrees', 'in place of half_width where a body is an elastic disk or '// &
+                        'hole: the intervals cover this angle on either side; 180: the whole circle, of which only '// &
+                        'what is near the contact is carried', lower=0.0_wp, lower_open=.true., upper=180.0_wp)
       call add_choice_key(keys, 'mesh', 'gap', 'exact', 'exact parabolic', &
-                          'gap under a disk: the exact circle, or the parabola x^2/(2R) of Hertz')
+                          'gap of disks and holes: exact circles, or the parabolas x^2/(2R) of Hertz')
    end subroutine add_mesh_keys
 
    subroutine add_friction_keys(keys)
@@ -105,6 +115,10 @@ contains
                         'target of the tangential force Q, positive to the right')
       call add_real_key(keys, 'step', 'shift', 'length', &
                         'target of the shift of the upper body to the right, in place of tangential_force')
+      call add_real_key(keys, 'step', 'moment', 'force', 'target of the moment M about the centre of the upper disk or '// &
+                        'hole, else of the lower one, else about the pole; counterclockwise')
+      call add_real_key(keys, 'step', 'rotation', 'radians', &
+                        'target of the rotation of the upper body about the same point, in place of moment')
       call add_logical_key(keys, 'step', 'friction', '.true.', 'whether friction acts during this step')
       call add_integer_key(keys, 'step', 'cycles', '0', '0: go to the targets; n: go there and back to where the step '// &
                            'began, n times', 0.0_wp, most_cycles)

@@ -1,14 +1,17 @@
 !> From the text of a case to a valid scene, or to a message that names file, line, group, key, value and what is right.
 module mfv_case_reader
    use, intrinsic :: ieee_arithmetic, only: ieee_is_finite
+   use mfv_body
    use mfv_case, only: case_type
+   use mfv_circle, only: kernel_exact, kernel_fourier
    use mfv_case_keys
    use mfv_error, only: error_type, set_error
    use mfv_friction, only: coulomb_friction, no_friction
    use mfv_compliance, only: coupling_full, coupling_goodman, coupling_none
-   use mfv_indenter, only: new_disk, new_flat_punch, shape_flat_punch
-   use mfv_kinds, only: wp
+   use mfv_contact_model, only: choose_mesh
+   use mfv_kinds, only: pi, wp
    use mfv_material, only: new_material, plane_strain, plane_stress
+   use mfv_matrix_file, only: read_matrix_body
    use mfv_namelist, only: entry_type, group_type, parse_namelists
    use mfv_profile_file, only: read_profile
    use mfv_scene
@@ -216,17 +219,17 @@ contains
          scene%coupling = coupling_none
       end select
       call check_bodies(reader, error)
-      if (.not. allocated(error)) call read_half_plane(reader, scene, error)
-      if (.not. allocated(error)) call read_indenter(reader, scene, error)
-      if (.not. allocated(error)) call read_mesh(reader, scene, error)
-      if (.not. allocated(error)) call read_friction(reader, scene, error)
-      if (.not. allocated(error)) call read_steps(reader, scene, error)
+      if (.not. allocated(error)) call read_body(reader, 1, scene%plane, scene%lower, error)
+      if (.not. allocated(error)) call read_body(reader, 2, scene%plane, scene%upper, error)
+      if (.not. allocated(error)) call check_pair(reader, scene, error)
       if (allocated(error)) return
-      scene%datum = scene%indenter%half_extent()
-      if (reader%has('body', 1, 'datum')) scene%datum = reader%real_value('body', 1, 'datum')
+      call read_datums(reader, scene)
+      call read_friction(reader, scene, error)
+      if (.not. allocated(error)) call read_steps(reader, scene, error)
+      if (.not. allocated(error)) call read_mesh(reader, scene, error)
    end subroutine read_scene
 
-   !> Two bodies, an elastic half-plane below and a rigid indenter above.
+   !> Two bodies with a shape each, of which one at least is elastic.
    subroutine check_bodies(reader, error)
       type(reader_type), intent(in) :: reader
       type(error_type), allocatable, intent(out) :: error
@@ -241,121 +244,282 @@ contains
          call reader%need('body', body, 'shape', error)
          if (allocated(error)) return
       end do
-      if (reader%text_value('body', 1, 'shape') /= 'half_plane' .or. reader%logical_value('body', 1, 'rigid')) then
-         call reader%complain('body', 1, 'shape', 'the first body, below, must be an elastic half_plane', error)
-      else if (reader%text_value('body', 2, 'shape') == 'half_plane') then
-         call reader%complain('body', 2, 'shape', "the second body, above, must be 'disk', 'flat_punch' or 'profile'", &
-                              error)
-      else if (.not. reader%logical_value('body', 2, 'rigid')) then
-         call reader%complain('body', 2, 'shape', 'the second body must be rigid=.true.; elastic ones are not '// &
-                              'available yet', error)
+      if (reader%logical_value('body', 1, 'rigid') .and. reader%logical_value('body', 2, 'rigid')) then
+         call reader%complain('body', 2, 'rigid', 'both bodies are rigid; one at least must be elastic', error)
+      else if (reader%text_value('body', 2, 'shape') == 'matrix') then
+         call reader%complain('body', 2, 'shape', 'a matrix must be the first body, below', error)
+      else if (reader%text_value('body', 1, 'shape') == 'matrix' .and. .not. reader%logical_value('body', 2, 'rigid')) then
+         call reader%complain('body', 2, 'rigid', 'must be .true. above a matrix; put the compliance of both bodies '// &
+                              'into the matrix instead', error)
       end if
-      if (.not. allocated(error)) call check_body_keys(reader, error)
+      do body = 1, 2
+         if (.not. allocated(error)) call check_body_keys(reader, body, error)
+      end do
    end subroutine check_bodies
 
    !> Keys that mean nothing for the shape of their body are mistakes.
-   subroutine check_body_keys(reader, error)
+   subroutine check_body_keys(reader, body, error)
       type(reader_type), intent(in) :: reader
+      integer, intent(in) :: body
       type(error_type), allocatable, intent(out) :: error
       type(string_type), allocatable :: keys(:)
       character(:), allocatable :: shape, allowed
-      integer :: body, i
+      logical :: rigid
+      integer :: i
 
+      shape = reader%text_value('body', body, 'shape')
+      rigid = reader%logical_value('body', body, 'rigid')
+      if (shape == 'flat_punch' .and. .not. rigid) then
+         call reader%complain('body', body, 'rigid', 'must be .true. for a flat_punch', error)
+         return
+      else if (shape == 'matrix' .and. rigid) then
+         call reader%complain('body', body, 'rigid', 'a matrix is elastic', error)
+         return
+      end if
+      allowed = 'shape rigid'
+      if (shape == 'disk' .or. shape == 'hole') allowed = allowed//' radius'
+      if (shape == 'flat_punch') allowed = allowed//' half_width'
+      if (shape == 'profile' .or. shape == 'matrix') allowed = allowed//' file'
+      if (shape /= 'matrix' .and. .not. rigid) allowed = allowed//' shear_modulus youngs_modulus poisson_ratio '// &
+                                                         'yield_strength datum'
+      if ((shape == 'disk' .or. shape == 'hole') .and. .not. rigid) allowed = allowed//' kernel harmonics'
       keys = keys_of(reader, 'body')
-      do body = 1, 2
-         shape = reader%text_value('body', body, 'shape')
-         select case (shape)
-         case ('half_plane')
-            allowed = 'shape rigid shear_modulus youngs_modulus poisson_ratio datum'
-         case ('disk')
-            allowed = 'shape rigid radius'
-         case ('flat_punch')
-            allowed = 'shape rigid half_width'
-         case default
-            allowed = 'shape rigid file'
-         end select
-         do i = 1, size(keys)
-            if (.not. reader%has('body', body, keys(i)%text)) cycle
-            if (index(' '//allowed//' ', ' '//keys(i)%text//' ') > 0) cycle
-            call reader%complain('body', body, keys(i)%text, 'means nothing for a '// &
-                                 merge_text(body == 2, 'rigid ', '')//shape//'; its keys are '//allowed, error)
-            return
-         end do
+      do i = 1, size(keys)
+         if (.not. reader%has('body', body, keys(i)%text)) cycle
+         if (index(' '//allowed//' ', ' '//keys(i)%text//' ') > 0) cycle
+         call reader%complain('body', body, keys(i)%text, 'means nothing for a '//merge_text(rigid, 'rigid ', '')//shape// &
+                              '; its keys are '//allowed, error)
+         return
       end do
    end subroutine check_body_keys
 
-   !> The elastic material.
-   subroutine read_half_plane(reader, scene, error)
+   !> One body: shape, then what it is made of.
+   subroutine read_body(reader, number, plane, body, error)
       type(reader_type), intent(in) :: reader
-      type(scene_type), intent(inout) :: scene
+      integer, intent(in) :: number, plane
+      type(body_type), intent(out) :: body
       type(error_type), allocatable, intent(out) :: error
-      real(wp) :: modulus, ratio
 
-      call reader%need('body', 1, 'poisson_ratio', error)
+      call read_shape(reader, number, body, error)
       if (allocated(error)) return
-      ratio = reader%real_value('body', 1, 'poisson_ratio')
-      if (reader%has('body', 1, 'youngs_modulus')) then
-         if (reader%has('body', 1, 'shear_modulus')) then
-            call reader%complain('body', 1, 'youngs_modulus', 'shear_modulus is there too; give one of them', error)
-            return
-         end if
-         modulus = reader%real_value('body', 1, 'youngs_modulus')/(2.0_wp*(1.0_wp + ratio))
-      else
-         call reader%need('body', 1, 'shear_modulus', error)
-         if (allocated(error)) return
-         modulus = reader%real_value('body', 1, 'shear_modulus')
-      end if
-      scene%material = new_material(modulus, ratio, scene%plane)
-   end subroutine read_half_plane
+      body%rigid = reader%logical_value('body', number, 'rigid')
+      if (body%rigid .or. body%shape == shape_matrix) return
+      call read_material(reader, number, plane, body, error)
+      if (allocated(error)) return
+      if (reader%has('body', number, 'yield_strength')) &
+         body%yield_strength = reader%real_value('body', number, 'yield_strength')
+      body%kernel = merge(kernel_fourier, kernel_exact, reader%text_value('body', number, 'kernel') == 'fourier')
+      if (.not. reader%has('body', number, 'harmonics')) return
+      body%harmonics = reader%integer_value('body', number, 'harmonics')
+      if (body%kernel /= kernel_fourier) call reader%complain('body', number, 'harmonics', &
+                                                              "means nothing without kernel='fourier'", error)
+   end subroutine read_body
 
-   !> The rigid indenter.
-   subroutine read_indenter(reader, scene, error)
+   subroutine read_shape(reader, number, body, error)
       type(reader_type), intent(in) :: reader
-      type(scene_type), intent(inout) :: scene
+      integer, intent(in) :: number
+      type(body_type), intent(out) :: body
+      type(error_type), allocatable, intent(out) :: error
+      character(:), allocatable :: shape, needed
+
+      shape = reader%text_value('body', number, 'shape')
+      needed = ''
+      if (shape == 'disk' .or. shape == 'hole') needed = 'radius'
+      if (shape == 'flat_punch') needed = 'half_width'
+      if (shape == 'profile' .or. shape == 'matrix') needed = 'file'
+      if (needed /= '') call reader%need('body', number, needed, error)
+      if (allocated(error)) return
+      select case (shape)
+      case ('half_plane')
+         body = new_half_plane_body()
+      case ('disk')
+         body = new_disk(reader%real_value('body', number, 'radius'))
+      case ('hole')
+         body = new_hole(reader%real_value('body', number, 'radius'))
+      case ('flat_punch')
+         body = new_flat_punch(reader%real_value('body', number, 'half_width'))
+      case default
+         call read_body_file(reader, number, body, error)
+      end select
+   end subroutine read_shape
+
+   !> The file of a profile or a matrix, beside the case.
+   subroutine read_body_file(reader, number, body, error)
+      type(reader_type), intent(in) :: reader
+      integer, intent(in) :: number
+      type(body_type), intent(out) :: body
       type(error_type), allocatable, intent(out) :: error
       type(error_type), allocatable :: file_error
       character(:), allocatable :: path
 
-      if (reader%has('mesh', 1, 'gap') .and. reader%text_value('body', 2, 'shape') /= 'disk') then
-         call reader%complain('mesh', 1, 'gap', 'means nothing without a disk', error)
-         return
+      path = reader%text_value('body', number, 'file')
+      if (path(1:min(1, len(path))) /= '/') path = directory_of(reader%source)//path
+      if (reader%text_value('body', number, 'shape') == 'profile') then
+         call read_profile(path, body, file_error)
+      else
+         call read_matrix_body(path, body, file_error)
       end if
-      select case (reader%text_value('body', 2, 'shape'))
-      case ('disk')
-         call reader%need('body', 2, 'radius', error)
-         if (allocated(error)) return
-         scene%indenter = new_disk(reader%real_value('body', 2, 'radius'), &
-                                   reader%text_value('mesh', 1, 'gap') == 'parabolic')
-      case ('flat_punch')
-         call reader%need('body', 2, 'half_width', error)
-         if (allocated(error)) return
-         scene%indenter = new_flat_punch(reader%real_value('body', 2, 'half_width'))
-      case default
-         call reader%need('body', 2, 'file', error)
-         if (allocated(error)) return
-         path = reader%text_value('body', 2, 'file')
-         if (path(1:min(1, len(path))) /= '/') path = directory_of(reader%source)//path
-         call read_profile(path, scene%indenter, file_error)
-         if (allocated(file_error)) call reader%complain('body', 2, 'file', file_error%message, error)
-      end select
-   end subroutine read_indenter
+      if (allocated(file_error)) call reader%complain('body', number, 'file', file_error%message, error)
+   end subroutine read_body_file
 
-   !> The mesh, which must see the indenter.
+   !> The elastic material.
+   subroutine read_material(reader, number, plane, body, error)
+      type(reader_type), intent(in) :: reader
+      integer, intent(in) :: number, plane
+      type(body_type), intent(inout) :: body
+      type(error_type), allocatable, intent(out) :: error
+      real(wp) :: modulus, ratio
+
+      call reader%need('body', number, 'poisson_ratio', error)
+      if (allocated(error)) return
+      ratio = reader%real_value('body', number, 'poisson_ratio')
+      if (reader%has('body', number, 'youngs_modulus')) then
+         if (reader%has('body', number, 'shear_modulus')) then
+            call reader%complain('body', number, 'youngs_modulus', 'shear_modulus is there too; give one of them', error)
+            return
+         end if
+         modulus = reader%real_value('body', number, 'youngs_modulus')/(2.0_wp*(1.0_wp + ratio))
+      else
+         call reader%need('body', number, 'shear_modulus', error)
+         if (allocated(error)) return
+         modulus = reader%real_value('body', number, 'shear_modulus')
+      end if
+      body%material = new_material(modulus, ratio, plane)
+   end subroutine read_material
+
+   !> Two bodies that touch at their poles and part from there.
+   subroutine check_pair(reader, scene, error)
+      type(reader_type), intent(in) :: reader
+      type(scene_type), intent(in) :: scene
+      type(error_type), allocatable, intent(out) :: error
+      integer :: number
+
+      if (any([scene%lower%shape, scene%upper%shape] == shape_profile) .or. scene%lower%shape == shape_matrix) return
+      number = 2
+      if (scene%lower%shape == shape_hole) number = 1
+      if (scene%lower%shape == shape_hole .or. scene%upper%shape == shape_hole) then
+         if (.not. scene%curvature() > 0.0_wp) &
+            call reader%complain('body', number, 'radius', 'a hole needs a disk of a smaller radius in it', error)
+      else if (.not. scene%curvature() > 0.0_wp .and. &
+               .not. any([scene%lower%shape, scene%upper%shape] == shape_flat_punch)) then
+         call reader%complain('body', 2, 'shape', 'two half-planes touch everywhere; one body must have a shape', error)
+      end if
+      if (allocated(error) .or. scene%lower%shape /= shape_flat_punch .or. scene%upper%shape /= shape_flat_punch) return
+      call reader%complain('body', 2, 'shape', 'two flat punches make no contact of elastic bodies', error)
+   end subroutine check_pair
+
+   !> Where the displacements of the elastic bodies are measured.
+   subroutine read_datums(reader, scene)
+      type(reader_type), intent(in) :: reader
+      type(scene_type), intent(inout) :: scene
+
+      call read_datum(1, scene%lower, scene%upper)
+      call read_datum(2, scene%upper, scene%lower)
+
+   contains
+
+      subroutine read_datum(number, body, other)
+         integer, intent(in) :: number
+         type(body_type), intent(inout) :: body
+         type(body_type), intent(in) :: other
+
+         body%datum = merge(body%radius, min(body%half_extent(), other%half_extent()), body%circular())
+         if (reader%has('body', number, 'datum')) body%datum = reader%real_value('body', number, 'datum')
+      end subroutine read_datum
+   end subroutine read_datums
+
+   !> The mesh, which must see both bodies, and fit the circle of a Fourier series.
    subroutine read_mesh(reader, scene, error)
       type(reader_type), intent(in) :: reader
       type(scene_type), intent(inout) :: scene
       type(error_type), allocatable, intent(out) :: error
-      real(wp) :: interval
-      integer :: i, nodes
+      character(*), parameter :: keys(3) = [character(10) :: 'nodes', 'half_width', 'half_angle']
+      integer, parameter :: most_carried = 1000000
+      integer :: i
 
-      nodes = reader%integer_value('mesh', 1, 'nodes')
-      scene%mesh%nodes = nodes
-      if (.not. reader%has('mesh', 1, 'half_width')) return
-      scene%mesh%half_width = reader%real_value('mesh', 1, 'half_width')
-      interval = 2.0_wp*scene%mesh%half_width/nodes
-      if (any(scene%indenter%covers([(0.5_wp*interval*(2*i - nodes - 1), i=1, nodes)]))) return
-      call reader%complain('mesh', 1, 'half_width', 'no node of this mesh is under the indenter', error)
+      scene%mesh%nodes = reader%integer_value('mesh', 1, 'nodes')
+      scene%mesh%parabolic = reader%text_value('mesh', 1, 'gap') == 'parabolic'
+      if (reader%has('mesh', 1, 'gap') .and. .not. (scene%lower%circular() .or. scene%upper%circular())) then
+         call reader%complain('mesh', 1, 'gap', 'means nothing without a disk', error)
+         return
+      end if
+      do i = 1, size(keys)
+         if (scene%lower%shape /= shape_matrix .or. .not. reader%has('mesh', 1, trim(keys(i)))) cycle
+         call reader%complain('mesh', 1, trim(keys(i)), 'means nothing for a matrix, which has its own nodes', error)
+         return
+      end do
+      if (reader%has('mesh', 1, 'half_width')) scene%mesh%half_width = reader%real_value('mesh', 1, 'half_width')
+      if (reader%has('mesh', 1, 'half_angle')) call read_half_angle(reader, scene, error)
+      if (allocated(error)) return
+      if (scene%mesh%nodes > most_carried .and. .not. scene%mesh%whole_circle) then
+         call reader%complain('mesh', 1, 'nodes', 'can be more than '//to_text(most_carried)//' only with half_angle=180', &
+                              error)
+         return
+      end if
+      if (scene%mesh%half_width > 0.0_wp) call check_mesh_is_under(reader, scene, error)
+      if (.not. allocated(error)) call check_circle(reader, 1, scene, scene%lower, error)
+      if (.not. allocated(error)) call check_circle(reader, 2, scene, scene%upper, error)
    end subroutine read_mesh
+
+   subroutine read_half_angle(reader, scene, error)
+      type(reader_type), intent(in) :: reader
+      type(scene_type), intent(inout) :: scene
+      type(error_type), allocatable, intent(out) :: error
+      real(wp), parameter :: half_turn = 180.0_wp
+      real(wp) :: half_angle
+
+      half_angle = reader%real_value('mesh', 1, 'half_angle')
+      if (reader%has('mesh', 1, 'half_width')) then
+         call reader%complain('mesh', 1, 'half_angle', 'half_width is there too; give one of them', error)
+      else if (.not. scene%arc_radius() > 0.0_wp) then
+         call reader%complain('mesh', 1, 'half_angle', 'means nothing without an elastic disk or hole', error)
+      else
+         scene%mesh%whole_circle = .not. half_angle < half_turn
+         if (.not. scene%mesh%whole_circle) scene%mesh%half_width = scene%arc_radius()*pi*half_angle/half_turn
+      end if
+   end subroutine read_half_angle
+
+   !> A node at least that both bodies can touch.
+   subroutine check_mesh_is_under(reader, scene, error)
+      type(reader_type), intent(in) :: reader
+      type(scene_type), intent(in) :: scene
+      type(error_type), allocatable, intent(out) :: error
+      real(wp) :: interval, x
+      integer :: i
+
+      interval = 2.0_wp*scene%mesh%half_width/scene%mesh%nodes
+      do i = 1, scene%mesh%nodes
+         x = 0.5_wp*interval*(2*i - scene%mesh%nodes - 1)
+         if (scene%arc_radius() > 0.0_wp) x = scene%arc_radius()*sin(x/scene%arc_radius())
+         if (scene%lower%covers(x) .and. scene%upper%covers(x)) return
+      end do
+      call reader%complain('mesh', 1, merge_text(reader%has('mesh', 1, 'half_width'), 'half_width', 'half_angle'), &
+                           'no node of this mesh is under the indenter', error)
+   end subroutine check_mesh_is_under
+
+   !> A Fourier series needs a circle of a whole number of intervals, and no more of it than there is.
+   subroutine check_circle(reader, number, scene, body, error)
+      type(reader_type), intent(in) :: reader
+      integer, intent(in) :: number
+      type(scene_type), intent(in) :: scene
+      type(body_type), intent(in) :: body
+      type(error_type), allocatable, intent(out) :: error
+      real(wp), parameter :: whole = 1.0e-9_wp
+      real(wp) :: interval, intervals
+      integer :: nodes
+      logical :: growing
+
+      if (body%rigid .or. .not. body%circular()) return
+      call choose_mesh(scene, nodes, interval, growing)
+      intervals = 2.0_wp*pi*body%radius/interval
+      if (nodes > intervals*(1.0_wp + whole)) then
+         call reader%complain('mesh', 1, merge_text(reader%has('mesh', 1, 'half_width'), 'half_width', 'half_angle'), &
+                              'goes more than once round body '//to_text(number), error)
+      else if (body%kernel == kernel_fourier .and. abs(intervals - nint(intervals)) > whole*intervals) then
+         call reader%complain('body', number, 'kernel', 'needs a whole number of intervals on the circle, there are '// &
+                              to_text(intervals, 10)//"; change &mesh, or use kernel='exact'", error)
+      end if
+   end subroutine check_circle
 
    subroutine read_friction(reader, scene, error)
       type(reader_type), intent(in) :: reader
@@ -390,11 +554,13 @@ contains
             if (allocated(error)) return
             call read_target(reader, i, 'tangential_force', 'shift', step%tangential_control, step%tangential_target, error)
             if (allocated(error)) return
+            call read_target(reader, i, 'moment', 'rotation', step%rotational_control, step%rotational_target, error)
+            if (allocated(error)) return
             step%friction = reader%logical_value('step', i, 'friction')
             step%cycles = reader%integer_value('step', i, 'cycles')
-            if (step%normal_control == control_keep .and. step%tangential_control == control_keep) then
+            if (all([step%normal_control, step%tangential_control, step%rotational_control] == control_keep)) then
                call fail(reader, line_of(reader, 'step', i), '&step '//to_text(i)//': needs a target: normal_force or '// &
-                         'approach, tangential_force or shift', error)
+                         'approach, tangential_force or shift, moment or rotation', error)
                return
             end if
          end associate

@@ -1,8 +1,8 @@
-!> Reading the profile of a rigid indenter from a text file with two columns.
+!> Reading the profile of a body from a text file with two columns.
 module mfv_profile_file
    use, intrinsic :: ieee_arithmetic, only: ieee_is_finite
    use mfv_error, only: error_type, set_error
-   use mfv_indenter, only: indenter_type, new_profile
+   use mfv_body, only: body_type, new_profile
    use mfv_kinds, only: wp
    use mfv_status, only: MFV_INPUT_ERROR
    use mfv_strings, only: string_type, to_text
@@ -18,9 +18,9 @@ contains
 
    !> The profile in the file `path`: x and height above the flat surface (lengths) in every line, x increasing; blank
    !> lines and lines that begin with # or ! do not count. Error MFV_INPUT_ERROR with the line and what is right.
-   subroutine read_profile(path, indenter, error)
+   subroutine read_profile(path, body, error)
       character(*), intent(in) :: path
-      type(indenter_type), intent(out) :: indenter
+      type(body_type), intent(out) :: body
       type(error_type), allocatable, intent(out) :: error
       character(:), allocatable :: text
       type(string_type), allocatable :: lines(:)
@@ -50,7 +50,7 @@ contains
                         to_text(size(x)))
          return
       end if
-      indenter = new_profile(x, height)
+      body = new_profile(x, height)
    end subroutine read_profile
 
    pure logical function is_comment(line)

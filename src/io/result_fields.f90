@@ -2,12 +2,15 @@
 !> API and through it Python all take their names from here.
 module mfv_result_fields
    use, intrinsic :: ieee_arithmetic, only: ieee_positive_inf, ieee_quiet_nan, ieee_value
+   use mfv_body, only: body_type, shape_names
+   use mfv_body_pair, only: part_lower, part_upper
    use mfv_case, only: case_type
    use mfv_certificate, only: residual_count, residual_description, residual_name
    use mfv_closed_form, only: closed_form_of, closed_form_type
+   use mfv_compliance, only: block_up, block_ut, block_wp, block_wt
    use mfv_contact_state, only: contact_state_type
    use mfv_kinds, only: wp
-   use mfv_node_status, only: event_names, node_status_names
+   use mfv_node_status, only: event_names, in_contact, node_status_names
    use mfv_simulation, only: history_none, simulation_type
    use mfv_status, only: status_outcome
    use mfv_strings, only: add_text, list_of_words, string_type, to_text
@@ -40,6 +43,8 @@ module mfv_result_fields
    character(*), parameter :: tangential_force_meaning = 'tangential force Q per unit thickness'
    character(*), parameter :: approach_meaning = 'approach of the upper body'
    character(*), parameter :: shift_meaning = 'shift of the upper body to the right'
+   character(*), parameter :: moment_meaning = 'moment M of the upper on the lower body per unit thickness, counterclockwise'
+   character(*), parameter :: rotation_meaning = 'rotation of the upper body, counterclockwise, in radians'
    character(*), parameter :: dissipation_meaning = 'energy dissipated so far per unit thickness'
    character(*), parameter :: contact_nodes_meaning = 'nodes in contact'
    character(*), parameter :: stick_nodes_meaning = 'stuck nodes'
@@ -53,7 +58,7 @@ contains
       type(string_type), allocatable :: groups(:)
       integer :: i
 
-      groups = list_of_words('mesh scene state summary certificate')
+      groups = list_of_words('mesh scene compliance state summary certificate')
       if (simulation%keep_history /= history_none) call add_text(groups, 'history')
       call add_text(groups, 'reference')
       do i = 1, simulation%snapshot_count
@@ -86,6 +91,8 @@ contains
       select case (group)
       case ('scene')
          call add_scene(fields, simulation, units)
+      case ('compliance')
+         call add_compliance(fields, simulation)
       case ('mesh')
          call add_mesh(fields, simulation, units)
       case ('state')
@@ -122,8 +129,7 @@ contains
       type(case_type), intent(in) :: case
       type(simulation_type), intent(in) :: simulation
       type(string_type), allocatable, intent(out) :: names(:), texts(:)
-      character(*), parameter :: planes = 'strain stress', couplings = 'full goodman none', &
-                                 indenters = 'disk flat_punch profile'
+      character(*), parameter :: planes = 'strain stress', couplings = 'full goodman none'
 
       call add('title', case%scene%title)
       call add('outcome', status_outcome(simulation%outcome))
@@ -135,7 +141,8 @@ contains
       call add('force_unit', case%force_unit)
       call add('plane', word(planes, case%scene%plane))
       call add('coupling', word(couplings, case%scene%coupling))
-      call add('indenter', word(indenters, case%scene%indenter%shape))
+      call add('lower_body', body_name(case%scene%lower))
+      call add('upper_body', body_name(case%scene%upper))
 
    contains
 
@@ -146,6 +153,15 @@ contains
          call add_text(texts, text)
       end subroutine add
    end subroutine result_attributes
+
+   !> Shape of a body, in words.
+   function body_name(body) result(name)
+      type(body_type), intent(in) :: body
+      character(:), allocatable :: name
+
+      name = word(shape_names, body%shape)
+      if (body%rigid) name = 'rigid '//name
+   end function body_name
 
    !> Word `number` of a list of words.
    function word(words, number) result(text)
@@ -164,20 +180,66 @@ contains
       type(units_type), intent(in) :: units
 
       associate (scene => simulation%contact%model%scene)
-         call add_scalar(fields, 'shear_modulus', scene%material%shear_modulus, units%traction, &
-                         'shear modulus of the half-plane')
-         call add_scalar(fields, 'poisson_ratio', scene%material%poisson_ratio, '1', "Poisson's ratio of the half-plane")
-         call add_scalar(fields, 'kolosov_constant', scene%material%kolosov, '1', "Kolosov's constant of the half-plane")
-         call add_scalar(fields, 'dundurs_beta', scene%material%dundurs_beta(), '1', &
-                         "Dundurs' parameter beta against the rigid body")
-         call add_scalar(fields, 'radius', scene%indenter%radius, units%length, &
-                         'radius of the disk, 0 for another indenter')
+         call add_body(fields, 'lower', scene%lower, units)
+         call add_body(fields, 'upper', scene%upper, units)
+         if (scene%modulus() > 0.0_wp) then
+            call add_scalar(fields, 'contact_modulus', scene%modulus(), units%traction, &
+                            'modulus m of both bodies, 1/m = sum of (kappa + 1)/(4 G)')
+            call add_scalar(fields, 'dundurs_beta', scene%dundurs_beta(), '1', &
+                            "Dundurs' parameter beta, positive where the lower body couples more")
+         end if
+         call add_scalar(fields, 'curvature', scene%curvature(), '1/'//units%length, &
+                         'relative curvature of disks and holes at the pole')
          call add_scalar(fields, 'friction_coefficient', scene%friction%coefficient, '1', &
                          'coefficient of friction, 0 without friction')
-         call add_scalar(fields, 'datum', scene%datum, units%length, &
-                         'distance of the surface point from which displacements are measured')
       end associate
    end subroutine add_scene
+
+   !> What is known of one body.
+   subroutine add_body(fields, name, body, units)
+      type(field_type), allocatable, intent(inout) :: fields(:)
+      character(*), intent(in) :: name
+      type(body_type), intent(in) :: body
+      type(units_type), intent(in) :: units
+
+      if (body%circular()) call add_scalar(fields, name//'_radius', body%radius, units%length, &
+                                           'radius of the '//name//' body')
+      if (.not. body%material%shear_modulus > 0.0_wp) return
+      call add_scalar(fields, name//'_shear_modulus', body%material%shear_modulus, units%traction, &
+                      'shear modulus of the '//name//' body')
+      call add_scalar(fields, name//'_poisson_ratio', body%material%poisson_ratio, '1', &
+                      "Poisson's ratio of the "//name//' body')
+      call add_scalar(fields, name//'_kolosov_constant', body%material%kolosov, '1', &
+                      "Kolosov's constant of the "//name//' body')
+      call add_scalar(fields, name//'_datum', body%datum, units%length, &
+                      'distance from the pole at which displacements of the '//name//' body are measured')
+   end subroutine add_body
+
+   !> Which compliance blocks the scene needed, and the memory of what they are made from.
+   subroutine add_compliance(fields, simulation)
+      type(field_type), allocatable, intent(inout) :: fields(:)
+      type(simulation_type), intent(in) :: simulation
+
+      associate (pair => simulation%contact%model%compliance)
+         call add_scalar_whole(fields, 'wp', merge(1, 0, pair%has_block(block_wp)), 'whether C_wp exists')
+         call add_scalar_whole(fields, 'wt', merge(1, 0, pair%has_block(block_wt)), 'whether C_wt exists')
+         call add_scalar_whole(fields, 'up', merge(1, 0, pair%has_block(block_up)), 'whether C_up exists')
+         call add_scalar_whole(fields, 'ut', merge(1, 0, pair%has_block(block_ut)), 'whether C_ut exists')
+         call add_scalar_whole(fields, 'lower_bytes', stored(part_lower), 'bytes of the lower body''s kernels or matrix')
+         call add_scalar_whole(fields, 'upper_bytes', stored(part_upper), 'bytes of the upper body''s kernels or matrix')
+      end associate
+
+   contains
+
+      integer function stored(part)
+         integer, intent(in) :: part
+
+         stored = 0
+         associate (pair => simulation%contact%model%compliance)
+            if (pair%deforms(part)) stored = int(pair%part(part)%compliance%bytes())
+         end associate
+      end function stored
+   end subroutine add_compliance
 
    subroutine add_mesh(fields, simulation, units)
       type(field_type), allocatable, intent(inout) :: fields(:)
@@ -187,34 +249,59 @@ contains
       associate (model => simulation%contact%model)
          call add_real(fields, 'x', model%x, along_nodes, units%length, 'position of the nodes')
          call add_real(fields, 'initial_gap', visible_gap(simulation, model%initial_gap), along_nodes, units%length, &
-                       'gap of the undeformed bodies, infinite beside the indenter')
+                       'gap of the undeformed bodies, infinite where one of them has no surface')
+         if (model%scene%arc_radius() > 0.0_wp) &
+            call add_real(fields, 'arc', model%arc, along_nodes, units%length, 'distance of the nodes from the pole along '// &
+                          'the surface')
          call add_scalar(fields, 'interval', model%interval(), units%length, 'width of an interval')
+         call add_real(fields, 'width', model%width, along_nodes, units%length, 'surface that belongs to each node')
       end associate
    end subroutine add_mesh
 
-   !> The seven fields of a state.
+   !> The fields of a state.
    subroutine add_state(fields, simulation, state, units)
       type(field_type), allocatable, intent(inout) :: fields(:)
       type(simulation_type), intent(in) :: simulation
       type(contact_state_type), intent(in) :: state
       type(units_type), intent(in) :: units
 
+      call add_displacements(fields, simulation, state, units)
       associate (model => simulation%contact%model)
          call add_real(fields, 'pressure', state%fields%pressure, along_nodes, units%traction, &
                        'compressive normal traction p')
          call add_real(fields, 'shear', state%fields%shear, along_nodes, units%traction, &
                        'shear traction tau on the lower body, positive to the right')
          call add_real(fields, 'gap', visible_gap(simulation, model%gap(state%fields)), along_nodes, units%length, &
-                       'gap between the bodies, infinite beside the indenter')
+                       'gap between the bodies, infinite where one of them has no surface')
          call add_real(fields, 'slip', modelled(simulation, state%fields%slip()), along_nodes, units%length, &
                        'slip s = u - U of the lower surface against the upper body (not modelled without friction)')
-         call add_real(fields, 'normal_displacement', state%fields%normal, along_nodes, units%length, &
-                       'displacement w of the lower surface into the body')
-         call add_real(fields, 'tangential_displacement', modelled(simulation, state%fields%tangential), along_nodes, &
-                       units%length, 'displacement u of the lower surface to the right (not modelled without friction)')
          call add_whole(fields, 'status', state%status, along_nodes, 'contact status of the nodes', node_status_names)
       end associate
    end subroutine add_state
+
+   !> Displacements of the surface of each elastic body.
+   subroutine add_displacements(fields, simulation, state, units)
+      type(field_type), allocatable, intent(inout) :: fields(:)
+      type(simulation_type), intent(in) :: simulation
+      type(contact_state_type), intent(in) :: state
+      type(units_type), intent(in) :: units
+      real(wp), dimension(simulation%contact%model%nodes()) :: normal, tangential
+      character(*), parameter :: prefix(2) = [character(6) :: '', 'upper_'], &
+                                 body(2) = [character(5) :: 'lower', 'upper']
+      integer :: part
+
+      do part = part_lower, part_upper
+         associate (pair => simulation%contact%model%compliance)
+            if (.not. pair%deforms(part)) cycle
+            call pair%part_displacements(part, state%fields%pressure, state%fields%shear, normal, tangential)
+         end associate
+         call add_real(fields, trim(prefix(part))//'normal_displacement', normal, along_nodes, units%length, &
+                       'displacement w of the '//body(part)//' surface into its body')
+         call add_real(fields, trim(prefix(part))//'tangential_displacement', modelled(simulation, tangential), along_nodes, &
+                       units%length, 'displacement u of the '//body(part)//' surface to the right (not modelled without '// &
+                       'friction)')
+      end do
+   end subroutine add_displacements
 
    !> A tangential quantity: NaN in scenes that leave the tangential problem out.
    function modelled(simulation, values)
@@ -264,12 +351,16 @@ contains
          call add_scalar(fields, 'tangential_force', f%tangential_force, units%force, tangential_force_meaning)
          call add_scalar(fields, 'approach', f%approach, units%length, approach_meaning)
          call add_scalar(fields, 'shift', f%shift, units%length, shift_meaning)
+         if (simulation%contact%model%rotational) then
+            call add_scalar(fields, 'moment', f%moment, units%energy, moment_meaning)
+            call add_scalar(fields, 'rotation', f%rotation, '1', rotation_meaning)
+         end if
          call add_scalar(fields, 'dissipation', state%dissipation, units%energy, dissipation_meaning)
          call add_scalar_whole(fields, 'contact_nodes', state%contact_nodes(), contact_nodes_meaning)
          call add_scalar_whole(fields, 'stick_nodes', state%stick_nodes(), stick_nodes_meaning)
          call add_scalar_whole(fields, 'slip_nodes', state%slip_nodes(), 'slipping nodes')
          call add_scalar(fields, 'contact_half_width', &
-                         0.5_wp*state%contact_nodes()*simulation%contact%model%interval(), units%length, &
+                         0.5_wp*sum(simulation%contact%model%width, mask=in_contact(state%status)), units%length, &
                          'half the length of all intervals in contact')
          call add_scalar(fields, 'stick_ratio', real(state%stick_nodes(), wp)/max(state%contact_nodes(), 1), '1', &
                          'stuck nodes over nodes in contact')
@@ -337,6 +428,10 @@ contains
          call add_real(fields, 'tangential_force', r%tangential_force, along, units%force, tangential_force_meaning)
          call add_real(fields, 'approach', r%approach, along, units%length, approach_meaning)
          call add_real(fields, 'shift', r%shift, along, units%length, shift_meaning)
+         if (simulation%contact%model%rotational) then
+            call add_real(fields, 'moment', r%moment, along, units%energy, moment_meaning)
+            call add_real(fields, 'rotation', r%rotation, along, '1', rotation_meaning)
+         end if
          call add_real(fields, 'dissipation', r%dissipation, along, units%energy, dissipation_meaning)
          call add_whole(fields, 'contact_nodes', r%contact_nodes, along, contact_nodes_meaning)
          call add_whole(fields, 'stick_nodes', r%stick_nodes, along, stick_nodes_meaning)

@@ -33,6 +33,8 @@ contains
       if (simulation%contact%model%tangential) text = text//line('tangential force', amount(fields, 'tangential_force')// &
                                                      ', shift '//amount(fields, 'shift')) &
                                           //line('dissipation', amount(fields, 'dissipation'))
+      if (simulation%contact%model%rotational) text = text//line('moment', amount(fields, 'moment')//', rotation '// &
+                                                                 amount(fields, 'rotation'))
       text = text//line('work', amount(fields, 'events')//' events, '//amount(fields, 'linear_solves')// &
                         ' linear solves, '//to_text(seconds, 3)//' s') &
              //line('certificate', 'largest relative residual '//amount(fields, 'largest_residual'))

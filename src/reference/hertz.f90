@@ -1,8 +1,7 @@
-!> Closed form: a rigid cylinder pressed on an elastic half-plane without friction (Hertz; Johnson 1985, section 4.2;
+!> Closed form: a cylinder pressed on a half-plane, or two cylinders on each other, without friction (Hertz; Johnson 1985, section 4.2;
 !> dissertation eqs. 3.1, 3.2).
 module mfv_reference_hertz
    use mfv_kinds, only: pi, wp
-   use mfv_material, only: material_type
    use mfv_numerics, only: root_between
    implicit none
    private
@@ -10,21 +9,20 @@ module mfv_reference_hertz
 
 contains
 
-   !> Contact half-width a = sqrt(P (kappa+1) R/(2 pi G)), length, for the normal force P (force/length) and the
-   !> radius R (length). Equation 3.1.
-   pure real(wp) function hertz_half_width(normal_force, radius, material) result(a)
-      real(wp), intent(in) :: normal_force, radius
-      type(material_type), intent(in) :: material
+   !> Contact half-width a = sqrt(2 P R/(pi m)), length, for the normal force P (force/length), the radius R (length; of
+   !> two bodies 1/R = 1/R1 + 1/R2) and the modulus m (force/length^2): 4 G/(kappa + 1) of the elastic body, of two bodies
+   !> 1/m = 1/m1 + 1/m2. Equations 3.1, 5.1.
+   pure real(wp) function hertz_half_width(normal_force, radius, modulus) result(a)
+      real(wp), intent(in) :: normal_force, radius, modulus
 
-      a = sqrt(max(normal_force, 0.0_wp)*2.0_wp*radius/(pi*material%plane_modulus()))
+      a = sqrt(max(normal_force, 0.0_wp)*2.0_wp*radius/(pi*modulus))
    end function hertz_half_width
 
-   !> Normal force (force/length) for a contact half-width a (length).
-   pure real(wp) function hertz_force(half_width, radius, material) result(normal_force)
-      real(wp), intent(in) :: half_width, radius
-      type(material_type), intent(in) :: material
+   !> Normal force (force/length) for a contact half-width a (length); radius and modulus as above.
+   pure real(wp) function hertz_force(half_width, radius, modulus) result(normal_force)
+      real(wp), intent(in) :: half_width, radius, modulus
 
-      normal_force = half_width**2*pi*material%plane_modulus()/(2.0_wp*radius)
+      normal_force = half_width**2*pi*modulus/(2.0_wp*radius)
    end function hertz_force
 
    !> Pressure 2 P sqrt(a^2 - x^2)/(pi a^2) at x (length), force/length^2; zero outside the contact. Equation 3.2.

@@ -121,7 +121,7 @@ static void attributes_are_texts(void) {
   CHECK(mfv_create_from_text(text, "text", &handle, NULL, 0) == MFV_COMPLETE);
   CHECK(mfv_attribute(handle, "input", NULL, 0, &length) == MFV_COMPLETE && length == strlen(text));
   CHECK(mfv_attribute(handle, "coupling", buffer, sizeof buffer, NULL) == MFV_COMPLETE && strcmp(buffer, "goodman") == 0);
-  CHECK(mfv_attribute(handle, "indenter", buffer, sizeof buffer, NULL) == MFV_COMPLETE && strcmp(buffer, "disk") == 0);
+  CHECK(mfv_attribute(handle, "upper_body", buffer, sizeof buffer, NULL) == MFV_COMPLETE && strcmp(buffer, "rigid disk") == 0);
   mfv_free(&handle);
 }
 

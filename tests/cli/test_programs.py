@@ -65,7 +65,7 @@ def test_file_opens_without_help(tmp_path):
         assert result["state/pressure"].dims[0][0] == result["state/x"]
         np.testing.assert_array_equal(result["state/x"][:], result["mesh/x"][:])
         np.testing.assert_array_equal(result["state/shear"][:], result["steps/0006/shear"][:])
-        for name in ("title", "mfv_version", "hdf5_version", "outcome", "message", "plane", "coupling", "indenter"):
+        for name in ("title", "mfv_version", "hdf5_version", "outcome", "message", "plane", "coupling", "lower_body", "upper_body"):
             assert isinstance(result.attrs[name], str) and result.attrs[name]
     for group, dimension in (("state", "x"), ("history", "record"), ("steps/0003", "x"), ("reference", "x")):
         with xarray.open_dataset(path, engine="h5netcdf", group=group) as dataset:

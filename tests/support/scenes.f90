@@ -1,8 +1,8 @@
 !> Scenes that several suites use: the dissertation's cylinder and punch on a half-plane.
 module test_scenes
+   use mfv_body, only: new_disk, new_flat_punch, new_half_plane_body
    use mfv_compliance, only: coupling_full
    use mfv_friction, only: coulomb_friction, no_friction
-   use mfv_indenter, only: new_disk, new_flat_punch
    use mfv_kinds, only: wp
    use mfv_material, only: new_material, plane_strain
    use mfv_scene
@@ -25,8 +25,9 @@ contains
       type(scene_type) :: scene
 
       scene = base(nodes, half_width, mu, coupling)
-      scene%indenter = new_disk(radius, parabolic=.true.)
-      scene%datum = radius
+      scene%upper = new_disk(radius)
+      scene%lower%datum = radius
+      scene%mesh%parabolic = .true.
    end function cylinder
 
    !> Rigid flat punch of half-width `punch` on the half-plane.
@@ -38,8 +39,8 @@ contains
       type(scene_type) :: scene
 
       scene = base(nodes, punch, mu, coupling)
-      scene%indenter = new_flat_punch(punch)
-      scene%datum = punch
+      scene%upper = new_flat_punch(punch)
+      scene%lower%datum = punch
    end function flat_punch
 
    function base(nodes, half_width, mu, coupling) result(scene)
@@ -50,7 +51,9 @@ contains
       type(scene_type) :: scene
 
       scene%title = 'test'
-      scene%material = new_material(shear_modulus, poisson_ratio, plane_strain)
+      scene%lower = new_half_plane_body()
+      scene%lower%rigid = .false.
+      scene%lower%material = new_material(shear_modulus, poisson_ratio, plane_strain)
       scene%mesh = mesh_request_type(nodes, half_width)
       scene%coupling = coupling_full
       if (present(coupling)) scene%coupling = coupling

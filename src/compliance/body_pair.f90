@@ -1,0 +1,159 @@
+!> The compliance of two bodies in contact: what the contact algorithms work with.
+!>
+!> The upper body is the mirror image of a lower one: its tractions are p and, reversed, tau. With w and u from either
+!> body's own compliance the gap closes by w1 + w2 and the slip is u1 - u2, so that
+!>
+!>     C_wp = C1_wp + C2_wp,  C_wt = C1_wt - C2_wt,  C_up = C1_up - C2_up,  C_ut = C1_ut + C2_ut.
+!>
+!> A rigid body has no part in it. Bodies of equal signature (same shape and material) do not couple: C_wt and C_up, the
+!> differences, are then left out.
+module mfv_body_pair
+   use mfv_compliance
+   use mfv_kinds, only: wp
+   implicit none
+   private
+   public :: body_pair_type, new_body_pair, part_lower, part_upper
+
+   integer, parameter :: part_lower = 1, part_upper = 2
+
+   !> A body of the pair; not allocated: rigid.
+   type :: part_type
+      class(compliance_type), allocatable :: compliance
+   end type part_type
+
+   type, extends(compliance_type) :: body_pair_type
+      type(part_type) :: part(2)
+   contains
+      procedure :: resize
+      procedure :: entries
+      procedure :: product => summed_product
+      procedure :: signature
+      procedure :: deforms
+      procedure :: part_displacements
+   end type body_pair_type
+
+   !> Signs of the upper body's blocks.
+   real(wp), parameter :: upper_sign(4) = [1.0_wp, -1.0_wp, -1.0_wp, 1.0_wp]
+
+contains
+
+   !> Pair of a lower and an upper body, on the same intervals; not allocated: rigid. At least one is elastic. Both are
+   !> moved into the pair.
+   subroutine new_body_pair(lower, upper, self)
+      class(compliance_type), allocatable, intent(inout) :: lower, upper
+      type(body_pair_type), intent(out) :: self
+      real(wp) :: flexibility
+      integer :: i
+
+      call move_alloc(lower, self%part(part_lower)%compliance)
+      call move_alloc(upper, self%part(part_upper)%compliance)
+      flexibility = 0.0_wp
+      do i = 1, 2
+         if (.not. self%deforms(i)) cycle
+         associate (body => self%part(i)%compliance)
+            self%nodes = body%nodes
+            self%interval = body%interval
+            self%has_block = self%has_block .or. body%has_block
+            self%block_values = self%block_values + body%block_values
+            flexibility = flexibility + 1.0_wp/body%modulus
+         end associate
+      end do
+      self%modulus = 1.0_wp/flexibility
+      if (couples(self)) return
+      self%has_block([block_wt, block_up]) = .false.
+      do i = 1, 2
+         if (self%deforms(i)) self%part(i)%compliance%has_block(block_wt) = .false.
+      end do
+   end subroutine new_body_pair
+
+   !> Whether anything is left of the coupling blocks.
+   pure logical function couples(self)
+      type(body_pair_type), intent(in) :: self
+      real(wp) :: signature(4, 2)
+      integer :: i
+
+      signature = 0.0_wp
+      do i = 1, 2
+         if (self%deforms(i)) signature(:, i) = self%part(i)%compliance%signature()
+      end do
+      couples = .not. all(abs(signature(:, 1) - signature(:, 2)) <= 0.0_wp)
+   end function couples
+
+   !> Whether the lower (part_lower) or upper (part_upper) body is elastic.
+   pure logical function deforms(self, part)
+      class(body_pair_type), intent(in) :: self
+      integer, intent(in) :: part
+
+      deforms = allocated(self%part(part)%compliance)
+   end function deforms
+
+   !> See mfv_compliance.
+   subroutine resize(self, nodes)
+      class(body_pair_type), intent(inout) :: self
+      integer, intent(in) :: nodes
+      integer :: i
+
+      self%nodes = nodes
+      self%block_values = 0
+      do i = 1, 2
+         if (.not. self%deforms(i)) cycle
+         call self%part(i)%compliance%resize(nodes)
+         self%block_values = self%block_values + self%part(i)%compliance%block_values
+      end do
+   end subroutine resize
+
+   !> See mfv_compliance.
+   pure subroutine entries(self, block, rows, columns, matrix)
+      class(body_pair_type), intent(in) :: self
+      integer, intent(in) :: block, rows(:), columns(:)
+      real(wp), intent(out) :: matrix(:, :)
+      real(wp), allocatable :: upper(:, :)
+
+      if (.not. self%deforms(part_upper)) then
+         call self%part(part_lower)%compliance%entries(block, rows, columns, matrix)
+         return
+      end if
+      matrix = 0.0_wp
+      if (self%deforms(part_lower)) call self%part(part_lower)%compliance%entries(block, rows, columns, matrix)
+      allocate (upper(size(rows), size(columns)))
+      call self%part(part_upper)%compliance%entries(block, rows, columns, upper)
+      matrix = matrix + upper_sign(block)*upper
+   end subroutine entries
+
+   !> See mfv_compliance.
+   subroutine summed_product(self, block, traction, displacement)
+      class(body_pair_type), intent(in) :: self
+      integer, intent(in) :: block
+      real(wp), intent(in) :: traction(:)
+      real(wp), intent(inout) :: displacement(:)
+
+      if (.not. self%has_block(block)) return
+      if (self%deforms(part_lower)) call self%part(part_lower)%compliance%product(block, traction, displacement)
+      if (self%deforms(part_upper)) &
+         call self%part(part_upper)%compliance%product(block, upper_sign(block)*traction, displacement)
+   end subroutine summed_product
+
+   !> Of the lower body: a pair is not paired again.
+   pure function signature(self)
+      class(body_pair_type), intent(in) :: self
+      real(wp) :: signature(4)
+
+      signature = 0.0_wp
+      if (self%deforms(part_lower)) signature = self%part(part_lower)%compliance%signature()
+   end function signature
+
+   !> Surface displacements of one body, into it and to the right, length, under the tractions on the lower body; zero
+   !> for a rigid one. Shapes (nodes).
+   subroutine part_displacements(self, part, pressure, shear, normal, tangential)
+      class(body_pair_type), intent(in) :: self
+      integer, intent(in) :: part
+      real(wp), intent(in) :: pressure(:), shear(:)
+      real(wp), intent(out) :: normal(:), tangential(:)
+
+      normal = 0.0_wp
+      tangential = 0.0_wp
+      if (.not. self%deforms(part)) return
+      call self%part(part)%compliance%displacements(pressure, merge(shear, -shear, part == part_lower), normal, tangential)
+   end subroutine part_displacements
+
+end module mfv_body_pair

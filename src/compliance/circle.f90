@@ -1,0 +1,229 @@
+!> Compliance of a solid disk or of a hole in an infinite plane under box tractions, around the contact pole at
+!> theta = 0, in Cartesian components: the normal is taken as the vertical at every node (dissertation eq. 4.22).
+!>
+!> The disk has its pole at the top, the hole at the bottom; theta grows to the right in both. With c, s = cos, sin(theta)
+!>
+!>     disk: sigma_rr = -p c + tau s, sigma_rtheta = p s + tau c, w = -u_r c + u_theta s, u = u_r s + u_theta c
+!>     hole: sigma_rr = -p c - tau s, sigma_rtheta = p s - tau c, w =  u_r c - u_theta s, u = u_r s + u_theta c
+!>
+!> (eq. 4.22 is the disk's; the outward normal of the hole's surface points the other way). A disk under a net force is
+!> held by a force in its centre, a hole at infinity; both displacement fields contain a free rigid translation. It is
+!> chosen as for the half-plane: near the pole a concentrated force leaves
+!> (kappa+1)/(4 pi G) ln(D/distance) with the `datum` D, in w under a normal and in u under a tangential force, so that
+!> disk and hole tend to the half-plane, constant and all, as R grows.
+module mfv_circle
+   use mfv_circle_kernels
+   use mfv_compliance
+   use mfv_kinds, only: pi, wp
+   use mfv_material, only: material_type
+   implicit none
+   private
+   public :: circle_type, new_circle, kernel_exact, kernel_fourier, default_harmonics, circle_intervals
+
+   !> How the kernels are evaluated: in closed form, or as a Fourier series cut after a number of harmonics.
+   integer, parameter :: kernel_exact = 1, kernel_fourier = 2
+   !> Harmonics in units of the circle's intervals unless told (dissertation section 4.2.2.1).
+   integer, parameter :: default_harmonics = 4
+
+   type, extends(compliance_type) :: circle_type
+      private
+      !> body_disk or body_hole, see mfv_circle_kernels.
+      integer :: body = body_disk
+      type(material_type) :: material
+      real(wp) :: radius = 1.0_wp, datum = 1.0_wp
+      integer :: kernel = kernel_exact, harmonics = 0
+      type(circle_kernels_type) :: kernels
+      !> cos and sin of the nodes' angles.
+      real(wp), allocatable :: cosine(:), sine(:)
+      !> Rigid translation by a unit traction on an interval, in w by pressure and in u by shear.
+      real(wp) :: normal_translation = 0.0_wp, tangential_translation = 0.0_wp
+   contains
+      procedure :: resize
+      procedure :: entries
+      procedure :: product => rotated_product
+      procedure :: signature
+   end type circle_type
+
+contains
+
+   !> Disk (`body_disk`) or hole (`body_hole`) of the radius `radius` (length) with `nodes` intervals of the arc length
+   !> `interval`, symmetric about the pole. `kernel`: kernel_exact or kernel_fourier; `harmonics`: of the latter, 0 for
+   !> four a interval of the circle, which must then be a whole number of intervals (see circle_intervals). `datum`,
+   !> length: see above. `coupling`, `tangential`: see mfv_compliance.
+   function new_circle(body, material, radius, nodes, interval, datum, kernel, harmonics, coupling, tangential) result(self)
+      integer, intent(in) :: body, nodes, kernel, harmonics, coupling
+      type(material_type), intent(in) :: material
+      real(wp), intent(in) :: radius, interval, datum
+      logical, intent(in) :: tangential
+      type(circle_type) :: self
+
+      self%body = body
+      self%material = material
+      self%radius = radius
+      self%interval = interval
+      self%datum = datum
+      self%kernel = kernel
+      self%harmonics = harmonics
+      if (harmonics == 0) self%harmonics = default_harmonics*circle_intervals(radius, interval)
+      self%modulus = material%plane_modulus()
+      call self%choose_blocks(coupling, tangential)
+      call set_translations(self)
+      call self%resize(nodes)
+   end function new_circle
+
+   !> How many intervals of the arc length `interval` the circle has, to the nearest whole number.
+   pure integer function circle_intervals(radius, interval)
+      real(wp), intent(in) :: radius, interval
+
+      circle_intervals = nint(min(2.0_wp*pi*radius/interval, real(huge(0), wp)))
+   end function circle_intervals
+
+   !> The translations that bring displacements to their datum (docs/theory.md).
+   subroutine set_translations(self)
+      class(circle_type), intent(inout) :: self
+      real(wp) :: by_force, kappa
+
+      kappa = self%material%kolosov
+      by_force = self%interval/(4.0_wp*pi*self%material%shear_modulus)
+      self%normal_translation = by_force*(kappa + 1.0_wp)*log(self%datum/self%radius)
+      self%tangential_translation = self%normal_translation
+      if (self%body /= body_disk) return
+      self%normal_translation = self%normal_translation &
+                                + by_force*(kappa**2 + 6.0_wp*kappa + 1.0_wp)/(2.0_wp*(kappa + 1.0_wp))
+      self%tangential_translation = self%tangential_translation + by_force*(kappa**2 - 3.0_wp)/(kappa + 1.0_wp)
+   end subroutine set_translations
+
+   !> See mfv_compliance.
+   subroutine resize(self, nodes)
+      class(circle_type), intent(inout) :: self
+      integer, intent(in) :: nodes
+      real(wp) :: angle
+      integer :: i
+
+      self%nodes = nodes
+      if (self%kernel == kernel_fourier) then
+         self%kernels = fourier_kernels(self%body, self%material%kolosov, circle_intervals(self%radius, self%interval), &
+                                        self%harmonics, nodes)
+      else
+         self%kernels = exact_kernels(self%body, self%material%kolosov, self%interval/self%radius, nodes)
+      end if
+      if (allocated(self%cosine)) deallocate (self%cosine, self%sine)
+      allocate (self%cosine(nodes), self%sine(nodes))
+      do i = 1, nodes
+         angle = 0.5_wp*(2*i - nodes - 1)*(self%interval/self%radius)
+         self%cosine(i) = cos(angle)
+         self%sine(i) = sin(angle)
+      end do
+      self%block_values = 3*nodes
+   end subroutine resize
+
+   !> Radial and shear traction at unit pressure (`normal`) or unit shear on interval `j`.
+   pure subroutine polar_traction(self, normal, j, radial, shear)
+      class(circle_type), intent(in) :: self
+      logical, intent(in) :: normal
+      integer, intent(in) :: j
+      real(wp), intent(out) :: radial, shear
+      real(wp) :: side
+
+      if (normal) then
+         radial = -self%cosine(j)
+         shear = self%sine(j)
+      else
+         side = merge(1.0_wp, -1.0_wp, self%body == body_disk)
+         radial = side*self%sine(j)
+         shear = side*self%cosine(j)
+      end if
+   end subroutine polar_traction
+
+   !> w (`normal`) or u of node i from its radial and circumferential displacements.
+   elemental real(wp) function cartesian(side, normal, radial, circumferential, cosine, sine)
+      real(wp), intent(in) :: side, radial, circumferential, cosine, sine
+      logical, intent(in) :: normal
+
+      if (normal) then
+         cartesian = side*(circumferential*sine - radial*cosine)
+      else
+         cartesian = radial*sine + circumferential*cosine
+      end if
+   end function cartesian
+
+   !> See mfv_compliance.
+   pure subroutine entries(self, block, rows, columns, matrix)
+      class(circle_type), intent(in) :: self
+      integer, intent(in) :: block, rows(:), columns(:)
+      real(wp), intent(out) :: matrix(:, :)
+      real(wp) :: radial, shear, side, scale, sign, translation
+      logical :: normal_row, normal_column
+      integer :: distance, i, j
+
+      normal_row = block == block_wp .or. block == block_wt
+      normal_column = block == block_wp .or. block == block_up
+      side = merge(1.0_wp, -1.0_wp, self%body == body_disk)
+      scale = self%radius/self%material%shear_modulus
+      translation = 0.0_wp
+      if (block == block_wp) translation = self%normal_translation
+      if (block == block_ut) translation = self%tangential_translation
+      do j = 1, size(columns)
+         call polar_traction(self, normal_column, columns(j), radial, shear)
+         do i = 1, size(rows)
+            distance = abs(rows(i) - columns(j))
+            sign = merge(1.0_wp, -1.0_wp, rows(i) >= columns(j))
+            associate (k => self%kernels)
+               matrix(i, j) = scale*cartesian(side, normal_row, &
+                                              k%radial(distance)*radial - sign*k%cross(distance)*shear, &
+                                              sign*k%cross(distance)*radial + k%tangential(distance)*shear, &
+                                              self%cosine(rows(i)), self%sine(rows(i))) + translation
+            end associate
+         end do
+      end do
+   end subroutine entries
+
+   !> See mfv_compliance: tractions are turned to polar components, multiplied by the Toeplitz kernels, and displacements
+   !> turned back.
+   subroutine rotated_product(self, block, traction, displacement)
+      class(circle_type), intent(in) :: self
+      integer, intent(in) :: block
+      real(wp), intent(in) :: traction(:)
+      real(wp), intent(inout) :: displacement(:)
+      real(wp), dimension(self%nodes) :: radial_displacement, circumferential
+      real(wp) :: radial, shear, scale, side
+      logical :: normal_row, normal_column
+      integer :: j, n
+
+      if (.not. self%has_block(block)) return
+      n = self%nodes
+      normal_row = block == block_wp .or. block == block_wt
+      normal_column = block == block_wp .or. block == block_up
+      side = merge(1.0_wp, -1.0_wp, self%body == body_disk)
+      scale = self%radius/self%material%shear_modulus
+      radial_displacement = 0.0_wp
+      circumferential = 0.0_wp
+      do j = 1, n
+         if (.not. abs(traction(j)) > 0.0_wp) cycle
+         call polar_traction(self, normal_column, j, radial, shear)
+         radial = radial*traction(j)
+         shear = shear*traction(j)
+         associate (k => self%kernels)
+            radial_displacement(:j - 1) = radial_displacement(:j - 1) + radial*k%radial(j - 1:1:-1) &
+                                          + shear*k%cross(j - 1:1:-1)
+            circumferential(:j - 1) = circumferential(:j - 1) - radial*k%cross(j - 1:1:-1) &
+                                      + shear*k%tangential(j - 1:1:-1)
+            radial_displacement(j:) = radial_displacement(j:) + radial*k%radial(0:n - j) - shear*k%cross(0:n - j)
+            circumferential(j:) = circumferential(j:) + radial*k%cross(0:n - j) + shear*k%tangential(0:n - j)
+         end associate
+      end do
+      displacement = displacement + scale*cartesian(side, normal_row, radial_displacement, circumferential, &
+                                                    self%cosine, self%sine)
+      if (block == block_wp) displacement = displacement + self%normal_translation*sum(traction)
+      if (block == block_ut) displacement = displacement + self%tangential_translation*sum(traction)
+   end subroutine rotated_product
+
+   !> See mfv_compliance.
+   pure function signature(self)
+      class(circle_type), intent(in) :: self
+      real(wp) :: signature(4)
+
+      signature = [1.0_wp + self%body, self%radius, self%material%kolosov, self%material%shear_modulus]
+   end function signature
+
+end module mfv_circle

@@ -1,0 +1,186 @@
+!> Surface displacements of a solid disk and of a hole in an infinite plane under a box traction of the angle `dtheta`
+!> at theta = 0: Michell's solution (dissertation chapter 4, appendices C to E), summed exactly or to a number of
+!> harmonics.
+!>
+!> For a disk under a unit radial traction sigma_rr the series is, with a = dtheta/2,
+!>
+!>     u_r     = R/(2 pi G) sum over n >= 2 of sin(na)/n [kappa/(n+1) + 1/(n-1)] cos(n theta) + the terms n = 0, 1
+!>     u_theta = R/(2 pi G) sum over n >= 2 of sin(na)/n [kappa/(n+1) - 1/(n-1)] sin(n theta) + the term n = 1
+!>
+!> and for a hole kappa and 1 change places and the first series its sign. A unit shear traction sigma_rtheta gives
+!> u_theta like the first (n >= 2) and u_r like the second with its sign changed (Betti). With sin(na) cos(n theta) and
+!> sin(na) sin(n theta) as differences, everything comes from four sums (docs/theory.md), where L(x) = ln|2 sin(x/2)| and
+!> S(x) = (pi - x)/2 on (0, 2 pi):
+!>
+!>     sum sin(nx)/(n^2-1)     = sin(x) (1/4 - L)          sum sin(nx)/(n (n^2-1)) = 3/4 sin(x) - (1 - cos x) S
+!>     sum cos(nx)/(n^2-1)     = 1/2 + cos(x)/4 - sin(x) S sum cos(nx)/(n (n^2-1)) = (1 - cos x) L + 3/4 cos(x) - 1/2
+!>
+!> The differences between x = theta + a and theta - a are taken by hand (product rule, addition theorems, atanh for the
+!> logarithms), so that nothing cancels however small dtheta is.
+!>
+!> n = 0 and n = 1 are from Tables 4.2, 4.3 and E.1 with kappa - 1 cancelled by hand, without ln(R), which is a rigid
+!> translation. Misprints that matter: Table 4.3 has B_12 of the hole with the wrong sign (sigma_rr = 0 and
+!> sigma_rtheta = S_1 cos theta ask for -(kappa-1)R sin(a)/((kappa+1) pi)), eq. 4.14 has the wrong sign before
+!> R dtheta/(4 pi G), eq. 4.15 has kappa(n-1)-1+n for kappa(n+1)+n-1.
+module mfv_circle_kernels
+   use mfv_fourier, only: fourier_sum
+   use mfv_kinds, only: pi, wp
+   implicit none
+   private
+   public :: circle_kernels_type, exact_kernels, fourier_kernels, body_disk, body_hole
+
+   integer, parameter :: body_disk = 1, body_hole = 2
+
+   !> Kernels times G/R, from 0 on by distance in intervals: u_r by sigma_rr (even), u_theta by sigma_rr (odd; u_r by
+   !> sigma_rtheta is its negative), u_theta by sigma_rtheta (even).
+   type :: circle_kernels_type
+      real(wp), allocatable :: radial(:), cross(:), tangential(:)
+   end type circle_kernels_type
+
+contains
+
+   !> The exact kernels at `nodes` distances 0, dtheta, 2 dtheta, ... (at most half the circle, or whole when dtheta
+   !> divides it). `kappa`: Kolosov's constant. Only these entries are computed, however fine the circle is.
+   pure function exact_kernels(body, kappa, dtheta, nodes) result(kernels)
+      integer, intent(in) :: body, nodes
+      real(wp), intent(in) :: kappa, dtheta
+      type(circle_kernels_type) :: kernels
+      real(wp) :: theta
+      integer :: i
+
+      allocate (kernels%radial(0:nodes - 1), kernels%cross(0:nodes - 1), kernels%tangential(0:nodes - 1))
+      do i = 0, nodes - 1
+         theta = i*dtheta
+         call higher_terms(body, kappa, theta, 0.5_wp*dtheta, kernels%radial(i), kernels%cross(i))
+         kernels%tangential(i) = kernels%radial(i)
+         call add_lower_terms(body, kappa, theta, dtheta, kernels%radial(i), kernels%cross(i), kernels%tangential(i))
+      end do
+   end function exact_kernels
+
+   !> The kernels at `nodes` distances with the series cut after `harmonics` terms, on a circle of `circle_nodes`
+   !> intervals: the coefficients folded onto the circle's nodes and summed by one transform.
+   function fourier_kernels(body, kappa, circle_nodes, harmonics, nodes) result(kernels)
+      integer, intent(in) :: body, circle_nodes, harmonics, nodes
+      real(wp), intent(in) :: kappa
+      type(circle_kernels_type) :: kernels
+      complex(wp), allocatable :: folded(:)
+      real(wp), allocatable :: sums(:)
+      real(wp) :: dtheta, mirrored
+      integer :: i
+
+      dtheta = 2.0_wp*pi/circle_nodes
+      folded = folded_coefficients(body, kappa, circle_nodes, harmonics)
+      allocate (sums(0:circle_nodes - 1))
+      call fourier_sum(folded, sums)
+      allocate (kernels%radial(0:nodes - 1), kernels%cross(0:nodes - 1), kernels%tangential(0:nodes - 1))
+      do i = 0, nodes - 1
+         mirrored = sums(modulo(-i, circle_nodes))
+         kernels%radial(i) = 0.5_wp*(sums(i) + mirrored)
+         kernels%cross(i) = 0.5_wp*(sums(i) - mirrored)
+         kernels%tangential(i) = kernels%radial(i)
+         call add_lower_terms(body, kappa, i*dtheta, dtheta, kernels%radial(i), kernels%cross(i), kernels%tangential(i))
+      end do
+   end function fourier_kernels
+
+   !> Coefficients of the cosine (u_r) and sine (u_theta) series of a unit radial traction, n >= 2, as mfv_fourier takes
+   !> them: those that the nodes cannot tell apart added up.
+   pure function folded_coefficients(body, kappa, circle_nodes, harmonics) result(folded)
+      integer, intent(in) :: body, circle_nodes, harmonics
+      real(wp), intent(in) :: kappa
+      complex(wp), allocatable :: folded(:)
+      real(wp) :: amplitude, cosine, sine, n_real
+      integer :: n, m, angle
+
+      allocate (folded(0:circle_nodes/2), source=(0.0_wp, 0.0_wp))
+      do n = 2, harmonics
+         n_real = real(n, wp)
+         angle = modulo(n, 2*circle_nodes)
+         amplitude = sin(pi*angle/circle_nodes)/(2.0_wp*pi*n_real)
+         if (body == body_disk) then
+            cosine = amplitude*(kappa/(n_real + 1.0_wp) + 1.0_wp/(n_real - 1.0_wp))
+            sine = amplitude*(kappa/(n_real + 1.0_wp) - 1.0_wp/(n_real - 1.0_wp))
+         else
+            cosine = -amplitude*(kappa/(n_real - 1.0_wp) + 1.0_wp/(n_real + 1.0_wp))
+            sine = amplitude*(kappa/(n_real - 1.0_wp) - 1.0_wp/(n_real + 1.0_wp))
+         end if
+         m = modulo(n, circle_nodes)
+         if (2*m > circle_nodes) then
+            m = circle_nodes - m
+            sine = -sine
+         end if
+         if (m == 0 .or. 2*m == circle_nodes) sine = 0.0_wp
+         folded(m) = folded(m) + cmplx(cosine, -sine, wp)
+      end do
+   end function folded_coefficients
+
+   !> The terms n >= 2 of u_r and u_theta by a unit radial traction at the angle `theta` in [0, 2 pi), in closed form;
+   !> times G/R. `a`: half the angle of the box; theta is 0 or at least 2a.
+   pure subroutine higher_terms(body, kappa, theta, a, radial, cross)
+      integer, intent(in) :: body
+      real(wp), intent(in) :: kappa, theta, a
+      real(wp), intent(out) :: radial, cross
+      real(wp) :: sine_first, sine_second, cosine_first, cosine_second, sign
+
+      call differences(theta, a, sine_first, sine_second, cosine_first, cosine_second)
+      sign = merge(1.0_wp, -1.0_wp, body == body_disk)
+      radial = (sign*(kappa + 1.0_wp)*sine_first - (kappa - 1.0_wp)*sine_second)/(4.0_wp*pi)
+      cross = -((kappa - 1.0_wp)*cosine_first - sign*(kappa + 1.0_wp)*cosine_second)/(4.0_wp*pi)
+   end subroutine higher_terms
+
+   !> Differences f(theta + a) - f(theta - a) of the four sums, in the order of the head of this file.
+   pure subroutine differences(theta, a, sine_first, sine_second, cosine_first, cosine_second)
+      real(wp), intent(in) :: theta, a
+      real(wp), intent(out) :: sine_first, sine_second, cosine_first, cosine_second
+      real(wp) :: sin_a, cos_a, sin_t, cos_t, one_minus, log_mean, log_step, sawtooth
+
+      sin_a = sin(a)
+      cos_a = cos(a)
+      if (.not. theta > 0.0_wp) then
+         sine_first = 2.0_wp*sin_a*(0.25_wp - log(2.0_wp*sin(0.5_wp*a)))
+         sine_second = 1.5_wp*sin_a - 2.0_wp*sin(0.5_wp*a)**2*(pi - a)
+         cosine_first = 0.0_wp
+         cosine_second = 0.0_wp
+         return
+      end if
+      sin_t = sin(theta)
+      cos_t = cos(theta)
+      ! Means and steps of 1 - cos, of L and of S between theta - a and theta + a; S falls by a.
+      one_minus = 2.0_wp*sin(0.5_wp*theta)**2 + 2.0_wp*cos_t*sin(0.5_wp*a)**2
+      log_mean = log(2.0_wp*sin(0.5_wp*theta)) + 0.5_wp*log_of_one_less((sin(0.5_wp*a)/sin(0.5_wp*theta))**2)
+      log_step = 2.0_wp*atanh(sin(0.5_wp*a)*cos(0.5_wp*theta)/(cos(0.5_wp*a)*sin(0.5_wp*theta)))
+      sawtooth = 0.5_wp*(pi - theta)
+      sine_first = 2.0_wp*cos_t*sin_a*(0.25_wp - log_mean) - sin_t*cos_a*log_step
+      sine_second = 1.5_wp*cos_t*sin_a - 2.0_wp*sin_t*sin_a*sawtooth + a*one_minus
+      cosine_first = -sin_a*(0.5_wp*sin_t + 2.0_wp*cos_t*sawtooth) + a*sin_t*cos_a
+      cosine_second = 2.0_wp*sin_t*sin_a*(log_mean - 0.75_wp) + one_minus*log_step
+   end subroutine differences
+
+   !> ln(1 - x) for 0 <= x < 1, accurate for small x: 2 atanh(-x/(2 - x)).
+   pure real(wp) function log_of_one_less(x)
+      real(wp), intent(in) :: x
+
+      log_of_one_less = 2.0_wp*atanh(-x/(2.0_wp - x))
+   end function log_of_one_less
+
+   !> Add the terms n = 0 and n = 1, times G/R.
+   pure subroutine add_lower_terms(body, kappa, theta, dtheta, radial, cross, tangential)
+      integer, intent(in) :: body
+      real(wp), intent(in) :: kappa, theta, dtheta
+      real(wp), intent(inout) :: radial, cross, tangential
+      real(wp) :: zeroth, first
+
+      zeroth = dtheta/(4.0_wp*pi)
+      first = sin(0.5_wp*dtheta)/(4.0_wp*pi)
+      tangential = tangential - zeroth
+      if (body == body_disk) then
+         radial = radial + 0.5_wp*(kappa - 1.0_wp)*zeroth + first*kappa*(kappa - 3.0_wp)/(kappa + 1.0_wp)*cos(theta)
+         cross = cross + first*(kappa**2 + kappa - 4.0_wp)/(kappa + 1.0_wp)*sin(theta)
+         tangential = tangential + first*(kappa**2 + 5.0_wp*kappa + 8.0_wp)/(kappa + 1.0_wp)*cos(theta)
+      else
+         radial = radial - zeroth - first*cos(theta)
+         cross = cross - first*sin(theta)
+         tangential = tangential - first*cos(theta)
+      end if
+   end subroutine add_lower_terms
+
+end module mfv_circle_kernels

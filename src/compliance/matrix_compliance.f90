@@ -1,0 +1,188 @@
+!> A body given by its compliance or stiffness matrix: the route for finite-element users.
+!>
+!> The user's matrices relate nodal forces to nodal displacements of the surface nodes, force/length to length per unit
+!> thickness; rows and columns run over the normal components of all nodes (into the body), then, where shear is to be
+!> carried, over the tangential ones (to the right).
+module mfv_matrix_compliance
+   use, intrinsic :: ieee_arithmetic, only: ieee_is_finite
+   use mfv_compliance
+   use mfv_error, only: error_type, set_error
+   use mfv_kinds, only: wp
+   use mfv_status, only: MFV_INPUT_ERROR
+   use mfv_strings, only: to_text
+   implicit none
+   private
+   public :: matrix_compliance_type, new_matrix_compliance, check_compliance, inverse_of
+
+   type, extends(compliance_type) :: matrix_compliance_type
+      private
+      !> Displacements by unit tractions, shape (n or 2n, n or 2n).
+      real(wp), allocatable :: matrix(:, :)
+   contains
+      procedure :: resize
+      procedure :: entries
+      procedure :: product => full_product
+      procedure :: signature
+   end type matrix_compliance_type
+
+   interface
+      subroutine dpotrf(uplo, n, a, lda, info)
+         import :: wp
+         character, intent(in) :: uplo
+         integer, intent(in) :: n, lda
+         real(wp), intent(inout) :: a(lda, *)
+         integer, intent(out) :: info
+      end subroutine dpotrf
+
+      subroutine dpotri(uplo, n, a, lda, info)
+         import :: wp
+         character, intent(in) :: uplo
+         integer, intent(in) :: n, lda
+         real(wp), intent(inout) :: a(lda, *)
+         integer, intent(out) :: info
+      end subroutine dpotri
+   end interface
+
+   !> Matrices that differ from their transpose by more than this part of their largest entry are not symmetric.
+   real(wp), parameter :: symmetry_tolerance = 1.0e-8_wp
+
+contains
+
+   !> Compliance of `compliance`, displacements by nodal forces, checked by check_compliance; shape (n, n) or (2n, 2n).
+   !> `width`: length of the surface that belongs to each node, shape (n); a traction on it makes a nodal force.
+   !> `tangential`: whether friction can act; it takes the larger matrix.
+   function new_matrix_compliance(compliance, width, coupling, tangential) result(self)
+      real(wp), intent(in) :: compliance(:, :), width(:)
+      integer, intent(in) :: coupling
+      logical, intent(in) :: tangential
+      type(matrix_compliance_type) :: self
+      integer :: j, n
+
+      n = size(width)
+      self%nodes = n
+      self%interval = sum(width)/n
+      call self%choose_blocks(coupling, tangential)
+      self%matrix = compliance(:merge(2*n, n, tangential), :merge(2*n, n, tangential))
+      do j = 1, size(self%matrix, 2)
+         self%matrix(:, j) = self%matrix(:, j)*width(modulo(j - 1, n) + 1)
+      end do
+      self%modulus = sum(width)/maxval(abs(self%matrix(:n, :n)))/n
+      self%block_values = size(self%matrix)
+   end function new_matrix_compliance
+
+   !> What is wrong with a matrix of nodal compliances or stiffnesses for `nodes` nodes: error MFV_INPUT_ERROR.
+   !> `name`: what to call it.
+   subroutine check_compliance(matrix, nodes, name, error)
+      real(wp), intent(in) :: matrix(:, :)
+      integer, intent(in) :: nodes
+      character(*), intent(in) :: name
+      type(error_type), allocatable, intent(out) :: error
+      real(wp), allocatable :: factor(:, :)
+      real(wp) :: difference
+      integer :: info, place(2)
+
+      if (size(matrix, 1) /= size(matrix, 2) .or. (size(matrix, 1) /= nodes .and. size(matrix, 1) /= 2*nodes)) then
+         call set_error(error, MFV_INPUT_ERROR, name//' has the shape '//to_text(size(matrix, 1))//' x '// &
+                        to_text(size(matrix, 2))//'; with '//to_text(nodes)//' positions in x it must be '// &
+                        to_text(nodes)//' x '//to_text(nodes)//', or '//to_text(2*nodes)//' x '//to_text(2*nodes)// &
+                        ' with the tangential components')
+         return
+      end if
+      if (.not. all(ieee_is_finite(matrix))) then
+         place = findloc(ieee_is_finite(matrix), .false.)
+         call set_error(error, MFV_INPUT_ERROR, name//' is not finite in row '//to_text(place(1))//', column '// &
+                        to_text(place(2)))
+         return
+      end if
+      difference = maxval(abs(matrix - transpose(matrix)))
+      if (difference > symmetry_tolerance*maxval(abs(matrix))) then
+         place = maxloc(abs(matrix - transpose(matrix)))
+         call set_error(error, MFV_INPUT_ERROR, name//' is not symmetric: row '//to_text(place(1))//', column '// &
+                        to_text(place(2))//' has '//to_text(matrix(place(1), place(2)))//', its mirror image '// &
+                        to_text(matrix(place(2), place(1))))
+         return
+      end if
+      factor = matrix(:nodes, :nodes)
+      call dpotrf('L', nodes, factor, nodes, info)
+      if (info /= 0) call set_error(error, MFV_INPUT_ERROR, name//' is not positive definite in its normal part (rows and '// &
+                                    'columns 1 to '//to_text(nodes)//'; found at row '//to_text(max(info, 1))//')')
+   end subroutine check_compliance
+
+   !> Inverse of a symmetric stiffness (any shape (m, m)). Error MFV_INPUT_ERROR where it is not positive definite: a body
+   !> that can still move as a whole, for one.
+   subroutine inverse_of(stiffness, compliance, error)
+      real(wp), intent(in) :: stiffness(:, :)
+      real(wp), allocatable, intent(out) :: compliance(:, :)
+      type(error_type), allocatable, intent(out) :: error
+      integer :: info, j, n
+
+      n = size(stiffness, 1)
+      compliance = 0.5_wp*(stiffness + transpose(stiffness))
+      call dpotrf('L', n, compliance, n, info)
+      if (info == 0) call dpotri('L', n, compliance, n, info)
+      if (info /= 0) then
+         call set_error(error, MFV_INPUT_ERROR, 'stiffness is not positive definite (found at row '//to_text(max(info, 1))// &
+                        '): is the body supported?')
+         return
+      end if
+      do j = 2, n
+         compliance(:j - 1, j) = compliance(j, :j - 1)
+      end do
+   end subroutine inverse_of
+
+   !> See mfv_compliance: the nodes of a matrix are what they are.
+   subroutine resize(self, nodes)
+      class(matrix_compliance_type), intent(inout) :: self
+      integer, intent(in) :: nodes
+
+      self%nodes = min(nodes, self%nodes)
+   end subroutine resize
+
+   !> Where a block begins: rows and columns before it.
+   pure function origin(self, block)
+      class(matrix_compliance_type), intent(in) :: self
+      integer, intent(in) :: block
+      integer :: origin(2)
+
+      origin = 0
+      if (block == block_up .or. block == block_ut) origin(1) = self%nodes
+      if (block == block_wt .or. block == block_ut) origin(2) = self%nodes
+   end function origin
+
+   !> See mfv_compliance.
+   pure subroutine entries(self, block, rows, columns, matrix)
+      class(matrix_compliance_type), intent(in) :: self
+      integer, intent(in) :: block, rows(:), columns(:)
+      real(wp), intent(out) :: matrix(:, :)
+      integer :: before(2)
+
+      before = origin(self, block)
+      matrix = self%matrix(before(1) + rows, before(2) + columns)
+   end subroutine entries
+
+   !> See mfv_compliance.
+   subroutine full_product(self, block, traction, displacement)
+      class(matrix_compliance_type), intent(in) :: self
+      integer, intent(in) :: block
+      real(wp), intent(in) :: traction(:)
+      real(wp), intent(inout) :: displacement(:)
+      integer :: before(2), j, n
+
+      if (.not. self%has_block(block)) return
+      before = origin(self, block)
+      n = self%nodes
+      do j = 1, n
+         if (.not. abs(traction(j)) > 0.0_wp) cycle
+         displacement = displacement + traction(j)*self%matrix(before(1) + 1:before(1) + n, before(2) + j)
+      end do
+   end subroutine full_product
+
+   !> See mfv_compliance: equal to no other.
+   pure function signature(self)
+      class(matrix_compliance_type), intent(in) :: self
+      real(wp) :: signature(4)
+
+      signature = huge(1.0_wp)/max(self%nodes, 1)
+   end function signature
+
+end module mfv_matrix_compliance
