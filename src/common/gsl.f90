@@ -9,6 +9,10 @@ module mfv_gsl
    public :: gsl_sf_ellint_RF, gsl_integration_glfixed_table_alloc, gsl_integration_glfixed_table_free, &
              gsl_integration_glfixed_point, gsl_root_fsolver_brent, gsl_root_fsolver_alloc, gsl_root_fsolver_free, &
              gsl_root_fsolver_set, gsl_root_fsolver_iterate, gsl_root_fsolver_root, gsl_function, &
+             gsl_multimin_function, gsl_multimin_fminimizer_nmsimplex2, gsl_multimin_fminimizer_alloc, &
+             gsl_multimin_fminimizer_free, gsl_multimin_fminimizer_set, gsl_multimin_fminimizer_iterate, &
+             gsl_multimin_fminimizer_x, gsl_multimin_fminimizer_size, gsl_vector_alloc, gsl_vector_free, &
+             gsl_vector_get, gsl_vector_set, &
              gsl_interp_steffen, gsl_interp_alloc, gsl_interp_free, gsl_interp_init, gsl_interp_eval, GSL_PREC_DOUBLE
 
    !> Precision mode of the elliptic integrals: full double precision.
@@ -20,9 +24,18 @@ module mfv_gsl
       type(c_ptr) :: params
    end type gsl_function
 
-   !> Brent's bracketing root solver, and Steffen's monotone cubic interpolation: constants of GSL.
+   !> A function of several variables with its parameters.
+   type, bind(C) :: gsl_multimin_function
+      type(c_funptr) :: f
+      integer(c_size_t) :: n
+      type(c_ptr) :: params
+   end type gsl_multimin_function
+
+   !> Brent's bracketing root solver, Steffen's monotone cubic interpolation, Nelder and Mead's simplex search: constants of
+   !> GSL. They must be public here, or the linker would take them for variables of our own.
    type(c_ptr), protected, bind(C, name='gsl_root_fsolver_brent') :: gsl_root_fsolver_brent
    type(c_ptr), protected, bind(C, name='gsl_interp_steffen') :: gsl_interp_steffen
+   type(c_ptr), protected, bind(C, name='gsl_multimin_fminimizer_nmsimplex2') :: gsl_multimin_fminimizer_nmsimplex2
 
    interface
       !> Carlson's symmetric elliptic integral of the first kind.
@@ -112,6 +125,68 @@ module mfv_gsl
          real(c_double), value :: at
          real(c_double) :: gsl_interp_eval
       end function gsl_interp_eval
+
+      function gsl_multimin_fminimizer_alloc(kind, n) bind(C, name='gsl_multimin_fminimizer_alloc') result(solver)
+         import :: c_ptr, c_size_t
+         type(c_ptr), value :: kind
+         integer(c_size_t), value :: n
+         type(c_ptr) :: solver
+      end function gsl_multimin_fminimizer_alloc
+
+      function gsl_multimin_fminimizer_set(solver, f, x, step) bind(C, name='gsl_multimin_fminimizer_set') result(code)
+         import :: c_int, c_ptr, gsl_multimin_function
+         type(c_ptr), value :: solver, x, step
+         type(gsl_multimin_function), intent(in) :: f
+         integer(c_int) :: code
+      end function gsl_multimin_fminimizer_set
+
+      function gsl_multimin_fminimizer_iterate(solver) bind(C, name='gsl_multimin_fminimizer_iterate') result(code)
+         import :: c_int, c_ptr
+         type(c_ptr), value :: solver
+         integer(c_int) :: code
+      end function gsl_multimin_fminimizer_iterate
+
+      function gsl_multimin_fminimizer_x(solver) bind(C, name='gsl_multimin_fminimizer_x') result(x)
+         import :: c_ptr
+         type(c_ptr), value :: solver
+         type(c_ptr) :: x
+      end function gsl_multimin_fminimizer_x
+
+      function gsl_multimin_fminimizer_size(solver) bind(C, name='gsl_multimin_fminimizer_size') result(size)
+         import :: c_double, c_ptr
+         type(c_ptr), value :: solver
+         real(c_double) :: size
+      end function gsl_multimin_fminimizer_size
+
+      subroutine gsl_multimin_fminimizer_free(solver) bind(C, name='gsl_multimin_fminimizer_free')
+         import :: c_ptr
+         type(c_ptr), value :: solver
+      end subroutine gsl_multimin_fminimizer_free
+
+      function gsl_vector_alloc(n) bind(C, name='gsl_vector_alloc') result(vector)
+         import :: c_ptr, c_size_t
+         integer(c_size_t), value :: n
+         type(c_ptr) :: vector
+      end function gsl_vector_alloc
+
+      subroutine gsl_vector_free(vector) bind(C, name='gsl_vector_free')
+         import :: c_ptr
+         type(c_ptr), value :: vector
+      end subroutine gsl_vector_free
+
+      function gsl_vector_get(vector, i) bind(C, name='gsl_vector_get') result(value)
+         import :: c_double, c_ptr, c_size_t
+         type(c_ptr), value :: vector
+         integer(c_size_t), value :: i
+         real(c_double) :: value
+      end function gsl_vector_get
+
+      subroutine gsl_vector_set(vector, i, value) bind(C, name='gsl_vector_set')
+         import :: c_double, c_ptr, c_size_t
+         type(c_ptr), value :: vector
+         integer(c_size_t), value :: i
+         real(c_double), value :: value
+      end subroutine gsl_vector_set
    end interface
 
 end module mfv_gsl

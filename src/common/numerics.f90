@@ -80,7 +80,7 @@ contains
    end function gauss_legendre
 
    !> The function as GSL calls it: a module procedure, so that no executable stack is needed.
-   function evaluate(x, params) result(value) bind(C)
+   function evaluate(x, params) result(value) bind(C, name='')
       real(c_double), value :: x
       type(c_ptr), value :: params
       real(c_double) :: value

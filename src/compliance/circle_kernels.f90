@@ -25,6 +25,7 @@
 module mfv_circle_kernels
    use mfv_fourier, only: fourier_sum
    use mfv_kinds, only: pi, wp
+   use mfv_logarithms, only: log_of_one_less
    implicit none
    private
    public :: circle_kernels_type, exact_kernels, fourier_kernels, body_disk, body_hole
@@ -154,13 +155,6 @@ contains
       cosine_first = -sin_a*(0.5_wp*sin_t + 2.0_wp*cos_t*sawtooth) + a*sin_t*cos_a
       cosine_second = 2.0_wp*sin_t*sin_a*(log_mean - 0.75_wp) + one_minus*log_step
    end subroutine differences
-
-   !> ln(1 - x) for 0 <= x < 1, accurate for small x: 2 atanh(-x/(2 - x)).
-   pure real(wp) function log_of_one_less(x)
-      real(wp), intent(in) :: x
-
-      log_of_one_less = 2.0_wp*atanh(-x/(2.0_wp - x))
-   end function log_of_one_less
 
    !> Add the terms n = 0 and n = 1, times G/R.
    pure subroutine add_lower_terms(body, kappa, theta, dtheta, radial, cross, tangential)
