@@ -6,7 +6,8 @@ program mfv_run
    use mfv_case_reader, only: read_case_file
    use mfv_error, only: error_type
    use mfv_kinds, only: wp
-   use mfv_result_file, only: check_writable, write_result
+   use mfv_hdf5_writer, only: check_writable
+   use mfv_result_file, only: write_result
    use mfv_simulation, only: new_simulation, simulation_type
    use mfv_status
    use mfv_strings, only: to_text
@@ -56,16 +57,6 @@ program mfv_run
    end select
 
 contains
-
-   function argument_text(number) result(text)
-      integer, intent(in) :: number
-      character(:), allocatable :: text
-      integer :: length
-
-      call get_command_argument(number, length=length)
-      allocate (character(len=length) :: text)
-      if (length > 0) call get_command_argument(number, text)
-   end function argument_text
 
    !> Refuse any other number of arguments.
    subroutine expect_arguments(number)

@@ -8,7 +8,7 @@ module mfv_terminal
    use mfv_strings, only: to_text
    implicit none
    private
-   public :: terminal_observer_type, catch_interrupts, end_program, seconds_now
+   public :: argument_text, terminal_observer_type, catch_interrupts, end_program, seconds_now
 
    !> Shows progress on a terminal, and ends the run after Ctrl-C.
    type, extends(observer_type) :: terminal_observer_type
@@ -100,6 +100,17 @@ contains
 
       interrupted = interrupted .or. number > 0
    end subroutine handle_signal
+
+   !> Command-line argument `number`, empty where there is none.
+   function argument_text(number) result(text)
+      integer, intent(in) :: number
+      character(:), allocatable :: text
+      integer :: length
+
+      call get_command_argument(number, length=length)
+      allocate (character(len=length) :: text)
+      if (length > 0) call get_command_argument(number, text)
+   end function argument_text
 
    !> End the program with an exit code, without the words that a stop statement may print.
    subroutine end_program(code)

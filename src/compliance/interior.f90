@@ -3,7 +3,7 @@
 !>
 !> x to the right and y up from the pole; the upper body is the mirror image of a lower one with the shear reversed.
 module mfv_interior
-   use, intrinsic :: ieee_arithmetic, only: ieee_is_finite, ieee_quiet_nan, ieee_value
+   use, intrinsic :: ieee_arithmetic, only: ieee_is_finite, ieee_is_nan, ieee_quiet_nan, ieee_value
    use mfv_body, only: body_type, shape_disk, shape_matrix
    use mfv_interior_circle, only: circle_stress
    use mfv_interior_half_plane, only: half_plane_stress
@@ -13,10 +13,14 @@ module mfv_interior
    implicit none
    private
    public :: interior_type, new_interior, largest_type, von_mises_stress, principal_stresses, polar_stress
-   public :: stress_xx, stress_yy, stress_xy, stress_zz
+   public :: stress_xx, stress_yy, stress_xy, stress_zz, stress_count, stress_names, stress_von_mises
 
    !> Places of the stresses in what `stress` returns.
    integer, parameter :: stress_xx = 1, stress_yy = 2, stress_xy = 3, stress_zz = 4
+   !> What `all_stresses` returns: those, principal stresses in the plane, von Mises, polar ones about a circle's centre.
+   integer, parameter :: stress_von_mises = 7, stress_count = 10
+   character(*), parameter :: stress_names = 'sigma_xx sigma_yy sigma_xy sigma_zz principal_1 principal_2 von_mises '// &
+                                             'sigma_rr sigma_thetatheta sigma_rtheta'
 
    !> A body under tractions.
    type :: interior_type
@@ -32,6 +36,10 @@ module mfv_interior
       real(wp), allocatable :: theta(:), half_angle(:), radial(:), around(:)
    contains
       procedure :: stress
+      procedure :: all_stresses
+      procedure :: half_width
+      procedure :: middle
+      procedure :: largest_pressure
       procedure :: contains_point
       procedure :: is_circle
       procedure :: centre
@@ -154,6 +162,44 @@ contains
       values(stress_xy) = self%side*values(stress_xy)
       values(stress_zz) = self%out_of_plane*(values(stress_xx) + values(stress_yy))
    end function stress
+
+   !> All stresses of `stress_names` at (x, y), force/length^2; NaN outside the body, polar ones in a half-plane.
+   function all_stresses(self, x, y) result(values)
+      class(interior_type), intent(in) :: self
+      real(wp), intent(in) :: x, y
+      real(wp) :: values(stress_count)
+
+      values = ieee_value(1.0_wp, ieee_quiet_nan)
+      values(:4) = self%stress(x, y)
+      if (ieee_is_nan(values(1))) return
+      values(5:6) = principal_stresses(values(:4))
+      values(stress_von_mises) = von_mises_stress(values(:4))
+      if (self%is_circle()) values(8:10) = polar_stress(values(:4), self%centre(), x, y)
+   end function all_stresses
+
+   !> Half the length of surface from the first to the last loaded box, length; 0 without load.
+   pure real(wp) function half_width(self)
+      class(interior_type), intent(in) :: self
+
+      half_width = 0.0_wp
+      if (size(self%arc) > 0) half_width = 0.5_wp*(maxval(self%arc + self%half) - minval(self%arc - self%half))
+   end function half_width
+
+   !> Middle of the loaded surface, length.
+   pure real(wp) function middle(self)
+      class(interior_type), intent(in) :: self
+
+      middle = 0.0_wp
+      if (size(self%arc) > 0) middle = 0.5_wp*(maxval(self%arc + self%half) + minval(self%arc - self%half))
+   end function middle
+
+   !> Largest pressure, force/length^2.
+   pure real(wp) function largest_pressure(self)
+      class(interior_type), intent(in) :: self
+
+      largest_pressure = 0.0_wp
+      if (size(self%arc) > 0) largest_pressure = maxval(self%pressure)
+   end function largest_pressure
 
    !> The largest von Mises stress: the best points of a coarse net below the contact, which is dense towards the surface,
    !> are each refined by a simplex search (GSL); on the surface itself, where box tractions are singular at the edges of

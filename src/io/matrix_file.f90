@@ -8,10 +8,10 @@
 !>
 !> Rows and columns: normal components (into the body), then tangential ones (to the right).
 module mfv_matrix_file
-   use, intrinsic :: ieee_arithmetic, only: ieee_is_finite
-   use hdf5
+   use hdf5, only: hid_t
    use mfv_body, only: body_type, new_matrix_body
    use mfv_error, only: error_type, set_error
+   use mfv_hdf5_reader
    use mfv_kinds, only: wp
    use mfv_matrix_compliance, only: check_compliance, inverse_of
    use mfv_status, only: MFV_INPUT_ERROR
@@ -31,27 +31,11 @@ contains
       type(body_type), intent(out) :: body
       type(error_type), allocatable, intent(out) :: error
       integer(hid_t) :: file
-      integer :: code
-      logical :: is_there, is_hdf5
 
-      inquire (file=path, exist=is_there)
-      is_hdf5 = .false.
-      if (is_there) then
-         call h5open_f(code)
-         call h5eset_auto_f(0, code)
-         call h5fis_hdf5_f(path, is_hdf5, code)
-      end if
-      if (.not. is_hdf5) then
-         call set_error(error, MFV_INPUT_ERROR, path//trim(merge(' is no HDF5 file       ', ': there is no such file', is_there)))
-         return
-      end if
-      call h5fopen_f(path, H5F_ACC_RDONLY_F, file, code)
-      if (code /= 0) then
-         call set_error(error, MFV_INPUT_ERROR, path//' cannot be opened')
-         return
-      end if
+      call open_to_read(path, file, error)
+      if (allocated(error)) return
       call read_datasets(file, body, error)
-      call h5fclose_f(file, code)
+      call close_read(file)
       if (allocated(error)) error%message = path//': '//error%message
    end subroutine read_matrix_body
 
@@ -94,7 +78,7 @@ contains
       end if
       name = 'stiffness'
       if (has(file, 'compliance')) name = 'compliance'
-      call read_matrix(file, name, matrix, error)
+      call read_matrix(file, name, 2*most_nodes, matrix, error)
       if (.not. allocated(error)) call check_compliance(matrix, size(x), name, error)
       if (.not. allocated(error) .and. name == 'stiffness') then
          call move_alloc(matrix, stiffness)
@@ -115,110 +99,5 @@ contains
       width(1) = x(2) - x(1)
       width(n) = x(n) - x(n - 1)
    end subroutine tributary
-
-   logical function has(file, name)
-      integer(hid_t), intent(in) :: file
-      character(*), intent(in) :: name
-      integer :: code
-
-      call h5lexists_f(file, name, has, code)
-      has = has .and. code == 0
-   end function has
-
-   !> A finite vector of `length` values, of any length where that is negative.
-   subroutine read_vector(file, name, length, values, error)
-      integer(hid_t), intent(in) :: file
-      character(*), intent(in) :: name
-      integer, intent(in) :: length
-      real(wp), allocatable, intent(inout) :: values(:)
-      type(error_type), allocatable, intent(out) :: error
-      integer(hsize_t) :: extent(1)
-      integer(hid_t) :: dataset
-
-      call open_dataset(file, name, dataset, extent, error)
-      if (allocated(error)) return
-      if (length >= 0 .and. extent(1) /= length) then
-         call set_error(error, MFV_INPUT_ERROR, name//' has '//to_text(int(extent(1)))//' values, x has '//to_text(length))
-      else if (extent(1) > most_nodes) then
-         call set_error(error, MFV_INPUT_ERROR, name//' has more than '//to_text(most_nodes)//' values')
-      else
-         if (allocated(values)) deallocate (values)
-         allocate (values(extent(1)))
-         call read_values(dataset, name, values, extent, error)
-      end if
-      call close_dataset(dataset)
-      if (allocated(error)) return
-      if (.not. all(ieee_is_finite(values))) call set_error(error, MFV_INPUT_ERROR, name//' is not finite at node '// &
-                                                            to_text(findloc(ieee_is_finite(values), .false., dim=1)))
-   end subroutine read_vector
-
-   subroutine read_matrix(file, name, values, error)
-      integer(hid_t), intent(in) :: file
-      character(*), intent(in) :: name
-      real(wp), allocatable, intent(out) :: values(:, :)
-      type(error_type), allocatable, intent(out) :: error
-      integer(hsize_t) :: extent(2)
-      integer(hid_t) :: dataset
-
-      call open_dataset(file, name, dataset, extent, error)
-      if (allocated(error)) return
-      if (any(extent > 2*most_nodes)) then
-         call set_error(error, MFV_INPUT_ERROR, name//' has more than '//to_text(2*most_nodes)//' rows or columns')
-      else
-         allocate (values(extent(1), extent(2)))
-         call read_values(dataset, name, values, extent, error)
-      end if
-      call close_dataset(dataset)
-   end subroutine read_matrix
-
-   !> Open a dataset of numbers with as many dimensions as `extent` has places.
-   subroutine open_dataset(file, name, dataset, extent, error)
-      integer(hid_t), intent(in) :: file
-      character(*), intent(in) :: name
-      integer(hid_t), intent(out) :: dataset
-      integer(hsize_t), intent(out) :: extent(:)
-      type(error_type), allocatable, intent(out) :: error
-      integer(hid_t) :: space
-      integer(hsize_t) :: most(size(extent))
-      integer :: code, dimensions
-
-      if (.not. has(file, name)) then
-         call set_error(error, MFV_INPUT_ERROR, 'dataset '//name//' is missing')
-         return
-      end if
-      call h5dopen_f(file, name, dataset, code)
-      if (code /= 0) then
-         call set_error(error, MFV_INPUT_ERROR, name//' is no dataset')
-         return
-      end if
-      call h5dget_space_f(dataset, space, code)
-      call h5sget_simple_extent_ndims_f(space, dimensions, code)
-      if (dimensions == size(extent)) then
-         call h5sget_simple_extent_dims_f(space, extent, most, code)
-      else
-         call set_error(error, MFV_INPUT_ERROR, name//' has '//to_text(dimensions)//' dimensions, not '//to_text(size(extent)))
-         call h5dclose_f(dataset, code)
-      end if
-      call h5sclose_f(space, code)
-   end subroutine open_dataset
-
-   subroutine read_values(dataset, name, values, extent, error)
-      integer(hid_t), intent(in) :: dataset
-      character(*), intent(in) :: name
-      real(wp), intent(out) :: values(*)
-      integer(hsize_t), intent(in) :: extent(:)
-      type(error_type), allocatable, intent(out) :: error
-      integer :: code
-
-      call h5dread_f(dataset, H5T_NATIVE_DOUBLE, values(:product(extent)), [product(extent)], code)
-      if (code /= 0) call set_error(error, MFV_INPUT_ERROR, name//' does not hold numbers')
-   end subroutine read_values
-
-   subroutine close_dataset(dataset)
-      integer(hid_t), intent(in) :: dataset
-      integer :: code
-
-      call h5dclose_f(dataset, code)
-   end subroutine close_dataset
 
 end module mfv_matrix_file

@@ -9,7 +9,7 @@ module mfv_profile_file
    use mfv_text_file, only: read_text, split_lines
    implicit none
    private
-   public :: read_profile
+   public :: read_profile, read_two_columns
 
    !> Steffen's interpolation needs as many points.
    integer, parameter :: fewest_points = 3
@@ -22,29 +22,10 @@ contains
       character(*), intent(in) :: path
       type(body_type), intent(out) :: body
       type(error_type), allocatable, intent(out) :: error
-      character(:), allocatable :: text
-      type(string_type), allocatable :: lines(:)
       real(wp), allocatable :: x(:), height(:)
-      real(wp) :: columns(2)
-      integer :: i
 
-      call read_text(path, text, error)
+      call read_two_columns(path, 'x and height', .true., x, height, error)
       if (allocated(error)) return
-      lines = split_lines(text)
-      allocate (x(0), height(0))
-      do i = 1, size(lines)
-         if (is_comment(lines(i)%text)) cycle
-         call read_columns(lines(i)%text, columns, error)
-         if (.not. allocated(error) .and. size(x) > 0) then
-            if (columns(1) <= x(size(x))) call set_error(error, MFV_INPUT_ERROR, 'x must increase from line to line')
-         end if
-         if (allocated(error)) then
-            error%message = path//':'//to_text(i)//': '//error%message
-            return
-         end if
-         x = [x, columns(1)]
-         height = [height, columns(2)]
-      end do
       if (size(x) < fewest_points) then
          call set_error(error, MFV_INPUT_ERROR, path//': needs at least '//to_text(fewest_points)//' points, and has '// &
                         to_text(size(x)))
@@ -52,6 +33,37 @@ contains
       end if
       body = new_profile(x, height)
    end subroutine read_profile
+
+   !> Two columns of numbers from a text file; blank lines and comments do not count. `names`: what they are, for messages;
+   !> `increasing`: whether the first must increase. Error MFV_INPUT_ERROR with the line and what is right.
+   subroutine read_two_columns(path, names, increasing, first, second, error)
+      character(*), intent(in) :: path, names
+      logical, intent(in) :: increasing
+      real(wp), allocatable, intent(out) :: first(:), second(:)
+      type(error_type), allocatable, intent(out) :: error
+      character(:), allocatable :: text
+      type(string_type), allocatable :: lines(:)
+      real(wp) :: columns(2)
+      integer :: i
+
+      call read_text(path, text, error)
+      if (allocated(error)) return
+      lines = split_lines(text)
+      allocate (first(0), second(0))
+      do i = 1, size(lines)
+         if (is_comment(lines(i)%text)) cycle
+         call read_columns(lines(i)%text, names, columns, error)
+         if (.not. allocated(error) .and. increasing .and. size(first) > 0) then
+            if (columns(1) <= first(size(first))) call set_error(error, MFV_INPUT_ERROR, 'x must increase from line to line')
+         end if
+         if (allocated(error)) then
+            error%message = path//':'//to_text(i)//': '//error%message
+            return
+         end if
+         first = [first, columns(1)]
+         second = [second, columns(2)]
+      end do
+   end subroutine read_two_columns
 
    pure logical function is_comment(line)
       character(*), intent(in) :: line
@@ -61,8 +73,8 @@ contains
    end function is_comment
 
    !> Two finite numbers, and nothing else.
-   subroutine read_columns(line, columns, error)
-      character(*), intent(in) :: line
+   subroutine read_columns(line, names, columns, error)
+      character(*), intent(in) :: line, names
       real(wp), intent(out) :: columns(2)
       type(error_type), allocatable, intent(out) :: error
       character(*), parameter :: characters = '0123456789+-.eEdD ,'//achar(9)
@@ -77,7 +89,7 @@ contains
          if (after == 0) code = 1
       end if
       if (code == 0 .and. .not. all(ieee_is_finite(columns))) code = 1
-      if (code /= 0) call set_error(error, MFV_INPUT_ERROR, 'must be two numbers, x and height, not '''//trim(line)//'''')
+      if (code /= 0) call set_error(error, MFV_INPUT_ERROR, 'must be two numbers, '//names//', not '''//trim(line)//'''')
    end subroutine read_columns
 
 end module mfv_profile_file

@@ -1,0 +1,150 @@
+!> mfv_stress: stresses inside the bodies of a result, into its file.
+program mfv_stress
+   use, intrinsic :: iso_fortran_env, only: error_unit, output_unit
+   use mfv_error, only: error_type
+   use mfv_interior, only: stress_count, stress_names
+   use mfv_kinds, only: wp
+   use mfv_profile_file, only: read_two_columns
+   use mfv_status
+   use mfv_stress_file
+   use mfv_strings, only: to_text
+   use mfv_terminal, only: argument_text, end_program
+   use mfv_version, only: library_version
+   implicit none
+
+   character(len=1), parameter :: line_feed = achar(10)
+   character(*), parameter :: usage = &
+      'usage: mfv_stress RESULT.h5 [--body lower|upper] [--step N] [--width W] [--depth D] [--points NX NY]'//line_feed// &
+      '       mfv_stress RESULT.h5 --at POINTS.txt [--body lower|upper] [--step N]'//line_feed// &
+      '       mfv_stress --help | --version'
+   character(*), parameter :: teaching = line_feed//line_feed// &
+      'Compute the stresses inside a body from the surface tractions of a result, by closed forms for'//line_feed// &
+      'half-planes, disks and holes, and put them into the result file, under /stress/last/lower and so'//line_feed// &
+      'on: sigma_xx, sigma_yy, sigma_xy, sigma_zz, principal stresses, von Mises, for disks and holes'//line_feed// &
+      'polar components, and the largest von Mises stress with its place, found by refinement.'//line_feed//line_feed// &
+      '  --body lower|upper   which body; lower unless told'//line_feed// &
+      '  --step N             the state in /steps/000N; the last one unless told'//line_feed// &
+      '  --width W            the grid goes W contact half-widths to either side of the contact; 2 unless told'//line_feed// &
+      '  --depth D            and D contact half-widths deep; 2 unless told'//line_feed// &
+      '  --points NX NY       with NX by NY points; 161 81 unless told'//line_feed// &
+      '  --at POINTS.txt      at the points x y of a text file instead, which are printed too'//line_feed//line_feed// &
+      'Example: mfv_run examples/disk_on_plane.nml && mfv_stress disk_on_plane.h5'//line_feed// &
+      '         python -m mfv plot disk_on_plane.h5 --stress von_mises'//line_feed//line_feed// &
+      'Exit codes: 0 done; 2 the input cannot be used; 4 the file could not be written. The file then stays as it was.'
+   type(stress_request_type) :: request
+   type(stress_result_type) :: result
+   type(error_type), allocatable :: error
+   character(:), allocatable :: path
+
+   select case (argument_text(1))
+   case ('--help', '-h')
+      write (output_unit, '(a)') usage//teaching
+      call end_program(0)
+   case ('--version')
+      write (output_unit, '(a)') 'mfv_stress '//library_version
+      call end_program(0)
+   end select
+   call read_arguments()
+   call add_stresses(path, request, result, error)
+   if (allocated(error)) then
+      write (error_unit, '(a)') error%message
+      call end_program(status_exit_code(error%status))
+   end if
+   if (allocated(request%x)) call print_points()
+   call print_summary()
+
+contains
+
+   subroutine read_arguments()
+      character(:), allocatable :: argument
+      integer :: i
+
+      path = ''
+      i = 1
+      do while (i <= command_argument_count())
+         argument = argument_text(i)
+         i = i + 1
+         select case (argument)
+         case ('--body')
+            argument = argument_text(i)
+            if (argument /= 'lower' .and. argument /= 'upper') &
+               call refuse("--body must be lower or upper, not '"//argument//"'")
+            request%upper = argument == 'upper'
+         case ('--step')
+            request%step = nint(number(i, '--step', 1.0_wp, whole=.true.))
+         case ('--width')
+            request%width = number(i, '--width', tiny(1.0_wp))
+         case ('--depth')
+            request%depth = number(i, '--depth', tiny(1.0_wp))
+         case ('--points')
+            request%across = nint(number(i, '--points', 2.0_wp, whole=.true.))
+            i = i + 1
+            request%down = nint(number(i, '--points', 2.0_wp, whole=.true.))
+         case ('--at')
+            call read_two_columns(argument_text(i), 'x and y', .false., request%x, request%y, error)
+            if (allocated(error)) call refuse(error%message)
+         case default
+            if (index(argument, '-') == 1) call refuse("unknown option '"//argument//"'")
+            if (path /= '') call refuse("too many arguments: '"//argument//"'")
+            path = argument
+            cycle
+         end select
+         i = i + 1
+      end do
+      if (path == '') call refuse('a result file is missing')
+   end subroutine read_arguments
+
+   !> The number in argument `i`, at least `lower`.
+   real(wp) function number(i, option, lower, whole)
+      integer, intent(in) :: i
+      character(*), intent(in) :: option
+      real(wp), intent(in) :: lower
+      logical, intent(in), optional :: whole
+      real(wp), parameter :: most = 1.0e5_wp
+      character(:), allocatable :: text, kind
+      integer :: code
+
+      kind = ' a number'
+      if (present(whole)) kind = ' a whole number'
+      text = argument_text(i)
+      number = 0.0_wp
+      code = 1
+      if (text /= '' .and. verify(text, '0123456789+-.eEdD') == 0) read (text, *, iostat=code) number
+      if (code == 0 .and. present(whole)) code = merge(0, 1, abs(number - anint(number)) <= 0.0_wp)
+      if (code == 0) code = merge(0, 1, number >= lower .and. number <= most)
+      if (code /= 0) call refuse(option//' needs'//kind//trim(merge(' of at least '//to_text(nint(lower)), &
+                                                                     ' above 0      ', present(whole)))//", not '"//text//"'")
+   end function number
+
+   subroutine refuse(why)
+      character(*), intent(in) :: why
+
+      write (error_unit, '(a)') 'mfv_stress: '//why//line_feed//usage
+      call end_program(status_exit_code(MFV_INPUT_ERROR))
+   end subroutine refuse
+
+   subroutine print_points()
+      integer :: i
+
+      write (output_unit, '(a)') '# x y '//stress_names
+      do i = 1, size(result%x)
+         write (output_unit, '(*(es24.16e3, :, 1x))') result%x(i), result%y(i), result%stress(:, i)
+      end do
+   end subroutine print_points
+
+   subroutine print_summary()
+      character(:), allocatable :: place
+
+      place = to_text(result%largest%x)//', '//to_text(result%largest%y)
+      if (index(result%length_unit, 'length') == 0) place = place//' '//result%length_unit
+      write (output_unit, '(a)') 'largest von Mises   '//to_text(result%largest%value)//' = '// &
+         to_text(result%largest%value/result%largest_pressure, 4)//' p0, at x, y = '//place//' = '// &
+         to_text(result%largest%x/result%half_width, 4)//', '//to_text(result%largest%y/result%half_width, 4)//' a'
+      if (result%yield_strength > 0.0_wp .and. result%largest%value > result%yield_strength) &
+         write (error_unit, '(a)') 'warning: the largest von Mises stress is beyond the yield_strength '// &
+         to_text(result%yield_strength)//': elasticity no longer holds'
+      write (output_unit, '(a)') 'stresses            '//to_text(stress_count)//' quantities at '// &
+         to_text(size(result%stress, 2))//' points, in '//path//' under /'//result%group
+   end subroutine print_summary
+
+end program mfv_stress

@@ -1,0 +1,275 @@
+!> Stresses inside the bodies of a result, put into its file: /stress/<state>/<body>, on a grid or at points.
+module mfv_stress_file
+   use hdf5
+   use h5ds
+   use mfv_body, only: body_type
+   use mfv_case, only: case_type
+   use mfv_case_reader, only: read_case_text
+   use mfv_error, only: error_type, set_error
+   use mfv_hdf5_reader
+   use mfv_hdf5_writer
+   use mfv_interior
+   use mfv_kinds, only: wp
+   use mfv_result_fields, only: step_group
+   use mfv_status, only: MFV_FILE_ERROR, MFV_INPUT_ERROR
+   use mfv_strings, only: list_of_words, string_type
+   implicit none
+   private
+   public :: stress_request_type, stress_result_type, add_stresses
+
+   !> What is asked for.
+   type :: stress_request_type
+      !> State after this step or reversal (as in /steps), 0 for the last one.
+      integer :: step = 0
+      !> The body above, not the one below.
+      logical :: upper = .false.
+      !> Grid: how far to either side of the contact's middle and how deep, in units of the contact half-width, and points.
+      real(wp) :: width = 2.0_wp, depth = 2.0_wp
+      integer :: across = 161, down = 81
+      !> Points in place of the grid, lengths.
+      real(wp), allocatable :: x(:), y(:)
+   end type stress_request_type
+
+   !> What came out; stresses as mfv_interior's stress_names, shape (stress_count, points); x fastest in a grid.
+   type :: stress_result_type
+      real(wp), allocatable :: x(:), y(:), stress(:, :)
+      type(largest_type) :: largest
+      real(wp) :: half_width = 0.0_wp, largest_pressure = 0.0_wp, yield_strength = 0.0_wp
+      !> Group of the file they are in, and the name of the unit of length there.
+      character(:), allocatable :: group, length_unit
+   end type stress_result_type
+
+contains
+
+   !> Compute the stresses of the result file `path` and put them into it, in place of what was there for this state and
+   !> body. Errors, which leave the file as it was: MFV_INPUT_ERROR, MFV_FILE_ERROR.
+   subroutine add_stresses(path, request, result, error)
+      character(*), intent(in) :: path
+      type(stress_request_type), intent(in) :: request
+      type(stress_result_type), intent(out) :: result
+      type(error_type), allocatable, intent(out) :: error
+      type(interior_type) :: interior
+      type(case_type) :: case
+
+      call read_interior(path, request, case, interior, result, error)
+      if (allocated(error)) then
+         error%message = path//': '//error%message
+         return
+      end if
+      result%half_width = interior%half_width()
+      result%largest_pressure = interior%largest_pressure()
+      result%length_unit = case%length_unit
+      if (.not. result%half_width > 0.0_wp) then
+         call set_error(error, MFV_INPUT_ERROR, path//': there is no load in this state')
+         return
+      end if
+      call compute(request, interior, result)
+      call write_stresses(path, request, case, result, error)
+   end subroutine add_stresses
+
+   !> The body and its tractions from the file.
+   subroutine read_interior(path, request, case, interior, result, error)
+      character(*), intent(in) :: path
+      type(stress_request_type), intent(in) :: request
+      type(case_type), intent(out) :: case
+      type(interior_type), intent(out) :: interior
+      type(stress_result_type), intent(inout) :: result
+      type(error_type), allocatable, intent(out) :: error
+      integer(hid_t) :: file
+      character(:), allocatable :: text, source, state
+      real(wp), allocatable :: arc(:), width(:), pressure(:), shear(:)
+      type(body_type) :: body
+      logical :: available
+
+      call open_to_read(path, file, error)
+      if (allocated(error)) return
+      state = 'state'
+      if (request%step > 0) state = step_group(request%step)
+      call read_text_attribute(file, 'input', text, error)
+      if (.not. allocated(error)) call read_text_attribute(file, 'input_file', source, error)
+      if (.not. allocated(error) .and. request%step > 0) then
+         if (.not. has(file, 'steps')) then
+            call set_error(error, MFV_INPUT_ERROR, 'there is no state '//state)
+         else if (.not. has(file, state)) then
+            call set_error(error, MFV_INPUT_ERROR, 'there is no state '//state)
+         end if
+      end if
+      if (.not. allocated(error)) then
+         if (has(file, 'mesh/arc')) then
+            call read_vector(file, 'mesh/arc', -1, arc, error)
+         else
+            call read_vector(file, 'mesh/x', -1, arc, error)
+         end if
+      end if
+      if (.not. allocated(error)) call read_vector(file, 'mesh/width', size(arc), width, error)
+      if (.not. allocated(error)) call read_vector(file, state//'/pressure', size(arc), pressure, error)
+      if (.not. allocated(error)) call read_vector(file, state//'/shear', size(arc), shear, error)
+      call close_read(file)
+      if (.not. allocated(error)) call read_case_text(text, source, case, error, without_steps=.true.)
+      if (allocated(error)) return
+      body = case%scene%lower
+      if (request%upper) body = case%scene%upper
+      result%yield_strength = body%yield_strength
+      call new_interior(body, request%upper, case%scene%plane, arc, width, pressure, shear, interior, available)
+      if (.not. available) call set_error(error, MFV_INPUT_ERROR, 'the '//body_name(request)//' body is rigid or a matrix: '// &
+                                          'there are no stresses inside it')
+   end subroutine read_interior
+
+   !> lower or upper.
+   pure function body_name(request) result(name)
+      type(stress_request_type), intent(in) :: request
+      character(5) :: name
+
+      name = merge('upper', 'lower', request%upper)
+   end function body_name
+
+   !> Stresses on the grid or at the points, and the largest von Mises stress.
+   subroutine compute(request, interior, result)
+      type(stress_request_type), intent(in) :: request
+      type(interior_type), intent(in) :: interior
+      type(stress_result_type), intent(inout) :: result
+      real(wp) :: sign
+      integer :: i, j, k
+
+      result%largest = interior%largest_von_mises()
+      if (allocated(request%x)) then
+         result%x = request%x
+         result%y = request%y
+         allocate (result%stress(stress_count, size(request%x)))
+         do i = 1, size(request%x)
+            result%stress(:, i) = interior%all_stresses(request%x(i), request%y(i))
+         end do
+         return
+      end if
+      sign = merge(1.0_wp, -1.0_wp, request%upper)
+      result%x = [(interior%middle() + result%half_width*request%width*(2*(i - 1)/(request%across - 1.0_wp) - 1.0_wp), &
+                   i=1, request%across)]
+      result%y = [(sign*result%half_width*request%depth*(j - 1)/(request%down - 1.0_wp), j=1, request%down)]
+      allocate (result%stress(stress_count, request%across*request%down))
+      k = 0
+      do j = 1, request%down
+         do i = 1, request%across
+            k = k + 1
+            result%stress(:, k) = interior%all_stresses(result%x(i), result%y(j))
+         end do
+      end do
+   end subroutine compute
+
+   !> Put them into a copy of the file that takes its place.
+   subroutine write_stresses(path, request, case, result, error)
+      character(*), intent(in) :: path
+      type(stress_request_type), intent(in) :: request
+      type(case_type), intent(in) :: case
+      type(stress_result_type), intent(inout) :: result
+      type(error_type), allocatable, intent(out) :: error
+      type(writer_type) :: writer
+      character(:), allocatable :: state
+
+      call check_writable(path, error)
+      if (allocated(error)) then
+         error%status = MFV_FILE_ERROR
+         return
+      end if
+      state = 'stress/last'
+      if (request%step > 0) then
+         state = step_group(request%step)
+         state = 'stress/'//state(index(state, '/') + 1:)
+      end if
+      result%group = state//'/'//body_name(request)
+      if (allocated(request%x)) result%group = result%group//'_points'
+      call copy_and_open(path, writer)
+      if (writer%code == 0) then
+         call make_way(writer, state, result%group)
+         call write_group(writer, case, request, result)
+      end if
+      call finish_file(path, writer)
+      if (writer%code /= 0) call set_error(error, MFV_FILE_ERROR, path//': the stresses could not be written')
+   end subroutine write_stresses
+
+   !> The groups above the wanted one; and away with what was there.
+   subroutine make_way(writer, state, group)
+      type(writer_type), intent(inout) :: writer
+      character(*), intent(in) :: state, group
+      integer :: code
+
+      if (.not. has(writer%file, 'stress')) call create_group(writer, 'stress')
+      if (.not. has(writer%file, state)) call create_group(writer, state)
+      if (has(writer%file, group)) then
+         call h5ldelete_f(writer%file, group, code)
+         call note(writer, code)
+      end if
+      call create_group(writer, group)
+   end subroutine make_way
+
+   subroutine write_group(writer, case, request, result)
+      type(writer_type), intent(inout) :: writer
+      type(case_type), intent(in) :: case
+      type(stress_request_type), intent(in) :: request
+      type(stress_result_type), intent(in) :: result
+      character(:), allocatable :: unit
+      type(string_type), allocatable :: names(:)
+      integer(hid_t) :: scale_x, scale_y, dataset
+      integer :: code, i
+
+      unit = case%force_unit//'/'//case%length_unit//'^2'
+      names = list_of_words(stress_names)
+      call write_values(writer, result%group//'/x', result%x, [size(result%x)], case%length_unit, &
+                        'position to the right of the pole', scale_x)
+      call write_values(writer, result%group//'/y', result%y, [size(result%y)], case%length_unit, 'height above the pole', scale_y)
+      if (.not. allocated(request%x)) then
+         call h5dsset_scale_f(scale_x, code, 'x')
+         call h5dsset_scale_f(scale_y, code, 'y')
+      end if
+      do i = 1, stress_count
+         if (allocated(request%x)) then
+            call write_values(writer, result%group//'/'//names(i)%text, result%stress(i, :), [size(result%x)], unit, &
+                              meaning(names(i)%text), dataset)
+         else
+            call write_values(writer, result%group//'/'//names(i)%text, result%stress(i, :), &
+                              [size(result%x), size(result%y)], unit, meaning(names(i)%text), dataset)
+            call h5dsattach_scale_f(dataset, scale_y, 1, code)
+            call note(writer, code)
+            call h5dsattach_scale_f(dataset, scale_x, 2, code)
+            call note(writer, code)
+         end if
+         call h5dclose_f(dataset, code)
+      end do
+      call h5dclose_f(scale_x, code)
+      call h5dclose_f(scale_y, code)
+      call scalar('largest_von_mises', result%largest%value, unit, 'largest von Mises stress in the body, by refinement')
+      call scalar('largest_x', result%largest%x, case%length_unit, 'where it is: x')
+      call scalar('largest_y', result%largest%y, case%length_unit, 'where it is: y')
+      call scalar('half_width', result%half_width, case%length_unit, 'half the length of the loaded surface')
+      call scalar('largest_pressure', result%largest_pressure, unit, 'largest pressure')
+
+   contains
+
+      subroutine scalar(name, value, value_unit, description)
+         character(*), intent(in) :: name, value_unit, description
+         real(wp), intent(in) :: value
+
+         call write_values(writer, result%group//'/'//name, [value], [integer ::], value_unit, description, dataset)
+         call h5dclose_f(dataset, code)
+      end subroutine scalar
+   end subroutine write_group
+
+   !> What a stress of mfv_interior's stress_names is.
+   pure function meaning(name) result(text)
+      character(*), intent(in) :: name
+      character(:), allocatable :: text
+
+      select case (name)
+      case ('sigma_zz')
+         text = 'stress across the plane: nu (sigma_xx + sigma_yy) in plane strain, 0 in plane stress'
+      case ('principal_1', 'principal_2')
+         text = 'principal stress in the plane, the '//trim(merge('larger ', 'smaller', name == 'principal_1'))
+      case ('von_mises')
+         text = 'von Mises stress'
+      case ('sigma_rr', 'sigma_thetatheta', 'sigma_rtheta')
+         text = 'stress in polar components about the centre of the disk or hole, counterclockwise; none in a half-plane'
+      case default
+         text = 'stress, positive in tension'
+      end select
+   end function meaning
+
+end module mfv_stress_file
