@@ -6,6 +6,7 @@ program mfv_run
    use mfv_case_reader, only: read_case_file
    use mfv_error, only: error_type
    use mfv_kinds, only: wp
+   use mfv_clock, only: seconds_now
    use mfv_hdf5_writer, only: check_writable
    use mfv_result_file, only: write_result
    use mfv_simulation, only: new_simulation, simulation_type

@@ -1,14 +1,15 @@
 !> The terminal: output, progress that stays quiet in a pipe, and Ctrl-C.
 module mfv_terminal
    use, intrinsic :: iso_c_binding, only: c_funloc, c_funptr, c_int
-   use, intrinsic :: iso_fortran_env, only: error_unit, int64
+   use, intrinsic :: iso_fortran_env, only: error_unit
+   use mfv_clock, only: seconds_now
    use mfv_contact_state, only: contact_state_type
    use mfv_kinds, only: wp
    use mfv_observer, only: observer_type
    use mfv_strings, only: to_text
    implicit none
    private
-   public :: argument_text, terminal_observer_type, catch_interrupts, end_program, seconds_now
+   public :: argument_text, terminal_observer_type, catch_interrupts, end_program
 
    !> Shows progress on a terminal, and ends the run after Ctrl-C.
    type, extends(observer_type) :: terminal_observer_type
@@ -119,13 +120,5 @@ contains
       flush (error_unit)
       call c_exit(int(code, c_int))
    end subroutine end_program
-
-   !> Wall-clock time in seconds, from any origin.
-   real(wp) function seconds_now()
-      integer(int64) :: count, rate
-
-      call system_clock(count, rate)
-      seconds_now = real(count, wp)/real(rate, wp)
-   end function seconds_now
 
 end module mfv_terminal

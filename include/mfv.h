@@ -94,6 +94,32 @@ int mfv_attribute(const mfv_case *handle, const char *name, char *buffer, size_t
 int mfv_copy_real(const mfv_case *handle, const char *path, double *values, size_t count);
 int mfv_copy_integer(const mfv_case *handle, const char *path, int32_t *values, size_t count);
 
+/* The two bodies. */
+enum { MFV_LOWER = 0, MFV_UPPER = 1 };
+
+/* Stresses at a point [force/length^2], positive in tension: what a point has in mfv_stress. sigma_zz: across the plane;
+ * principal stresses in the plane; the last three in polar components about the centre of a disk or hole,
+ * counterclockwise (NaN in a half-plane). */
+enum {
+  MFV_SIGMA_XX, MFV_SIGMA_YY, MFV_SIGMA_XY, MFV_SIGMA_ZZ, MFV_PRINCIPAL_1, MFV_PRINCIPAL_2, MFV_VON_MISES,
+  MFV_SIGMA_RR, MFV_SIGMA_THETATHETA, MFV_SIGMA_RTHETA, MFV_STRESS_COUNT
+};
+
+/* Stresses inside a body (MFV_LOWER or MFV_UPPER) in the present state (step = 0) or in that of steps/000N (step = N), at
+ * the points x[i], y[i] [length], y up from the contact: stresses[i*MFV_STRESS_COUNT + MFV_SIGMA_XX] and so on. NaN
+ * outside the body. MFV_BAD_ARGUMENT for a rigid body or one given by a matrix. Since 0.1.0. */
+int mfv_stress(mfv_case *handle, int body, int step, size_t count, const double *x, const double *y, double *stresses);
+
+/* The largest von Mises stress of the body, found by refinement: place = {stress, x, y}. Since 0.1.0. */
+int mfv_largest_von_mises(mfv_case *handle, int body, int step, double place[3]);
+
+/* Both for tractions of the caller's, such as those of a result file: pressure and shear (on the lower body, to the right)
+ * on `nodes` intervals of the lengths width[] around the positions arc[] along the surface. stresses or place may be
+ * NULL. Since 0.1.0. */
+int mfv_stress_under(mfv_case *handle, int body, size_t nodes, const double *arc, const double *width,
+                     const double *pressure, const double *shear, size_t count, const double *x, const double *y,
+                     double *stresses, double *place);
+
 /* Write the result file (HDF5) to `path`, or where the case's &output says when `path` is NULL. An existing file is
  * replaced only by a complete one. Since 0.1.0. */
 int mfv_write(mfv_case *handle, const char *path);

@@ -1,7 +1,7 @@
 """MFV: two-dimensional frictional elastic contact by the Method of First Violation.
 
-`run` solves a case in this process, `Case` leads one step by step, `read` reads a result file, `plot` draws results,
-`reference` has the closed forms. Only running and the closed forms need the shared library.
+`run` solves a case in this process, `Case` leads one step by step, `read` reads a result file, `stress` computes stresses
+inside the bodies, `plot` draws results, `reference` has the closed forms. Reading and drawing need no shared library.
 """
 
 from __future__ import annotations
@@ -11,7 +11,7 @@ from importlib.metadata import version as _installed_version
 from pathlib import Path as _Path
 from types import ModuleType
 
-from . import errors, reference
+from . import errors, reference, stress
 from ._library import library_version
 from .case import Case, run
 from .codes import EventKind, NodeStatus
@@ -33,6 +33,7 @@ __all__ = [
     "read",
     "reference",
     "run",
+    "stress",
 ]
 
 _version_file = _Path(__file__).resolve().parents[2] / "VERSION"

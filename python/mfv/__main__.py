@@ -24,6 +24,8 @@ examples:
   mfv_run examples/mindlin.nml              write mindlin.h5
   python -m mfv info mindlin.h5             what is in it
   python -m mfv plot mindlin.h5             draw mindlin.png
+  python -m mfv plot mindlin.h5 --stress von_mises
+                                            draw the stresses inside the lower body
   python -m mfv plot mindlin.h5 -o fig3.pdf --step 2
                                             draw the state after step 2, for print
 """
@@ -58,6 +60,12 @@ def _parser() -> argparse.ArgumentParser:
     plot.add_argument(
         "--step", type=int, metavar="N", help="the state in the file's group steps/000N in place of the last"
     )
+    plot.add_argument(
+        "--stress",
+        metavar="NAME",
+        help="contours of a stress inside a body in place of the panels: von_mises, sigma_xx, sigma_yy, sigma_xy, ...",
+    )
+    plot.add_argument("--body", choices=("lower", "upper"), default="lower", help="which body, with --stress")
     plot.set_defaults(command=_plot)
 
     info = commands.add_parser("info", help="print what is in a result", epilog=EXAMPLES, formatter_class=raw)
@@ -69,7 +77,11 @@ def _parser() -> argparse.ArgumentParser:
 def _plot(options: argparse.Namespace) -> None:
     from . import plot  # here, so that info does not load matplotlib
 
-    picture = plot.figure(read(options.file), options.step)
+    result = read(options.file)
+    if options.stress:
+        picture = plot.stress_figure(result, options.stress, options.body, options.step)
+    else:
+        picture = plot.figure(result, options.step)
     output = options.output or options.file.with_suffix(".png")
     picture.savefig(output, dpi=200)
     print(output)

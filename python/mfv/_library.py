@@ -50,6 +50,7 @@ class Step(ctypes.Structure):
 
 _handle = c_void_p
 _handle_slot = POINTER(c_void_p)
+_array = POINTER(c_double)
 
 #: Result and arguments of every function of the header.
 SIGNATURES: dict[str, tuple[type, ...]] = {
@@ -79,6 +80,9 @@ SIGNATURES: dict[str, tuple[type, ...]] = {
     "mfv_attribute": (c_int, _handle, c_char_p, c_char_p, c_size_t, POINTER(c_size_t)),
     "mfv_copy_real": (c_int, _handle, c_char_p, POINTER(c_double), c_size_t),
     "mfv_copy_integer": (c_int, _handle, c_char_p, POINTER(c_int32), c_size_t),
+    "mfv_stress": (c_int, _handle, c_int, c_int, c_size_t, _array, _array, _array),
+    "mfv_largest_von_mises": (c_int, _handle, c_int, c_int, _array),
+    "mfv_stress_under": (c_int, _handle, c_int, c_size_t, *(_array,) * 4, c_size_t, *(_array,) * 4),
     "mfv_write": (c_int, _handle, c_char_p),
     "mfv_hertz_half_width": (c_double,) + (c_double,) * 4,
     "mfv_hertz_pressure": (c_double,) + (c_double,) * 3,

@@ -1,6 +1,7 @@
 """Pictures of results: numbers as points, closed forms as lines.
 
-`pressure`, `shear`, `surfaces` and `loop` draw into axes of yours; `figure` makes a picture of what a result has.
+`pressure`, `shear`, `surfaces`, `loop` and `stress_contours` draw into axes of yours; `figure` makes a picture of what a
+result has, `stress_figure` one of the stresses inside a body.
 """
 
 from __future__ import annotations
@@ -10,14 +11,17 @@ from typing import Any
 
 import matplotlib
 import numpy as np
+from matplotlib import patheffects
 from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.layout_engine import ConstrainedLayoutEngine
 from matplotlib.patches import Patch
+from matplotlib.ticker import MaxNLocator
 
 from .codes import EventKind, NodeStatus
 from .result import Group, Result, counts
+from .stress import NAMES, StressField, grid, stored
 
 #: Colours from Okabe and Ito, told apart by the colour-blind too.
 NUMBERS, CLOSED_FORM, SURFACE, MARKS = "#0072B2", "#D55E00", "#009E73", "#000000"
@@ -45,6 +49,20 @@ STYLE: dict[Any, Any] = {
     "ytick.right": True,
 }
 
+#: How pictures write the stresses.
+STRESS_LABELS = {
+    "sigma_xx": r"$\sigma_{xx}$",
+    "sigma_yy": r"$\sigma_{yy}$",
+    "sigma_xy": r"$\sigma_{xy}$",
+    "sigma_zz": r"$\sigma_{zz}$",
+    "principal_1": r"$\sigma_1$",
+    "principal_2": r"$\sigma_2$",
+    "von_mises": r"$\sigma_\mathrm{vM}$",
+    "sigma_rr": r"$\sigma_{rr}$",
+    "sigma_thetatheta": r"$\sigma_{\theta\theta}$",
+    "sigma_rtheta": r"$\sigma_{r\theta}$",
+}
+
 #: Sizes in inch: a panel with its labels, the space below it, a row of the legend, a row of the caption.
 PANEL_WIDTH, PANEL_HEIGHT, SPACE, LEGEND_ROW, CAPTION_ROW = 3.6, 3.3, 0.08, 0.22, 0.17
 
@@ -68,6 +86,63 @@ def figure(result: Result, step: int | None = None) -> Figure:
         picture.suptitle(_heading(result, step), fontsize=12, parse_math=False)
         _add_legend_and_caption(picture, _caption(result, step))
     return picture
+
+
+def stress_figure(result: Result, name: str = "von_mises", body: str = "lower", step: int | None = None) -> Figure:
+    """A picture of a stress inside a body: contours over the largest pressure, axes over the contact half-width.
+
+    `name`: one of `mfv.stress.NAMES`. What mfv_stress has put into the file is drawn, else the stresses are computed, which
+    needs the library. Raises ValueError for an unknown name or step.
+    """
+    if name not in NAMES:
+        raise ValueError(f"there is no stress {name}; there is {', '.join(NAMES)}")
+    field = stored(result, body=body, step=step) or grid(result, body=body, step=step)
+    if np.isnan(field[name]).all():
+        raise ValueError(f"{name} is not defined in a half-plane")
+    with matplotlib.rc_context(STYLE):
+        picture = Figure(figsize=(6.4, 4.4), layout="constrained")
+        ax = picture.subplots()
+        contours = stress_contours(field, ax, name)
+        picture.colorbar(contours, ax=ax, label=f"{STRESS_LABELS[name]}$/p_0$", shrink=0.85)
+        ax.set_title(_heading(result, step) or f"{body} body", fontsize=12, parse_math=False)
+    return picture
+
+
+def stress_contours(field: StressField, ax: Axes, name: str = "von_mises") -> Any:
+    """Contours of a stress over the largest pressure, axes over the contact half-width; for von Mises the place of the
+    largest. Returns the contour set, for a colour bar."""
+    x, y = (field.x - field.middle) / field.half_width, field.y / field.half_width
+    values = np.ma.masked_invalid(field[name] / field.largest_pressure)
+    signed = bool(values.min() < -1.0e-9 * values.max() and name != "von_mises")
+    bound = float(np.percentile(np.abs(values.compressed()), 99.9))
+    levels = MaxNLocator(20, steps=[1, 2, 2.5, 5, 10]).tick_values(-bound if signed else 0.0, bound)
+    colours = "RdBu_r" if signed else "viridis"
+    contours = ax.contourf(x, y, values, levels=levels, cmap=colours, extend="both" if signed else "max")
+    ax.contour(x, y, values, levels=levels[::2], colors="black", linewidths=0.3)
+    if name == "von_mises":
+        place = (field.largest.x - field.middle) / field.half_width, field.largest.y / field.half_width
+        outline = [patheffects.withStroke(linewidth=2.5, foreground="white")]
+        ax.plot(*place, "x", color="black", markersize=7, clip_on=False, zorder=5, path_effects=outline)
+        ax.annotate(
+            f"largest: {field.largest.value / field.largest_pressure:.3f} $p_0$\n"
+            f"at ({_rounded(place[0])}, {_rounded(place[1])}) $a$",
+            place,
+            xytext=(0, 12 if field.body == "upper" else -12),
+            textcoords="offset points",
+            ha="center",
+            va="bottom" if field.body == "upper" else "top",
+            fontsize=9,
+            path_effects=outline,
+        )
+    ax.set_aspect("equal")
+    ax.set_xlabel("$x/a$")
+    ax.set_ylabel("$y/a$")
+    return contours
+
+
+def _rounded(value: float) -> str:
+    """Two decimals, without a minus before zero."""
+    return f"{round(value, 2) + 0.0:.2f}"
 
 
 def pressure(result: Result, ax: Axes, step: int | None = None) -> None:
@@ -98,12 +173,23 @@ def shear(result: Result, ax: Axes, step: int | None = None) -> None:
 def surfaces(result: Result, ax: Axes, step: int | None = None) -> None:
     """The deformed surface of the lower body and the upper body on it."""
     state = _state(result, step)
-    lower = -state.normal_displacement
-    upper = np.where(np.isfinite(state.gap), lower + state.gap, np.nan)
+    lower, upper = _heights(result, state)
     _draw_points(ax, result, state, lower, label="surface of the lower body", color=SURFACE)
     ax.plot(result.mesh.x, upper, color=MARKS, linewidth=0.9, label="surface of the upper body")
     ax.set_ylabel(_label("height", "y", state.unit("gap")))
     _frame_contact(ax, result, state)
+
+
+def _heights(result: Result, state: Group) -> tuple[np.ndarray, np.ndarray]:
+    """Heights of both surfaces: the lower one deformed from its own shape, the upper one a gap above it."""
+    x = result.mesh.x
+    radius = result.scene.get("lower_radius")
+    shape = np.zeros_like(x)
+    if radius is not None:
+        inward = -1.0 if result.attributes["lower_body"].endswith("disk") else 1.0
+        shape = inward * x**2 / (radius + np.sqrt(np.maximum(radius**2 - x**2, 0.0)))
+    lower = shape - state.get("normal_displacement", np.zeros_like(x))
+    return lower, np.where(np.isfinite(state.gap), lower + state.gap, np.nan)
 
 
 def loop(result: Result, ax: Axes, step: int | None = None) -> None:

@@ -17,6 +17,9 @@ Values = Any
 #: Groups that a result can be without; they are then empty.
 OPTIONAL_GROUPS = ("history", "reference")
 
+#: Where mfv_stress puts its groups.
+STRESS = "stress/"
+
 
 class Field(NamedTuple):
     """One quantity."""
@@ -70,6 +73,7 @@ class Group(Mapping[str, Values]):
 class Result:
     """A result: groups of quantities as attributes, `steps` with the state at the end of every step and reversal.
 
+    `stresses` has what mfv_stress has put into the file, by state and body: `stresses["last/lower"]`.
     `attributes` are the texts of the result: title, outcome, message, input, ...
     """
 
@@ -80,7 +84,9 @@ class Result:
     certificate: Group
     history: Group
     reference: Group
+    compliance: Group
     steps: list[Group]
+    stresses: dict[str, Group]
     attributes: dict[str, str]
 
     def __init__(self, groups: Mapping[str, Mapping[str, Field]], attributes: Mapping[str, str]) -> None:
@@ -90,8 +96,11 @@ class Result:
         self.attributes = dict(attributes)
         for name in OPTIONAL_GROUPS:
             setattr(self, name, Group({}))
+        self.stresses = {
+            path.removeprefix(STRESS): Group(group) for path, group in groups.items() if path.startswith(STRESS)
+        }
         for path in groups:
-            if path not in steps:
+            if path not in steps and not path.startswith(STRESS):
                 setattr(self, path, Group(groups[path]))
 
     @property
@@ -163,7 +172,7 @@ def _groups(file: h5py.File) -> dict[str, dict[str, Field]]:
         for name, item in group.items():
             if isinstance(item, h5py.Group):
                 add(item)
-            elif path in ("mesh", "history") or not item.is_scale:
+            elif path in ("mesh", "history") or path.startswith(STRESS) or not item.is_scale:
                 groups.setdefault(path, {})[name] = _field(item)
 
     add(file)

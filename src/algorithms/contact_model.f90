@@ -11,6 +11,7 @@ module mfv_contact_model
    use mfv_contact_fields, only: contact_fields_type
    use mfv_kinds, only: pi, wp
    use mfv_reference_hertz, only: hertz_half_width, hertz_half_width_of_approach
+   use mfv_clock, only: seconds_now
    use mfv_scene, only: control_displacement, control_force, scene_type
    implicit none
    private
@@ -35,6 +36,8 @@ module mfv_contact_model
       logical :: growing = .false.
       !> How many nodes have been added at either end.
       integer :: added = 0
+      !> Time that the compliance took so far, seconds.
+      real(wp) :: assembly_seconds = 0.0_wp
    contains
       procedure :: nodes
       procedure :: interval
@@ -129,10 +132,13 @@ contains
       integer, intent(in) :: nodes
       real(wp), intent(in) :: interval
       class(compliance_type), allocatable :: lower, upper
+      real(wp) :: started
 
+      started = seconds_now()
       call self%scene%lower%make_compliance(nodes, interval, self%scene%coupling, self%tangential, lower)
       call self%scene%upper%make_compliance(nodes, interval, self%scene%coupling, self%tangential, upper)
       call new_body_pair(lower, upper, self%compliance)
+      self%assembly_seconds = self%assembly_seconds + seconds_now() - started
    end subroutine build_compliance
 
    pure integer function nodes(self)
@@ -230,8 +236,11 @@ contains
    subroutine grow(self, extra)
       class(contact_model_type), intent(inout) :: self
       integer, intent(in) :: extra
+      real(wp) :: started
 
+      started = seconds_now()
       call self%compliance%resize(self%nodes() + 2*extra)
+      self%assembly_seconds = self%assembly_seconds + seconds_now() - started
       self%added = self%added + extra
       call self%place_nodes()
    end subroutine grow

@@ -4,7 +4,9 @@ module mfv_c
    use, intrinsic :: iso_c_binding
    use mfv_case, only: case_type
    use mfv_case_reader, only: read_case_file, read_case_text
+   use mfv_contact_state, only: contact_state_type
    use mfv_error, only: error_type
+   use mfv_interior, only: interior_type, largest_type, new_interior, stress_count
    use mfv_kinds, only: wp
    use mfv_result_fields, only: field_named, field_type, group_fields, result_attributes, result_groups
    use mfv_result_file, only: write_result
@@ -400,6 +402,137 @@ contains
          status = refused(self, text_in(path)//' has '//to_text(int(values_of(field)))//' values, count is another number')
       end if
    end function fit_for_copy
+
+   function mfv_stress(handle, body, step, count, x, y, stresses) result(status) bind(C, name='mfv_stress')
+      type(c_ptr), value :: handle, x, y, stresses
+      integer(c_int), value :: body, step
+      integer(c_size_t), value :: count
+      integer(c_int) :: status
+      type(handle_type), pointer :: self
+      type(interior_type) :: interior
+
+      status = MFV_BAD_HANDLE
+      self => handle_of(handle)
+      if (.not. associated(self)) return
+      call interior_of_state(self, body, step, interior, status)
+      if (status == MFV_COMPLETE) status = stresses_out(self, interior, count, x, y, stresses)
+   end function mfv_stress
+
+   function mfv_largest_von_mises(handle, body, step, place) result(status) bind(C, name='mfv_largest_von_mises')
+      type(c_ptr), value :: handle, place
+      integer(c_int), value :: body, step
+      integer(c_int) :: status
+      type(handle_type), pointer :: self
+      type(interior_type) :: interior
+
+      status = MFV_BAD_HANDLE
+      self => handle_of(handle)
+      if (.not. associated(self)) return
+      call interior_of_state(self, body, step, interior, status)
+      if (status == MFV_COMPLETE) status = largest_out(self, interior, place)
+   end function mfv_largest_von_mises
+
+   function mfv_stress_under(handle, body, nodes, arc, width, pressure, shear, count, x, y, stresses, place) &
+      result(status) bind(C, name='mfv_stress_under')
+      type(c_ptr), value :: handle, arc, width, pressure, shear, x, y, stresses, place
+      integer(c_int), value :: body
+      integer(c_size_t), value :: nodes, count
+      integer(c_int) :: status
+      type(handle_type), pointer :: self
+      type(interior_type) :: interior
+      real(c_double), pointer, dimension(:) :: positions, widths, pressures, shears
+
+      status = MFV_BAD_HANDLE
+      self => handle_of(handle)
+      if (.not. associated(self)) return
+      status = refused(self, 'mfv_stress_under: an array is null')
+      if (.not. (c_associated(arc) .and. c_associated(width) .and. c_associated(pressure) .and. c_associated(shear))) return
+      call c_f_pointer(arc, positions, [nodes])
+      call c_f_pointer(width, widths, [nodes])
+      call c_f_pointer(pressure, pressures, [nodes])
+      call c_f_pointer(shear, shears, [nodes])
+      call make_interior(self, body, positions, widths, pressures, shears, interior, status)
+      if (status == MFV_COMPLETE .and. c_associated(stresses)) &
+         status = stresses_out(self, interior, count, x, y, stresses)
+      if (status == MFV_COMPLETE .and. c_associated(place)) status = largest_out(self, interior, place)
+   end function mfv_stress_under
+
+   !> A body under the tractions of the present state or of a step.
+   subroutine interior_of_state(self, body, step, interior, status)
+      type(handle_type), intent(inout) :: self
+      integer(c_int), intent(in) :: body, step
+      type(interior_type), intent(out) :: interior
+      integer(c_int), intent(out) :: status
+      type(contact_state_type) :: state
+
+      status = refused(self, 'there is no step '//to_text(int(step))//'; there are '// &
+                       to_text(self%simulation%snapshot_count))
+      if (step < 0 .or. step > self%simulation%snapshot_count) return
+      state = self%simulation%contact%state
+      if (step > 0) state = self%simulation%padded_state(step)
+      associate (model => self%simulation%contact%model)
+         call make_interior(self, body, model%arc, model%width, state%fields%pressure, state%fields%shear, interior, status)
+      end associate
+   end subroutine interior_of_state
+
+   subroutine make_interior(self, body, arc, width, pressure, shear, interior, status)
+      type(handle_type), intent(inout) :: self
+      integer(c_int), intent(in) :: body
+      real(wp), intent(in) :: arc(:), width(:), pressure(:), shear(:)
+      type(interior_type), intent(out) :: interior
+      integer(c_int), intent(out) :: status
+      integer(c_int), parameter :: lower = 0, upper = 1
+      logical :: available
+
+      status = refused(self, 'the body must be MFV_LOWER or MFV_UPPER')
+      if (body /= lower .and. body /= upper) return
+      associate (scene => self%case%scene)
+         if (body == upper) then
+            call new_interior(scene%upper, .true., scene%plane, arc, width, pressure, shear, interior, available)
+         else
+            call new_interior(scene%lower, .false., scene%plane, arc, width, pressure, shear, interior, available)
+         end if
+      end associate
+      status = MFV_COMPLETE
+      if (.not. available) status = refused(self, 'the '//merge('upper', 'lower', body == upper)// &
+                                            ' body is rigid or a matrix: there are no stresses inside it')
+   end subroutine make_interior
+
+   function stresses_out(self, interior, count, x, y, stresses) result(status)
+      type(handle_type), intent(inout) :: self
+      type(interior_type), intent(in) :: interior
+      integer(c_size_t), intent(in) :: count
+      type(c_ptr), intent(in) :: x, y, stresses
+      integer(c_int) :: status
+      real(c_double), pointer :: across(:), up(:), values(:, :)
+      integer(c_size_t) :: i
+
+      status = refused(self, 'an array is null')
+      if (.not. (c_associated(x) .and. c_associated(y) .and. c_associated(stresses))) return
+      call c_f_pointer(x, across, [count])
+      call c_f_pointer(y, up, [count])
+      call c_f_pointer(stresses, values, [int(stress_count, c_size_t), count])
+      do i = 1, count
+         values(:, i) = interior%all_stresses(across(i), up(i))
+      end do
+      status = MFV_COMPLETE
+   end function stresses_out
+
+   function largest_out(self, interior, place) result(status)
+      type(handle_type), intent(inout) :: self
+      type(interior_type), intent(in) :: interior
+      type(c_ptr), intent(in) :: place
+      integer(c_int) :: status
+      real(c_double), pointer :: values(:)
+      type(largest_type) :: largest
+
+      status = refused(self, 'place is null')
+      if (.not. c_associated(place)) return
+      call c_f_pointer(place, values, [3])
+      largest = interior%largest_von_mises()
+      values = [largest%value, largest%x, largest%y]
+      status = MFV_COMPLETE
+   end function largest_out
 
    function mfv_write(handle, path) result(status) bind(C, name='mfv_write')
       type(c_ptr), value :: handle, path

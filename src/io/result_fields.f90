@@ -14,6 +14,7 @@ module mfv_result_fields
    use mfv_simulation, only: history_none, simulation_type
    use mfv_status, only: status_outcome
    use mfv_strings, only: add_text, list_of_words, string_type, to_text
+   use mfv_validity, only: validity_warnings
    use mfv_version, only: library_version
    implicit none
    private
@@ -130,10 +131,20 @@ contains
       type(simulation_type), intent(in) :: simulation
       type(string_type), allocatable, intent(out) :: names(:), texts(:)
       character(*), parameter :: planes = 'strain stress', couplings = 'full goodman none'
+      type(string_type), allocatable :: warnings(:)
+      character(:), allocatable :: text
+      integer :: i
 
+      call validity_warnings(simulation, warnings)
+      text = ''
+      do i = 1, size(warnings)
+         if (i > 1) text = text//achar(10)
+         text = text//warnings(i)%text
+      end do
       call add('title', case%scene%title)
       call add('outcome', status_outcome(simulation%outcome))
       call add('message', simulation%message)
+      call add('warnings', text)
       call add('input', case%text)
       call add('input_file', case%source)
       call add('mfv_version', library_version)

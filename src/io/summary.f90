@@ -6,7 +6,8 @@ module mfv_summary
    use mfv_result_fields, only: field_type, group_fields
    use mfv_simulation, only: simulation_type
    use mfv_status, only: status_outcome
-   use mfv_strings, only: to_text
+   use mfv_strings, only: string_type, to_text
+   use mfv_validity, only: validity_warnings
    implicit none
    private
    public :: summary_text, check_text
@@ -22,6 +23,8 @@ contains
       real(wp), intent(in) :: seconds
       character(:), allocatable :: text
       type(field_type), allocatable :: fields(:)
+      type(string_type), allocatable :: warnings(:)
+      integer :: i
 
       call group_fields(case, simulation, 'summary', fields)
       text = line('outcome', status_outcome(simulation%outcome)//': '//simulation%message) &
@@ -37,11 +40,39 @@ contains
                                                                  amount(fields, 'rotation'))
       text = text//line('work', amount(fields, 'events')//' events, '//amount(fields, 'linear_solves')// &
                         ' linear solves, '//to_text(seconds, 3)//' s') &
+             //line('compliance', compliance_text(simulation%contact%model)) &
              //line('certificate', 'largest relative residual '//amount(fields, 'largest_residual'))
+      call validity_warnings(simulation, warnings)
+      do i = 1, size(warnings)
+         text = text//line('warning', warnings(i)%text)
+      end do
       if (simulation%contact%model%added > 0) text = text//line('mesh', 'grew by '// &
                                                                 to_text(simulation%contact%model%added)// &
                                                                 ' nodes at either end')
    end function summary_text
+
+   !> Which blocks the scene needed, the memory of what they are made from, and the time that took.
+   function compliance_text(model) result(text)
+      type(contact_model_type), intent(in) :: model
+      character(:), allocatable :: text
+      character(*), parameter :: blocks(4) = ['C_wp', 'C_wt', 'C_up', 'C_ut'], bodies(2) = ['lower', 'upper']
+      integer :: i
+
+      text = ''
+      do i = 1, size(blocks)
+         if (model%compliance%has_block(i)) text = text//' '//blocks(i)
+      end do
+      text = text(2:)
+      do i = 1, size(bodies)
+         text = text//', '//bodies(i)//' body '
+         if (model%compliance%deforms(i)) then
+            text = text//to_text(int(model%compliance%part(i)%compliance%bytes()))//' bytes'
+         else
+            text = text//'rigid'
+         end if
+      end do
+      text = text//', '//to_text(model%assembly_seconds, 2)//' s'
+   end function compliance_text
 
    !> What a valid case asks for.
    function check_text(case) result(text)
@@ -52,6 +83,7 @@ contains
       model = new_contact_model(case%scene)
       text = line('case', case%source//' is valid') &
              //line('title', case%scene%title) &
+             //line('compliance', compliance_text(model)) &
              //line('mesh', to_text(model%nodes())//' nodes over |x| < '//to_text(model%length())// &
                     trim(merge(', growing', '         ', model%growing))) &
              //line('steps', to_text(size(case%scene%steps)))

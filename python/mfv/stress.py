@@ -1,0 +1,159 @@
+"""Stresses inside the bodies of a result, from its surface tractions, by the library's closed forms."""
+
+from __future__ import annotations
+
+import ctypes
+from ctypes import POINTER, c_double
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from .case import Case
+from .result import Group, Result
+
+#: The stresses at a point, in the order of the header: in Cartesian components, across the plane, principal ones in the
+#: plane, von Mises, in polar components about the centre of a disk or hole.
+NAMES = (
+    "sigma_xx",
+    "sigma_yy",
+    "sigma_xy",
+    "sigma_zz",
+    "principal_1",
+    "principal_2",
+    "von_mises",
+    "sigma_rr",
+    "sigma_thetatheta",
+    "sigma_rtheta",
+)
+
+#: The bodies, in the order of the header.
+BODIES = ("lower", "upper")
+
+Array = NDArray[np.float64]
+
+
+class Largest(NamedTuple):
+    """The largest von Mises stress and where it is."""
+
+    value: float
+    x: float
+    y: float
+
+
+@dataclass(frozen=True)
+class StressField:
+    """Stresses of one body at points or on a grid: `field["von_mises"]` has the shape of `field.x`."""
+
+    body: str
+    x: Array
+    y: Array
+    values: dict[str, Array]
+    #: Half the length of the loaded surface, its middle, the largest pressure, the largest von Mises stress.
+    half_width: float
+    middle: float
+    largest_pressure: float
+    largest: Largest
+
+    def __getitem__(self, name: str) -> Array:
+        return self.values[name]
+
+
+def stress(result: Result, x: ArrayLike, y: ArrayLike, *, body: str = "lower", step: int | None = None) -> StressField:
+    """Stresses at the points (x, y), lengths, y up from the contact; NaN outside the body.
+
+    `body`: 'lower' or 'upper'. `step`: the state in `result.steps[step - 1]`, not the last one. `x` and `y` are broadcast.
+    Raises ValueError for an unknown body or step, BadArgument for a body without an inside (rigid, or a matrix).
+    """
+    if body not in BODIES:
+        raise ValueError(f"the body must be 'lower' or 'upper', not '{body}'")
+    across, up = (np.ascontiguousarray(values, dtype=np.float64) for values in np.broadcast_arrays(x, y))
+    state = _state(result, step)
+    arc = np.ascontiguousarray(result.mesh.arc if "arc" in result.mesh else result.mesh.x)
+    loads = arc, result.mesh.width, state.pressure, state.shear
+    values, largest = np.empty((across.size, len(NAMES))), np.empty(3)
+    with Case.from_text(result.attributes["input"], result.attributes["input_file"]) as case:
+        case._call(
+            "mfv_stress_under",
+            BODIES.index(body),
+            arc.size,
+            *map(_pointer, loads),
+            across.size,
+            *map(_pointer, (across, up, values, largest)),
+        )
+    loaded = (state.pressure != 0.0) | (state.shear != 0.0)
+    edges = _edges(arc[loaded], result.mesh.width[loaded])
+    return StressField(
+        body,
+        across,
+        up,
+        {name: values[:, column].reshape(across.shape) for column, name in enumerate(NAMES)},
+        0.5 * (edges[1] - edges[0]),
+        0.5 * (edges[1] + edges[0]),
+        float(np.max(state.pressure)),
+        Largest(*map(float, largest)),
+    )
+
+
+def grid(
+    result: Result,
+    *,
+    body: str = "lower",
+    step: int | None = None,
+    width: float = 2.0,
+    depth: float = 2.0,
+    across: int = 161,
+    down: int = 81,
+) -> StressField:
+    """Stresses on a grid `width` contact half-widths to either side of the contact and `depth` deep, shape (down, across).
+
+    Otherwise as `stress`. Raises ValueError where there is no load.
+    """
+    state = _state(result, step)
+    arc = result.mesh.arc if "arc" in result.mesh else result.mesh.x
+    loaded = (state.pressure != 0.0) | (state.shear != 0.0)
+    if not loaded.any():
+        raise ValueError("there is no load in this state")
+    left, right = _edges(arc[loaded], result.mesh.width[loaded])
+    half = 0.5 * (right - left)
+    x = 0.5 * (left + right) + half * np.linspace(-width, width, across)
+    y = half * np.linspace(0.0, depth, down) * (-1.0 if body == "lower" else 1.0)
+    return stress(result, *np.meshgrid(x, y), body=body, step=step)
+
+
+def stored(result: Result, *, body: str = "lower", step: int | None = None) -> StressField | None:
+    """The grid that mfv_stress has put into the file for this state and body, None where there is none."""
+    group = result.stresses.get(f"{'last' if step is None else f'{step:04d}'}/{body}")
+    if group is None:
+        return None
+    x, y = np.meshgrid(group.x, group.y)
+    return StressField(
+        body,
+        x,
+        y,
+        {name: group[name] for name in NAMES},
+        float(group.half_width),
+        0.5 * float(group.x[0] + group.x[-1]),
+        float(group.largest_pressure),
+        Largest(float(group.largest_von_mises), float(group.largest_x), float(group.largest_y)),
+    )
+
+
+def _state(result: Result, step: int | None) -> Group:
+    if step is None:
+        return result.state
+    if not 1 <= step <= len(result.steps):
+        raise ValueError(f"there is no step {step}: the result has {len(result.steps)}")
+    return result.steps[step - 1]
+
+
+def _edges(arc: Array, width: Array) -> tuple[float, float]:
+    """Ends of the loaded surface; both 0 where there is no load."""
+    if arc.size == 0:
+        return 0.0, 0.0
+    return float(np.min(arc - 0.5 * width)), float(np.max(arc + 0.5 * width))
+
+
+def _pointer(values: Array) -> ctypes._Pointer[c_double]:
+    return np.ascontiguousarray(values).ctypes.data_as(POINTER(c_double))

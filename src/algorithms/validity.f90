@@ -1,0 +1,73 @@
+!> Where the model stops holding: warnings that go with a result.
+module mfv_validity
+   use mfv_body, only: body_type
+   use mfv_interior, only: interior_type, largest_type, new_interior
+   use mfv_kinds, only: pi, wp
+   use mfv_node_status, only: in_contact
+   use mfv_simulation, only: simulation_type
+   use mfv_strings, only: add_text, string_type, to_text
+   implicit none
+   private
+   public :: validity_warnings
+
+   !> Normals are vertical at every node: at this angle from the pole, degrees, that is wrong by 1.5 % (1 - cos) in the
+   !> normal and by 17 % (sin) in the tangential component.
+   real(wp), parameter :: largest_angle = 10.0_wp
+
+contains
+
+   !> Warnings about the last state of a simulation, none as a rule: contact at angles for which vertical normals are a poor
+   !> approximation; stresses beyond a yield strength that the user gave (the largest von Mises stress by refinement).
+   subroutine validity_warnings(simulation, warnings)
+      type(simulation_type), intent(in) :: simulation
+      type(string_type), allocatable, intent(out) :: warnings(:)
+
+      allocate (warnings(0))
+      associate (scene => simulation%contact%model%scene)
+         call check_angle(simulation, 'lower', scene%lower, warnings)
+         call check_angle(simulation, 'upper', scene%upper, warnings)
+         call check_yield(simulation, .false., scene%lower, warnings)
+         call check_yield(simulation, .true., scene%upper, warnings)
+      end associate
+   end subroutine validity_warnings
+
+   subroutine check_angle(simulation, name, body, warnings)
+      type(simulation_type), intent(in) :: simulation
+      character(*), intent(in) :: name
+      type(body_type), intent(in) :: body
+      type(string_type), allocatable, intent(inout) :: warnings(:)
+      real(wp) :: angle
+
+      if (body%rigid .or. .not. body%circular()) return
+      associate (model => simulation%contact%model)
+         angle = maxval(abs(model%arc), mask=in_contact(simulation%contact%state%status))/body%radius*180.0_wp/pi
+      end associate
+      if (.not. angle > largest_angle) return
+      call add_text(warnings, 'the contact reaches '//to_text(angle, 3)//' degrees from the pole of the '//name// &
+                    ' body; normals are taken as vertical, which is a poor approximation beyond '// &
+                    to_text(largest_angle, 2))
+   end subroutine check_angle
+
+   subroutine check_yield(simulation, upper, body, warnings)
+      type(simulation_type), intent(in) :: simulation
+      logical, intent(in) :: upper
+      type(body_type), intent(in) :: body
+      type(string_type), allocatable, intent(inout) :: warnings(:)
+      type(interior_type) :: interior
+      type(largest_type) :: largest
+      logical :: available
+
+      if (.not. body%yield_strength > 0.0_wp) return
+      associate (model => simulation%contact%model, fields => simulation%contact%state%fields)
+         call new_interior(body, upper, model%scene%plane, model%arc, model%width, fields%pressure, fields%shear, interior, &
+                           available)
+      end associate
+      if (.not. available) return
+      largest = interior%largest_von_mises()
+      if (largest%value > body%yield_strength) &
+         call add_text(warnings, 'the largest von Mises stress of the '//merge('upper', 'lower', upper)//' body, '// &
+                       to_text(largest%value, 4)//', is beyond its yield_strength '//to_text(body%yield_strength)// &
+                       ': elasticity no longer holds')
+   end subroutine check_yield
+
+end module mfv_validity
