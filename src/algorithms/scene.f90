@@ -137,14 +137,15 @@ contains
       end function weighed
    end function datum
 
-   !> Radius of the circle on which the nodes lie, length: that of the lower body where it is an elastic circle, else of the
-   !> upper one; 0 where the nodes lie on a straight line.
+   !> Radius of the circle on which the nodes lie, length: the smaller one of the elastic circles; 0 where the nodes lie on a
+   !> straight line.
    pure real(wp) function arc_radius(self)
       class(scene_type), intent(in) :: self
 
       arc_radius = 0.0_wp
       if (self%upper%circular() .and. .not. self%upper%rigid) arc_radius = self%upper%radius
-      if (self%lower%circular() .and. .not. self%lower%rigid) arc_radius = self%lower%radius
+      if (.not. self%lower%circular() .or. self%lower%rigid) return
+      if (.not. arc_radius > 0.0_wp .or. self%lower%radius < arc_radius) arc_radius = self%lower%radius
    end function arc_radius
 
 end module mfv_scene

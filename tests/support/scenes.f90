@@ -1,6 +1,6 @@
 !> Scenes that several suites use: the dissertation's cylinder and punch on a half-plane.
 module test_scenes
-   use mfv_body, only: new_disk, new_flat_punch, new_half_plane_body
+   use mfv_body
    use mfv_compliance, only: coupling_full
    use mfv_friction, only: coulomb_friction, no_friction
    use mfv_kinds, only: wp
@@ -9,12 +9,48 @@ module test_scenes
    use mfv_simulation, only: history_events, new_simulation, simulation_type
    implicit none
    private
-   public :: cylinder, flat_punch, press, shear, solved, radius, shear_modulus, poisson_ratio
+   public :: body, two_bodies, cylinder, flat_punch, press, shear, solved, radius, shear_modulus, poisson_ratio
 
    !> Dissertation section 3.1: R = 0.25, G = 1, nu = 0.3.
    real(wp), parameter :: radius = 0.25_wp, shear_modulus = 1.0_wp, poisson_ratio = 0.3_wp
 
 contains
+
+   !> A body of a shape of mfv_body that needs no more than a radius; elastic in plane strain with G = `modulus` and its
+   !> radius (a half-plane: 1) for datum, rigid without.
+   function body(shape, body_radius, modulus, ratio) result(self)
+      integer, intent(in) :: shape
+      real(wp), intent(in), optional :: body_radius, modulus, ratio
+      type(body_type) :: self
+
+      select case (shape)
+      case (shape_disk)
+         self = new_disk(body_radius)
+      case (shape_hole)
+         self = new_hole(body_radius)
+      case default
+         self = new_half_plane_body()
+      end select
+      if (.not. present(modulus)) return
+      self%rigid = .false.
+      self%material = new_material(modulus, ratio, plane_strain)
+      self%datum = 1.0_wp
+      if (self%circular()) self%datum = self%radius
+   end function body
+
+   !> Two bodies on intervals over [-half_width, half_width] along the surface; 0: chosen.
+   function two_bodies(lower, upper, nodes, half_width, mu, coupling) result(scene)
+      type(body_type), intent(in) :: lower, upper
+      integer, intent(in) :: nodes
+      real(wp), intent(in) :: half_width
+      real(wp), intent(in), optional :: mu
+      integer, intent(in), optional :: coupling
+      type(scene_type) :: scene
+
+      scene = base(nodes, half_width, mu, coupling)
+      scene%lower = lower
+      scene%upper = upper
+   end function two_bodies
 
    !> Rigid cylinder on the half-plane, with Hertz's parabola; mu = 0: no friction.
    function cylinder(nodes, half_width, mu, coupling) result(scene)
