@@ -2,11 +2,11 @@
 
     python examples/finite_element_body.py [--surface-nodes 41] [-o PICTURE.png] [--keep DIRECTORY]
 
-scikit-fem (`pip install scikit-fem`) makes an elastic block, clamped at its bottom and so large that the contact sees next
-to nothing of its edges. Unit forces at the surface nodes under the contact give the compliance matrix, which goes into
-body.h5. A rigid disk is pressed on without friction and then sheared: once on this body, once on an elastic half-plane
-with nodes at the same places. Another finite-element program takes the place of the functions `block_mesh` and
-`surface_compliance`; the rest stays.
+scikit-fem (`pip install scikit-fem`) makes an elastic block, clamped at its bottom and so large that the contact sees
+next to nothing of its edges. Unit forces at the surface nodes under the contact give the compliance matrix, which goes
+into body.h5. A rigid disk is pressed on without friction and then sheared: once on this body, once on an elastic
+half-plane with nodes at the same places. Another finite-element program takes the place of the functions `block_mesh`
+and `surface_compliance`; the rest stays.
 """
 
 from __future__ import annotations
@@ -28,8 +28,10 @@ import mfv
 
 SHEAR_MODULUS, POISSON_RATIO = 1.0, 0.3
 RADIUS, NORMAL_FORCE, TANGENTIAL_FORCE = 0.25, 1.0e-3, 2.8e-4
-#: Half the surface that carries nodes of the contact; the contact reaches to 0.01056 (Hertz).
-HALF_WIDTH = 0.01225
+#: The nodes of the contact cover [-HALF_WIDTH, HALF_WIDTH]; pressed on, the disk touches [-0.01056, 0.01056] (Hertz).
+HALF_WIDTH = 0.0127
+#: With fewer nodes the contact would come to the end of those that there are.
+FEWEST_NODES = 15
 #: The block reaches this far to either side and down: some 100 contact half-widths.
 REACH = 1.0
 #: Each element beyond the fine ones is larger than its neighbour by this factor.
@@ -86,10 +88,10 @@ def surface_compliance(mesh: MeshQuad, x: np.ndarray) -> np.ndarray:
     Rows and columns as MFV has them: normal components, positive into the body, of all nodes, then tangential ones,
     positive to the right.
     """
-    # Bilinear elements on purpose. MFV makes the force at a node from its own traction alone, traction times width; with
-    # linear shape functions on equal elements that is the force of an even traction, too ("lumped"). Quadratic elements
-    # are not as simple: for them the forces of an even traction alternate, 1/3 at the corners and 2/3 at the mid-side
-    # nodes, so that traction times width would make the surface wavy.
+    # Bilinear elements on purpose. MFV makes the force at a node from its own traction alone, traction times width, and
+    # linear shape functions on equal elements give an even traction the same nodal forces ("lumped"). Quadratic ones do
+    # not: theirs alternate, 1/3 of an element's at shared corners and 2/3 at mid-side nodes, so that traction times
+    # width would make the surface wavy.
     basis = Basis(mesh, ElementVector(ElementQuad1()))
     youngs_modulus = 2 * SHEAR_MODULUS * (1 + POISSON_RATIO)
     # The Lame constants of three dimensions make the two-dimensional form plane strain.
@@ -155,11 +157,17 @@ def quantities(result: mfv.Result) -> dict[str, float]:
 def differences(comparison: Comparison) -> dict[str, float]:
     """Relative differences of the finite-element body from the half-plane.
 
-    The approach is not among them: like the shift it contains a rigid translation, which depends on where the bodies are
-    held, and the datum has been chosen for the shift.
+    The approach is not among them: like the shift it contains a rigid translation, which depends on where the bodies
+    are held, and the datum has been chosen for the shift.
     """
     numbers, expected = map(quantities, comparison)
     return {name: numbers[name] / expected[name] - 1 for name in QUANTITIES}
+
+
+def half_width_step(comparison: Comparison) -> float:
+    """Relative change of the contact half-width by one node more in contact; it changes in such steps only."""
+    x = comparison.half_plane.mesh.x
+    return float(0.5 * (x[1] - x[0]) / comparison.half_plane.summary.contact_half_width)
 
 
 def print_table(comparison: Comparison) -> None:
@@ -167,7 +175,9 @@ def print_table(comparison: Comparison) -> None:
     numbers, expected = map(quantities, comparison)
     print(f"{'':20} {'finite elements':>16} {'half-plane':>12} {'difference':>11}")
     for name, difference in differences(comparison).items():
-        print(f"{name:20} {numbers[name]:16.6g} {expected[name]:12.6g} {100 * difference:10.3f}%")
+        percent = round(100 * difference, 3) + 0.0  # no -0.000
+        print(f"{name:20} {numbers[name]:16.6g} {expected[name]:12.6g} {percent:10.3f}%")
+    print(f"One node at the edge of the contact makes {100 * half_width_step(comparison):.1f}% of its half-width.")
 
 
 def draw(comparison: Comparison, path: str) -> None:
@@ -178,9 +188,9 @@ def draw(comparison: Comparison, path: str) -> None:
     axes = picture.add_subplot()
     numbers, expected = comparison
     for name, colour in (("pressure", "#0072B2"), ("shear", "#D55E00")):
-        axes.plot(expected.mesh.x, expected.state[name], color=colour, linewidth=1.2, label=f"{name}, half-plane")
-        axes.plot(numbers.mesh.x, numbers.state[name], "o", color=colour, markersize=4, label=f"{name}, finite elements")
-    axes.set(xlabel="x", ylabel="traction / shear modulus", title="Rigid disk on a finite-element block and a half-plane")
+        axes.plot(expected.mesh.x, expected.state[name], color=colour, label=f"{name}, half-plane")
+        axes.plot(numbers.mesh.x, numbers.state[name], "o", color=colour, label=f"{name}, finite elements")
+    axes.set(xlabel="x", ylabel="traction / shear modulus", title="Rigid disk on finite elements and on a half-plane")
     axes.legend(frameon=False)
     picture.savefig(path, dpi=180)
 
@@ -198,10 +208,12 @@ def working_directory(kept: Path | None) -> Iterator[Path]:
 
 def main() -> None:
     parser = argparse.ArgumentParser(description="a finite-element body in contact, against the half-plane")
-    parser.add_argument("--surface-nodes", type=int, default=41, help="nodes under the contact (41 unless told)")
+    parser.add_argument("--surface-nodes", type=int, default=41, help="nodes of the contact (41 unless told)")
     parser.add_argument("-o", "--output", help="picture to draw")
-    parser.add_argument("--keep", type=Path, metavar="DIRECTORY", help="where to leave body.h5 and the case that uses it")
+    parser.add_argument("--keep", type=Path, metavar="DIRECTORY", help="where to leave body.h5 and its case")
     options = parser.parse_args()
+    if options.surface_nodes < FEWEST_NODES:
+        parser.error(f"--surface-nodes must be {FEWEST_NODES} or more")
     with working_directory(options.keep) as directory:
         comparison = compare(options.surface_nodes, directory)
     print_table(comparison)

@@ -111,7 +111,7 @@ enum {
 int mfv_stress(mfv_case *handle, int body, int step, size_t count, const double *x, const double *y, double *stresses);
 
 /* The largest von Mises stress of the body, found by refinement: place = {stress, x, y}. Since 0.1.0. */
-int mfv_largest_von_mises(mfv_case *handle, int body, int step, double place[3]);
+int mfv_largest_von_mises(mfv_case *handle, int body, int step, double *place);
 
 /* Both for tractions of the caller's, such as those of a result file: pressure and shear (on the lower body, to the right)
  * on `nodes` intervals of the lengths width[] around the positions arc[] along the surface. stresses or place may be

@@ -226,6 +226,7 @@ contains
       call read_datums(reader, scene)
       call read_friction(reader, scene, error)
       if (.not. allocated(error)) call read_steps(reader, scene, error)
+      if (.not. allocated(error)) call check_matrix(reader, scene, error)
       if (.not. allocated(error)) call read_mesh(reader, scene, error)
    end subroutine read_scene
 
@@ -407,6 +408,18 @@ contains
       if (allocated(error) .or. scene%lower%shape /= shape_flat_punch .or. scene%upper%shape /= shape_flat_punch) return
       call reader%complain('body', 2, 'shape', 'two flat punches make no contact of elastic bodies', error)
    end subroutine check_pair
+
+   !> Friction needs the tangential components of a matrix.
+   subroutine check_matrix(reader, scene, error)
+      type(reader_type), intent(in) :: reader
+      type(scene_type), intent(in) :: scene
+      type(error_type), allocatable, intent(out) :: error
+
+      if (scene%lower%shape /= shape_matrix .or. .not. scene%friction%acts()) return
+      if (size(scene%lower%matrix, 1) > size(scene%lower%position)) return
+      call reader%complain('body', 1, 'file', 'the matrix has normal components only; friction needs the tangential ones too', &
+                           error)
+   end subroutine check_matrix
 
    !> Where the displacements of the elastic bodies are measured.
    subroutine read_datums(reader, scene)

@@ -122,8 +122,16 @@ def test_step_is_that_of_the_header() -> None:
 
 def test_controls_are_those_of_the_header() -> None:
     assert {f"MFV_{control.name}": control.value for control in _library.Control} == {
-        name: int(value) for name, value in re.findall(r"(MFV_(?!ALONG_)\w+) = (\d+)", header_text())
+        name: int(value) for name, value in re.findall(r"(MFV_(?:KEEP|FORCE|DISPLACEMENT)) = (\d+)", header_text())
     }
+
+
+def test_stresses_and_bodies_are_those_of_the_header() -> None:
+    names = re.search(r"(MFV_SIGMA_XX.*?), MFV_STRESS_COUNT", header_text(), flags=re.DOTALL).group(1)
+    assert [name.strip() for name in names.split(",")] == [f"MFV_{name.upper()}" for name in mfv.stress.NAMES]
+    assert re.findall(r"MFV_(LOWER|UPPER) = (\d)", header_text()) == [
+        (name.upper(), str(number)) for number, name in enumerate(mfv.stress.BODIES)
+    ]
 
 
 def test_exceptions_are_those_of_the_list_of_statuses() -> None:
@@ -409,7 +417,7 @@ def test_xarray_finds_coordinates(tmp_path: Path) -> None:
 def test_closed_forms_are_those_of_the_result(sheared: mfv.Result) -> None:
     scene, loads = sheared.scene, sheared.summary
     half_width = mfv.reference.hertz_half_width(
-        loads.normal_force, scene.radius, scene.shear_modulus, scene.kolosov_constant
+        loads.normal_force, scene.upper_radius, scene.lower_shear_modulus, scene.lower_kolosov_constant
     )
     assert half_width == pytest.approx(sheared.reference.contact_half_width)
     np.testing.assert_allclose(
@@ -530,3 +538,163 @@ def test_the_module_runs_as_a_program(tmp_path: Path) -> None:
         text=True,
     )
     assert ended.returncode == 2 and ended.stderr.startswith("mfv: ")
+
+
+TWO_DISKS = (
+    "&scene title='two disks' /\n"
+    "&body shape='disk', radius=3, youngs_modulus=200e3, poisson_ratio=0.3 /\n"
+    "&body shape='disk', radius=3, youngs_modulus=200e3, poisson_ratio=0.3, yield_strength=250 /\n"
+    "&mesh nodes=101, half_width=0.0152 /\n"
+    "&friction law='coulomb', mu=0.7 /\n"
+    "&step normal_force=8.24 /\n"
+    "&step tangential_force=2.74 /\n"
+)
+
+
+@pytest.fixture(scope="module")
+def two_disks() -> mfv.Result:
+    return mfv.run(text=TWO_DISKS)
+
+
+def test_stresses_on_the_surface_are_the_tractions(two_disks: mfv.Result) -> None:
+    node = int(np.argmax(two_disks.state.pressure))
+    x = two_disks.mesh.x[node]
+    y = -(x**2) / (3.0 + np.sqrt(9.0 - x**2))
+    below = mfv.stress.stress(two_disks, x, y)
+    above = mfv.stress.stress(two_disks, x, -y, body="upper")
+    for field in (below, above):
+        assert field["sigma_yy"] == pytest.approx(-two_disks.state.pressure[node], rel=1e-9)
+        assert field["sigma_xy"] == pytest.approx(two_disks.state.shear[node], rel=1e-9)
+        assert field["sigma_rr"] == pytest.approx(-two_disks.state.pressure[node], rel=1e-4)
+        assert field["sigma_zz"] == pytest.approx(0.3 * (field["sigma_xx"] + field["sigma_yy"]), rel=1e-12)
+        mean = 0.5 * (field["principal_1"] + field["principal_2"])
+        assert mean == pytest.approx(0.5 * (field["sigma_xx"] + field["sigma_yy"]), rel=1e-12)
+    assert np.isnan(mfv.stress.stress(two_disks, 0.0, 0.1)["von_mises"])
+    assert mfv.stress.stress(two_disks, np.zeros((2, 1)), [-0.1, -0.2, -0.3])["von_mises"].shape == (2, 3)
+
+
+def test_largest_von_mises_is_not_missed_by_grids(two_disks: mfv.Result) -> None:
+    pressed = mfv.stress.grid(two_disks, step=1, across=301, down=151)
+    assert pressed.largest.y / pressed.half_width == pytest.approx(-0.70, abs=0.02)
+    assert np.nanmax(pressed["von_mises"]) <= pressed.largest.value * (1 + 1e-9)
+    assert np.nanmax(pressed["von_mises"]) == pytest.approx(pressed.largest.value, rel=1e-3)
+    sheared = mfv.stress.grid(two_disks)
+    assert sheared.largest.x / sheared.half_width == pytest.approx(0.82, abs=0.025)
+
+
+def test_bad_requests_for_stresses_are_told(two_disks: mfv.Result) -> None:
+    with pytest.raises(ValueError, match="'lower' or 'upper'"):
+        mfv.stress.stress(two_disks, 0.0, 0.0, body="left")
+    with pytest.raises(ValueError, match="there is no step 3: the result has 2"):
+        mfv.stress.grid(two_disks, step=3)
+    with pytest.raises(errors.BadArgument, match="upper body is rigid"):
+        mfv.stress.stress(mfv.run(text=SHEARED), 0.0, 0.0, body="upper")
+    with pytest.raises(ValueError, match="there is no stress sigma_ab; there is sigma_xx"):
+        mfv.plot.stress_figure(two_disks, "sigma_ab")
+    with pytest.raises(ValueError, match="sigma_rr is not defined in a half-plane"):
+        mfv.plot.stress_figure(mfv.run(text=SHEARED), "sigma_rr")
+
+
+def test_stresses_are_drawn(two_disks: mfv.Result, tmp_path: Path) -> None:
+    for name in ("von_mises", "sigma_rtheta"):
+        picture = mfv.plot.stress_figure(two_disks, name, body="upper")
+        picture.savefig(tmp_path / "stress.png")
+        ax = picture.axes[0]
+        assert ax.get_xlabel() == "$x/a$"
+        assert ax.get_xlim() == pytest.approx((-2.0, 2.0))
+        assert ax.get_ylim() == pytest.approx((0.0, 2.0))
+
+
+def test_yield_is_warned_of(two_disks: mfv.Result) -> None:
+    assert two_disks.attributes["warnings"].startswith("the largest von Mises stress of the upper body")
+    assert mfv.run(text=SHEARED).attributes["warnings"] == ""
+
+
+def test_both_bodies_displacements_close_the_gap(two_disks: mfv.Result) -> None:
+    state, mesh, summary = two_disks.state, two_disks.mesh, two_disks.summary
+    gap = mesh.initial_gap - summary.approach + state.normal_displacement + state.upper_normal_displacement
+    assert gap == pytest.approx(state.gap, abs=1e-15)
+    slip = state.tangential_displacement - state.upper_tangential_displacement - summary.shift
+    assert slip == pytest.approx(state.slip, abs=1e-15)
+    assert state.normal_displacement == pytest.approx(state.upper_normal_displacement, rel=1e-12)
+
+
+def test_compliance_says_what_was_needed(two_disks: mfv.Result) -> None:
+    blocks = {name: two_disks.compliance[name] for name in ("wp", "wt", "up", "ut")}
+    assert blocks == {"wp": 1, "wt": 0, "up": 0, "ut": 1}
+    assert two_disks.compliance.lower_bytes == 3 * 8 * 101
+    frictionless = mfv.run(text=HALF_PLANE + DISK + MESH + "&step normal_force=1.0e-3 /")
+    assert [frictionless.compliance[name] for name in ("wp", "wt", "up", "ut")] == [1, 0, 0, 0]
+    assert frictionless.compliance.upper_bytes == 0
+
+
+def test_rotation_is_led(tmp_path: Path) -> None:
+    with mfv.Case.from_text(HALF_PLANE + DISK + MESH + FRICTION) as case:
+        case.advance(normal_force=5.0e-4, friction=False)
+        case.advance(moment=1.0e-6, check=True)
+        assert case["summary/moment"] == pytest.approx(1.0e-6, rel=1e-12)
+        turned = case["summary/rotation"]
+        case.advance(rotation=0.0, check=True)
+        assert turned > 0.0
+        assert case["summary/rotation"] == pytest.approx(0.0, abs=1e-15)
+        assert case.result().certificate.moment_balance < 1e-11
+        with pytest.raises(TypeError, match="give moment or rotation, not both"):
+            case.advance(moment=0.0, rotation=0.0)
+
+
+def matrix_file(path: Path, **datasets: np.ndarray) -> str:
+    """A case with a body from a matrix in a file beside it."""
+    with h5py.File(path, "w") as file:
+        for name, values in datasets.items():
+            file[name] = values
+    return f"&body shape='matrix', file='{path}' /\n" + DISK + FRICTION + "&step normal_force=1.0e-4 /\n"
+
+
+def half_plane_matrix(nodes: int) -> tuple[np.ndarray, np.ndarray]:
+    """Positions and nodal compliance of the half-plane of these tests, by differentiating nothing: from displacements."""
+    x = (np.arange(nodes) - 0.5 * (nodes - 1)) * 4.0e-4
+    h, distance = 2.0e-4, np.abs(x[:, None] - x[None, :])
+    bracket = sum(s * (distance + s * h) * np.log(np.abs(distance + s * h) / 0.25) for s in (1, -1))
+    direct = 2.8 / (4 * np.pi) * (2 * h - bracket) / (2 * h)
+    cross = 0.8 / 8 * np.sign(x[:, None] - x[None, :])
+    return x, np.block([[direct, cross], [-cross, direct]])
+
+
+def test_a_half_plane_as_a_matrix(tmp_path: Path) -> None:
+    x, compliance = half_plane_matrix(41)
+    mesh = "&mesh nodes=41, half_width=0.0082 /\n"
+    expected = mfv.run(text=HALF_PLANE + DISK + FRICTION + mesh + "&step normal_force=1.0e-4 /\n", check=True)
+    for matrix in ({"compliance": compliance}, {"stiffness": np.linalg.inv(compliance)}):
+        result = mfv.run(text=matrix_file(tmp_path / "body.h5", x=x, **matrix), check=True)
+        assert result.state.pressure == pytest.approx(expected.state.pressure, abs=1e-9)
+        assert result.state.shear == pytest.approx(expected.state.shear, abs=1e-9)
+        assert result.certificate.largest < 1e-10
+
+
+def test_bad_matrices_are_refused(tmp_path: Path) -> None:
+    x, compliance = half_plane_matrix(5)
+    lopsided, infinite, negative = (compliance.copy() for _ in range(3))
+    lopsided[0, 1] *= 1.01
+    infinite[2, 3] = np.inf
+    negative[0, 0] = -1.0
+    path = tmp_path / "body.h5"
+    for datasets, message in (
+        ({"x": x}, "either compliance or stiffness must be there"),
+        ({"compliance": compliance}, "dataset x is missing"),
+        ({"x": x[::-1], "compliance": compliance}, "x is not increasing at node 2"),
+        ({"x": x, "compliance": compliance[:4, :4]}, r"compliance has the shape 4 x 4; with 5 positions in x it must be 5 x 5"),
+        ({"x": x, "compliance": lopsided}, "compliance is not symmetric: row"),
+        ({"x": x, "compliance": infinite}, "compliance is not finite in row"),
+        ({"x": x, "compliance": negative}, "compliance is not positive definite in its normal part"),
+        ({"x": x, "stiffness": np.zeros((10, 10))}, "stiffness is not positive definite"),
+        ({"x": x, "compliance": compliance, "gap": x[:2]}, "gap has 2 values, x has 5"),
+        ({"x": x, "compliance": compliance, "width": -x}, "width is not positive at node"),
+        ({"x": x, "compliance": compliance[:5, :5]}, "the matrix has normal components only"),
+    ):
+        with pytest.raises(errors.InputError, match=message):
+            mfv.run(text=matrix_file(path, **datasets))
+    path.write_text("no HDF5")
+    with pytest.raises(errors.InputError, match="body.h5 is no HDF5 file"):
+        mfv.run(text=f"&body shape='matrix', file='{path}' /\n" + DISK + "&step normal_force=1 /")
+    with pytest.raises(errors.InputError, match="there is no such file"):
+        mfv.run(text="&body shape='matrix', file='nowhere.h5' /\n" + DISK + "&step normal_force=1 /")

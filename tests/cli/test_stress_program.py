@@ -1,0 +1,104 @@
+"""mfv_stress as a user runs it: what it puts into the file and prints, and what it leaves alone."""
+import os
+import subprocess
+from pathlib import Path
+
+import h5py
+import numpy as np
+import pytest
+import xarray
+
+ROOT = Path(__file__).resolve().parents[2]
+RUN = Path(os.environ.get("MFV_RUN", ROOT / "build/release/bin/mfv_run"))
+STRESS = RUN.with_name("mfv_stress")
+
+CASE = """&scene length_unit='mm', force_unit='N' /
+&body shape='hole', radius=4.0, shear_modulus=1.0, poisson_ratio=0.3, yield_strength=1e-3 /
+&body shape='disk', radius=1.0, rigid=.true. /
+&friction law='coulomb', mu=0.4 /
+&mesh nodes=41, half_width=0.06 /
+&step normal_force=1.0e-3, friction=.false. /
+&step tangential_force=2.0e-4 /
+"""
+
+
+def stress(*arguments, cwd):
+    return subprocess.run([STRESS, *map(str, arguments)], cwd=cwd, capture_output=True, text=True, timeout=300)
+
+
+@pytest.fixture
+def folder(tmp_path):
+    (tmp_path / "case.nml").write_text(CASE)
+    subprocess.run([RUN, "case.nml"], cwd=tmp_path, check=True, capture_output=True)
+    return tmp_path
+
+
+def test_a_grid_is_put_into_the_file(folder):
+    run = stress("case.h5", "--points", 41, 21, "--width", 1.5, "--depth", 1, cwd=folder)
+    assert run.returncode == 0, run.stderr
+    assert "largest von Mises" in run.stdout and "/stress/last/lower" in run.stdout
+    assert "beyond the yield_strength" in run.stderr
+    with h5py.File(folder / "case.h5") as result:
+        group = result["stress/last/lower"]
+        assert group["von_mises"].shape == (21, 41)
+        assert group["sigma_xx"].attrs["units"] == "N/mm^2" and "tension" in group["sigma_xx"].attrs["long_name"]
+        a = group["half_width"][()]
+        assert group["x"][-1] == pytest.approx(1.5 * a, rel=0.1) and group["y"][-1] == pytest.approx(-a)
+        deeper_than_a_box = group["y"][()] < -result["mesh/interval"][()]
+        assert group["largest_von_mises"][()] >= np.nanmax(group["von_mises"][()][deeper_than_a_box]) * (1 - 1e-9)
+        assert result["state/pressure"].shape == (41,)
+    grid = xarray.open_dataset(folder / "case.h5", group="stress/last/lower", engine="h5netcdf")
+    assert grid.von_mises.dims == ("y", "x")
+
+
+def test_states_and_bodies_stand_beside_each_other_and_are_replaced(folder):
+    for arguments in ((), ("--step", 1), ("--points", 11, 11)):
+        assert stress("case.h5", *arguments, cwd=folder).returncode == 0
+    with h5py.File(folder / "case.h5") as result:
+        assert set(result["stress"]) == {"last", "0001"}
+        assert result["stress/last/lower/von_mises"].shape == (11, 11)
+        assert result["stress/0001/lower/von_mises"].shape == (81, 161)
+
+
+def test_points_are_printed(folder):
+    (folder / "points.txt").write_text("# x y\n0.0 -0.02\n0.01 -0.03\n0 1\n")
+    run = stress("case.h5", "--at", "points.txt", cwd=folder)
+    assert run.returncode == 0
+    rows = [line.split() for line in run.stdout.splitlines() if line and line.lstrip()[0] in "-0123456789"]
+    table = np.array(rows, dtype=float)
+    assert table.shape == (3, 12)
+    assert np.isnan(table[2, 2:]).all()
+    with h5py.File(folder / "case.h5") as result:
+        assert result["stress/last/lower_points/von_mises"][()] == pytest.approx(table[:, 8], nan_ok=True)
+
+
+@pytest.mark.parametrize(
+    "arguments, message",
+    [
+        ((), "a result file is missing"),
+        (("case.h5", "--body", "left"), "--body must be lower or upper, not 'left'"),
+        (("case.h5", "--depth", "-1"), "--depth needs a number above 0, not '-1'"),
+        (("case.h5", "--points", "1", "5"), "--points needs a whole number of at least 2, not '1'"),
+        (("case.h5", "--what"), "unknown option '--what'"),
+        (("case.h5", "--step", "9"), "case.h5: there is no state steps/0009"),
+        (("case.h5", "--body", "upper"), "the upper body is rigid or a matrix"),
+        (("nowhere.h5",), "nowhere.h5: there is no such file"),
+        (("case.nml",), "case.nml is no HDF5 file"),
+        (("case.h5", "--at", "nowhere.txt"), "nowhere.txt"),
+        (("other.h5",), "attribute input is missing: no result of MFV"),
+    ],
+)
+def test_bad_requests_leave_the_file_as_it_was(folder, arguments, message):
+    with h5py.File(folder / "other.h5", "w") as other:
+        other["x"] = 1.0
+    before = (folder / "case.h5").read_bytes()
+    run = stress(*arguments, cwd=folder)
+    assert run.returncode == 2
+    assert message in run.stderr
+    assert (folder / "case.h5").read_bytes() == before
+    assert not list(folder.glob("*.part*"))
+
+
+def test_help_teaches():
+    run = stress("--help", cwd=ROOT)
+    assert run.returncode == 0 and "largest von Mises" in run.stdout
