@@ -79,7 +79,7 @@ contains
       type(error_type), allocatable, intent(out) :: error
       real(wp), allocatable :: factor(:, :)
       real(wp) :: difference
-      integer :: info, place(2)
+      integer :: info, part, place(2)
 
       if (size(matrix, 1) /= size(matrix, 2) .or. (size(matrix, 1) /= nodes .and. size(matrix, 1) /= 2*nodes)) then
          call set_error(error, MFV_INPUT_ERROR, name//' has the shape '//to_text(size(matrix, 1))//' x '// &
@@ -102,10 +102,15 @@ contains
                         to_text(matrix(place(2), place(1))))
          return
       end if
-      factor = matrix(:nodes, :nodes)
-      call dpotrf('L', nodes, factor, nodes, info)
-      if (info /= 0) call set_error(error, MFV_INPUT_ERROR, name//' is not positive definite in its normal part (rows and '// &
-                                    'columns 1 to '//to_text(nodes)//'; found at row '//to_text(max(info, 1))//')')
+      do part = 1, size(matrix, 1)/nodes
+         factor = matrix((part - 1)*nodes + 1:part*nodes, (part - 1)*nodes + 1:part*nodes)
+         call dpotrf('L', nodes, factor, nodes, info)
+         if (info == 0) cycle
+         call set_error(error, MFV_INPUT_ERROR, name//' is not positive definite in its '// &
+                        trim(merge('normal    ', 'tangential', part == 1))//' part (rows and columns '// &
+                        to_text((part - 1)*nodes + 1)//' to '//to_text(part*nodes)//'; found at row '//to_text(max(info, 1))//')')
+         return
+      end do
    end subroutine check_compliance
 
    !> Inverse of a symmetric stiffness (any shape (m, m)). Error MFV_INPUT_ERROR where it is not positive definite: a body

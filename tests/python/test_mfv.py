@@ -673,10 +673,11 @@ def test_a_half_plane_as_a_matrix(tmp_path: Path) -> None:
 
 def test_bad_matrices_are_refused(tmp_path: Path) -> None:
     x, compliance = half_plane_matrix(5)
-    lopsided, infinite, negative = (compliance.copy() for _ in range(3))
+    lopsided, infinite, negative, backwards = (compliance.copy() for _ in range(4))
     lopsided[0, 1] *= 1.01
     infinite[2, 3] = np.inf
     negative[0, 0] = -1.0
+    backwards[5:, 5:] *= -1.0
     path = tmp_path / "body.h5"
     for datasets, message in (
         ({"x": x}, "either compliance or stiffness must be there"),
@@ -686,6 +687,7 @@ def test_bad_matrices_are_refused(tmp_path: Path) -> None:
         ({"x": x, "compliance": lopsided}, "compliance is not symmetric: row"),
         ({"x": x, "compliance": infinite}, "compliance is not finite in row"),
         ({"x": x, "compliance": negative}, "compliance is not positive definite in its normal part"),
+        ({"x": x, "compliance": backwards}, "compliance is not positive definite in its tangential part"),
         ({"x": x, "stiffness": np.zeros((10, 10))}, "stiffness is not positive definite"),
         ({"x": x, "compliance": compliance, "gap": x[:2]}, "gap has 2 values, x has 5"),
         ({"x": x, "compliance": compliance, "width": -x}, "width is not positive at node"),
