@@ -13,7 +13,7 @@ module mfv_augmented_system
    use, intrinsic :: ieee_arithmetic, only: ieee_is_finite
    use mfv_compliance, only: block_up, block_ut, block_wp, block_wt, compliance_type
    use mfv_contact_fields, only: contact_fields_type, new_contact_fields
-   use mfv_contact_model, only: contact_model_type
+   use mfv_contact_model, only: along_approach, along_rotation, along_shift, contact_model_type
    use mfv_contact_system
    use mfv_kinds, only: wp
    use mfv_node_status
@@ -64,7 +64,7 @@ contains
       integer :: info, n
 
       assembly = new_assembly(model, constraints%status)
-      call add_elasticity(assembly, model%compliance)
+      call add_elasticity(assembly, model, constraints%tangential)
       call add_force_balance(assembly, model)
       if (model%rotational) call add_rotation(assembly, model)
       call add_normal_constraints(assembly, model, constraints)
@@ -129,17 +129,26 @@ contains
    end function new_assembly
 
    !> Rows of eq. 2.1: (w - delta) + delta - C_wp p - C_wt tau = 0 and s + U - C_up p - C_ut tau = 0.
-   subroutine add_elasticity(assembly, compliance)
+   !> Where normals lean, approach and shift are in both; a shift that is no unknown comes on the right.
+   subroutine add_elasticity(assembly, model, shift)
       type(assembly_type), intent(inout) :: assembly
-      class(compliance_type), intent(in) :: compliance
+      type(contact_model_type), intent(in) :: model
+      type(load_type), intent(in) :: shift
       integer :: i, m
 
       m = size(assembly%nodes)
-      associate (pressure => assembly%pressure, shear => assembly%shear)
+      associate (pressure => assembly%pressure, shear => assembly%shear, compliance => model%compliance, &
+                 nodes => assembly%nodes)
          call add_block(assembly, compliance, block_wp, pressure, pressure, assembly%stress)
          do i = 1, m
             assembly%matrix(pressure + i, assembly%normal + i) = 1.0_wp
-            assembly%matrix(pressure + i, assembly%approach) = 1.0_wp
+            assembly%matrix(pressure + i, assembly%approach) = model%normal_arm(nodes(i), along_approach)
+            if (assembly%tangential) then
+               assembly%matrix(pressure + i, assembly%shift) = model%normal_arm(nodes(i), along_shift)
+            else
+               assembly%right(pressure + i, :) = -model%normal_arm(nodes(i), along_shift)*[shift%value, shift%rate] &
+                                                 /assembly%length
+            end if
          end do
          if (.not. assembly%tangential) return
          call add_block(assembly, compliance, block_wt, pressure, shear, assembly%shear_stress)
@@ -147,7 +156,8 @@ contains
          call add_block(assembly, compliance, block_ut, shear, shear, assembly%shear_stress)
          do i = 1, m
             assembly%matrix(shear + i, assembly%slip + i) = 1.0_wp
-            assembly%matrix(shear + i, assembly%shift) = 1.0_wp
+            assembly%matrix(shear + i, assembly%shift) = model%tangential_arm(nodes(i), along_shift)
+            assembly%matrix(shear + i, assembly%approach) = model%tangential_arm(nodes(i), along_approach)
          end do
       end associate
    end subroutine add_elasticity
@@ -172,16 +182,10 @@ contains
    subroutine add_force_balance(assembly, model)
       type(assembly_type), intent(inout) :: assembly
       type(contact_model_type), intent(in) :: model
-      integer :: m
 
-      m = size(assembly%nodes)
-      associate (weight => model%width(assembly%nodes)/assembly%length)
-         assembly%matrix(assembly%approach, assembly%pressure + 1:assembly%pressure + m) = weight
-         assembly%matrix(assembly%approach, assembly%normal_force) = -1.0_wp
-         if (.not. assembly%tangential) return
-         assembly%matrix(assembly%shift, assembly%shear + 1:assembly%shear + m) = weight
-         assembly%matrix(assembly%shift, assembly%tangential_force) = -1.0_wp
-      end associate
+      call add_resultant(assembly, model, along_approach, assembly%approach, assembly%normal_force, assembly%stress, 1.0_wp)
+      if (assembly%tangential) call add_resultant(assembly, model, along_shift, assembly%shift, assembly%tangential_force, &
+                                                  assembly%shear_stress, 1.0_wp)
    end subroutine add_force_balance
 
    !> The rotation in the elasticity rows, the balance of moments in its own (eq. 4.24).
@@ -191,18 +195,32 @@ contains
       integer :: m
 
       m = size(assembly%nodes)
-      associate (weight => model%width(assembly%nodes)/assembly%length, &
-                 normal_arm => model%normal_arm(assembly%nodes)/assembly%length, &
-                 tangential_arm => model%tangential_arm(assembly%nodes)/assembly%length)
-         assembly%matrix(assembly%pressure + 1:assembly%pressure + m, assembly%rotation) = normal_arm
-         assembly%matrix(assembly%rotation, assembly%pressure + 1:assembly%pressure + m) = weight*normal_arm
-         assembly%matrix(assembly%rotation, assembly%moment) = -1.0_wp
-         if (.not. assembly%tangential) return
-         assembly%matrix(assembly%shear + 1:assembly%shear + m, assembly%rotation) = tangential_arm
-         assembly%matrix(assembly%rotation, assembly%shear + 1:assembly%shear + m) = &
-            weight*tangential_arm*assembly%shear_stress/assembly%stress
-      end associate
+      call add_resultant(assembly, model, along_rotation, assembly%rotation, assembly%moment, assembly%stress, assembly%length)
+      assembly%matrix(assembly%pressure + 1:assembly%pressure + m, assembly%rotation) = &
+         model%normal_arm(assembly%nodes, along_rotation)/assembly%length
+      if (.not. assembly%tangential) return
+      assembly%matrix(assembly%shear + 1:assembly%shear + m, assembly%rotation) = &
+         model%tangential_arm(assembly%nodes, along_rotation)/assembly%length
    end subroutine add_rotation
+
+   !> A row that sums up the tractions to a force or moment in the column `force`; `stress`: its unit of stress, `arm`: of arms.
+   subroutine add_resultant(assembly, model, along, row, force, stress, arm)
+      type(assembly_type), intent(inout) :: assembly
+      type(contact_model_type), intent(in) :: model
+      integer, intent(in) :: along, row, force
+      real(wp), intent(in) :: stress, arm
+      integer :: m
+
+      m = size(assembly%nodes)
+      associate (weight => model%width(assembly%nodes)/assembly%length/arm/stress)
+         assembly%matrix(row, assembly%pressure + 1:assembly%pressure + m) = &
+            weight*model%normal_arm(assembly%nodes, along)*assembly%stress
+         assembly%matrix(row, force) = -1.0_wp
+         if (.not. assembly%tangential) return
+         assembly%matrix(row, assembly%shear + 1:assembly%shear + m) = &
+            weight*model%tangential_arm(assembly%nodes, along)*assembly%shear_stress
+      end associate
+   end subroutine add_resultant
 
    !> Rows w - delta = -g0 for nodes in contact, p = 0 for open ones.
    subroutine add_normal_constraints(assembly, model, constraints)

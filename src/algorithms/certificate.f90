@@ -6,7 +6,7 @@ module mfv_certificate
    use, intrinsic :: ieee_arithmetic, only: ieee_is_finite
    use mfv_compliance, only: block_up, block_ut, block_wp, block_wt, coupling_goodman
    use mfv_contact_fields, only: contact_fields_type
-   use mfv_contact_model, only: contact_model_type
+   use mfv_contact_model, only: along_approach, along_rotation, along_shift, contact_model_type
    use mfv_contact_state, only: contact_state_type
    use mfv_kinds, only: wp
    use mfv_node_status
@@ -155,23 +155,27 @@ contains
                                   model%force(abs(fields%shear)), abs(fields%tangential_force))
       call displacement_parts(block_wp, block_wt)
       self%normal = max(self%normal, maxval(abs(by_pressure)), maxval(abs(by_shear)))
-      rigid = fields%rotation*model%normal_arm
+      rigid = model%rigid_normal(fields)
       call self%note(elasticity_normal, maxval(abs(fields%normal + rigid - by_pressure - by_shear)), &
                      max(self%normal, maxval(abs(rigid))))
       call displacement_parts(block_up, block_ut)
       self%tangential = max(self%tangential, grip*self%normal, maxval(abs(by_pressure)), maxval(abs(by_shear)), &
                             abs(fields%shift))
-      rigid = fields%rotation*model%tangential_arm
+      rigid = model%rigid_tangential(fields)
       call self%note(elasticity_tangential, maxval(abs(fields%tangential + rigid - by_pressure - by_shear)), &
                      max(self%tangential, maxval(abs(rigid))))
-      call self%note(normal_force_balance, abs(fields%normal_force - model%force(fields%pressure)), &
+      call self%note(normal_force_balance, abs(fields%normal_force - model%resultant(along_approach, fields%pressure, &
+                                                                                           fields%shear)), &
                      self%normal_force)
-      call self%note(tangential_force_balance, abs(fields%tangential_force - model%force(fields%shear)), &
+      call self%note(tangential_force_balance, abs(fields%tangential_force - model%resultant(along_shift, fields%pressure, &
+                                                                                                   fields%shear)), &
                      self%tangential_force)
       if (.not. self%claimed(moment_balance)) return
-      self%moment = max(self%moment, abs(fields%moment), model%force(abs(model%normal_arm*fields%pressure)) &
-                        + model%force(abs(model%tangential_arm*fields%shear)))
-      call self%note(moment_balance, abs(fields%moment - model%moment(fields%pressure, fields%shear)), self%moment)
+      self%moment = max(self%moment, abs(fields%moment), &
+                        model%force(abs(model%normal_arm(:, along_rotation)*fields%pressure)) &
+                        + model%force(abs(model%tangential_arm(:, along_rotation)*fields%shear)))
+      call self%note(moment_balance, abs(fields%moment - model%resultant(along_rotation, fields%pressure, fields%shear)), &
+                     self%moment)
 
    contains
 
@@ -236,7 +240,10 @@ contains
                      + 0.5_wp*(before%tangential_force + now%tangential_force)*(now%shift - before%shift) &
                      + 0.5_wp*(before%moment + now%moment)*(now%rotation - before%rotation)
          stored = 0.5_wp*(model%force(now%pressure*now%normal) + model%force(now%shear*now%tangential) &
-                          + now%rotation*model%moment(now%pressure, now%shear))
+                          + now%approach*(model%resultant(along_approach, now%pressure, now%shear) &
+                                          - model%force(now%pressure)) &
+                          + now%shift*(model%resultant(along_shift, now%pressure, now%shear) - model%force(now%shear)) &
+                          + now%rotation*model%resultant(along_rotation, now%pressure, now%shear))
       end associate
       self%energy = max(self%energy, abs(self%work), abs(stored))
       call self%note(energy_balance, abs(self%work - stored - after%dissipation), self%energy)

@@ -2,9 +2,9 @@
 !>
 !> Nodes are at equal arc lengths from the pole on both bodies. Gaps are the exact vertical ones at the nodes' x, that of
 !> the circle of scene%arc_radius; another radius would put the other body's nodes at other x, off by the third power of
-!> the angle. Normals are vertical (docs/theory.md has the limits).
+!> the angle. Normals are vertical (docs/theory.md has the limits) or, for a disk in a hole, along the radius; gaps too.
 module mfv_contact_model
-   use mfv_body, only: gap_between, shape_matrix, shape_profile
+   use mfv_body, only: gap_between, radial_gap_between, shape_matrix, shape_profile
    use mfv_body_pair, only: body_pair_type, new_body_pair
    use mfv_circle, only: circle_intervals, kernel_fourier
    use mfv_compliance, only: compliance_type
@@ -15,7 +15,10 @@ module mfv_contact_model
    use mfv_scene, only: control_displacement, control_force, scene_type
    implicit none
    private
-   public :: contact_model_type, new_contact_model, choose_mesh
+   public :: contact_model_type, new_contact_model, choose_mesh, along_approach, along_shift, along_rotation
+
+   !> The upper body's motions.
+   integer, parameter :: along_approach = 1, along_shift = 2, along_rotation = 3
 
    type :: contact_model_type
       type(scene_type) :: scene
@@ -27,8 +30,9 @@ module mfv_contact_model
       real(wp), allocatable :: initial_gap(:)
       !> Whether both bodies have a surface at the node, so that it can touch at all.
       logical, allocatable :: can_touch(:)
-      !> By how much a unit of rotation of the upper body lessens the gap, and carries its surface to the right; lengths.
-      real(wp), allocatable :: normal_arm(:), tangential_arm(:)
+      !> By how much a unit of approach, shift and rotation of the upper body lessens the gap, and carries its surface along
+      !> the lower one to the right; shape (nodes, 3), of approach and shift without unit, of rotation lengths.
+      real(wp), allocatable :: normal_arm(:, :), tangential_arm(:, :)
       type(body_pair_type) :: compliance
       !> Whether the tangential problem is modelled: friction acts in some step; and whether rotation is.
       logical :: tangential = .false., rotational = .false.
@@ -44,8 +48,11 @@ module mfv_contact_model
       procedure :: length
       procedure :: gap
       procedure :: relative_displacements
+      procedure :: rigid_normal
+      procedure :: rigid_tangential
+      procedure :: nearest_approach
       procedure :: force
-      procedure :: moment
+      procedure :: resultant
       procedure :: reaches_end
       procedure :: spare_nodes
       procedure :: grow
@@ -135,8 +142,10 @@ contains
       real(wp) :: started
 
       started = seconds_now()
-      call self%scene%lower%make_compliance(nodes, interval, self%scene%coupling, self%tangential, lower)
-      call self%scene%upper%make_compliance(nodes, interval, self%scene%coupling, self%tangential, upper)
+      associate (scene => self%scene)
+         call scene%lower%make_compliance(nodes, interval, scene%coupling, self%tangential, scene%mesh%radial, lower)
+         call scene%upper%make_compliance(nodes, interval, scene%coupling, self%tangential, scene%mesh%radial, upper)
+      end associate
       call new_body_pair(lower, upper, self%compliance)
       self%assembly_seconds = self%assembly_seconds + seconds_now() - started
    end subroutine build_compliance
@@ -178,12 +187,40 @@ contains
       real(wp), intent(out) :: normal(:), tangential(:)
 
       call self%compliance%displacements(fields%pressure, fields%shear, normal, tangential)
-      if (.not. self%rotational) return
-      normal = normal - fields%rotation*self%normal_arm
-      tangential = tangential - fields%rotation*self%tangential_arm
+      normal = normal - self%rigid_normal(fields)
+      tangential = tangential - self%rigid_tangential(fields)
    end subroutine relative_displacements
 
-   !> Resultant of a traction, force/length.
+   !> By how much the upper body's motion lessens the gaps, but for the approach itself; shape (nodes), length.
+   pure function rigid_normal(self, fields)
+      class(contact_model_type), intent(in) :: self
+      type(contact_fields_type), intent(in) :: fields
+      real(wp) :: rigid_normal(self%compliance%nodes)
+
+      rigid_normal = (self%normal_arm(:, along_approach) - 1.0_wp)*fields%approach &
+                     + self%normal_arm(:, along_shift)*fields%shift + self%normal_arm(:, along_rotation)*fields%rotation
+   end function rigid_normal
+
+   !> How far the upper body's motion carries its surface to the right, but for the shift itself; shape (nodes), length.
+   pure function rigid_tangential(self, fields)
+      class(contact_model_type), intent(in) :: self
+      type(contact_fields_type), intent(in) :: fields
+      real(wp) :: rigid_tangential(self%compliance%nodes)
+
+      rigid_tangential = self%tangential_arm(:, along_approach)*fields%approach &
+                         + (self%tangential_arm(:, along_shift) - 1.0_wp)*fields%shift &
+                         + self%tangential_arm(:, along_rotation)*fields%rotation
+   end function rigid_tangential
+
+   !> How much further the upper body must approach until the node with the least way to go closes its `gap`, length.
+   pure real(wp) function nearest_approach(self, gap)
+      class(contact_model_type), intent(in) :: self
+      real(wp), intent(in) :: gap(:)
+
+      nearest_approach = minval(gap/max(self%normal_arm(:, along_approach), tiny(1.0_wp)), mask=self%can_touch)
+   end function nearest_approach
+
+   !> Sum of a traction over the surface, force/length.
    pure real(wp) function force(self, traction)
       class(contact_model_type), intent(in) :: self
       real(wp), intent(in) :: traction(:)
@@ -191,13 +228,15 @@ contains
       force = dot_product(self%width, traction)
    end function force
 
-   !> Moment of the tractions about the centre of rotation, counterclockwise on the lower body, force.
-   pure real(wp) function moment(self, pressure, shear)
+   !> What the tractions amount to on the lower body: normal force down (`along_approach`), tangential force to the right
+   !> (`along_shift`), force/length; moment about the centre of rotation, counterclockwise (`along_rotation`), force.
+   pure real(wp) function resultant(self, along, pressure, shear)
       class(contact_model_type), intent(in) :: self
+      integer, intent(in) :: along
       real(wp), intent(in) :: pressure(:), shear(:)
 
-      moment = self%force(self%normal_arm*pressure) + self%force(self%tangential_arm*shear)
-   end function moment
+      resultant = self%force(self%normal_arm(:, along)*pressure) + self%force(self%tangential_arm(:, along)*shear)
+   end function resultant
 
    !> Whether the contact statuses (true: in contact) reach an end of the mesh beyond which both bodies go on.
    pure logical function reaches_end(self, contact)
@@ -263,7 +302,11 @@ contains
       else if (radius > 0.0_wp) then
          self%x = radius*sin(self%arc/radius)
       end if
-      self%initial_gap = gap_between(self%scene%lower, self%scene%upper, self%x, self%scene%mesh%parabolic)
+      if (self%scene%mesh%radial) then
+         self%initial_gap = radial_gap_between(self%scene%lower, self%scene%upper, self%arc/radius)
+      else
+         self%initial_gap = gap_between(self%scene%lower, self%scene%upper, self%x, self%scene%mesh%parabolic)
+      end if
       self%can_touch = [(self%touchable(self%arc(i)), i=1, n)]
       call place_arms(self)
    end subroutine place_nodes
@@ -274,17 +317,43 @@ contains
    subroutine place_arms(self)
       class(contact_model_type), intent(inout) :: self
       real(wp) :: height
+      integer :: n
 
+      n = self%nodes()
+      if (allocated(self%normal_arm)) deallocate (self%normal_arm, self%tangential_arm)
+      allocate (self%normal_arm(n, 3), self%tangential_arm(n, 3), source=0.0_wp)
+      self%normal_arm(:, along_approach) = 1.0_wp
+      self%tangential_arm(:, along_shift) = 1.0_wp
+      if (self%scene%mesh%radial) then
+         call place_radial_arms(self)
+         return
+      end if
       height = 0.0_wp
       if (self%scene%upper%circular()) then
          height = sign(self%scene%upper%radius, self%scene%upper%curvature())
       else if (self%scene%lower%circular()) then
          height = -sign(self%scene%lower%radius, self%scene%lower%curvature())
       end if
-      self%normal_arm = -self%x
-      self%tangential_arm = spread(height, 1, self%nodes())
-      if (abs(height) > 0.0_wp) self%tangential_arm = sign(sqrt(max((height - self%x)*(height + self%x), 0.0_wp)), height)
+      self%normal_arm(:, along_rotation) = -self%x
+      self%tangential_arm(:, along_rotation) = sign(sqrt(max((height - self%x)*(height + self%x), 0.0_wp)), height)
+      if (.not. abs(height) > 0.0_wp) self%tangential_arm(:, along_rotation) = 0.0_wp
    end subroutine place_arms
+
+   !> The same with normals along the radius: where the normal leans, approach and shift have parts of each other's, and a
+   !> rotation only slides the surfaces on each other. `side`: 1 where the lower body is the disk, -1 where it is the hole.
+   subroutine place_radial_arms(self)
+      class(contact_model_type), intent(inout) :: self
+      real(wp) :: side
+
+      side = self%scene%lower%curvature()*self%scene%lower%radius
+      associate (angle => self%arc/self%scene%arc_radius())
+         self%normal_arm(:, along_approach) = cos(angle)
+         self%normal_arm(:, along_shift) = -side*sin(angle)
+         self%tangential_arm(:, along_approach) = side*sin(angle)
+         self%tangential_arm(:, along_shift) = cos(angle)
+      end associate
+      self%tangential_arm(:, along_rotation) = -side*self%scene%upper%radius
+   end subroutine place_radial_arms
 
    !> Half-width of a mesh for a scene that asks for none, length along the surface: the punch itself, the whole profile, or
    !> Hertz's contact under the largest load with some room.

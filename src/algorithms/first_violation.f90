@@ -11,7 +11,7 @@
 module mfv_first_violation
    use mfv_certificate, only: certificate_type, new_certificate
    use mfv_contact_fields, only: contact_fields_type
-   use mfv_contact_model, only: contact_model_type
+   use mfv_contact_model, only: along_rotation, contact_model_type
    use mfv_contact_state, only: contact_state_type, new_contact_state
    use mfv_contact_system
    use mfv_error, only: error_type, set_error
@@ -92,11 +92,15 @@ contains
       class(contact_system_type), intent(in) :: system
       logical, intent(in) :: record_events
       type(first_violation_type) :: self
+      real(wp), dimension(model%nodes()) :: normal, tangential
 
       self%model = model
       allocate (self%system, source=system)
       self%state = new_contact_state(model%nodes())
-      self%state%fields%approach = minval(model%initial_gap, mask=model%can_touch)
+      self%state%fields%approach = model%nearest_approach(model%initial_gap)
+      call model%relative_displacements(self%state%fields, normal, tangential)
+      self%state%fields%normal = normal
+      self%state%fields%tangential = tangential
       self%certificate = new_certificate(model)
       self%record_events = record_events
    end function new_first_violation
@@ -198,7 +202,7 @@ contains
       if (self%model%rotational) return
       call self%model%add_rotation()
       call self%certificate%claim(self%model)
-      self%state%fields%moment = self%model%moment(self%state%fields%pressure, self%state%fields%shear)
+      self%state%fields%moment = self%model%resultant(along_rotation, self%state%fields%pressure, self%state%fields%shear)
    end subroutine begin_rotation
 
    !> The constraints at the part `done` of the segment. A load that nothing in the present contact determines is held
@@ -289,13 +293,18 @@ contains
       class(first_violation_type), intent(inout) :: self
       type(segment_type), intent(in) :: segment
       type(moment_type), intent(inout) :: moment
-      real(wp) :: gap(self%model%nodes()), smallest, round_off
+      real(wp), dimension(self%model%nodes()) :: gap, normal, tangential
+      real(wp) :: smallest, round_off
       integer :: status(self%model%nodes())
       logical :: touching(self%model%nodes())
 
       gap = self%model%gap(self%state%fields)
+      self%state%fields%approach = self%state%fields%approach + self%model%nearest_approach(gap)
+      call self%model%relative_displacements(self%state%fields, normal, tangential)
+      self%state%fields%normal = normal
+      if (self%model%tangential) self%state%fields%tangential = tangential
+      gap = self%model%gap(self%state%fields)
       smallest = minval(gap, mask=self%model%can_touch)
-      self%state%fields%approach = self%state%fields%approach + smallest
       round_off = 8*epsilon(1.0_wp)*max(maxval(abs(self%model%initial_gap)), abs(self%state%fields%approach))
       touching = self%model%can_touch .and. gap - smallest <= round_off
       status = status_after(event_close, segment%friction .and. self%model%tangential, 0)

@@ -39,6 +39,8 @@ module mfv_scene
       logical :: whole_circle = .false.
       !> Hertz's parabolas in place of circles in the gap.
       logical :: parabolic = .false.
+      !> Normals along the radius, not vertical: for a disk in a hole.
+      logical :: radial = .false.
    end type mesh_request_type
 
    type :: scene_type

@@ -38,7 +38,7 @@ contains
       type(string_type), allocatable, intent(inout) :: warnings(:)
       real(wp) :: angle
 
-      if (body%rigid .or. .not. body%circular()) return
+      if (body%rigid .or. .not. body%circular() .or. simulation%contact%model%scene%mesh%radial) return
       associate (model => simulation%contact%model)
          angle = maxval(abs(model%arc), mask=in_contact(simulation%contact%state%status))/body%radius*180.0_wp/pi
       end associate
@@ -59,8 +59,8 @@ contains
 
       if (.not. body%yield_strength > 0.0_wp) return
       associate (model => simulation%contact%model, fields => simulation%contact%state%fields)
-         call new_interior(body, upper, model%scene%plane, model%arc, model%width, fields%pressure, fields%shear, interior, &
-                           available)
+         call new_interior(body, upper, model%scene%plane, model%scene%mesh%radial, model%arc, model%width, fields%pressure, &
+                           fields%shear, interior, available)
       end associate
       if (.not. available) return
       largest = interior%largest_von_mises()

@@ -488,9 +488,11 @@ contains
       if (body /= lower .and. body /= upper) return
       associate (scene => self%case%scene)
          if (body == upper) then
-            call new_interior(scene%upper, .true., scene%plane, arc, width, pressure, shear, interior, available)
+            call new_interior(scene%upper, .true., scene%plane, scene%mesh%radial, arc, width, pressure, shear, interior, &
+                              available)
          else
-            call new_interior(scene%lower, .false., scene%plane, arc, width, pressure, shear, interior, available)
+            call new_interior(scene%lower, .false., scene%plane, scene%mesh%radial, arc, width, pressure, shear, interior, &
+                              available)
          end if
       end associate
       status = MFV_COMPLETE

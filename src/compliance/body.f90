@@ -14,7 +14,8 @@ module mfv_body
    use mfv_matrix_compliance, only: new_matrix_compliance
    implicit none
    private
-   public :: body_type, new_half_plane_body, new_disk, new_hole, new_flat_punch, new_profile, new_matrix_body, gap_between
+   public :: body_type, new_half_plane_body, new_disk, new_hole, new_flat_punch, new_profile, new_matrix_body
+   public :: gap_between, radial_gap_between
    public :: shape_half_plane, shape_disk, shape_hole, shape_flat_punch, shape_profile, shape_matrix, shape_names
 
    integer, parameter :: shape_half_plane = 1, shape_disk = 2, shape_hole = 3, shape_flat_punch = 4, shape_profile = 5, &
@@ -219,13 +220,26 @@ contains
                   /((disk + chord_disk)*(hole + chord_hole))
    end function clearance
 
+   !> Undeformed gaps (length) of a disk in a hole, touching at the pole, along the radii of the hole at the angles
+   !> `theta` from the pole; without cancellation. With e = R_hole - R_disk: e (1 - cos) + R_disk - sqrt(R_disk^2 - (e sin)^2).
+   pure function radial_gap_between(lower, upper, theta) result(gaps)
+      type(body_type), intent(in) :: lower, upper
+      real(wp), intent(in) :: theta(:)
+      real(wp) :: gaps(size(theta)), clearance_of_radii, disk
+
+      disk = min(lower%radius, upper%radius)
+      clearance_of_radii = abs(lower%radius - upper%radius)
+      gaps = (clearance_of_radii*sin(theta))**2
+      gaps = 2.0_wp*clearance_of_radii*sin(0.5_wp*theta)**2 + gaps/(disk + sqrt(max(disk**2 - gaps, 0.0_wp)))
+   end function radial_gap_between
+
    !> The compliance of an elastic body with `nodes` intervals of the width `interval` (length); left unallocated for a
-   !> rigid one. `coupling`, `tangential`: see mfv_compliance. A profile deforms as the half-plane that it nearly is.
-   subroutine make_compliance(self, nodes, interval, coupling, tangential, compliance)
+   !> rigid one. `coupling`, `tangential`: see mfv_compliance; `radial`: see mfv_circle. A profile deforms as the half-plane that it nearly is.
+   subroutine make_compliance(self, nodes, interval, coupling, tangential, radial, compliance)
       class(body_type), intent(in) :: self
       integer, intent(in) :: nodes, coupling
       real(wp), intent(in) :: interval
-      logical, intent(in) :: tangential
+      logical, intent(in) :: tangential, radial
       class(compliance_type), allocatable, intent(out) :: compliance
 
       if (self%rigid) return
@@ -233,7 +247,7 @@ contains
       case (shape_disk, shape_hole)
          allocate (compliance, source=new_circle(merge(body_disk, body_hole, self%shape == shape_disk), self%material, &
                                                  self%radius, nodes, interval, self%datum, self%kernel, &
-                                                 self%harmonics, coupling, tangential))
+                                                 self%harmonics, coupling, tangential, radial))
       case (shape_matrix)
          allocate (compliance, source=new_matrix_compliance(self%matrix, self%width, coupling, tangential))
       case default

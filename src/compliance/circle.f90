@@ -1,5 +1,6 @@
 !> Compliance of a solid disk or of a hole in an infinite plane under box tractions, around the contact pole at
-!> theta = 0, in Cartesian components: the normal is taken as the vertical at every node (dissertation eq. 4.22).
+!> theta = 0, in Cartesian components: the normal is taken as the vertical at every node (dissertation eq. 4.22); or, where
+!> wanted, in radial ones (eq. 4.21), as conforming contacts need them.
 !>
 !> The disk has its pole at the top, the hole at the bottom; theta grows to the right in both. With c, s = cos, sin(theta)
 !>
@@ -33,8 +34,10 @@ module mfv_circle
       real(wp) :: radius = 1.0_wp, datum = 1.0_wp
       integer :: kernel = kernel_exact, harmonics = 0
       type(circle_kernels_type) :: kernels
-      !> cos and sin of the nodes' angles.
-      real(wp), allocatable :: cosine(:), sine(:)
+      !> Whether normals are along the radius.
+      logical :: radial = .false.
+      !> cos and sin of the angle from the radius to the normal, and from the normal to the vertical, at the nodes.
+      real(wp), allocatable :: cosine(:), sine(:), lean_cosine(:), lean_sine(:)
       !> Rigid translation by a unit traction on an interval, in w by pressure and in u by shear.
       real(wp) :: normal_translation = 0.0_wp, tangential_translation = 0.0_wp
    contains
@@ -49,12 +52,14 @@ contains
    !> Disk (`body_disk`) or hole (`body_hole`) of the radius `radius` (length) with `nodes` intervals of the arc length
    !> `interval`, symmetric about the pole. `kernel`: kernel_exact or kernel_fourier; `harmonics`: of the latter, 0 for
    !> four a interval of the circle, which must then be a whole number of intervals (see circle_intervals). `datum`,
-   !> length: see above. `coupling`, `tangential`: see mfv_compliance.
-   function new_circle(body, material, radius, nodes, interval, datum, kernel, harmonics, coupling, tangential) result(self)
+   !> length: see above. `coupling`, `tangential`: see mfv_compliance. `radial`: normals along the radius, not vertical.
+   function new_circle(body, material, radius, nodes, interval, datum, kernel, harmonics, coupling, tangential, radial) &
+      result(self)
       integer, intent(in) :: body, nodes, kernel, harmonics, coupling
       type(material_type), intent(in) :: material
       real(wp), intent(in) :: radius, interval, datum
       logical, intent(in) :: tangential
+      logical, intent(in), optional :: radial
       type(circle_type) :: self
 
       self%body = body
@@ -64,6 +69,7 @@ contains
       self%datum = datum
       self%kernel = kernel
       self%harmonics = harmonics
+      if (present(radial)) self%radial = radial
       if (harmonics == 0) self%harmonics = default_harmonics*circle_intervals(radius, interval)
       self%modulus = material%plane_modulus()
       call self%choose_blocks(coupling, tangential)
@@ -107,12 +113,18 @@ contains
       else
          self%kernels = exact_kernels(self%body, self%material%kolosov, self%interval/self%radius, nodes)
       end if
-      if (allocated(self%cosine)) deallocate (self%cosine, self%sine)
-      allocate (self%cosine(nodes), self%sine(nodes))
+      if (allocated(self%cosine)) deallocate (self%cosine, self%sine, self%lean_cosine, self%lean_sine)
+      allocate (self%cosine(nodes), self%lean_cosine(nodes), source=1.0_wp)
+      allocate (self%sine(nodes), self%lean_sine(nodes), source=0.0_wp)
       do i = 1, nodes
          angle = 0.5_wp*(2*i - nodes - 1)*(self%interval/self%radius)
-         self%cosine(i) = cos(angle)
-         self%sine(i) = sin(angle)
+         if (self%radial) then
+            self%lean_cosine(i) = cos(angle)
+            self%lean_sine(i) = sin(angle)
+         else
+            self%cosine(i) = cos(angle)
+            self%sine(i) = sin(angle)
+         end if
       end do
       self%block_values = 3*nodes
    end subroutine resize
@@ -147,12 +159,27 @@ contains
       end if
    end function cartesian
 
+   !> What a unit translation, down and to the right, is at node i: its normal (`normal`) or tangential component.
+   pure function components(self, normal, i)
+      class(circle_type), intent(in) :: self
+      logical, intent(in) :: normal
+      integer, intent(in) :: i
+      real(wp) :: components(2), side
+
+      side = merge(1.0_wp, -1.0_wp, self%body == body_disk)
+      if (normal) then
+         components = [self%lean_cosine(i), -side*self%lean_sine(i)]
+      else
+         components = [side*self%lean_sine(i), self%lean_cosine(i)]
+      end if
+   end function components
+
    !> See mfv_compliance.
    pure subroutine entries(self, block, rows, columns, matrix)
       class(circle_type), intent(in) :: self
       integer, intent(in) :: block, rows(:), columns(:)
       real(wp), intent(out) :: matrix(:, :)
-      real(wp) :: radial, shear, side, scale, sign, translation
+      real(wp) :: radial, shear, side, scale, sign, translation(2)
       logical :: normal_row, normal_column
       integer :: distance, i, j
 
@@ -160,11 +187,9 @@ contains
       normal_column = block == block_wp .or. block == block_up
       side = merge(1.0_wp, -1.0_wp, self%body == body_disk)
       scale = self%radius/self%material%shear_modulus
-      translation = 0.0_wp
-      if (block == block_wp) translation = self%normal_translation
-      if (block == block_ut) translation = self%tangential_translation
       do j = 1, size(columns)
          call polar_traction(self, normal_column, columns(j), radial, shear)
+         translation = [self%normal_translation, self%tangential_translation]*components(self, normal_column, columns(j))
          do i = 1, size(rows)
             distance = abs(rows(i) - columns(j))
             sign = merge(1.0_wp, -1.0_wp, rows(i) >= columns(j))
@@ -172,7 +197,8 @@ contains
                matrix(i, j) = scale*cartesian(side, normal_row, &
                                               k%radial(distance)*radial - sign*k%cross(distance)*shear, &
                                               sign*k%cross(distance)*radial + k%tangential(distance)*shear, &
-                                              self%cosine(rows(i)), self%sine(rows(i))) + translation
+                                              self%cosine(rows(i)), self%sine(rows(i))) &
+                              + dot_product(components(self, normal_row, rows(i)), translation)
             end associate
          end do
       end do
@@ -186,7 +212,7 @@ contains
       real(wp), intent(in) :: traction(:)
       real(wp), intent(inout) :: displacement(:)
       real(wp), dimension(self%nodes) :: radial_displacement, circumferential
-      real(wp) :: radial, shear, scale, side
+      real(wp) :: radial, shear, scale, side, translation(2)
       logical :: normal_row, normal_column
       integer :: j, n
 
@@ -214,8 +240,14 @@ contains
       end do
       displacement = displacement + scale*cartesian(side, normal_row, radial_displacement, circumferential, &
                                                     self%cosine, self%sine)
-      if (block == block_wp) displacement = displacement + self%normal_translation*sum(traction)
-      if (block == block_ut) displacement = displacement + self%tangential_translation*sum(traction)
+      translation = 0.0_wp
+      do j = 1, n
+         translation = translation + traction(j)*components(self, normal_column, j)
+      end do
+      translation = [self%normal_translation, self%tangential_translation]*translation
+      do j = 1, n
+         displacement(j) = displacement(j) + dot_product(components(self, normal_row, j), translation)
+      end do
    end subroutine rotated_product
 
    !> See mfv_compliance.

@@ -70,10 +70,11 @@ contains
 
    !> The body under `pressure` and `shear` (on the lower body, force/length^2) on boxes around the arc lengths `arc` of
    !> the widths `width`, lengths; shapes (boxes). `upper`: whether it is the body above. `plane`: see mfv_material.
+   !> `radial`: whether the pressure is along the radius of a disk or hole, not vertical.
    !> `available`: false for a body that is rigid or a mere matrix.
-   subroutine new_interior(body, upper, plane, arc, width, pressure, shear, self, available)
+   subroutine new_interior(body, upper, plane, radial, arc, width, pressure, shear, self, available)
       type(body_type), intent(in) :: body
-      logical, intent(in) :: upper
+      logical, intent(in) :: upper, radial
       integer, intent(in) :: plane
       real(wp), intent(in) :: arc(:), width(:), pressure(:), shear(:)
       type(interior_type), intent(out) :: self
@@ -95,8 +96,13 @@ contains
       outward = merge(1.0_wp, -1.0_wp, body%shape == shape_disk)
       self%theta = self%arc/body%radius
       self%half_angle = self%half/body%radius
-      self%radial = -self%pressure*cos(self%theta) + outward*self%shear*sin(self%theta)
-      self%around = self%pressure*sin(self%theta) + outward*self%shear*cos(self%theta)
+      if (radial) then
+         self%radial = -self%pressure
+         self%around = outward*self%shear
+      else
+         self%radial = -self%pressure*cos(self%theta) + outward*self%shear*sin(self%theta)
+         self%around = self%pressure*sin(self%theta) + outward*self%shear*cos(self%theta)
+      end if
    end subroutine new_interior
 
    !> Whether the body is a disk or a hole.

@@ -96,6 +96,8 @@ contains
                         'what is near the contact is carried', lower=0.0_wp, lower_open=.true., upper=180.0_wp)
       call add_choice_key(keys, 'mesh', 'gap', 'exact', 'exact parabolic', &
                           'gap of disks and holes: exact circles, or the parabolas x^2/(2R) of Hertz')
+      call add_choice_key(keys, 'mesh', 'normals', 'vertical', 'vertical radial', 'vertical: pressure, gap and approach are '// &
+                          'vertical at every node; radial: along the radius, for a disk in a hole, whatever the angle')
    end subroutine add_mesh_keys
 
    subroutine add_friction_keys(keys)

@@ -456,6 +456,14 @@ contains
          call reader%complain('mesh', 1, 'gap', 'means nothing without a disk', error)
          return
       end if
+      scene%mesh%radial = reader%text_value('mesh', 1, 'normals') == 'radial'
+      if (scene%mesh%radial .and. .not. (scene%lower%circular() .and. scene%upper%circular() .and. &
+                                         scene%lower%shape /= scene%upper%shape)) then
+         call reader%complain('mesh', 1, 'normals', 'means nothing without a disk in a hole', error)
+      else if (scene%mesh%radial .and. scene%mesh%parabolic) then
+         call reader%complain('mesh', 1, 'normals', "must be 'vertical' with gap='parabolic'", error)
+      end if
+      if (allocated(error)) return
       do i = 1, size(keys)
          if (scene%lower%shape /= shape_matrix .or. .not. reader%has('mesh', 1, trim(keys(i)))) cycle
          call reader%complain('mesh', 1, trim(keys(i)), 'means nothing for a matrix, which has its own nodes', error)

@@ -110,7 +110,8 @@ contains
       body = case%scene%lower
       if (request%upper) body = case%scene%upper
       result%yield_strength = body%yield_strength
-      call new_interior(body, request%upper, case%scene%plane, arc, width, pressure, shear, interior, available)
+      call new_interior(body, request%upper, case%scene%plane, case%scene%mesh%radial, arc, width, pressure, shear, interior, &
+                        available)
       if (.not. available) call set_error(error, MFV_INPUT_ERROR, 'the '//body_name(request)//' body is rigid or a matrix: '// &
                                           'there are no stresses inside it')
    end subroutine read_interior
