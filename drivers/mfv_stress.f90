@@ -25,7 +25,7 @@ program mfv_stress
       '  --body lower|upper   which body; lower unless told'//line_feed// &
       '  --step N             the state in /steps/000N; the last one unless told'//line_feed// &
       '  --width W            the grid goes W contact half-widths to either side of the contact; 2 unless told'//line_feed// &
-      '  --depth D            and D contact half-widths deep; 2 unless told'//line_feed// &
+      '  --depth D            and D contact half-widths deep, along the surface; 2 unless told'//line_feed// &
       '  --points NX NY       with NX by NY points; 161 81 unless told'//line_feed// &
       '  --at POINTS.txt      at the points x y of a text file instead, which are printed too'//line_feed//line_feed// &
       'Example: mfv_run examples/disk_on_plane.nml && mfv_stress disk_on_plane.h5'//line_feed// &

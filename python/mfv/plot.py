@@ -1,6 +1,6 @@
 """Pictures of results: numbers as points, closed forms as lines.
 
-`pressure`, `shear`, `surfaces`, `loop` and `stress_contours` draw into axes of yours; `figure` makes a picture of what a
+`pressure`, `shear`, `surfaces`, `loop`, `turning` and `stress_contours` draw into axes of yours; `figure` makes a picture of what a
 result has, `stress_figure` one of the stresses inside a body.
 """
 
@@ -71,13 +71,16 @@ NAMED_TOGETHER = 4
 
 
 def figure(result: Result, step: int | None = None) -> Figure:
-    """A picture of a result: pressure; shear traction, or the surfaces without friction; load-displacement curve.
+    """A picture of a result: pressure; shear traction, or the surfaces without friction; load-displacement curve of the
+    tangential force or, without one, of the moment.
 
     `step`: draw the state in `result.steps[step - 1]` not the last one. Raises ValueError where there is none.
     """
     panels = [pressure, shear if _has_friction(result) else surfaces]
     if _is_sheared(result):
         panels.append(loop)
+    elif _is_turned(result):
+        panels.append(turning)
     with matplotlib.rc_context(STYLE):
         picture = Figure()
         for panel, ax, letter in zip(panels, picture.subplots(1, len(panels)), "abc"):
@@ -111,7 +114,7 @@ def stress_figure(result: Result, name: str = "von_mises", body: str = "lower", 
 def stress_contours(field: StressField, ax: Axes, name: str = "von_mises") -> Any:
     """Contours of a stress over the largest pressure, axes over the contact half-width; for von Mises the place of the
     largest. Returns the contour set, for a colour bar."""
-    x, y = (field.x - field.middle) / field.half_width, field.y / field.half_width
+    x, y = (field.x - field.middle) / field.half_width, np.nan_to_num(field.y / field.half_width)
     values = np.ma.masked_invalid(field[name] / field.largest_pressure)
     signed = bool(values.min() < -1.0e-9 * values.max() and name != "von_mises")
     bound = float(np.percentile(np.abs(values.compressed()), 99.9))
@@ -210,6 +213,17 @@ def loop(result: Result, ax: Axes, step: int | None = None) -> None:
     ax.margins(0.12)
 
 
+def turning(result: Result, ax: Axes, step: int | None = None) -> None:
+    """Moment over rotation; step ends are numbered, `step` stands out."""
+    history = result.history
+    ax.plot(history.rotation, history.moment, color=NUMBERS, linewidth=0.8, **_points(len(history.moment)), label="computed")
+    _mark_step_ends(ax, result, step, "rotation", "moment")
+    ax.set_xlabel(r"rotation $\varphi$ [rad]")
+    ax.set_ylabel(_label("moment", "M", history.unit("moment")))
+    ax.locator_params(axis="x", nbins=5)
+    ax.margins(0.12)
+
+
 def _state(result: Result, step: int | None) -> Group:
     """The last state, or that of a step."""
     if step is None:
@@ -235,6 +249,11 @@ def _is_sheared(result: Result) -> bool:
         return False
     negligible = 1.0e-9 * np.max(np.abs(result.history.normal_force))
     return bool(np.any(np.abs(result.history.tangential_force) > negligible))
+
+
+def _is_turned(result: Result) -> bool:
+    """Whether the load history has a rotation."""
+    return "rotation" in result.history and bool(np.any(result.history.rotation != 0.0))
 
 
 def _same_normal_force(result: Result, step: int | None) -> bool:
@@ -300,10 +319,12 @@ def _frame_contact(ax: Axes, result: Result, state: Group) -> None:
     ax.set_xlabel(_label("position", "x", result.mesh.unit("x")))
 
 
-def _mark_step_ends(ax: Axes, result: Result, step: int | None) -> None:
+def _mark_step_ends(
+    ax: Axes, result: Result, step: int | None, across: str = "shift", up: str = "tangential_force"
+) -> None:
     """Numbers at the ends of steps and reversals, as in `result.steps`, those at one place together; an early end."""
     history = result.history
-    curve = np.column_stack((history.shift, history.tangential_force))
+    curve = np.column_stack((history[across], history[up]))
     curve_size = np.maximum(np.ptp(curve, axis=0), np.finfo(float).tiny)
     ends = _places(curve[history.event_kind == EventKind.STEP_END], 0.02 * curve_size)
     marks = [(place, _enumeration(numbers), "o", step in numbers) for place, numbers in ends]

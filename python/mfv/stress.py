@@ -106,7 +106,8 @@ def grid(
     across: int = 161,
     down: int = 81,
 ) -> StressField:
-    """Stresses on a grid `width` contact half-widths to either side of the contact and `depth` deep, shape (down, across).
+    """Stresses on a grid `width` contact half-widths to either side of the contact and `depth` below the surface, shape
+    (down, across).
 
     Otherwise as `stress`. Raises ValueError where there is no load.
     """
@@ -118,8 +119,9 @@ def grid(
     left, right = _edges(arc[loaded], result.mesh.width[loaded])
     half = 0.5 * (right - left)
     x = 0.5 * (left + right) + half * np.linspace(-width, width, across)
-    y = half * np.linspace(0.0, depth, down) * (-1.0 if body == "lower" else 1.0)
-    return stress(result, *np.meshgrid(x, y), body=body, step=step)
+    across_grid, below = np.meshgrid(x, half * np.linspace(0.0, depth, down))
+    inside = _surface(result, body, across_grid) - below
+    return stress(result, across_grid, inside if body == "lower" else -inside, body=body, step=step)
 
 
 def stored(result: Result, *, body: str = "lower", step: int | None = None) -> StressField | None:
@@ -127,11 +129,10 @@ def stored(result: Result, *, body: str = "lower", step: int | None = None) -> S
     group = result.stresses.get(f"{'last' if step is None else f'{step:04d}'}/{body}")
     if group is None:
         return None
-    x, y = np.meshgrid(group.x, group.y)
     return StressField(
         body,
-        x,
-        y,
+        np.broadcast_to(group.x, group.y.shape),
+        group.y,
         {name: group[name] for name in NAMES},
         float(group.half_width),
         0.5 * float(group.x[0] + group.x[-1]),
@@ -146,6 +147,16 @@ def _state(result: Result, step: int | None) -> Group:
     if not 1 <= step <= len(result.steps):
         raise ValueError(f"there is no step {step}: the result has {len(result.steps)}")
     return result.steps[step - 1]
+
+
+def _surface(result: Result, body: str, x: Array) -> Array:
+    """Height of the surface of the lower body at x; of the upper one upside down. NaN beside a disk or hole."""
+    radius = result.scene.get(f"{body}_radius")
+    if radius is None:
+        return np.zeros_like(x)
+    sign = -1.0 if result.attributes[f"{body}_body"].endswith("disk") else 1.0
+    with np.errstate(invalid="ignore"):
+        return np.asarray(sign * x**2 / (radius + np.sqrt(radius**2 - x**2)))
 
 
 def _edges(arc: Array, width: Array) -> tuple[float, float]:

@@ -38,6 +38,7 @@ module mfv_interior
       procedure :: stress
       procedure :: all_stresses
       procedure :: half_width
+      procedure :: surface
       procedure :: middle
       procedure :: largest_pressure
       procedure :: contains_point
@@ -182,6 +183,20 @@ contains
       values(stress_von_mises) = von_mises_stress(values(:4))
       if (self%is_circle()) values(8:10) = polar_stress(values(:4), self%centre(), x, y)
    end function all_stresses
+
+   !> y of the surface at x, lengths; NaN beside a disk or hole.
+   real(wp) function surface(self, x)
+      class(interior_type), intent(in) :: self
+      real(wp), intent(in) :: x
+      real(wp) :: depth(1)
+
+      surface = ieee_value(1.0_wp, ieee_quiet_nan)
+      if (self%is_circle() .and. .not. self%body%covers(x)) return
+      surface = 0.0_wp
+      if (.not. self%is_circle()) return
+      depth = self%body%recess([x], parabolic=.false.)
+      surface = -self%side*depth(1)
+   end function surface
 
    !> Half the length of surface from the first to the last loaded box, length; 0 without load.
    pure real(wp) function half_width(self)

@@ -30,9 +30,10 @@ module mfv_stress_file
       real(wp), allocatable :: x(:), y(:)
    end type stress_request_type
 
-   !> What came out; stresses as mfv_interior's stress_names, shape (stress_count, points); x fastest in a grid.
+   !> What came out; stresses as mfv_interior's stress_names, shape (stress_count, points); x fastest in a grid. Grid: x and
+   !> depth below the surface, and y of every point; points: x and y.
    type :: stress_result_type
-      real(wp), allocatable :: x(:), y(:), stress(:, :)
+      real(wp), allocatable :: x(:), depth(:), y(:), stress(:, :)
       type(largest_type) :: largest
       real(wp) :: half_width = 0.0_wp, largest_pressure = 0.0_wp, yield_strength = 0.0_wp
       !> Group of the file they are in, and the name of the unit of length there.
@@ -145,13 +146,14 @@ contains
       sign = merge(1.0_wp, -1.0_wp, request%upper)
       result%x = [(interior%middle() + result%half_width*request%width*(2*(i - 1)/(request%across - 1.0_wp) - 1.0_wp), &
                    i=1, request%across)]
-      result%y = [(sign*result%half_width*request%depth*(j - 1)/(request%down - 1.0_wp), j=1, request%down)]
-      allocate (result%stress(stress_count, request%across*request%down))
+      result%depth = [(result%half_width*request%depth*(j - 1)/(request%down - 1.0_wp), j=1, request%down)]
+      allocate (result%y(request%across*request%down), result%stress(stress_count, request%across*request%down))
       k = 0
       do j = 1, request%down
          do i = 1, request%across
             k = k + 1
-            result%stress(:, k) = interior%all_stresses(result%x(i), result%y(j))
+            result%y(k) = interior%surface(result%x(i)) + sign*result%depth(j)
+            result%stress(:, k) = interior%all_stresses(result%x(i), result%y(k))
          end do
       end do
    end subroutine compute
@@ -209,34 +211,25 @@ contains
       type(stress_result_type), intent(in) :: result
       character(:), allocatable :: unit
       type(string_type), allocatable :: names(:)
-      integer(hid_t) :: scale_x, scale_y, dataset
+      integer(hid_t) :: scale_x, scale_depth, dataset
       integer :: code, i
 
       unit = case%force_unit//'/'//case%length_unit//'^2'
       names = list_of_words(stress_names)
       call write_values(writer, result%group//'/x', result%x, [size(result%x)], case%length_unit, &
                         'position to the right of the pole', scale_x)
-      call write_values(writer, result%group//'/y', result%y, [size(result%y)], case%length_unit, 'height above the pole', scale_y)
       if (.not. allocated(request%x)) then
+         call write_values(writer, result%group//'/depth', result%depth, [size(result%depth)], case%length_unit, &
+                           'depth below the surface', scale_depth)
          call h5dsset_scale_f(scale_x, code, 'x')
-         call h5dsset_scale_f(scale_y, code, 'y')
+         call h5dsset_scale_f(scale_depth, code, 'depth')
       end if
+      call field('y', result%y, case%length_unit, 'height above the pole')
       do i = 1, stress_count
-         if (allocated(request%x)) then
-            call write_values(writer, result%group//'/'//names(i)%text, result%stress(i, :), [size(result%x)], unit, &
-                              meaning(names(i)%text), dataset)
-         else
-            call write_values(writer, result%group//'/'//names(i)%text, result%stress(i, :), &
-                              [size(result%x), size(result%y)], unit, meaning(names(i)%text), dataset)
-            call h5dsattach_scale_f(dataset, scale_y, 1, code)
-            call note(writer, code)
-            call h5dsattach_scale_f(dataset, scale_x, 2, code)
-            call note(writer, code)
-         end if
-         call h5dclose_f(dataset, code)
+         call field(names(i)%text, result%stress(i, :), unit, meaning(names(i)%text))
       end do
       call h5dclose_f(scale_x, code)
-      call h5dclose_f(scale_y, code)
+      if (.not. allocated(request%x)) call h5dclose_f(scale_depth, code)
       call scalar('largest_von_mises', result%largest%value, unit, 'largest von Mises stress in the body, by refinement')
       call scalar('largest_x', result%largest%x, case%length_unit, 'where it is: x')
       call scalar('largest_y', result%largest%y, case%length_unit, 'where it is: y')
@@ -244,6 +237,24 @@ contains
       call scalar('largest_pressure', result%largest_pressure, unit, 'largest pressure')
 
    contains
+
+      !> A dataset along the points, or over the grid with its scales.
+      subroutine field(name, values, field_unit, description)
+         character(*), intent(in) :: name, field_unit, description
+         real(wp), intent(in) :: values(:)
+
+         if (allocated(request%x)) then
+            call write_values(writer, result%group//'/'//name, values, [size(result%x)], field_unit, description, dataset)
+         else
+            call write_values(writer, result%group//'/'//name, values, [size(result%x), size(result%depth)], field_unit, &
+                              description, dataset)
+            call h5dsattach_scale_f(dataset, scale_depth, 1, code)
+            call note(writer, code)
+            call h5dsattach_scale_f(dataset, scale_x, 2, code)
+            call note(writer, code)
+         end if
+         call h5dclose_f(dataset, code)
+      end subroutine field
 
       subroutine scalar(name, value, value_unit, description)
          character(*), intent(in) :: name, value_unit, description

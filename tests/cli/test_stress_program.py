@@ -43,12 +43,13 @@ def test_a_grid_is_put_into_the_file(folder):
         assert group["von_mises"].shape == (21, 41)
         assert group["sigma_xx"].attrs["units"] == "N/mm^2" and "tension" in group["sigma_xx"].attrs["long_name"]
         a = group["half_width"][()]
-        assert group["x"][-1] == pytest.approx(1.5 * a, rel=0.1) and group["y"][-1] == pytest.approx(-a)
-        deeper_than_a_box = group["y"][()] < -result["mesh/interval"][()]
+        assert group["x"][-1] == pytest.approx(1.5 * a, rel=0.1) and group["depth"][-1] == pytest.approx(a)
+        assert group["y"][-1] == pytest.approx(group["y"][0] - a)
+        deeper_than_a_box = group["depth"][()] > result["mesh/interval"][()]
         assert group["largest_von_mises"][()] >= np.nanmax(group["von_mises"][()][deeper_than_a_box]) * (1 - 1e-9)
         assert result["state/pressure"].shape == (41,)
     grid = xarray.open_dataset(folder / "case.h5", group="stress/last/lower", engine="h5netcdf")
-    assert grid.von_mises.dims == ("y", "x")
+    assert grid.von_mises.dims == ("depth", "x")
 
 
 def test_states_and_bodies_stand_beside_each_other_and_are_replaced(folder):

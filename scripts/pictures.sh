@@ -1,0 +1,17 @@
+#!/bin/sh
+# Draws the pictures of the documents anew, from the examples, into docs/pictures. Needs a release build (scripts/demo.sh).
+. "$(dirname "$0")/common.sh"
+bin=$root/build/release/bin
+pictures=$root/docs/pictures
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+cd "$work"
+draw() { PYTHONPATH=$root/python MPLBACKEND=Agg "$venv/bin/python" -m mfv plot "$@"; }
+for example in mindlin disk_on_plane disk_in_hole two_cylinders pin_in_bore; do
+  "$bin/mfv_run" "$root/examples/$example.nml" >/dev/null
+  draw "$example.h5" -o "$pictures/$example.png"
+done
+for example in two_cylinders pin_in_bore; do
+  "$bin/mfv_stress" "$example.h5" >/dev/null
+  draw "$example.h5" --stress von_mises -o "$pictures/${example}_stress.png"
+done
