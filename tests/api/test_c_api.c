@@ -192,6 +192,54 @@ static void closed_forms(void) {
   CHECK(isnan(mfv_spence_stick_ratio(-0.1, 0.2)));
 }
 
+/* Stresses on the surface are the tractions; the largest is no smaller than anything below it; misuse is told. */
+static void stresses_inside(void) {
+  mfv_case *handle = NULL;
+  size_t nodes = 0;
+  double stress[2 * MFV_STRESS_COUNT], place[3] = {0, 0, 0}, again[3];
+  CHECK(mfv_create_from_text(text, "text", &handle, NULL, 0) == MFV_COMPLETE);
+  CHECK(mfv_run(handle) == MFV_COMPLETE);
+  double *x = array(handle, "mesh/x", &nodes), *width = array(handle, "mesh/width", &nodes);
+  double *pressure = array(handle, "state/pressure", &nodes), *shear = array(handle, "state/shear", &nodes);
+  const double across[2] = {x[20], 0.001}, up[2] = {0.0, -0.008};
+  CHECK(mfv_stress(handle, MFV_LOWER, 0, 2, across, up, stress) == MFV_COMPLETE);
+  CHECK(fabs(stress[MFV_SIGMA_YY] / pressure[20] + 1) < 1e-12 && fabs(stress[MFV_SIGMA_XY] / shear[20] - 1) < 1e-12);
+  CHECK(isnan(stress[MFV_SIGMA_RR]) && stress[MFV_PRINCIPAL_1] >= stress[MFV_PRINCIPAL_2]);
+  CHECK(mfv_largest_von_mises(handle, MFV_LOWER, 1, place) == MFV_COMPLETE);
+  CHECK(place[0] > stress[MFV_STRESS_COUNT + MFV_VON_MISES] / 2 && place[2] < 0 && fabs(place[1]) < 1e-4);
+  CHECK(mfv_largest_von_mises(handle, MFV_LOWER, 0, place) == MFV_COMPLETE);
+  CHECK(mfv_stress_under(handle, MFV_LOWER, nodes, x, width, pressure, shear, 0, NULL, NULL, NULL, again) == MFV_COMPLETE);
+  CHECK(memcmp(place, again, sizeof place) == 0);
+  CHECK(mfv_stress(handle, MFV_UPPER, 0, 2, across, up, stress) == MFV_BAD_ARGUMENT);
+  CHECK(mfv_stress(handle, 2, 0, 2, across, up, stress) == MFV_BAD_ARGUMENT);
+  CHECK(mfv_stress(handle, MFV_LOWER, 3, 2, across, up, stress) == MFV_BAD_ARGUMENT);
+  CHECK(mfv_stress(handle, MFV_LOWER, 0, 2, NULL, up, stress) == MFV_BAD_ARGUMENT);
+  CHECK(mfv_largest_von_mises(handle, MFV_LOWER, 0, NULL) == MFV_BAD_ARGUMENT);
+  CHECK(mfv_stress(NULL, MFV_LOWER, 0, 2, across, up, stress) == MFV_BAD_HANDLE);
+  free(x);
+  free(width);
+  free(pressure);
+  free(shear);
+  CHECK(mfv_free(&handle) == MFV_COMPLETE);
+}
+
+/* A moment by steps, and back. */
+static void moment_and_rotation(void) {
+  mfv_case *handle = NULL;
+  mfv_step press = MFV_STEP_INIT, turn = MFV_STEP_INIT;
+  CHECK(mfv_create_from_text(without_steps, NULL, &handle, NULL, 0) == MFV_COMPLETE);
+  press.normal_control = MFV_FORCE;
+  press.normal_target = 5.0e-4;
+  CHECK(mfv_advance(handle, &press) == MFV_COMPLETE);
+  turn.rotational_control = MFV_FORCE;
+  turn.rotational_target = 5.0e-7;
+  CHECK(mfv_advance(handle, &turn) == MFV_COMPLETE);
+  CHECK(fabs(scalar(handle, "summary/moment") / 5.0e-7 - 1) < 1e-10 && scalar(handle, "summary/rotation") > 0);
+  turn.rotational_control = 7;
+  CHECK(mfv_advance(handle, &turn) == MFV_BAD_ARGUMENT);
+  CHECK(mfv_free(&handle) == MFV_COMPLETE);
+}
+
 int main(int argc, char **argv) {
   if (argc != 3) {
     fprintf(stderr, "usage: test_c_api CASE.nml RESULT.h5\n");
@@ -202,6 +250,8 @@ int main(int argc, char **argv) {
   every_field_can_be_copied();
   attributes_are_texts();
   misuse_is_told();
+  stresses_inside();
+  moment_and_rotation();
   statuses_and_version();
   closed_forms();
   printf(failures == 0 ? "C interface: all checks passed\n" : "C interface: %d checks failed\n", failures);
