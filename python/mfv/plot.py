@@ -150,7 +150,7 @@ def _rounded(value: float) -> str:
 
 def pressure(result: Result, ax: Axes, step: int | None = None) -> None:
     """Pressure over x, with its closed form where one holds."""
-    state = _state(result, step)
+    state = result.at(step)
     _draw_points(ax, result, state, state.pressure)
     if "pressure" in result.reference and _same_normal_force(result, step):
         _draw_closed_form(ax, result, result.reference.pressure)
@@ -161,7 +161,7 @@ def pressure(result: Result, ax: Axes, step: int | None = None) -> None:
 
 def shear(result: Result, ax: Axes, step: int | None = None) -> None:
     """Shear traction over x between the limits of friction, stick and slip zones, closed form where one holds."""
-    state = _state(result, step)
+    state = result.at(step)
     limit = np.where(state.status != NodeStatus.OPEN, result.scene.friction_coefficient * state.pressure, np.nan)
     _shade_zones(ax, result, state)
     for sign in (1.0, -1.0):
@@ -175,7 +175,7 @@ def shear(result: Result, ax: Axes, step: int | None = None) -> None:
 
 def surfaces(result: Result, ax: Axes, step: int | None = None) -> None:
     """The deformed surface of the lower body and the upper body on it."""
-    state = _state(result, step)
+    state = result.at(step)
     lower, upper = _heights(result, state)
     _draw_points(ax, result, state, lower, label="surface of the lower body", color=SURFACE)
     ax.plot(result.mesh.x, upper, color=MARKS, linewidth=0.9, label="surface of the upper body")
@@ -224,18 +224,9 @@ def turning(result: Result, ax: Axes, step: int | None = None) -> None:
     ax.margins(0.12)
 
 
-def _state(result: Result, step: int | None) -> Group:
-    """The last state, or that of a step."""
-    if step is None:
-        return result.state
-    if not 1 <= step <= len(result.steps):
-        raise ValueError(f"there is no step {step}: the result has {len(result.steps)}")
-    return result.steps[step - 1]
-
-
 def _loads(result: Result, step: int | None) -> Group:
     """Loads and counts of that state."""
-    return result.summary if step is None else _state(result, step)
+    return result.summary if step is None else result.at(step)
 
 
 def _has_friction(result: Result) -> bool:
@@ -402,7 +393,7 @@ def _add_legend_and_caption(picture: Figure, caption: str) -> None:
 def _heading(result: Result, step: int | None) -> str:
     if step is None:
         return result.title
-    state = _state(result, step)
+    state = result.at(step)
     place = f"state {step} (step {state.step}, reversal {state.reversal})"
     return f"{result.title}: {place}" if result.title else place
 

@@ -118,6 +118,14 @@ class Result:
         """Title of the scene, empty where it has none."""
         return self.attributes.get("title", "")
 
+    def at(self, step: int | None = None) -> Group:
+        """The last state, or `steps[step - 1]`. Raises ValueError where there is none."""
+        if step is None:
+            return self.state
+        if not 1 <= step <= len(self.steps):
+            raise ValueError(f"there is no step {step}: the result has {len(self.steps)}")
+        return self.steps[step - 1]
+
     def __repr__(self) -> str:
         amount = self._amount
         lines = [

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from .case import Case
-from .result import Group, Result
+from .result import Result
 
 #: The stresses at a point, in the order of the header: in Cartesian components, across the plane, principal ones in the
 #: plane, von Mises, in polar components about the centre of a disk or hole.
@@ -69,7 +69,7 @@ def stress(result: Result, x: ArrayLike, y: ArrayLike, *, body: str = "lower", s
     if body not in BODIES:
         raise ValueError(f"the body must be 'lower' or 'upper', not '{body}'")
     across, up = (np.ascontiguousarray(values, dtype=np.float64) for values in np.broadcast_arrays(x, y))
-    state = _state(result, step)
+    state = result.at(step)
     arc = np.ascontiguousarray(result.mesh.arc if "arc" in result.mesh else result.mesh.x)
     loads = arc, result.mesh.width, state.pressure, state.shear
     values, largest = np.empty((across.size, len(NAMES))), np.empty(3)
@@ -111,7 +111,7 @@ def grid(
 
     Otherwise as `stress`. Raises ValueError where there is no load.
     """
-    state = _state(result, step)
+    state = result.at(step)
     arc = result.mesh.arc if "arc" in result.mesh else result.mesh.x
     loaded = (state.pressure != 0.0) | (state.shear != 0.0)
     if not loaded.any():
@@ -139,14 +139,6 @@ def stored(result: Result, *, body: str = "lower", step: int | None = None) -> S
         float(group.largest_pressure),
         Largest(float(group.largest_von_mises), float(group.largest_x), float(group.largest_y)),
     )
-
-
-def _state(result: Result, step: int | None) -> Group:
-    if step is None:
-        return result.state
-    if not 1 <= step <= len(result.steps):
-        raise ValueError(f"there is no step {step}: the result has {len(result.steps)}")
-    return result.steps[step - 1]
 
 
 def _surface(result: Result, body: str, x: Array) -> Array:

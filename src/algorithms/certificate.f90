@@ -165,10 +165,10 @@ contains
       call self%note(elasticity_tangential, maxval(abs(fields%tangential + rigid - by_pressure - by_shear)), &
                      max(self%tangential, maxval(abs(rigid))))
       call self%note(normal_force_balance, abs(fields%normal_force - model%resultant(along_approach, fields%pressure, &
-                                                                                           fields%shear)), &
+                                                                                     fields%shear)), &
                      self%normal_force)
       call self%note(tangential_force_balance, abs(fields%tangential_force - model%resultant(along_shift, fields%pressure, &
-                                                                                                   fields%shear)), &
+                                                                                             fields%shear)), &
                      self%tangential_force)
       if (.not. self%claimed(moment_balance)) return
       self%moment = max(self%moment, abs(fields%moment), &
@@ -202,7 +202,7 @@ contains
       gap = model%gap(state%fields)
       call self%note(contact_gap, largest_of(abs(gap), contact), self%normal)
       call self%note(gap_sign, largest_of(-gap, model%can_touch .and. .not. contact), self%normal)
-      call self%note(open_traction, largest_of(abs(state%fields%pressure) + abs(state%fields%shear), .not. contact), &
+      call self%note(open_traction, largest_of(abs(state%fields%pressure) + abs(state%fields%shear),.not. contact), &
                      self%traction)
       call self%note(pressure_sign, largest_of(-state%fields%pressure, contact), self%traction)
    end subroutine check_normal_contact

@@ -20,7 +20,7 @@ module mfv_interior
    !> What `all_stresses` returns: those, principal stresses in the plane, von Mises, polar ones about a circle's centre.
    integer, parameter :: stress_von_mises = 7, stress_count = 10
    character(*), parameter :: stress_names = 'sigma_xx sigma_yy sigma_xy sigma_zz principal_1 principal_2 von_mises '// &
-                                             'sigma_rr sigma_thetatheta sigma_rtheta'
+                              'sigma_rr sigma_thetatheta sigma_rtheta'
 
    !> A body under tractions.
    type :: interior_type

@@ -298,7 +298,7 @@ contains
       type(units_type), intent(in) :: units
       real(wp), dimension(simulation%contact%model%nodes()) :: normal, tangential
       character(*), parameter :: prefix(2) = [character(6) :: '', 'upper_'], &
-                                 body(2) = [character(5) :: 'lower', 'upper']
+                                              body(2) = [character(5) :: 'lower', 'upper']
       integer :: part
 
       do part = part_lower, part_upper

@@ -34,8 +34,8 @@ contains
       if (simulation%contact%model%tangential) text = text//line('stick ratio', amount(fields, 'stick_ratio'))
       text = text//line('normal force', amount(fields, 'normal_force')//', approach '//amount(fields, 'approach'))
       if (simulation%contact%model%tangential) text = text//line('tangential force', amount(fields, 'tangential_force')// &
-                                                     ', shift '//amount(fields, 'shift')) &
-                                          //line('dissipation', amount(fields, 'dissipation'))
+                                                                 ', shift '//amount(fields, 'shift')) &
+                                                      //line('dissipation', amount(fields, 'dissipation'))
       if (simulation%contact%model%rotational) text = text//line('moment', amount(fields, 'moment')//', rotation '// &
                                                                  amount(fields, 'rotation'))
       text = text//line('work', amount(fields, 'events')//' events, '//amount(fields, 'linear_solves')// &
