@@ -137,6 +137,12 @@ double mfv_mindlin_shear(double x, double tangential_force, double normal_force,
 double mfv_mindlin_dissipation(double tangential_force, double normal_force, double half_width, double radius,
                                double friction_coefficient);
 
+/* Pin in a bore of one material in plane strain, without friction (Persson): force at which the contact reaches half_angle
+ * [radians] to either side; clearance: by how much the bore's radius is larger. NaN beyond some 85 degrees. Contact arc
+ * 2a/R [radians] of a disk on a rigid plane, plane strain, without friction, at which it yields (Table 4.1). Since 0.1.0. */
+double mfv_persson_force(double half_angle, double clearance, double youngs_modulus, double poisson_ratio);
+double mfv_yield_contact_arc(double youngs_modulus, double poisson_ratio, double yield_strength);
+
 #ifdef __cplusplus
 }
 #endif

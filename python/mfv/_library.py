@@ -93,6 +93,8 @@ SIGNATURES: dict[str, tuple[type, ...]] = {
     "mfv_mindlin_stick_ratio": (c_double,) + (c_double,) * 3,
     "mfv_mindlin_shear": (c_double,) + (c_double,) * 5,
     "mfv_mindlin_dissipation": (c_double,) + (c_double,) * 5,
+    "mfv_persson_force": (c_double,) + (c_double,) * 4,
+    "mfv_yield_contact_arc": (c_double,) + (c_double,) * 3,
 }
 
 

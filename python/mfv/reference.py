@@ -79,6 +79,23 @@ def mindlin_dissipation(
     )
 
 
+def persson_force(
+    half_angle: ArrayLike, clearance: ArrayLike, youngs_modulus: ArrayLike, poisson_ratio: ArrayLike
+) -> NDArray[np.float64]:
+    """Force at which the contact of a pin in a bore reaches `half_angle` (radians) to either side (Persson).
+
+    Both of one material in plane strain, without friction. `clearance`: by how much the bore's radius is larger.
+    """
+    return _evaluated("mfv_persson_force", half_angle, clearance, youngs_modulus, poisson_ratio)
+
+
+def yield_contact_arc(
+    youngs_modulus: ArrayLike, poisson_ratio: ArrayLike, yield_strength: ArrayLike
+) -> NDArray[np.float64]:
+    """Contact arc 2a/R (radians) at which a cylinder pressed on a rigid plane without friction yields, plane strain."""
+    return _evaluated("mfv_yield_contact_arc", youngs_modulus, poisson_ratio, yield_strength)
+
+
 def _evaluated(function: str, *arguments: ArrayLike) -> NDArray[np.float64]:
     """A function of the library over arrays; a plain number for plain numbers."""
     values: NDArray[np.float64] = np.vectorize(getattr(library(), function), otypes=[np.float64])(*arguments)

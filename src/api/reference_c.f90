@@ -4,8 +4,11 @@ module mfv_reference_c
    use, intrinsic :: iso_c_binding, only: c_double
    use mfv_reference_flat_punch, only: flat_punch_pressure
    use mfv_reference_hertz, only: hertz_half_width, hertz_pressure
+   use mfv_material, only: new_material, plane_strain
    use mfv_reference_mindlin
+   use mfv_reference_persson, only: persson_force
    use mfv_reference_spence, only: spence_cylinder_shear, spence_flat_punch_shear, spence_stick_ratio
+   use mfv_reference_yield, only: contact_arc_at_yield
    implicit none
    private
 
@@ -102,6 +105,27 @@ contains
       if (normal_force > 0 .and. friction_coefficient > 0 .and. half_width > 0 .and. radius > 0) &
          dissipation = mindlin_dissipation(tangential_force, normal_force, half_width, radius, friction_coefficient)
    end function c_mindlin_dissipation
+
+   function c_persson_force(half_angle, clearance, youngs_modulus, poisson_ratio) result(force) &
+      bind(C, name='mfv_persson_force')
+      real(c_double), value :: half_angle, clearance, youngs_modulus, poisson_ratio
+      real(c_double) :: force
+
+      force = not_a_number()
+      if (half_angle > 0 .and. clearance > 0 .and. youngs_modulus > 0 .and. abs(poisson_ratio) < 1) &
+         force = persson_force(half_angle, clearance, youngs_modulus/(1.0_c_double - poisson_ratio**2))
+      if (.not. force < huge(force)) force = not_a_number()
+   end function c_persson_force
+
+   function c_yield_arc(youngs_modulus, poisson_ratio, yield_strength) result(arc) bind(C, name='mfv_yield_contact_arc')
+      real(c_double), value :: youngs_modulus, poisson_ratio, yield_strength
+      real(c_double) :: arc
+
+      arc = not_a_number()
+      if (youngs_modulus > 0 .and. poisson_ratio > -1 .and. poisson_ratio <= 0.5 .and. yield_strength >= 0) &
+         arc = contact_arc_at_yield(new_material(youngs_modulus/(2.0_c_double*(1.0_c_double + poisson_ratio)), &
+                                                 poisson_ratio, plane_strain), plane_strain, yield_strength)
+   end function c_yield_arc
 
    pure real(c_double) function not_a_number()
       not_a_number = ieee_value(1.0_c_double, ieee_quiet_nan)

@@ -700,3 +700,35 @@ def test_bad_matrices_are_refused(tmp_path: Path) -> None:
         mfv.run(text=f"&body shape='matrix', file='{path}' /\n" + DISK + "&step normal_force=1 /")
     with pytest.raises(errors.InputError, match="there is no such file"):
         mfv.run(text="&body shape='matrix', file='nowhere.h5' /\n" + DISK + "&step normal_force=1 /")
+
+
+def test_persson_and_yield_from_python() -> None:
+    force = mfv.reference.persson_force(np.radians([1.0, 30.0, 89.0]), 1e-3, 1.0, 0.3)
+    hertz = np.pi / 8 / (1 - 0.3**2) * 1e-3 * np.radians(1.0) ** 2
+    assert force[0] == pytest.approx(hertz, rel=1e-3)
+    assert np.isnan(force[2])
+    arc = np.degrees(mfv.reference.yield_contact_arc(200e3, 0.3, 250.0))
+    assert arc == pytest.approx(0.467, abs=1e-3)
+
+
+def test_cases_with_fourier_kernels_in_threads_give_the_digits_of_one() -> None:
+    texts = [
+        TWO_DISKS.replace("poisson_ratio=0.3", "poisson_ratio=0.3, kernel='fourier'").replace(
+            "nodes=101, half_width=0.0152", f"nodes={nodes}, half_angle=180"
+        )
+        for nodes in range(20000, 20008)
+    ]
+    alone = [mfv.run(text=text) for text in texts]
+    together: dict[int, mfv.Result] = {}
+
+    def run(number: int) -> None:
+        together[number] = mfv.run(text=texts[number])
+
+    threads = [threading.Thread(target=run, args=(number,)) for number in range(len(texts))]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+    for number, result in enumerate(alone):
+        assert result.outcome == "complete"
+        np.testing.assert_array_equal(together[number].state.pressure, result.state.pressure)
