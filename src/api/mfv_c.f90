@@ -29,6 +29,8 @@ module mfv_c
       type(string_type), allocatable :: paths(:)
       character(:), allocatable :: group
       type(field_type), allocatable :: fields(:)
+      !> Names and texts of the attributes, which may take a search for the largest stress.
+      type(string_type), allocatable :: attribute_names(:), attribute_texts(:)
    end type handle_type
 
    integer, parameter :: valid_mark = 1297499699
@@ -276,6 +278,7 @@ contains
       if (allocated(self%paths)) deallocate (self%paths)
       if (allocated(self%group)) deallocate (self%group)
       if (allocated(self%fields)) deallocate (self%fields)
+      if (allocated(self%attribute_names)) deallocate (self%attribute_names, self%attribute_texts)
    end subroutine forget
 
    !> MFV_BAD_ARGUMENT, with its reason as the handle's message.
@@ -293,15 +296,14 @@ contains
       integer(c_size_t), value :: index, size
       integer(c_int) :: status
       type(handle_type), pointer :: self
-      type(string_type), allocatable :: names(:), texts(:)
 
       status = MFV_BAD_HANDLE
       self => handle_of(handle)
       if (.not. associated(self)) return
-      call result_attributes(self%case, self%simulation, names, texts)
-      status = refused(self, 'mfv_attribute_name: there are '//to_text(ubound(names, 1))//' attributes')
-      if (index < 0 .or. index >= ubound(names, 1)) return
-      status = text_out(names(index + 1)%text, buffer, size)
+      call list_attributes(self)
+      status = refused(self, 'mfv_attribute_name: there are '//to_text(ubound(self%attribute_names, 1))//' attributes')
+      if (index < 0 .or. index >= ubound(self%attribute_names, 1)) return
+      status = text_out(self%attribute_names(index + 1)%text, buffer, size)
    end function mfv_attribute_name
 
    function mfv_attribute(handle, name, buffer, size, length) result(status) bind(C, name='mfv_attribute')
@@ -309,7 +311,6 @@ contains
       integer(c_size_t), value :: size
       integer(c_int) :: status
       type(handle_type), pointer :: self
-      type(string_type), allocatable :: names(:), texts(:)
       integer(c_size_t), pointer :: characters
       integer :: i
 
@@ -318,19 +319,29 @@ contains
       if (.not. associated(self)) return
       status = refused(self, 'mfv_attribute: the name is null')
       if (.not. c_associated(name)) return
-      call result_attributes(self%case, self%simulation, names, texts)
+      call list_attributes(self)
       status = refused(self, "there is no attribute '"//text_in(name)//"'")
-      do i = 1, ubound(names, 1)
-         if (names(i)%text /= text_in(name)) cycle
-         if (c_associated(length)) then
-            call c_f_pointer(length, characters)
-            characters = len(texts(i)%text, kind=c_size_t)
-         end if
-         status = MFV_COMPLETE
-         if (c_associated(buffer)) status = text_out(texts(i)%text, buffer, size)
+      do i = 1, ubound(self%attribute_names, 1)
+         if (self%attribute_names(i)%text /= text_in(name)) cycle
+         associate (text => self%attribute_texts(i)%text)
+            if (c_associated(length)) then
+               call c_f_pointer(length, characters)
+               characters = len(text, kind=c_size_t)
+            end if
+            status = MFV_COMPLETE
+            if (c_associated(buffer)) status = text_out(text, buffer, size)
+         end associate
          return
       end do
    end function mfv_attribute
+
+   !> Make the list of the attributes.
+   subroutine list_attributes(self)
+      type(handle_type), intent(inout) :: self
+
+      if (.not. allocated(self%attribute_names)) &
+         call result_attributes(self%case, self%simulation, self%attribute_names, self%attribute_texts)
+   end subroutine list_attributes
 
    function mfv_field_info(handle, path, count, is_integer, along, unit, unit_size, description, description_size) &
       result(status) bind(C, name='mfv_field_info')
