@@ -171,7 +171,7 @@ contains
                                                                                              fields%shear)), &
                      self%tangential_force)
       if (.not. self%claimed(moment_balance)) return
-      self%moment = max(self%moment, abs(fields%moment), &
+      self%moment = max(self%moment, abs(fields%moment), self%normal_force*model%length(), &
                         model%force(abs(model%normal_arm(:, along_rotation)*fields%pressure)) &
                         + model%force(abs(model%tangential_arm(:, along_rotation)*fields%shear)))
       call self%note(moment_balance, abs(fields%moment - model%resultant(along_rotation, fields%pressure, fields%shear)), &

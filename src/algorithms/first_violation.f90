@@ -11,7 +11,7 @@
 module mfv_first_violation
    use mfv_certificate, only: certificate_type, new_certificate
    use mfv_contact_fields, only: contact_fields_type
-   use mfv_contact_model, only: along_rotation, contact_model_type
+   use mfv_contact_model, only: along_rotation, along_shift, contact_model_type
    use mfv_contact_state, only: contact_state_type, new_contact_state
    use mfv_contact_system
    use mfv_error, only: error_type, set_error
@@ -218,14 +218,13 @@ contains
       type(constraints_type), intent(out) :: constraints
       logical, intent(out) :: settled
       type(error_type), allocatable, intent(out) :: error
+      type(load_type) :: load
       logical :: contact, slides
 
       settled = .true.
       constraints%normal = at_part(segment%normal, done)
       constraints%tangential = at_part(segment%tangential, done)
       constraints%rotational = at_part(segment%rotational, done)
-      if (constraints%rotational%control == control_force .and. self%state%contact_nodes() < 2) &
-         constraints%rotational = load_type(control_displacement, self%state%fields%rotation, 0.0_wp)
       contact = any(in_contact(self%state%status))
       if (.not. contact .and. constraints%normal%control == control_force) then
          if (constraints%normal%rate > 0.0_wp) then
@@ -238,21 +237,55 @@ contains
 
       slides = .not. any(self%state%status == node_stick)
       if (slides .and. constraints%tangential%control == control_force) then
-         call hold_shift(self, constraints, settled, error)
+         load = constraints%tangential
+         call hold_motion(self, constraints, load, along_shift, settled, error)
+         constraints%tangential = load
+         if (allocated(error) .or. .not. settled) return
+      end if
+      if (self%model%rotational .and. constraints%rotational%control == control_force) then
+         call settle_moment(self, slides, constraints, settled, error)
          if (allocated(error) .or. .not. settled) return
       end if
       constraints%status = self%state%status
       constraints%stuck_slip = self%state%stuck_slip
    end subroutine settle_loads
 
-   !> No node is stuck and the tangential force is prescribed, so that no equation determines the shift. Hold it where
-   !> friction balances the force all the same: no friction, no contact, or equal slip to both sides. Otherwise the upper
-   !> body moves towards the missing force; nodes that slip with it will stick first: let them (`settled` is then false).
-   !> Error MFV_GROSS_SLIDING where there are none: every contact node already gives all it has against the force.
-   subroutine hold_shift(self, constraints, settled, error)
+   !> A prescribed moment. While no two nodes are in contact nothing determines the rotation: it is held, which only a moment of
+   !> zero allows. The same where normals are along the radius and no node sticks: rotation then only slides.
+   !> Errors MFV_NO_CONTINUATION: the moment tips the upper body over; MFV_GROSS_SLIDING.
+   subroutine settle_moment(self, slides, constraints, settled, error)
       class(first_violation_type), intent(inout) :: self
+      logical, intent(in) :: slides
       type(constraints_type), intent(inout) :: constraints
-      logical, intent(out) :: settled
+      logical, intent(inout) :: settled
+      type(error_type), allocatable, intent(out) :: error
+      real(wp), parameter :: no_moment = 1.0e-14_wp
+      type(load_type) :: load
+      real(wp) :: scale
+
+      if (self%state%contact_nodes() < 2) then
+         scale = self%model%compliance%modulus*self%model%length()**2
+         if (max(abs(constraints%rotational%value), abs(constraints%rotational%rate)) > no_moment*scale) &
+            call no_continuation(self, 'fewer than two nodes are in contact, and the moment tips the upper body over', error)
+         constraints%rotational = load_type(control_displacement, self%state%fields%rotation, 0.0_wp)
+      else if (slides .and. self%model%scene%mesh%radial) then
+         load = constraints%rotational
+         call hold_motion(self, constraints, load, along_rotation, settled, error)
+         constraints%rotational = load
+      end if
+   end subroutine settle_moment
+
+   !> No node is stuck and the tangential force (or moment) `load` is prescribed, so that no equation determines the shift (the
+   !> rotation). Hold it where friction balances the force all the same: no friction, no contact, or equal slip to both
+   !> sides. Otherwise the upper body moves towards the missing force; nodes that slip with it will stick first: let them
+   !> (`settled` is then false). Error MFV_GROSS_SLIDING where there are none: every contact node already gives all it has
+   !> against the force.
+   subroutine hold_motion(self, constraints, load, along, settled, error)
+      class(first_violation_type), intent(inout) :: self
+      type(constraints_type), intent(in) :: constraints
+      type(load_type), intent(inout) :: load
+      integer, intent(in) :: along
+      logical, intent(inout) :: settled
       type(error_type), allocatable, intent(out) :: error
       real(wp), parameter :: balanced = 1.0e-9_wp
       type(constraints_type) :: trial
@@ -261,24 +294,35 @@ contains
       integer :: stuck(size(self%state%status))
       logical :: yielding(size(self%state%status)), singular
 
-      settled = .true.
-      wanted = constraints%tangential%rate
-      constraints%tangential = load_type(control_displacement, self%state%fields%shift, 0.0_wp)
+      wanted = load%rate
+      load = load_type(control_displacement, merge(self%state%fields%shift, self%state%fields%rotation, along == along_shift), &
+                       0.0_wp)
       if (.not. any(slips(self%state%status))) then
-         if (abs(wanted) > 0.0_wp) call set_error(error, MFV_GROSS_SLIDING, &
-                                                  'no node in contact has friction to carry a tangential force '// &
-                                                  self%where_it_is())
+         if (abs(wanted) > 0.0_wp) call set_error(error, MFV_GROSS_SLIDING, 'no node in contact has friction to carry a '// &
+                                                  force_name(along)//' '//self%where_it_is())
          return
       end if
       trial = constraints
+      if (along == along_shift) then
+         trial%tangential = load
+         if (self%model%scene%mesh%radial .and. trial%rotational%control == control_force) &
+            trial%rotational = load_type(control_displacement, self%state%fields%rotation, 0.0_wp)
+      else
+         trial%rotational = load
+      end if
       trial%status = self%state%status
       trial%stuck_slip = self%state%stuck_slip
       call self%system%solve(self%model, trial, response, singular)
-      missing = wanted - response%rate%tangential_force
-      scale = max(abs(wanted), self%model%force(abs(response%rate%shear)))
-      if (.not. singular .and. abs(missing) <= balanced*scale) return
+      missing = wanted
+      scale = abs(wanted)
+      if (.not. singular) then
+         missing = wanted - self%model%resultant(along, response%rate%pressure, response%rate%shear)
+         scale = max(scale, self%model%force(abs(response%rate%shear*self%model%tangential_arm(:, along))))
+         if (abs(missing) <= balanced*scale) return
+      end if
       yielding = slips(self%state%status)
-      if (.not. singular) yielding = yielding .and. slip_sign(self%state%status)*missing > 0.0_wp
+      if (.not. singular) yielding = yielding .and. &
+                                     slip_sign(self%state%status)*self%model%tangential_arm(:, along)*missing > 0.0_wp
       if (any(yielding)) then
          stuck = node_stick
          call self%state%set_status(yielding, stuck)
@@ -286,7 +330,16 @@ contains
       else
          call set_error(error, MFV_GROSS_SLIDING, 'gross sliding: every contact node slips '//self%where_it_is())
       end if
-   end subroutine hold_shift
+   end subroutine hold_motion
+
+   !> What a motion's force is called.
+   pure function force_name(along) result(name)
+      integer, intent(in) :: along
+      character(:), allocatable :: name
+
+      name = 'tangential force'
+      if (along == along_rotation) name = 'moment'
+   end function force_name
 
    !> Force control without contact: move the upper body, free of load, until its nearest nodes touch.
    subroutine close_nearest(self, segment, moment)
