@@ -56,6 +56,7 @@ program mfv_stress
 contains
 
    subroutine read_arguments()
+      real(wp), parameter :: most_points = 1.0e7_wp
       character(:), allocatable :: argument
       integer :: i
 
@@ -92,6 +93,8 @@ contains
          i = i + 1
       end do
       if (path == '') call refuse('a result file is missing')
+      if (real(request%across, wp)*request%down > most_points) call refuse('--points asks for more than '//to_text(most_points)// &
+                                                                           ' points')
    end subroutine read_arguments
 
    !> The number in argument `i`, at least `lower`.

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ctypes
+import os
 from ctypes import POINTER, c_double
 from dataclasses import dataclass
 from typing import NamedTuple
@@ -73,7 +74,8 @@ def stress(result: Result, x: ArrayLike, y: ArrayLike, *, body: str = "lower", s
     arc = np.ascontiguousarray(result.mesh.arc if "arc" in result.mesh else result.mesh.x)
     loads = arc, result.mesh.width, state.pressure, state.shear
     values, largest = np.empty((across.size, len(NAMES))), np.empty(3)
-    with Case.from_text(result.attributes["input"], result.attributes["input_file"]) as case:
+    name = os.path.join(result.attributes["working_directory"], result.attributes["input_file"])
+    with Case.from_text(result.attributes["input"], name) as case:
         case._call(
             "mfv_stress_under",
             BODIES.index(body),

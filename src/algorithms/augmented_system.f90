@@ -84,9 +84,21 @@ contains
          response%state%shift = constraints%tangential%value
          response%rate%shift = constraints%tangential%rate
       end if
+      if (.not. assembly%tangential) call add_leaning_force(response, model)
       call fill_displacements(response%state, model, assembly)
       call fill_displacements(response%rate, model, assembly)
    end subroutine solve
+
+   !> Without friction leaning normals carry a tangential force all the same.
+   subroutine add_leaning_force(response, model)
+      type(response_type), intent(inout) :: response
+      type(contact_model_type), intent(in) :: model
+
+      associate (state => response%state, rate => response%rate)
+         state%tangential_force = model%resultant(along_shift, state%pressure, state%shear)
+         rate%tangential_force = model%resultant(along_shift, rate%pressure, rate%shear)
+      end associate
+   end subroutine add_leaning_force
 
    !> An assembly of zeros for the nodes in contact and their neighbours.
    function new_assembly(model, status) result(assembly)

@@ -162,8 +162,8 @@ contains
       self%tangential = max(self%tangential, grip*self%normal, maxval(abs(by_pressure)), maxval(abs(by_shear)), &
                             abs(fields%shift))
       rigid = model%rigid_tangential(fields)
-      call self%note(elasticity_tangential, maxval(abs(fields%tangential + rigid - by_pressure - by_shear)), &
-                     max(self%tangential, maxval(abs(rigid))))
+      self%tangential = max(self%tangential, maxval(abs(rigid)))
+      call self%note(elasticity_tangential, maxval(abs(fields%tangential + rigid - by_pressure - by_shear)), self%tangential)
       call self%note(normal_force_balance, abs(fields%normal_force - model%resultant(along_approach, fields%pressure, &
                                                                                      fields%shear)), &
                      self%normal_force)
@@ -197,11 +197,14 @@ contains
       type(contact_state_type), intent(in) :: state
       real(wp) :: gap(size(state%status))
       logical :: contact(size(state%status))
+      real(wp) :: scale
 
       contact = in_contact(state%status)
       gap = model%gap(state%fields)
-      call self%note(contact_gap, largest_of(abs(gap), contact), self%normal)
-      call self%note(gap_sign, largest_of(-gap, model%can_touch .and. .not. contact), self%normal)
+      scale = self%normal
+      if (.not. scale > 0.0_wp) scale = max(maxval(abs(model%initial_gap)), abs(state%fields%approach))
+      call self%note(contact_gap, largest_of(abs(gap), contact), scale)
+      call self%note(gap_sign, largest_of(-gap, model%can_touch .and. .not. contact), scale)
       call self%note(open_traction, largest_of(abs(state%fields%pressure) + abs(state%fields%shear),.not. contact), &
                      self%traction)
       call self%note(pressure_sign, largest_of(-state%fields%pressure, contact), self%traction)

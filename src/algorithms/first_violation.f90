@@ -251,7 +251,7 @@ contains
    end subroutine settle_loads
 
    !> A prescribed moment. While no two nodes are in contact nothing determines the rotation: it is held, which only a moment of
-   !> zero allows. The same where normals are along the radius and no node sticks: rotation then only slides.
+   !> zero allows (a tangential force at the surface makes another one). The same where normals are along the radius and no node sticks: rotation then only slides.
    !> Errors MFV_NO_CONTINUATION: the moment tips the upper body over; MFV_GROSS_SLIDING.
    subroutine settle_moment(self, slides, constraints, settled, error)
       class(first_violation_type), intent(inout) :: self
@@ -265,7 +265,8 @@ contains
 
       if (self%state%contact_nodes() < 2) then
          scale = self%model%compliance%modulus*self%model%length()**2
-         if (max(abs(constraints%rotational%value), abs(constraints%rotational%rate)) > no_moment*scale) &
+         if (max(abs(constraints%rotational%value), abs(constraints%rotational%rate), &
+                 abs(self%state%fields%moment - constraints%rotational%value)) > no_moment*scale) &
             call no_continuation(self, 'fewer than two nodes are in contact, and the moment tips the upper body over', error)
          constraints%rotational = load_type(control_displacement, self%state%fields%rotation, 0.0_wp)
       else if (slides .and. self%model%scene%mesh%radial) then
@@ -298,8 +299,10 @@ contains
       load = load_type(control_displacement, merge(self%state%fields%shift, self%state%fields%rotation, along == along_shift), &
                        0.0_wp)
       if (.not. any(slips(self%state%status))) then
-         if (abs(wanted) > 0.0_wp) call set_error(error, MFV_GROSS_SLIDING, 'no node in contact has friction to carry a '// &
-                                                  force_name(along)//' '//self%where_it_is())
+         scale = self%state%fields%normal_force*merge(1.0_wp, self%model%length(), along == along_shift)
+         if (abs(wanted) > balanced*scale) &
+            call set_error(error, MFV_GROSS_SLIDING, 'no node in contact has friction to carry a '// &
+                           force_name(along)//' '//self%where_it_is())
          return
       end if
       trial = constraints

@@ -1,6 +1,7 @@
 !> Where the model stops holding: warnings that go with a result.
 module mfv_validity
    use mfv_body, only: body_type
+   use mfv_contact_model, only: along_rotation
    use mfv_interior, only: interior_type, largest_type, new_interior
    use mfv_kinds, only: pi, wp
    use mfv_node_status, only: in_contact
@@ -29,6 +30,8 @@ contains
          call check_yield(simulation, .false., scene%lower, warnings)
          call check_yield(simulation, .true., scene%upper, warnings)
       end associate
+      call check_rotation(simulation, warnings)
+      call check_certificate(simulation, warnings)
    end subroutine validity_warnings
 
    subroutine check_angle(simulation, name, body, warnings)
@@ -39,6 +42,7 @@ contains
       real(wp) :: angle
 
       if (body%rigid .or. .not. body%circular() .or. simulation%contact%model%scene%mesh%radial) return
+      if (simulation%contact%state%contact_nodes() == 0) return
       associate (model => simulation%contact%model)
          angle = maxval(abs(model%arc), mask=in_contact(simulation%contact%state%status))/body%radius*180.0_wp/pi
       end associate
@@ -47,6 +51,34 @@ contains
                     ' body; normals are taken as vertical, which is a poor approximation beyond '// &
                     to_text(largest_angle, 2))
    end subroutine check_angle
+
+   !> Nodes opposite each other stay so: a body that has rolled along has left them.
+   subroutine check_rotation(simulation, warnings)
+      type(simulation_type), intent(in) :: simulation
+      type(string_type), allocatable, intent(inout) :: warnings(:)
+      real(wp) :: rolled, half_width
+
+      associate (model => simulation%contact%model, state => simulation%contact%state)
+         if (.not. model%rotational .or. state%contact_nodes() == 0) return
+         rolled = abs(state%fields%rotation)*maxval(abs(model%tangential_arm(:, along_rotation)))
+         half_width = 0.5_wp*sum(model%width, mask=in_contact(state%status))
+      end associate
+      if (rolled > half_width) &
+         call add_text(warnings, 'the upper body has turned by more than the contact half-width along its surface: rotations '// &
+                       'must be small')
+   end subroutine check_rotation
+
+   !> A result that has lost digits.
+   subroutine check_certificate(simulation, warnings)
+      type(simulation_type), intent(in) :: simulation
+      type(string_type), allocatable, intent(inout) :: warnings(:)
+      real(wp), parameter :: good = 1.0e-8_wp
+
+      associate (largest => simulation%contact%certificate%largest())
+         if (largest > good) call add_text(warnings, 'the certificate, '//to_text(largest, 2)// &
+                                           ', is far from round-off: digits have been lost')
+      end associate
+   end subroutine check_certificate
 
    subroutine check_yield(simulation, upper, body, warnings)
       type(simulation_type), intent(in) :: simulation

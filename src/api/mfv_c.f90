@@ -194,6 +194,7 @@ contains
    function wrong_with(step) result(why)
       type(c_step), intent(in) :: step
       character(:), allocatable :: why
+      integer, parameter :: most_cycles = 1000000
       integer, parameter :: controls(3) = [control_keep, control_force, control_displacement]
 
       why = ''
@@ -206,8 +207,8 @@ contains
          why = 'a target is not finite'
       else if (step%normal_control == control_force .and. step%normal_target < 0.0_wp) then
          why = 'the normal force must not be negative'
-      else if (step%cycles < 0) then
-         why = 'cycles must not be negative'
+      else if (step%cycles < 0 .or. step%cycles > most_cycles) then
+         why = 'cycles must be from 0 to '//to_text(most_cycles)
       end if
    end function wrong_with
 
@@ -462,6 +463,10 @@ contains
       call c_f_pointer(width, widths, [nodes])
       call c_f_pointer(pressure, pressures, [nodes])
       call c_f_pointer(shear, shears, [nodes])
+      status = refused(self, 'mfv_stress_under: values must be finite and widths positive')
+      if (.not. (all(ieee_is_finite(positions)) .and. all(ieee_is_finite(widths)) .and. all(ieee_is_finite(pressures)) .and. &
+                 all(ieee_is_finite(shears)))) return
+      if (any(widths <= 0.0_wp)) return
       call make_interior(self, body, positions, widths, pressures, shears, interior, status)
       if (status == MFV_COMPLETE .and. c_associated(stresses)) &
          status = stresses_out(self, interior, count, x, y, stresses)

@@ -50,7 +50,7 @@ module mfv_interior
 
    type, extends(objective_type) :: search_type
       type(interior_type) :: interior
-      real(wp) :: shallowest = 0.0_wp
+      real(wp) :: shallowest = 0.0_wp, deepest = 0.0_wp
    contains
       procedure :: value => negative_von_mises
    end type search_type
@@ -154,6 +154,7 @@ contains
       real(wp) :: values(4), turned(3), from_pole(2)
 
       values = ieee_value(1.0_wp, ieee_quiet_nan)
+      if (.not. (ieee_is_finite(x) .and. ieee_is_finite(y))) return
       if (.not. self%contains_point(x, y)) return
       if (self%is_circle()) then
          from_pole = radii_from_pole(self, x, y)
@@ -224,8 +225,9 @@ contains
 
    !> The largest von Mises stress: the best points of a coarse net below the contact, which is dense towards the surface,
    !> are each refined by a simplex search (GSL); on the surface itself, where box tractions are singular at the edges of
-   !> boxes, values at the nodes with a parabola through the best three. Depths from 0 to less than half a box are not
-   !> searched: there the boxes show. Zero where there is no load.
+   !> boxes, values at the nodes with a parabola through the best three. Depths from 0 to less than a box are not
+   !> searched: there the boxes show; nor is a disk deeper than half its radius or where stresses rise
+   !> towards the force in its centre. Zero where there is no load.
    function largest_von_mises(self) result(largest)
       class(interior_type), intent(in) :: self
       type(largest_type) :: largest
@@ -239,23 +241,27 @@ contains
       left = minval(self%arc - self%half)
       right = maxval(self%arc + self%half)
       reach = max(right - left, 0.0_wp)
-      if (self%is_circle()) reach = min(reach, 0.9_wp*self%body%radius)
+      if (self%is_circle()) reach = min(reach, 0.5_wp*self%body%radius)
       shallowest = 2.0_wp*minval(self%half)
       positions = [(left + (right - left)*(i - 1)/(across - 1.0_wp), i=1, across)]
       depths = [(shallowest*(max(reach/shallowest, 2.0_wp))**((j - 1)/(down - 1.0_wp)), j=1, down)]
       search%interior = self
       search%shallowest = shallowest
+      search%deepest = max(depths(down), shallowest)
       allocate (net(across, down))
       do j = 1, down
          do i = 1, across
             net(i, j) = self%at_depth(positions(i), depths(j))
          end do
       end do
+      if (self%is_circle()) call leave_out_rise(net)
       do start = 1, starts
          best = maxloc(net)
+         if (.not. net(best(1), best(2)) > 0.0_wp) exit
          place = [positions(best(1)), depths(best(2))]
          call minimum_near(search, [(right - left)/across, 0.2_wp*place(2)], place, value)
-         call keep_larger(self, largest, place(1), max(place(2), shallowest))
+         if (place(2) < search%deepest .or. .not. self%is_circle()) &
+            call keep_larger(self, largest, place(1), min(max(place(2), shallowest), search%deepest))
          call clear_around(net, best)
       end do
       call search_surface(self, largest)
@@ -267,8 +273,24 @@ contains
       real(wp), intent(in) :: x(:)
       real(wp) :: value
 
-      value = -self%interior%at_depth(x(1), max(x(2), self%shallowest))
+      value = -self%interior%at_depth(x(1), min(max(x(2), self%shallowest), self%deepest))
    end function negative_von_mises
+
+   !> Take out of a net (across, down) what only rises towards its lower edge: the force in a disk's centre.
+   pure subroutine leave_out_rise(net)
+      real(wp), intent(inout) :: net(:, :)
+      real(wp) :: below
+      integer :: i, j
+
+      do i = 1, size(net, 1)
+         below = huge(1.0_wp)
+         do j = size(net, 2), 1, -1
+            if (net(i, j) > below) exit
+            below = net(i, j)
+            net(i, j) = -1.0_wp
+         end do
+      end do
+   end subroutine leave_out_rise
 
    !> Take a place and its neighbours out of a net.
    pure subroutine clear_around(net, best)

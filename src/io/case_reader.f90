@@ -477,7 +477,7 @@ contains
                               error)
          return
       end if
-      if (scene%mesh%half_width > 0.0_wp) call check_mesh_is_under(reader, scene, error)
+      call check_mesh_is_under(reader, scene, error)
       if (.not. allocated(error)) call check_circle(reader, 1, scene, scene%lower, error)
       if (.not. allocated(error)) call check_circle(reader, 2, scene, scene%upper, error)
    end subroutine read_mesh
@@ -506,17 +506,32 @@ contains
       type(scene_type), intent(in) :: scene
       type(error_type), allocatable, intent(out) :: error
       real(wp) :: interval, x
-      integer :: i
+      integer :: i, nodes
+      logical :: growing
 
-      interval = 2.0_wp*scene%mesh%half_width/scene%mesh%nodes
-      do i = 1, scene%mesh%nodes
-         x = 0.5_wp*interval*(2*i - scene%mesh%nodes - 1)
+      if (scene%lower%shape == shape_matrix) then
+         if (any(scene%upper%covers(scene%lower%position))) return
+         call reader%complain('body', 1, 'file', 'no node of this body is under the indenter', error)
+         return
+      end if
+      call choose_mesh(scene, nodes, interval, growing)
+      do i = 1, nodes
+         x = 0.5_wp*interval*(2*i - nodes - 1)
          if (scene%arc_radius() > 0.0_wp) x = scene%arc_radius()*sin(x/scene%arc_radius())
          if (scene%lower%covers(x) .and. scene%upper%covers(x)) return
       end do
-      call reader%complain('mesh', 1, merge_text(reader%has('mesh', 1, 'half_width'), 'half_width', 'half_angle'), &
-                           'no node of this mesh is under the indenter', error)
+      call reader%complain('mesh', 1, mesh_key(reader), 'no node of this mesh is under the indenter', error)
    end subroutine check_mesh_is_under
+
+   !> The key of the mesh to complain about.
+   function mesh_key(reader) result(key)
+      type(reader_type), intent(in) :: reader
+      character(:), allocatable :: key
+
+      key = 'nodes'
+      if (reader%has('mesh', 1, 'half_width')) key = 'half_width'
+      if (reader%has('mesh', 1, 'half_angle')) key = 'half_angle'
+   end function mesh_key
 
    !> A Fourier series needs a circle of a whole number of intervals, and no more of it than there is.
    subroutine check_circle(reader, number, scene, body, error)
@@ -525,7 +540,7 @@ contains
       type(scene_type), intent(in) :: scene
       type(body_type), intent(in) :: body
       type(error_type), allocatable, intent(out) :: error
-      real(wp), parameter :: whole = 1.0e-9_wp
+      real(wp), parameter :: whole = 1.0e-9_wp, most_intervals = 5.0e7_wp
       real(wp) :: interval, intervals
       integer :: nodes
       logical :: growing
@@ -534,9 +549,12 @@ contains
       call choose_mesh(scene, nodes, interval, growing)
       intervals = 2.0_wp*pi*body%radius/interval
       if (nodes > intervals*(1.0_wp + whole)) then
-         call reader%complain('mesh', 1, merge_text(reader%has('mesh', 1, 'half_width'), 'half_width', 'half_angle'), &
+         call reader%complain('mesh', 1, mesh_key(reader), &
                               'goes more than once round body '//to_text(number), error)
-      else if (body%kernel == kernel_fourier .and. abs(intervals - nint(intervals)) > whole*intervals) then
+      else if (body%kernel == kernel_fourier .and. intervals > most_intervals) then
+         call reader%complain('body', number, 'kernel', 'the circle would have '//to_text(intervals, 3)// &
+                              ' intervals, more than '//to_text(most_intervals)//"; use kernel='exact'", error)
+      else if (body%kernel == kernel_fourier .and. abs(intervals - anint(intervals)) > whole*intervals) then
          call reader%complain('body', number, 'kernel', 'needs a whole number of intervals on the circle, there are '// &
                               to_text(intervals, 10)//"; change &mesh, or use kernel='exact'", error)
       end if

@@ -14,6 +14,7 @@ module mfv_result_fields
    use mfv_simulation, only: history_none, simulation_type
    use mfv_status, only: status_outcome
    use mfv_strings, only: add_text, list_of_words, string_type, to_text
+   use mfv_text_file, only: working_directory
    use mfv_validity, only: validity_warnings
    use mfv_version, only: library_version
    implicit none
@@ -147,6 +148,7 @@ contains
       call add('warnings', text)
       call add('input', case%text)
       call add('input_file', case%source)
+      call add('working_directory', working_directory())
       call add('mfv_version', library_version)
       call add('length_unit', case%length_unit)
       call add('force_unit', case%force_unit)

@@ -13,6 +13,7 @@ module mfv_stress_file
    use mfv_result_fields, only: step_group
    use mfv_status, only: MFV_FILE_ERROR, MFV_INPUT_ERROR
    use mfv_strings, only: list_of_words, string_type
+   use mfv_text_file, only: path_from
    implicit none
    private
    public :: stress_request_type, stress_result_type, add_stresses
@@ -77,7 +78,7 @@ contains
       type(stress_result_type), intent(inout) :: result
       type(error_type), allocatable, intent(out) :: error
       integer(hid_t) :: file
-      character(:), allocatable :: text, source, state
+      character(:), allocatable :: text, source, directory, state
       real(wp), allocatable :: arc(:), width(:), pressure(:), shear(:)
       type(body_type) :: body
       logical :: available
@@ -88,6 +89,7 @@ contains
       if (request%step > 0) state = step_group(request%step)
       call read_text_attribute(file, 'input', text, error)
       if (.not. allocated(error)) call read_text_attribute(file, 'input_file', source, error)
+      if (.not. allocated(error)) call read_text_attribute(file, 'working_directory', directory, error)
       if (.not. allocated(error) .and. request%step > 0) then
          if (.not. has(file, 'steps')) then
             call set_error(error, MFV_INPUT_ERROR, 'there is no state '//state)
@@ -106,7 +108,8 @@ contains
       if (.not. allocated(error)) call read_vector(file, state//'/pressure', size(arc), pressure, error)
       if (.not. allocated(error)) call read_vector(file, state//'/shear', size(arc), shear, error)
       call close_read(file)
-      if (.not. allocated(error)) call read_case_text(text, source, case, error, without_steps=.true.)
+      if (.not. allocated(error)) call read_case_text(text, path_from(directory, source), case, error, &
+                                                     without_steps=.true.)
       if (allocated(error)) return
       body = case%scene%lower
       if (request%upper) body = case%scene%upper

@@ -1,12 +1,22 @@
 !> Reading whole text files.
 module mfv_text_file
+   use, intrinsic :: iso_c_binding, only: c_associated, c_char, c_null_char, c_ptr, c_size_t
    use, intrinsic :: iso_fortran_env, only: int64
    use mfv_error, only: error_type, set_error
    use mfv_status, only: MFV_INPUT_ERROR
-   use mfv_strings, only: string_type
+   use mfv_strings, only: from_c, string_type
    implicit none
    private
-   public :: read_text, split_lines, directory_of
+   public :: read_text, split_lines, directory_of, working_directory, path_from
+
+   interface
+      function c_getcwd(buffer, size) bind(C, name='getcwd') result(path)
+         import :: c_char, c_ptr, c_size_t
+         character(kind=c_char), intent(out) :: buffer(*)
+         integer(c_size_t), value :: size
+         type(c_ptr) :: path
+      end function c_getcwd
+   end interface
 
 contains
 
@@ -63,5 +73,25 @@ contains
 
       directory = path(:index(path, '/', back=.true.))
    end function directory_of
+
+   !> The directory the process works in, empty where it cannot be told.
+   function working_directory() result(path)
+      character(:), allocatable :: path
+      integer(c_size_t), parameter :: longest = 4096
+      character(kind=c_char) :: buffer(longest)
+
+      buffer = c_null_char
+      path = ''
+      if (c_associated(c_getcwd(buffer, longest))) path = from_c(buffer)
+   end function working_directory
+
+   !> A path that was given in another directory.
+   pure function path_from(directory, path) result(whole)
+      character(*), intent(in) :: directory, path
+      character(:), allocatable :: whole
+
+      whole = path
+      if (directory /= '' .and. path(1:min(1, len(path))) /= '/') whole = directory//'/'//path
+   end function path_from
 
 end module mfv_text_file
