@@ -150,7 +150,7 @@ contains
 
       grip = min(model%scene%friction%coefficient, 1.0_wp)
       self%traction = max(self%traction, maxval(abs(fields%pressure)), maxval(abs(fields%shear)))
-      self%normal_force = max(self%normal_force, abs(fields%normal_force))
+      self%normal_force = max(self%normal_force, abs(fields%normal_force), model%force(abs(fields%pressure)))
       self%tangential_force = max(self%tangential_force, grip*self%normal_force, &
                                   model%force(abs(fields%shear)), abs(fields%tangential_force))
       call displacement_parts(block_wp, block_wt)
@@ -260,7 +260,8 @@ contains
 
       if (ieee_is_finite(residual) .and. ieee_is_finite(scale)) then
          if (residual <= scale*self%residual(kind)) return
-         self%residual(kind) = residual/scale
+         self%residual(kind) = huge(1.0_wp)
+         if (scale > 0.0_wp) self%residual(kind) = residual/scale
       else
          self%residual(kind) = huge(1.0_wp)
       end if
