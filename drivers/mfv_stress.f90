@@ -136,16 +136,19 @@ contains
    end subroutine print_points
 
    subroutine print_summary()
-      character(:), allocatable :: place
+      character(:), allocatable :: place, unit
 
+      unit = ''
+      if (index(result%stress_unit, 'force') == 0) unit = ' '//result%stress_unit
       place = to_text(result%largest%x)//', '//to_text(result%largest%y)
       if (index(result%length_unit, 'length') == 0) place = place//' '//result%length_unit
-      write (output_unit, '(a)') 'largest von Mises   '//to_text(result%largest%value)//' = '// &
+      write (output_unit, '(a)') 'largest von Mises   '//to_text(result%largest%value)//unit//' = '// &
          to_text(result%largest%value/result%largest_pressure, 4)//' p0, at x, y = '//place//' = '// &
          to_text(result%largest%x/result%half_width, 4)//', '//to_text(result%largest%y/result%half_width, 4)//' a'
       if (result%yield_strength > 0.0_wp .and. result%largest%value > result%yield_strength) &
-         write (error_unit, '(a)') 'warning: the largest von Mises stress is beyond the yield_strength '// &
-         to_text(result%yield_strength)//': elasticity no longer holds'
+         write (error_unit, '(a)') 'warning: the largest von Mises stress, '//to_text(result%largest%value, 4)//unit// &
+         ', is beyond the yield_strength '//to_text(result%yield_strength)//unit//' of the '// &
+         trim(merge('upper', 'lower', request%upper))//' body: elasticity no longer holds'
       write (output_unit, '(a)') 'stresses            '//to_text(stress_count)//' quantities at '// &
          to_text(size(result%stress, 2))//' points, in '//path//' under /'//result%group
    end subroutine print_summary

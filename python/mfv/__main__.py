@@ -55,7 +55,7 @@ def _parser() -> argparse.ArgumentParser:
     )
     plot.add_argument("file", type=Path, metavar="RESULT.h5", help="result file")
     plot.add_argument(
-        "-o", "--output", type=Path, metavar="PICTURE", help="png, pdf or svg; else RESULT.png beside the file"
+        "-o", "--output", type=Path, metavar="PICTURE", help="png, pdf or svg; else RESULT.png, or RESULT_NAME_BODY.png for a stress, beside the file"
     )
     plot.add_argument(
         "--step", type=int, metavar="N", help="the state in the file's group steps/000N in place of the last"
@@ -82,7 +82,8 @@ def _plot(options: argparse.Namespace) -> None:
         picture = plot.stress_figure(result, options.stress, options.body, options.step)
     else:
         picture = plot.figure(result, options.step)
-    output = options.output or options.file.with_suffix(".png")
+    name = f"{options.file.stem}_{options.stress}_{options.body}" if options.stress else options.file.stem
+    output = options.output or options.file.with_name(f"{name}.png")
     picture.savefig(output, dpi=200)
     print(output)
 

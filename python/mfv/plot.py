@@ -107,8 +107,21 @@ def stress_figure(result: Result, name: str = "von_mises", body: str = "lower", 
         ax = picture.subplots()
         contours = stress_contours(field, ax, name)
         picture.colorbar(contours, ax=ax, label=f"{STRESS_LABELS[name]}$/p_0$", shrink=0.85)
-        ax.set_title(_heading(result, step) or f"{body} body", fontsize=12, parse_math=False)
+        heading = _heading(result, step)
+        ax.set_title(f"{heading}: {body} body" if heading else f"{body} body", fontsize=12, parse_math=False)
+        picture.supxlabel(_scales(result, field), fontsize=9, color="0.35", parse_math=False)
     return picture
+
+
+def _scales(result: Result, field: StressField) -> str:
+    """What pressure and length the picture is drawn over, and the largest von Mises stress, in the user's units."""
+    stress_unit, length_unit = result.state.unit("pressure"), result.mesh.unit("x")
+    unit = "" if "force" in stress_unit else f" {stress_unit}"
+    length = "" if "length" in length_unit else f" {length_unit}"
+    return (
+        f"p0 = {field.largest_pressure:.4g}{unit} \N{MIDDLE DOT} a = {field.half_width:.4g}{length} \N{MIDDLE DOT} "
+        f"largest von Mises stress {field.largest.value:.4g}{unit}"
+    )
 
 
 def stress_contours(field: StressField, ax: Axes, name: str = "von_mises") -> Any:

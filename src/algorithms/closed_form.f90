@@ -41,7 +41,7 @@ contains
       associate (model => simulation%contact%model, scene => simulation%contact%model%scene, &
                  force => simulation%contact%state%fields%normal_force)
          if (.not. (force > 0.0_wp .and. scene%modulus() > 0.0_wp)) return
-         if (model%compliance%has_block(block_wt) .and. model%tangential) return
+         if (model%compliance%has_block(block_wt) .and. model%tangential .and. .not. alike(scene)) return
          if (is_rotated(simulation)) return
          if (is_hertz(scene)) then
             form%half_width = hertz_half_width(force, 1.0_wp/scene%curvature(), scene%modulus())
@@ -69,6 +69,15 @@ contains
                  (scene%upper%circular() .or. scene%upper%shape == shape_half_plane) .and. scene%curvature() > 0.0_wp
    end function is_hertz
 
+   !> Whether Dundurs' beta vanishes: bodies of one material. What coupling their different shapes leave is of the order of
+   !> a/R.
+   pure logical function alike(scene)
+      type(scene_type), intent(in) :: scene
+      real(wp), parameter :: none = 1.0e-12_wp
+
+      alike = abs(scene%dundurs_beta()) < none
+   end function alike
+
    !> Whether there is a rotation or a moment to speak of.
    pure logical function is_rotated(simulation)
       type(simulation_type), intent(in) :: simulation
@@ -87,7 +96,7 @@ contains
       integer :: i
 
       associate (model => simulation%contact%model)
-         is_spence = model%compliance%has_block(block_up) .and. model%tangential
+         is_spence = model%compliance%has_block(block_up) .and. model%tangential .and. .not. alike(model%scene)
          before = 0.0_wp
          do i = 1, size(simulation%taken)
             associate (step => simulation%taken(i))
@@ -131,7 +140,8 @@ contains
             associate (step => simulation%taken(i))
                pressing = pressing .and. .not. abs(step%tangential_target) > 0.0_wp
                if (pressing) then
-                  is_mindlin = is_mindlin .and. (.not. step%friction .or. .not. model%compliance%has_block(block_up)) &
+                  is_mindlin = is_mindlin .and. (.not. step%friction .or. alike(scene) .or. &
+                                                 .not. model%compliance%has_block(block_up)) &
                                .and. step%tangential_control /= control_displacement
                else
                   is_mindlin = is_mindlin .and. step%friction .and. step%normal_control == control_keep &

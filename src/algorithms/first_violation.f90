@@ -440,8 +440,8 @@ contains
       if (self%model%growing) then
          call self%widen(moment)
       else
-         call set_error(error, MFV_MESH_EXCEEDED, 'the contact reached the end of the mesh at |x| = '// &
-                        to_text(self%model%length())//' '//self%where_it_is())
+         call set_error(error, MFV_MESH_EXCEEDED, 'the contact reached the end of the mesh, '// &
+                        to_text(self%model%length())//' from the pole '//self%where_it_is())
       end if
    end subroutine change_statuses
 

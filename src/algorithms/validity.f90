@@ -2,6 +2,7 @@
 module mfv_validity
    use mfv_body, only: body_type
    use mfv_contact_model, only: along_rotation
+   use mfv_contact_state, only: contact_state_type
    use mfv_interior, only: interior_type, largest_type, new_interior
    use mfv_kinds, only: pi, wp
    use mfv_node_status, only: in_contact
@@ -17,8 +18,9 @@ module mfv_validity
 
 contains
 
-   !> Warnings about the last state of a simulation, none as a rule: contact at angles for which vertical normals are a poor
-   !> approximation; stresses beyond a yield strength that the user gave (the largest von Mises stress by refinement).
+   !> Warnings about a simulation, none as a rule: few nodes in contact; contact at angles for which vertical normals are a
+   !> poor approximation; stresses beyond a yield strength that the user gave (the largest von Mises stress by refinement);
+   !> large rotations; lost digits.
    subroutine validity_warnings(simulation, warnings)
       type(simulation_type), intent(in) :: simulation
       type(string_type), allocatable, intent(out) :: warnings(:)
@@ -30,6 +32,7 @@ contains
          call check_yield(simulation, .false., scene%lower, warnings)
          call check_yield(simulation, .true., scene%upper, warnings)
       end associate
+      call check_resolution(simulation, warnings)
       call check_rotation(simulation, warnings)
       call check_certificate(simulation, warnings)
    end subroutine validity_warnings
@@ -68,6 +71,18 @@ contains
                        'must be small')
    end subroutine check_rotation
 
+   !> Half-width and stick ratio come in whole nodes.
+   subroutine check_resolution(simulation, warnings)
+      type(simulation_type), intent(in) :: simulation
+      type(string_type), allocatable, intent(inout) :: warnings(:)
+      integer, parameter :: fewest = 10
+
+      associate (contact => simulation%contact%state%contact_nodes())
+         if (contact > 0 .and. contact < fewest) &
+            call add_text(warnings, 'only '//to_text(contact)//' nodes are in contact: the mesh is too coarse')
+      end associate
+   end subroutine check_resolution
+
    !> A result that has lost digits.
    subroutine check_certificate(simulation, warnings)
       type(simulation_type), intent(in) :: simulation
@@ -80,26 +95,53 @@ contains
       end associate
    end subroutine check_certificate
 
+   !> The last state, and of those at the ends of steps the ones with the largest normal force and the largest tangential
+   !> forces to either side.
    subroutine check_yield(simulation, upper, body, warnings)
       type(simulation_type), intent(in) :: simulation
       logical, intent(in) :: upper
       type(body_type), intent(in) :: body
       type(string_type), allocatable, intent(inout) :: warnings(:)
-      type(interior_type) :: interior
-      type(largest_type) :: largest
-      logical :: available
+      type(largest_type) :: largest, other
+      character(:), allocatable :: where_it_is
+      integer :: candidates(3), i, n
 
       if (.not. body%yield_strength > 0.0_wp) return
-      associate (model => simulation%contact%model, fields => simulation%contact%state%fields)
-         call new_interior(body, upper, model%scene%plane, model%scene%mesh%radial, model%arc, model%width, fields%pressure, &
-                           fields%shear, interior, available)
-      end associate
-      if (.not. available) return
-      largest = interior%largest_von_mises()
+      largest = largest_below(simulation, upper, body, simulation%contact%state)
+      where_it_is = 'in the last state'
+      n = simulation%snapshot_count
+      candidates = 0
+      if (n > 1) candidates = [maxloc([(simulation%snapshots(i)%state%fields%normal_force, i=1, n)]), &
+                               maxloc([(simulation%snapshots(i)%state%fields%tangential_force, i=1, n)]), &
+                               minloc([(simulation%snapshots(i)%state%fields%tangential_force, i=1, n)])]
+      do i = 1, size(candidates)
+         if (candidates(i) == 0 .or. candidates(i) == n) cycle
+         other = largest_below(simulation, upper, body, simulation%padded_state(candidates(i)))
+         if (.not. other%value > largest%value) cycle
+         largest = other
+         where_it_is = 'in steps/'//to_text(candidates(i))
+      end do
       if (largest%value > body%yield_strength) &
          call add_text(warnings, 'the largest von Mises stress of the '//merge('upper', 'lower', upper)//' body, '// &
-                       to_text(largest%value, 4)//', is beyond its yield_strength '//to_text(body%yield_strength)// &
-                       ': elasticity no longer holds')
+                       to_text(largest%value, 4)//' '//where_it_is//', is beyond its yield_strength '// &
+                       to_text(body%yield_strength)//': elasticity no longer holds')
    end subroutine check_yield
+
+   !> The largest von Mises stress of a body in a state; zero for a body without an inside.
+   function largest_below(simulation, upper, body, state) result(largest)
+      type(simulation_type), intent(in) :: simulation
+      logical, intent(in) :: upper
+      type(body_type), intent(in) :: body
+      type(contact_state_type), intent(in) :: state
+      type(largest_type) :: largest
+      type(interior_type) :: interior
+      logical :: available
+
+      associate (model => simulation%contact%model)
+         call new_interior(body, upper, model%scene%plane, model%scene%mesh%radial, model%arc, model%width, &
+                           state%fields%pressure, state%fields%shear, interior, available)
+      end associate
+      if (available) largest = interior%largest_von_mises()
+   end function largest_below
 
 end module mfv_validity

@@ -70,7 +70,7 @@ contains
       call add_real_key(keys, 'body', 'poisson_ratio', '', "Poisson's ratio, needed for an elastic body", &
                         lower=-1.0_wp, lower_open=.true., upper=0.5_wp)
       call add_positive_key(keys, 'body', 'yield_strength', 'force/length^2', 'elastic body: a warning is given when '// &
-                            'the largest von Mises stress of the last state is beyond it')
+                            'the largest von Mises stress is beyond it')
       call add_positive_key(keys, 'body', 'datum', 'length', 'elastic body: distance from the contact at which '// &
                             'displacements are measured; left out: the radius of a disk or hole; else the radius, '// &
                             'half-width or extent of the other body')

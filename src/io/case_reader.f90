@@ -403,7 +403,7 @@ contains
             call reader%complain('body', number, 'radius', 'a hole needs a disk of a smaller radius in it', error)
       else if (.not. scene%curvature() > 0.0_wp .and. &
                .not. any([scene%lower%shape, scene%upper%shape] == shape_flat_punch)) then
-         call reader%complain('body', 2, 'shape', 'two half-planes touch everywhere; one body must have a shape', error)
+         call reader%complain('body', 2, 'shape', 'two half-planes touch everywhere; one body must be curved or a profile', error)
       end if
       if (allocated(error) .or. scene%lower%shape /= shape_flat_punch .or. scene%upper%shape /= shape_flat_punch) return
       call reader%complain('body', 2, 'shape', 'two flat punches make no contact of elastic bodies', error)
@@ -493,7 +493,8 @@ contains
       if (reader%has('mesh', 1, 'half_width')) then
          call reader%complain('mesh', 1, 'half_angle', 'half_width is there too; give one of them', error)
       else if (.not. scene%arc_radius() > 0.0_wp) then
-         call reader%complain('mesh', 1, 'half_angle', 'means nothing without an elastic disk or hole', error)
+         call reader%complain('mesh', 1, 'half_angle', 'means nothing without an elastic disk or hole; use half_width', &
+                              error)
       else
          scene%mesh%whole_circle = .not. half_angle < half_turn
          if (.not. scene%mesh%whole_circle) scene%mesh%half_width = scene%arc_radius()*pi*half_angle/half_turn
@@ -556,7 +557,7 @@ contains
                               ' intervals, more than '//to_text(most_intervals)//"; use kernel='exact'", error)
       else if (body%kernel == kernel_fourier .and. abs(intervals - anint(intervals)) > whole*intervals) then
          call reader%complain('body', number, 'kernel', 'needs a whole number of intervals on the circle, there are '// &
-                              to_text(intervals, 10)//"; change &mesh, or use kernel='exact'", error)
+                              to_text(intervals, 10)//"; make 180*nodes/half_angle whole, or use kernel='exact'", error)
       end if
    end subroutine check_circle
 

@@ -37,8 +37,8 @@ module mfv_stress_file
       real(wp), allocatable :: x(:), depth(:), y(:), stress(:, :)
       type(largest_type) :: largest
       real(wp) :: half_width = 0.0_wp, largest_pressure = 0.0_wp, yield_strength = 0.0_wp
-      !> Group of the file they are in, and the name of the unit of length there.
-      character(:), allocatable :: group, length_unit
+      !> Group of the file they are in, and the names of the units there.
+      character(:), allocatable :: group, length_unit, stress_unit
    end type stress_result_type
 
 contains
@@ -61,6 +61,7 @@ contains
       result%half_width = interior%half_width()
       result%largest_pressure = interior%largest_pressure()
       result%length_unit = case%length_unit
+      result%stress_unit = case%force_unit//'/'//case%length_unit//'^2'
       if (.not. result%half_width > 0.0_wp) then
          call set_error(error, MFV_INPUT_ERROR, path//': there is no load in this state')
          return
@@ -217,7 +218,7 @@ contains
       integer(hid_t) :: scale_x, scale_depth, dataset
       integer :: code, i
 
-      unit = case%force_unit//'/'//case%length_unit//'^2'
+      unit = result%stress_unit
       names = list_of_words(stress_names)
       call write_values(writer, result%group//'/x', result%x, [size(result%x)], case%length_unit, &
                         'position to the right of the pole', scale_x)
