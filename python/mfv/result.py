@@ -137,6 +137,7 @@ class Result:
             f"  certificate   largest relative residual {amount('largest_residual')}",
             f"  kept          {kept(self)}",
         ]
+        lines += [f"  warning       {line}" for line in self.attributes.get("warnings", "").splitlines()]
         return "\n".join(lines) + ">"
 
     def _amount(self, name: str) -> str:

@@ -1,6 +1,6 @@
 !> Where the model stops holding: warnings that go with a result.
 module mfv_validity
-   use mfv_body, only: body_type
+   use mfv_body, only: body_type, shape_matrix
    use mfv_contact_model, only: along_rotation
    use mfv_contact_state, only: contact_state_type
    use mfv_interior, only: interior_type, largest_type, new_interior
@@ -33,6 +33,7 @@ contains
          call check_yield(simulation, .true., scene%upper, warnings)
       end associate
       call check_resolution(simulation, warnings)
+      call check_order(simulation%contact%model%scene%lower, warnings)
       call check_rotation(simulation, warnings)
       call check_certificate(simulation, warnings)
    end subroutine validity_warnings
@@ -82,6 +83,21 @@ contains
             call add_text(warnings, 'only '//to_text(contact)//' nodes are in contact: the mesh is too coarse')
       end associate
    end subroutine check_resolution
+
+   !> A user's matrix whose rows come node by node, not normal components first: almost every node then moves its neighbour in
+   !> the matrix, which is its own other component, less than the one after that.
+   subroutine check_order(body, warnings)
+      type(body_type), intent(in) :: body
+      type(string_type), allocatable, intent(inout) :: warnings(:)
+      real(wp), parameter :: almost_every = 0.8_wp
+      integer :: i, n
+
+      if (body%shape /= shape_matrix) return
+      n = size(body%position) - 2
+      if (count([(body%matrix(i, i + 1) < body%matrix(i, i + 2), i=1, n)]) > almost_every*n .and. n > 1) &
+         call add_text(warnings, 'in the matrix neighbours move each other less than nodes further apart: do its rows and '// &
+                       'columns have all normal components first, then the tangential ones?')
+   end subroutine check_order
 
    !> A result that has lost digits.
    subroutine check_certificate(simulation, warnings)

@@ -669,6 +669,11 @@ def test_a_half_plane_as_a_matrix(tmp_path: Path) -> None:
         assert result.state.pressure == pytest.approx(expected.state.pressure, abs=1e-9)
         assert result.state.shear == pytest.approx(expected.state.shear, abs=1e-9)
         assert result.certificate.largest < 1e-10
+        assert result.attributes["warnings"] == ""
+    node_by_node = np.arange(82).reshape(2, 41).T.ravel()
+    shuffled = compliance[np.ix_(node_by_node, node_by_node)]
+    result = mfv.run(text=matrix_file(tmp_path / "body.h5", x=x, compliance=shuffled))
+    assert "all normal components first" in result.attributes["warnings"]
 
 
 def test_bad_matrices_are_refused(tmp_path: Path) -> None:
