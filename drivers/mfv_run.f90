@@ -11,9 +11,10 @@ program mfv_run
    use mfv_result_file, only: write_result
    use mfv_simulation, only: new_simulation, simulation_type
    use mfv_status
-   use mfv_strings, only: to_text
+   use mfv_strings, only: string_type
    use mfv_summary, only: check_text, summary_text
    use mfv_terminal
+   use mfv_validity, only: validity_warnings
    use mfv_version, only: library_version
    implicit none
 
@@ -53,7 +54,7 @@ program mfv_run
       call check_case(argument)
    case default
       call expect_arguments(1)
-      if (index(option, '-') == 1) call refuse("unknown option '"//option//"'")
+      if (index(option, '-') == 1) call refuse('mfv_run', usage, "unknown option '"//option//"'")
       call run_case(option)
    end select
 
@@ -63,16 +64,10 @@ contains
    subroutine expect_arguments(number)
       integer, intent(in) :: number
 
-      if (command_argument_count() < number) call refuse('a case file is missing')
-      if (command_argument_count() > number) call refuse("too many arguments: '"//argument_text(number + 1)//"'")
+      if (command_argument_count() < number) call refuse('mfv_run', usage, 'a case file is missing')
+      if (command_argument_count() > number) &
+         call refuse('mfv_run', usage, "too many arguments: '"//argument_text(number + 1)//"'")
    end subroutine expect_arguments
-
-   subroutine refuse(why)
-      character(*), intent(in) :: why
-
-      write (error_unit, '(a)') 'mfv_run: '//why//line_feed//usage
-      call end_program(status_exit_code(MFV_INPUT_ERROR))
-   end subroutine refuse
 
    subroutine check_case(path)
       character(*), intent(in) :: path
@@ -88,6 +83,7 @@ contains
       character(*), intent(in) :: path
       type(case_type) :: case
       type(simulation_type) :: simulation
+      type(string_type), allocatable :: warnings(:)
       type(terminal_observer_type) :: observer
       type(error_type), allocatable :: error
       real(wp) :: started
@@ -107,19 +103,13 @@ contains
       call observer%clear()
       if (simulation%outcome /= MFV_COMPLETE) simulation%message = case%explained(simulation)
 
-      call write_result(case%result_path, case, simulation, error)
+      call validity_warnings(simulation, warnings)
+      call write_result(case%result_path, case, simulation, warnings, error)
       if (allocated(error)) call fail(error)
-      write (output_unit, '(a)', advance='no') summary_text(case, simulation, seconds_now() - started)
+      write (output_unit, '(a)', advance='no') summary_text(case, simulation, warnings, seconds_now() - started)
       write (output_unit, '(a)') 'result              '//case%result_path
       if (simulation%outcome /= MFV_COMPLETE) write (error_unit, '(a)') simulation%message
       call end_program(status_exit_code(simulation%outcome))
    end subroutine run_case
-
-   subroutine fail(error)
-      type(error_type), intent(in) :: error
-
-      write (error_unit, '(a)') error%message
-      call end_program(status_exit_code(error%status))
-   end subroutine fail
 
 end program mfv_run

@@ -5,10 +5,10 @@ program mfv_stress
    use mfv_interior, only: stress_count, stress_names
    use mfv_kinds, only: wp
    use mfv_profile_file, only: read_two_columns
-   use mfv_status
    use mfv_stress_file
    use mfv_strings, only: to_text
-   use mfv_terminal, only: argument_text, end_program
+   use mfv_summary, only: unit_suffix
+   use mfv_terminal, only: argument_text, end_program, fail, refuse
    use mfv_version, only: library_version
    implicit none
 
@@ -46,10 +46,7 @@ program mfv_stress
    end select
    call read_arguments()
    call add_stresses(path, request, result, error)
-   if (allocated(error)) then
-      write (error_unit, '(a)') error%message
-      call end_program(status_exit_code(error%status))
-   end if
+   if (allocated(error)) call fail(error)
    if (allocated(request%x)) call print_points()
    call print_summary()
 
@@ -69,7 +66,7 @@ contains
          case ('--body')
             argument = argument_text(i)
             if (argument /= 'lower' .and. argument /= 'upper') &
-               call refuse("--body must be lower or upper, not '"//argument//"'")
+               call refuse('mfv_stress', usage, "--body must be lower or upper, not '"//argument//"'")
             request%upper = argument == 'upper'
          case ('--step')
             request%step = nint(number(i, '--step', 1.0_wp, whole=.true.))
@@ -83,18 +80,18 @@ contains
             request%down = nint(number(i, '--points', 2.0_wp, whole=.true.))
          case ('--at')
             call read_two_columns(argument_text(i), 'x and y', .false., request%x, request%y, error)
-            if (allocated(error)) call refuse(error%message)
+            if (allocated(error)) call refuse('mfv_stress', usage, error%message)
          case default
-            if (index(argument, '-') == 1) call refuse("unknown option '"//argument//"'")
-            if (path /= '') call refuse("too many arguments: '"//argument//"'")
+            if (index(argument, '-') == 1) call refuse('mfv_stress', usage, "unknown option '"//argument//"'")
+            if (path /= '') call refuse('mfv_stress', usage, "too many arguments: '"//argument//"'")
             path = argument
             cycle
          end select
          i = i + 1
       end do
-      if (path == '') call refuse('a result file is missing')
-      if (real(request%across, wp)*request%down > most_points) call refuse('--points asks for more than '//to_text(most_points)// &
-                                                                           ' points')
+      if (path == '') call refuse('mfv_stress', usage, 'a result file is missing')
+      if (real(request%across, wp)*request%down > most_points) &
+         call refuse('mfv_stress', usage, '--points asks for more than '//to_text(most_points)//' points')
    end subroutine read_arguments
 
    !> The number in argument `i`, at least `lower`.
@@ -107,24 +104,16 @@ contains
       character(:), allocatable :: text, kind
       integer :: code
 
-      kind = ' a number'
-      if (present(whole)) kind = ' a whole number'
+      kind = ' a number above 0'
+      if (present(whole)) kind = ' a whole number of at least '//to_text(nint(lower))
       text = argument_text(i)
       number = 0.0_wp
       code = 1
       if (text /= '' .and. verify(text, '0123456789+-.eEdD') == 0) read (text, *, iostat=code) number
       if (code == 0 .and. present(whole)) code = merge(0, 1, abs(number - anint(number)) <= 0.0_wp)
       if (code == 0) code = merge(0, 1, number >= lower .and. number <= most)
-      if (code /= 0) call refuse(option//' needs'//kind//trim(merge(' of at least '//to_text(nint(lower)), &
-                                                                     ' above 0      ', present(whole)))//", not '"//text//"'")
+      if (code /= 0) call refuse('mfv_stress', usage, option//' needs'//kind//", not '"//text//"'")
    end function number
-
-   subroutine refuse(why)
-      character(*), intent(in) :: why
-
-      write (error_unit, '(a)') 'mfv_stress: '//why//line_feed//usage
-      call end_program(status_exit_code(MFV_INPUT_ERROR))
-   end subroutine refuse
 
    subroutine print_points()
       integer :: i
@@ -138,10 +127,8 @@ contains
    subroutine print_summary()
       character(:), allocatable :: place, unit
 
-      unit = ''
-      if (index(result%stress_unit, 'force') == 0) unit = ' '//result%stress_unit
-      place = to_text(result%largest%x)//', '//to_text(result%largest%y)
-      if (index(result%length_unit, 'length') == 0) place = place//' '//result%length_unit
+      unit = unit_suffix(result%stress_unit)
+      place = to_text(result%largest%x)//', '//to_text(result%largest%y)//unit_suffix(result%length_unit)
       write (output_unit, '(a)') 'largest von Mises   '//to_text(result%largest%value)//unit//' = '// &
          to_text(result%largest%value/result%largest_pressure, 4)//' p0, at x, y = '//place//' = '// &
          to_text(result%largest%x/result%half_width, 4)//', '//to_text(result%largest%y/result%half_width, 4)//' a'

@@ -4,12 +4,14 @@ module mfv_terminal
    use, intrinsic :: iso_fortran_env, only: error_unit
    use mfv_clock, only: seconds_now
    use mfv_contact_state, only: contact_state_type
+   use mfv_error, only: error_type
    use mfv_kinds, only: wp
    use mfv_observer, only: observer_type
+   use mfv_status, only: MFV_INPUT_ERROR, status_exit_code
    use mfv_strings, only: to_text
    implicit none
    private
-   public :: argument_text, terminal_observer_type, catch_interrupts, end_program
+   public :: argument_text, terminal_observer_type, catch_interrupts, end_program, fail, refuse
 
    !> Shows progress on a terminal, and ends the run after Ctrl-C.
    type, extends(observer_type) :: terminal_observer_type
@@ -112,6 +114,22 @@ contains
       allocate (character(len=length) :: text)
       if (length > 0) call get_command_argument(number, text)
    end function argument_text
+
+   !> End the program with the message and the exit code of an error.
+   subroutine fail(error)
+      type(error_type), intent(in) :: error
+
+      write (error_unit, '(a)') error%message
+      call end_program(status_exit_code(error%status))
+   end subroutine fail
+
+   !> End `program` because of its arguments: say why, and how it is used.
+   subroutine refuse(program, usage, why)
+      character(*), intent(in) :: program, usage, why
+
+      write (error_unit, '(a)') program//': '//why//achar(10)//usage
+      call end_program(status_exit_code(MFV_INPUT_ERROR))
+   end subroutine refuse
 
    !> End the program with an exit code, without the words that a stop statement may print.
    subroutine end_program(code)

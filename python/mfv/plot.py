@@ -21,7 +21,7 @@ from matplotlib.ticker import MaxNLocator
 
 from .codes import EventKind, NodeStatus
 from .result import Group, Result, counts
-from .stress import NAMES, StressField, grid, stored
+from .stress import NAMES, StressField, grid, stored, surface
 
 #: Colours from Okabe and Ito, told apart by the colour-blind too.
 NUMBERS, CLOSED_FORM, SURFACE, MARKS = "#0072B2", "#D55E00", "#009E73", "#000000"
@@ -115,9 +115,9 @@ def stress_figure(result: Result, name: str = "von_mises", body: str = "lower", 
 
 def _scales(result: Result, field: StressField) -> str:
     """What pressure and length the picture is drawn over, and the largest von Mises stress, in the user's units."""
-    stress_unit, length_unit = result.state.unit("pressure"), result.mesh.unit("x")
-    unit = "" if "force" in stress_unit else f" {stress_unit}"
-    length = "" if "length" in length_unit else f" {length_unit}"
+    unit, length = (
+        f" {unit}" if _is_named(unit) else "" for unit in (result.state.unit("pressure"), result.mesh.unit("x"))
+    )
     return (
         f"p0 = {field.largest_pressure:.4g}{unit} \N{MIDDLE DOT} a = {field.half_width:.4g}{length} \N{MIDDLE DOT} "
         f"largest von Mises stress {field.largest.value:.4g}{unit}"
@@ -199,12 +199,7 @@ def surfaces(result: Result, ax: Axes, step: int | None = None) -> None:
 def _heights(result: Result, state: Group) -> tuple[np.ndarray, np.ndarray]:
     """Heights of both surfaces: the lower one deformed from its own shape, the upper one a gap above it."""
     x = result.mesh.x
-    radius = result.scene.get("lower_radius")
-    shape = np.zeros_like(x)
-    if radius is not None:
-        inward = -1.0 if result.attributes["lower_body"].endswith("disk") else 1.0
-        shape = inward * x**2 / (radius + np.sqrt(np.maximum(radius**2 - x**2, 0.0)))
-    lower = shape - state.get("normal_displacement", np.zeros_like(x))
+    lower = surface(result, "lower", x) - state.get("normal_displacement", np.zeros_like(x))
     return lower, np.where(np.isfinite(state.gap), lower + state.gap, np.nan)
 
 
@@ -426,7 +421,12 @@ def _caption(result: Result, step: int | None) -> str:
 
 def _label(name: str, symbol: str, unit: str) -> str:
     """Label of an axis; the unit only where the user has named it."""
-    if unit in ("", "1") or "length" in unit or "force" in unit:
+    if not _is_named(unit):
         return f"{name} ${symbol}$"
     shown = unit.replace("$", r"\$").replace("^2", "$^2$")
     return f"{name} ${symbol}$ [{shown}]"
+
+
+def _is_named(unit: str) -> bool:
+    """Whether the user has named a unit."""
+    return unit not in ("", "1") and "length" not in unit and "force" not in unit

@@ -71,7 +71,7 @@ def stress(result: Result, x: ArrayLike, y: ArrayLike, *, body: str = "lower", s
         raise ValueError(f"the body must be 'lower' or 'upper', not '{body}'")
     across, up = (np.ascontiguousarray(values, dtype=np.float64) for values in np.broadcast_arrays(x, y))
     state = result.at(step)
-    arc = np.ascontiguousarray(result.mesh.arc if "arc" in result.mesh else result.mesh.x)
+    arc = _arc(result)
     loads = arc, result.mesh.width, state.pressure, state.shear
     values, largest = np.empty((across.size, len(NAMES))), np.empty(3)
     name = os.path.join(result.attributes["working_directory"], result.attributes["input_file"])
@@ -84,15 +84,14 @@ def stress(result: Result, x: ArrayLike, y: ArrayLike, *, body: str = "lower", s
             across.size,
             *map(_pointer, (across, up, values, largest)),
         )
-    loaded = (state.pressure != 0.0) | (state.shear != 0.0)
-    edges = _edges(arc[loaded], result.mesh.width[loaded])
+    left, right = _loaded_surface(result, step)
     return StressField(
         body,
         across,
         up,
         {name: values[:, column].reshape(across.shape) for column, name in enumerate(NAMES)},
-        0.5 * (edges[1] - edges[0]),
-        0.5 * (edges[1] + edges[0]),
+        0.5 * (right - left),
+        0.5 * (right + left),
         float(np.max(state.pressure)),
         Largest(*map(float, largest)),
     )
@@ -113,16 +112,13 @@ def grid(
 
     Otherwise as `stress`. Raises ValueError where there is no load.
     """
-    state = result.at(step)
-    arc = result.mesh.arc if "arc" in result.mesh else result.mesh.x
-    loaded = (state.pressure != 0.0) | (state.shear != 0.0)
-    if not loaded.any():
-        raise ValueError("there is no load in this state")
-    left, right = _edges(arc[loaded], result.mesh.width[loaded])
+    left, right = _loaded_surface(result, step)
     half = 0.5 * (right - left)
+    if half == 0.0:
+        raise ValueError("there is no load in this state")
     x = 0.5 * (left + right) + half * np.linspace(-width, width, across)
     across_grid, below = np.meshgrid(x, half * np.linspace(0.0, depth, down))
-    inside = _surface(result, body, across_grid) - below
+    inside = surface(result, body, across_grid) - below
     return stress(result, across_grid, inside if body == "lower" else -inside, body=body, step=step)
 
 
@@ -143,8 +139,8 @@ def stored(result: Result, *, body: str = "lower", step: int | None = None) -> S
     )
 
 
-def _surface(result: Result, body: str, x: Array) -> Array:
-    """Height of the surface of the lower body at x; of the upper one upside down. NaN beside a disk or hole."""
+def surface(result: Result, body: str, x: Array) -> Array:
+    """Height of the undeformed surface of the lower body at x; of the upper one upside down. NaN beside a disk or hole."""
     radius = result.scene.get(f"{body}_radius")
     if radius is None:
         return np.zeros_like(x)
@@ -153,11 +149,19 @@ def _surface(result: Result, body: str, x: Array) -> Array:
         return np.asarray(sign * x**2 / (radius + np.sqrt(radius**2 - x**2)))
 
 
-def _edges(arc: Array, width: Array) -> tuple[float, float]:
+def _arc(result: Result) -> Array:
+    """Positions of the nodes along the surface."""
+    return np.ascontiguousarray(result.mesh.arc if "arc" in result.mesh else result.mesh.x)
+
+
+def _loaded_surface(result: Result, step: int | None) -> tuple[float, float]:
     """Ends of the loaded surface; both 0 where there is no load."""
-    if arc.size == 0:
+    state = result.at(step)
+    loaded = (state.pressure != 0.0) | (state.shear != 0.0)
+    if not loaded.any():
         return 0.0, 0.0
-    return float(np.min(arc - 0.5 * width)), float(np.max(arc + 0.5 * width))
+    arc, half = _arc(result)[loaded], 0.5 * result.mesh.width[loaded]
+    return float(np.min(arc - half)), float(np.max(arc + half))
 
 
 def _pointer(values: Array) -> ctypes._Pointer[c_double]:

@@ -60,7 +60,6 @@ module mfv_contact_model
       procedure :: add_rotation
       procedure, private :: build_compliance
       procedure, private :: place_nodes
-      procedure, private :: touchable
    end type contact_model_type
 
    !> Contact estimates leave this much room to the end of a chosen mesh.
@@ -245,22 +244,9 @@ contains
       integer :: n
 
       n = self%nodes()
-      reaches_end = contact(1) .and. self%touchable(self%arc(1) - self%interval()) &
-                    .or. contact(n) .and. self%touchable(self%arc(n) + self%interval())
+      reaches_end = contact(1) .and. self%scene%touchable(self%arc(1) - self%interval()) &
+                    .or. contact(n) .and. self%scene%touchable(self%arc(n) + self%interval())
    end function reaches_end
-
-   !> Whether both bodies have a surface at an arc length from the pole.
-   pure logical function touchable(self, arc)
-      class(contact_model_type), intent(in) :: self
-      real(wp), intent(in) :: arc
-      real(wp) :: x, radius
-
-      radius = self%scene%arc_radius()
-      x = arc
-      if (radius > 0.0_wp) x = radius*sin(arc/radius)
-      touchable = self%scene%lower%covers(x) .and. self%scene%upper%covers(x)
-      if (radius > 0.0_wp) touchable = touchable .and. abs(arc) < 0.5_wp*pi*radius
-   end function touchable
 
    !> How many nodes there could still be at either end: a circle ends.
    pure integer function spare_nodes(self)
@@ -287,27 +273,24 @@ contains
    !> Positions symmetric to the last bit.
    subroutine place_nodes(self)
       class(contact_model_type), intent(inout) :: self
-      real(wp) :: radius
       integer :: i, n
 
       n = self%nodes()
-      radius = self%scene%arc_radius()
-      self%arc = [(0.5_wp*self%interval()*(2*i - n - 1), i=1, n)]
-      self%x = self%arc
-      self%width = spread(self%interval(), 1, n)
       if (self%scene%lower%shape == shape_matrix) then
-         self%x = self%scene%lower%position
-         self%arc = self%x
+         self%arc = self%scene%lower%position
          self%width = self%scene%lower%width
-      else if (radius > 0.0_wp) then
-         self%x = radius*sin(self%arc/radius)
+      else
+         self%arc = [(0.5_wp*self%interval()*(2*i - n - 1), i=1, n)]
+         self%width = spread(self%interval(), 1, n)
       end if
+      self%x = self%scene%x_of_arc(self%arc)
       if (self%scene%mesh%radial) then
-         self%initial_gap = radial_gap_between(self%scene%lower, self%scene%upper, self%arc/radius)
+         self%initial_gap = radial_gap_between(self%scene%lower, self%scene%upper, &
+                                               self%arc/self%scene%arc_radius())
       else
          self%initial_gap = gap_between(self%scene%lower, self%scene%upper, self%x, self%scene%mesh%parabolic)
       end if
-      self%can_touch = [(self%touchable(self%arc(i)), i=1, n)]
+      self%can_touch = self%scene%touchable(self%arc)
       call place_arms(self)
    end subroutine place_nodes
 

@@ -3,15 +3,18 @@ module mfv_scene
    use mfv_body, only: body_type
    use mfv_compliance, only: coupling_full
    use mfv_friction, only: friction_type
-   use mfv_kinds, only: wp
+   use mfv_interior, only: interior_type, new_interior
+   use mfv_kinds, only: pi, wp
    use mfv_material, only: plane_strain
    implicit none
    private
-   public :: scene_type, mesh_request_type, step_type, control_keep, control_force, control_displacement
+   public :: scene_type, mesh_request_type, step_type, control_keep, control_force, control_displacement, most_cycles
 
    !> What a step does with the normal, the tangential or the rotational load: leave it as it is, lead the force (moment) to
    !> a target, or lead the rigid displacement (approach, shift, rotation) to a target.
    integer, parameter :: control_keep = 0, control_force = 1, control_displacement = 2
+   !> Cycles that one step can have.
+   integer, parameter :: most_cycles = 1000000
 
    !> One step of the load history; targets are reached linearly from the step before.
    type :: step_type
@@ -60,6 +63,9 @@ module mfv_scene
       procedure :: dundurs_beta
       procedure :: datum
       procedure :: arc_radius
+      procedure :: x_of_arc
+      procedure :: touchable
+      procedure :: interior
    end type scene_type
 
 contains
@@ -149,5 +155,43 @@ contains
       if (.not. self%lower%circular() .or. self%lower%rigid) return
       if (.not. arc_radius > 0.0_wp .or. self%lower%radius < arc_radius) arc_radius = self%lower%radius
    end function arc_radius
+
+   !> x of the node at an arc length from the pole, lengths.
+   elemental real(wp) function x_of_arc(self, arc) result(x)
+      class(scene_type), intent(in) :: self
+      real(wp), intent(in) :: arc
+      real(wp) :: radius
+
+      radius = self%arc_radius()
+      x = arc
+      if (radius > 0.0_wp) x = radius*sin(arc/radius)
+   end function x_of_arc
+
+   !> Whether both bodies have a surface at an arc length (length) from the pole: on a circle not beyond 90 degrees.
+   elemental logical function touchable(self, arc)
+      class(scene_type), intent(in) :: self
+      real(wp), intent(in) :: arc
+      real(wp) :: radius, x
+
+      radius = self%arc_radius()
+      x = self%x_of_arc(arc)
+      touchable = self%lower%covers(x) .and. self%upper%covers(x)
+      if (radius > 0.0_wp) touchable = touchable .and. abs(arc) < 0.5_wp*pi*radius
+   end function touchable
+
+   !> The lower or `upper` body under tractions, see mfv_interior; `available`: false for a rigid body or a mere matrix.
+   subroutine interior(self, upper, arc, width, pressure, shear, inside, available)
+      class(scene_type), intent(in) :: self
+      logical, intent(in) :: upper
+      real(wp), intent(in) :: arc(:), width(:), pressure(:), shear(:)
+      type(interior_type), intent(out) :: inside
+      logical, intent(out) :: available
+
+      if (upper) then
+         call new_interior(self%upper, upper, self%plane, self%mesh%radial, arc, width, pressure, shear, inside, available)
+      else
+         call new_interior(self%lower, upper, self%plane, self%mesh%radial, arc, width, pressure, shear, inside, available)
+      end if
+   end subroutine interior
 
 end module mfv_scene

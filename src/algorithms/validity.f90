@@ -3,7 +3,7 @@ module mfv_validity
    use mfv_body, only: body_type, shape_matrix
    use mfv_contact_model, only: along_rotation
    use mfv_contact_state, only: contact_state_type
-   use mfv_interior, only: interior_type, largest_type, new_interior
+   use mfv_interior, only: interior_type, largest_type
    use mfv_kinds, only: pi, wp
    use mfv_node_status, only: in_contact
    use mfv_simulation, only: simulation_type
@@ -123,7 +123,7 @@ contains
       integer :: candidates(3), i, n
 
       if (.not. body%yield_strength > 0.0_wp) return
-      largest = largest_below(simulation, upper, body, simulation%contact%state)
+      largest = largest_below(simulation, upper, simulation%contact%state)
       where_it_is = 'in the last state'
       n = simulation%snapshot_count
       candidates = 0
@@ -132,7 +132,7 @@ contains
                                minloc([(simulation%snapshots(i)%state%fields%tangential_force, i=1, n)])]
       do i = 1, size(candidates)
          if (candidates(i) == 0 .or. candidates(i) == n) cycle
-         other = largest_below(simulation, upper, body, simulation%padded_state(candidates(i)))
+         other = largest_below(simulation, upper, simulation%padded_state(candidates(i)))
          if (.not. other%value > largest%value) cycle
          largest = other
          where_it_is = 'in steps/'//to_text(candidates(i))
@@ -144,18 +144,17 @@ contains
    end subroutine check_yield
 
    !> The largest von Mises stress of a body in a state; zero for a body without an inside.
-   function largest_below(simulation, upper, body, state) result(largest)
+   function largest_below(simulation, upper, state) result(largest)
       type(simulation_type), intent(in) :: simulation
       logical, intent(in) :: upper
-      type(body_type), intent(in) :: body
       type(contact_state_type), intent(in) :: state
       type(largest_type) :: largest
       type(interior_type) :: interior
       logical :: available
 
       associate (model => simulation%contact%model)
-         call new_interior(body, upper, model%scene%plane, model%scene%mesh%radial, model%arc, model%width, &
-                           state%fields%pressure, state%fields%shear, interior, available)
+         call model%scene%interior(upper, model%arc, model%width, state%fields%pressure, state%fields%shear, interior, &
+                                   available)
       end associate
       if (available) largest = interior%largest_von_mises()
    end function largest_below

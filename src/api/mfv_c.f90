@@ -6,14 +6,15 @@ module mfv_c
    use mfv_case_reader, only: read_case_file, read_case_text
    use mfv_contact_state, only: contact_state_type
    use mfv_error, only: error_type
-   use mfv_interior, only: interior_type, largest_type, new_interior, stress_count
+   use mfv_interior, only: interior_type, largest_type, stress_count
    use mfv_kinds, only: wp
    use mfv_result_fields, only: field_named, field_type, group_fields, result_attributes, result_groups
    use mfv_result_file, only: write_result
-   use mfv_scene, only: control_displacement, control_force, control_keep, step_type
+   use mfv_scene, only: control_displacement, control_force, control_keep, most_cycles, step_type
    use mfv_simulation, only: new_simulation, simulation_type
    use mfv_status
    use mfv_strings, only: add_text, copy_to_c, from_c, string_type, to_text
+   use mfv_validity, only: validity_warnings
    use mfv_version, only: library_version
    implicit none
    private
@@ -29,8 +30,8 @@ module mfv_c
       type(string_type), allocatable :: paths(:)
       character(:), allocatable :: group
       type(field_type), allocatable :: fields(:)
-      !> Names and texts of the attributes, which may take a search for the largest stress.
-      type(string_type), allocatable :: attribute_names(:), attribute_texts(:)
+      !> Warnings, which may take a search for the largest stress; names and texts of the attributes.
+      type(string_type), allocatable :: warnings(:), attribute_names(:), attribute_texts(:)
    end type handle_type
 
    integer, parameter :: valid_mark = 1297499699
@@ -194,7 +195,6 @@ contains
    function wrong_with(step) result(why)
       type(c_step), intent(in) :: step
       character(:), allocatable :: why
-      integer, parameter :: most_cycles = 1000000
       integer, parameter :: controls(3) = [control_keep, control_force, control_displacement]
 
       why = ''
@@ -279,6 +279,7 @@ contains
       if (allocated(self%paths)) deallocate (self%paths)
       if (allocated(self%group)) deallocate (self%group)
       if (allocated(self%fields)) deallocate (self%fields)
+      if (allocated(self%warnings)) deallocate (self%warnings)
       if (allocated(self%attribute_names)) deallocate (self%attribute_names, self%attribute_texts)
    end subroutine forget
 
@@ -340,9 +341,17 @@ contains
    subroutine list_attributes(self)
       type(handle_type), intent(inout) :: self
 
-      if (.not. allocated(self%attribute_names)) &
-         call result_attributes(self%case, self%simulation, self%attribute_names, self%attribute_texts)
+      if (allocated(self%attribute_names)) return
+      call find_warnings(self)
+      call result_attributes(self%case, self%simulation, self%warnings, self%attribute_names, self%attribute_texts)
    end subroutine list_attributes
+
+   !> Have the warnings at hand.
+   subroutine find_warnings(self)
+      type(handle_type), intent(inout) :: self
+
+      if (.not. allocated(self%warnings)) call validity_warnings(self%simulation, self%warnings)
+   end subroutine find_warnings
 
    function mfv_field_info(handle, path, count, is_integer, along, unit, unit_size, description, description_size) &
       result(status) bind(C, name='mfv_field_info')
@@ -502,15 +511,7 @@ contains
 
       status = refused(self, 'the body must be MFV_LOWER or MFV_UPPER')
       if (body /= lower .and. body /= upper) return
-      associate (scene => self%case%scene)
-         if (body == upper) then
-            call new_interior(scene%upper, .true., scene%plane, scene%mesh%radial, arc, width, pressure, shear, interior, &
-                              available)
-         else
-            call new_interior(scene%lower, .false., scene%plane, scene%mesh%radial, arc, width, pressure, shear, interior, &
-                              available)
-         end if
-      end associate
+      call self%case%scene%interior(body == upper, arc, width, pressure, shear, interior, available)
       status = MFV_COMPLETE
       if (.not. available) status = refused(self, 'the '//merge('upper', 'lower', body == upper)// &
                                             ' body is rigid or a matrix: there are no stresses inside it')
@@ -566,7 +567,8 @@ contains
       if (c_associated(path)) where_to = text_in(path)
       status = refused(self, 'mfv_write: no path, and the case has no &output file')
       if (where_to == '') return
-      call write_result(where_to, self%case, self%simulation, error)
+      call find_warnings(self)
+      call write_result(where_to, self%case, self%simulation, self%warnings, error)
       status = MFV_COMPLETE
       self%message = self%simulation%message
       if (.not. allocated(error)) return

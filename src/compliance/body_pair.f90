@@ -27,7 +27,6 @@ module mfv_body_pair
       procedure :: resize
       procedure :: entries
       procedure :: product => summed_product
-      procedure :: signature
       procedure :: deforms
       procedure :: part_displacements
    end type body_pair_type
@@ -132,15 +131,6 @@ contains
       if (self%deforms(part_upper)) &
          call self%part(part_upper)%compliance%product(block, upper_sign(block)*traction, displacement)
    end subroutine summed_product
-
-   !> Of the lower body: a pair is not paired again.
-   pure function signature(self)
-      class(body_pair_type), intent(in) :: self
-      real(wp) :: signature(4)
-
-      signature = 0.0_wp
-      if (self%deforms(part_lower)) signature = self%part(part_lower)%compliance%signature()
-   end function signature
 
    !> Surface displacements of one body, into it and to the right, length, under the tractions on the lower body; zero
    !> for a rigid one. Shapes (nodes).

@@ -30,6 +30,8 @@ module mfv_circle
       private
       !> body_disk or body_hole, see mfv_circle_kernels.
       integer :: body = body_disk
+      !> 1 for a disk, -1 for a hole.
+      real(wp) :: side = 1.0_wp
       type(material_type) :: material
       real(wp) :: radius = 1.0_wp, datum = 1.0_wp
       integer :: kernel = kernel_exact, harmonics = 0
@@ -63,6 +65,7 @@ contains
       type(circle_type) :: self
 
       self%body = body
+      if (body == body_hole) self%side = -1.0_wp
       self%material = material
       self%radius = radius
       self%interval = interval
@@ -135,15 +138,13 @@ contains
       logical, intent(in) :: normal
       integer, intent(in) :: j
       real(wp), intent(out) :: radial, shear
-      real(wp) :: side
 
       if (normal) then
          radial = -self%cosine(j)
          shear = self%sine(j)
       else
-         side = merge(1.0_wp, -1.0_wp, self%body == body_disk)
-         radial = side*self%sine(j)
-         shear = side*self%cosine(j)
+         radial = self%side*self%sine(j)
+         shear = self%side*self%cosine(j)
       end if
    end subroutine polar_traction
 
@@ -164,13 +165,12 @@ contains
       class(circle_type), intent(in) :: self
       logical, intent(in) :: normal
       integer, intent(in) :: i
-      real(wp) :: components(2), side
+      real(wp) :: components(2)
 
-      side = merge(1.0_wp, -1.0_wp, self%body == body_disk)
       if (normal) then
-         components = [self%lean_cosine(i), -side*self%lean_sine(i)]
+         components = [self%lean_cosine(i), -self%side*self%lean_sine(i)]
       else
-         components = [side*self%lean_sine(i), self%lean_cosine(i)]
+         components = [self%side*self%lean_sine(i), self%lean_cosine(i)]
       end if
    end function components
 
@@ -179,14 +179,16 @@ contains
       class(circle_type), intent(in) :: self
       integer, intent(in) :: block, rows(:), columns(:)
       real(wp), intent(out) :: matrix(:, :)
-      real(wp) :: radial, shear, side, scale, sign, translation(2)
+      real(wp) :: radial, shear, scale, sign, translation(2), row_components(2, size(rows))
       logical :: normal_row, normal_column
       integer :: distance, i, j
 
       normal_row = block == block_wp .or. block == block_wt
       normal_column = block == block_wp .or. block == block_up
-      side = merge(1.0_wp, -1.0_wp, self%body == body_disk)
       scale = self%radius/self%material%shear_modulus
+      do i = 1, size(rows)
+         row_components(:, i) = components(self, normal_row, rows(i))
+      end do
       do j = 1, size(columns)
          call polar_traction(self, normal_column, columns(j), radial, shear)
          translation = [self%normal_translation, self%tangential_translation]*components(self, normal_column, columns(j))
@@ -194,11 +196,11 @@ contains
             distance = abs(rows(i) - columns(j))
             sign = merge(1.0_wp, -1.0_wp, rows(i) >= columns(j))
             associate (k => self%kernels)
-               matrix(i, j) = scale*cartesian(side, normal_row, &
+               matrix(i, j) = scale*cartesian(self%side, normal_row, &
                                               k%radial(distance)*radial - sign*k%cross(distance)*shear, &
                                               sign*k%cross(distance)*radial + k%tangential(distance)*shear, &
                                               self%cosine(rows(i)), self%sine(rows(i))) &
-                              + dot_product(components(self, normal_row, rows(i)), translation)
+                              + dot_product(row_components(:, i), translation)
             end associate
          end do
       end do
@@ -212,7 +214,7 @@ contains
       real(wp), intent(in) :: traction(:)
       real(wp), intent(inout) :: displacement(:)
       real(wp), dimension(self%nodes) :: radial_displacement, circumferential
-      real(wp) :: radial, shear, scale, side, translation(2)
+      real(wp) :: radial, shear, scale, translation(2)
       logical :: normal_row, normal_column
       integer :: j, n
 
@@ -220,7 +222,6 @@ contains
       n = self%nodes
       normal_row = block == block_wp .or. block == block_wt
       normal_column = block == block_wp .or. block == block_up
-      side = merge(1.0_wp, -1.0_wp, self%body == body_disk)
       scale = self%radius/self%material%shear_modulus
       radial_displacement = 0.0_wp
       circumferential = 0.0_wp
@@ -238,7 +239,7 @@ contains
             circumferential(j:) = circumferential(j:) + radial*k%cross(0:n - j) + shear*k%tangential(0:n - j)
          end associate
       end do
-      displacement = displacement + scale*cartesian(side, normal_row, radial_displacement, circumferential, &
+      displacement = displacement + scale*cartesian(self%side, normal_row, radial_displacement, circumferential, &
                                                     self%cosine, self%sine)
       translation = 0.0_wp
       do j = 1, n

@@ -34,7 +34,7 @@ module mfv_compliance
       procedure(resize_interface), deferred :: resize
       procedure(entries_interface), deferred :: entries
       procedure(product_interface), deferred :: product
-      procedure(signature_interface), deferred :: signature
+      procedure :: signature
       procedure :: displacements
       procedure :: choose_blocks
       procedure :: bytes
@@ -65,14 +65,6 @@ module mfv_compliance
          real(wp), intent(in) :: traction(:)
          real(wp), intent(inout) :: displacement(:)
       end subroutine product_interface
-
-      !> What the coupling blocks depend on: two bodies with equal signatures pressed together do not couple. Zero where
-      !> there is no coupling, enormous where it equals no other.
-      pure function signature_interface(self) result(signature)
-         import :: compliance_type, wp
-         class(compliance_type), intent(in) :: self
-         real(wp) :: signature(4)
-      end function signature_interface
    end interface
 
 contains
@@ -91,6 +83,15 @@ contains
       call self%product(block_up, pressure, tangential)
       call self%product(block_ut, shear, tangential)
    end subroutine displacements
+
+   !> What the coupling blocks depend on: two bodies with equal signatures pressed together do not couple. Zero where there
+   !> is no coupling; enormous, as here, where nothing is known of it, so that no other body's cancels it.
+   pure function signature(self)
+      class(compliance_type), intent(in) :: self
+      real(wp) :: signature(4)
+
+      signature = huge(1.0_wp)/max(self%nodes, 1)
+   end function signature
 
    !> Which blocks a scene needs. `tangential`: whether friction can act in it.
    pure subroutine choose_blocks(self, coupling, tangential)

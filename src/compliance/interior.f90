@@ -4,7 +4,7 @@
 !> x to the right and y up from the pole; the upper body is the mirror image of a lower one with the shear reversed.
 module mfv_interior
    use, intrinsic :: ieee_arithmetic, only: ieee_is_finite, ieee_is_nan, ieee_quiet_nan, ieee_value
-   use mfv_body, only: body_type, shape_disk, shape_matrix
+   use mfv_body, only: body_type, shape_disk, shape_hole, shape_matrix
    use mfv_interior_circle, only: circle_stress
    use mfv_interior_half_plane, only: half_plane_stress
    use mfv_kinds, only: wp
@@ -28,6 +28,8 @@ module mfv_interior
       type(body_type) :: body
       !> 1 for a lower body, -1 for an upper one.
       real(wp) :: side = 1.0_wp
+      !> 1 for a disk, -1 for a hole: which way out of the body the centre's radius goes.
+      real(wp) :: outward = 1.0_wp
       !> Poisson's ratio in plane strain, 0 in plane stress: sigma_zz over sigma_xx + sigma_yy.
       real(wp) :: out_of_plane = 0.0_wp
       !> Boxes: positions and half-widths along the surface, tractions on the body as if it were below.
@@ -81,7 +83,6 @@ contains
       type(interior_type), intent(out) :: self
       logical, intent(out) :: available
       logical :: loaded(size(arc))
-      real(wp) :: outward
 
       available = has_interior(body)
       if (.not. available) return
@@ -94,15 +95,15 @@ contains
       self%pressure = pack(pressure, loaded)
       self%shear = self%side*pack(shear, loaded)
       if (.not. self%is_circle()) return
-      outward = merge(1.0_wp, -1.0_wp, body%shape == shape_disk)
+      if (body%shape == shape_hole) self%outward = -1.0_wp
       self%theta = self%arc/body%radius
       self%half_angle = self%half/body%radius
       if (radial) then
          self%radial = -self%pressure
-         self%around = outward*self%shear
+         self%around = self%outward*self%shear
       else
-         self%radial = -self%pressure*cos(self%theta) + outward*self%shear*sin(self%theta)
-         self%around = self%pressure*sin(self%theta) + outward*self%shear*cos(self%theta)
+         self%radial = -self%pressure*cos(self%theta) + self%outward*self%shear*sin(self%theta)
+         self%around = self%pressure*sin(self%theta) + self%outward*self%shear*cos(self%theta)
       end if
    end subroutine new_interior
 
@@ -117,7 +118,7 @@ contains
    pure real(wp) function centre(self)
       class(interior_type), intent(in) :: self
 
-      centre = merge(-1.0_wp, 1.0_wp, self%body%shape == shape_disk)*self%side*self%body%radius
+      centre = -self%outward*self%side*self%body%radius
    end function centre
 
    !> Whether the point (x, y), lengths, is in the body or on its surface.
@@ -143,7 +144,7 @@ contains
       real(wp), intent(in) :: x, y
       real(wp) :: radii_from_pole(2)
 
-      radii_from_pole = [merge(1.0_wp, -1.0_wp, self%body%shape == shape_disk)*self%side*y, x]/self%body%radius
+      radii_from_pole = [self%outward*self%side*y, x]/self%body%radius
    end function radii_from_pole
 
    !> Stresses sigma_xx, sigma_yy, sigma_xy, sigma_zz, force/length^2, at the point (x, y), lengths; NaN outside the body
@@ -318,15 +319,14 @@ contains
    pure function point_at(self, arc, depth) result(point)
       class(interior_type), intent(in) :: self
       real(wp), intent(in) :: arc, depth
-      real(wp) :: point(2), inward, angle
+      real(wp) :: point(2), angle
 
       point = [arc, -self%side*depth]
       if (.not. self%is_circle()) return
-      inward = merge(1.0_wp, -1.0_wp, self%body%shape == shape_disk)
       angle = arc/self%body%radius
       ! The height of the arc over the pole, and the depth along the radius, each without a difference of radii.
-      point(1) = (self%body%radius - inward*depth)*sin(angle)
-      point(2) = -self%side*(depth*cos(angle) + inward*self%body%radius*2.0_wp*sin(0.5_wp*angle)**2)
+      point(1) = (self%body%radius - self%outward*depth)*sin(angle)
+      point(2) = -self%side*(depth*cos(angle) + self%outward*self%body%radius*2.0_wp*sin(0.5_wp*angle)**2)
    end function point_at
 
    !> The largest value at the nodes on the surface.

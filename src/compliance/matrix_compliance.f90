@@ -22,7 +22,6 @@ module mfv_matrix_compliance
       procedure :: resize
       procedure :: entries
       procedure :: product => full_product
-      procedure :: signature
    end type matrix_compliance_type
 
    interface
@@ -181,13 +180,5 @@ contains
          displacement = displacement + traction(j)*self%matrix(before(1) + 1:before(1) + n, before(2) + j)
       end do
    end subroutine full_product
-
-   !> See mfv_compliance: equal to no other.
-   pure function signature(self)
-      class(matrix_compliance_type), intent(in) :: self
-      real(wp) :: signature(4)
-
-      signature = huge(1.0_wp)/max(self%nodes, 1)
-   end function signature
 
 end module mfv_matrix_compliance

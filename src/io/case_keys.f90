@@ -3,6 +3,7 @@
 module mfv_case_keys
    use mfv_body, only: shape_names
    use mfv_kinds, only: wp
+   use mfv_scene, only: most_cycles
    use mfv_strings, only: list_of_words, string_type, to_text
    implicit none
    private
@@ -29,7 +30,7 @@ module mfv_case_keys
    character(*), parameter :: group_list = 'scene body mesh friction step solver output'
    character(*), parameter :: repeated_groups = 'body step'
 
-   real(wp), parameter :: most_nodes = 1.0e8_wp, most_cycles = 1.0e6_wp, most_harmonics = 2.0e9_wp
+   real(wp), parameter :: most_nodes = 1.0e8_wp, most_harmonics = 2.0e9_wp
 
 contains
 
@@ -123,7 +124,7 @@ contains
                         'target of the rotation of the upper body about the same point, in place of moment')
       call add_logical_key(keys, 'step', 'friction', '.true.', 'whether friction acts during this step')
       call add_integer_key(keys, 'step', 'cycles', '0', '0: go to the targets; n: go there and back to where the step '// &
-                           'began, n times', 0.0_wp, most_cycles)
+                           'began, n times', 0.0_wp, real(most_cycles, wp))
    end subroutine add_step_keys
 
    subroutine add_solver_keys(keys)

@@ -506,20 +506,18 @@ contains
       type(reader_type), intent(in) :: reader
       type(scene_type), intent(in) :: scene
       type(error_type), allocatable, intent(out) :: error
-      real(wp) :: interval, x
+      real(wp) :: interval
       integer :: i, nodes
       logical :: growing
 
       if (scene%lower%shape == shape_matrix) then
-         if (any(scene%upper%covers(scene%lower%position))) return
+         if (any(scene%touchable(scene%lower%position))) return
          call reader%complain('body', 1, 'file', 'no node of this body is under the indenter', error)
          return
       end if
       call choose_mesh(scene, nodes, interval, growing)
       do i = 1, nodes
-         x = 0.5_wp*interval*(2*i - nodes - 1)
-         if (scene%arc_radius() > 0.0_wp) x = scene%arc_radius()*sin(x/scene%arc_radius())
-         if (scene%lower%covers(x) .and. scene%upper%covers(x)) return
+         if (scene%touchable(0.5_wp*interval*(2*i - nodes - 1))) return
       end do
       call reader%complain('mesh', 1, mesh_key(reader), 'no node of this mesh is under the indenter', error)
    end subroutine check_mesh_is_under

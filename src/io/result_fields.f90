@@ -15,7 +15,6 @@ module mfv_result_fields
    use mfv_status, only: status_outcome
    use mfv_strings, only: add_text, list_of_words, string_type, to_text
    use mfv_text_file, only: working_directory
-   use mfv_validity, only: validity_warnings
    use mfv_version, only: library_version
    implicit none
    private
@@ -126,17 +125,17 @@ contains
       end do
    end function field_named
 
-   !> Names and texts of the attributes of a result.
-   subroutine result_attributes(case, simulation, names, texts)
+   !> Names and texts of the attributes of a result. `warnings`: see mfv_validity; finding them takes a search for the largest
+   !> stress, so that the caller, who may need them elsewhere too, does it once.
+   subroutine result_attributes(case, simulation, warnings, names, texts)
       type(case_type), intent(in) :: case
       type(simulation_type), intent(in) :: simulation
+      type(string_type), intent(in) :: warnings(:)
       type(string_type), allocatable, intent(out) :: names(:), texts(:)
       character(*), parameter :: planes = 'strain stress', couplings = 'full goodman none'
-      type(string_type), allocatable :: warnings(:)
       character(:), allocatable :: text
       integer :: i
 
-      call validity_warnings(simulation, warnings)
       text = ''
       do i = 1, size(warnings)
          if (i > 1) text = text//achar(10)

@@ -17,12 +17,13 @@ module mfv_result_file
 
 contains
 
-   !> Write the result of a case to `path`. Error MFV_FILE_ERROR; what was at `path` before is then still there. See
+   !> Write the result of a case to `path`, with its `warnings` (see mfv_validity). Error MFV_FILE_ERROR; what was at `path` before is then still there. See
    !> check_writable for what is not replaced.
-   subroutine write_result(path, case, simulation, error)
+   subroutine write_result(path, case, simulation, warnings, error)
       character(*), intent(in) :: path
       type(case_type), intent(in) :: case
       type(simulation_type), intent(in) :: simulation
+      type(string_type), intent(in) :: warnings(:)
       type(error_type), allocatable, intent(out) :: error
       type(writer_type) :: writer
 
@@ -33,7 +34,7 @@ contains
       end if
       call create_file(path, writer)
       if (writer%code == 0) then
-         call write_attributes(writer, case, simulation)
+         call write_attributes(writer, case, simulation, warnings)
          call write_groups(writer, case, simulation)
       end if
       call finish_file(path, writer)
@@ -41,14 +42,15 @@ contains
    end subroutine write_result
 
    !> Attributes of the whole file.
-   subroutine write_attributes(writer, case, simulation)
+   subroutine write_attributes(writer, case, simulation, warnings)
       type(writer_type), intent(inout) :: writer
       type(case_type), intent(in) :: case
       type(simulation_type), intent(in) :: simulation
+      type(string_type), intent(in) :: warnings(:)
       type(string_type), allocatable :: names(:), texts(:)
       integer :: i, major, minor, release, code
 
-      call result_attributes(case, simulation, names, texts)
+      call result_attributes(case, simulation, warnings, names, texts)
       do i = 1, size(names)
          call write_text(writer, writer%file, names(i)%text, texts(i)%text)
       end do

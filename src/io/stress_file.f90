@@ -2,7 +2,6 @@
 module mfv_stress_file
    use hdf5
    use h5ds
-   use mfv_body, only: body_type
    use mfv_case, only: case_type
    use mfv_case_reader, only: read_case_text
    use mfv_error, only: error_type, set_error
@@ -81,7 +80,6 @@ contains
       integer(hid_t) :: file
       character(:), allocatable :: text, source, directory, state
       real(wp), allocatable :: arc(:), width(:), pressure(:), shear(:)
-      type(body_type) :: body
       logical :: available
 
       call open_to_read(path, file, error)
@@ -112,11 +110,8 @@ contains
       if (.not. allocated(error)) call read_case_text(text, path_from(directory, source), case, error, &
                                                      without_steps=.true.)
       if (allocated(error)) return
-      body = case%scene%lower
-      if (request%upper) body = case%scene%upper
-      result%yield_strength = body%yield_strength
-      call new_interior(body, request%upper, case%scene%plane, case%scene%mesh%radial, arc, width, pressure, shear, interior, &
-                        available)
+      result%yield_strength = merge(case%scene%upper%yield_strength, case%scene%lower%yield_strength, request%upper)
+      call case%scene%interior(request%upper, arc, width, pressure, shear, interior, available)
       if (.not. available) call set_error(error, MFV_INPUT_ERROR, 'the '//body_name(request)//' body is rigid or a matrix: '// &
                                           'there are no stresses inside it')
    end subroutine read_interior

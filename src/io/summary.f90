@@ -7,23 +7,22 @@ module mfv_summary
    use mfv_simulation, only: simulation_type
    use mfv_status, only: status_outcome
    use mfv_strings, only: string_type, to_text
-   use mfv_validity, only: validity_warnings
    implicit none
    private
-   public :: summary_text, check_text
+   public :: summary_text, check_text, unit_suffix
 
    character(len=1), parameter :: line_feed = achar(10)
 
 contains
 
-   !> What came out, one quantity a line. `seconds`: time the run took.
-   function summary_text(case, simulation, seconds) result(text)
+   !> What came out, one quantity a line. `warnings`: see mfv_validity. `seconds`: time the run took.
+   function summary_text(case, simulation, warnings, seconds) result(text)
       type(case_type), intent(in) :: case
       type(simulation_type), intent(in) :: simulation
+      type(string_type), intent(in) :: warnings(:)
       real(wp), intent(in) :: seconds
       character(:), allocatable :: text
       type(field_type), allocatable :: fields(:)
-      type(string_type), allocatable :: warnings(:)
       integer :: i
 
       call group_fields(case, simulation, 'summary', fields)
@@ -42,7 +41,6 @@ contains
                         ' linear solves, '//to_text(seconds, 3)//' s') &
              //line('compliance', compliance_text(simulation%contact%model)) &
              //line('certificate', 'largest relative residual '//amount(fields, 'largest_residual'))
-      call validity_warnings(simulation, warnings)
       do i = 1, size(warnings)
          text = text//line('warning', warnings(i)%text)
       end do
@@ -114,15 +112,17 @@ contains
          else
             text = to_text(fields(i)%values(1))
          end if
-         if (has_named_unit(fields(i)%unit)) text = text//' '//fields(i)%unit
+         text = text//unit_suffix(fields(i)%unit)
       end do
    end function amount
 
-   !> Whether the user has named the units.
-   pure logical function has_named_unit(unit)
+   !> A unit to stand after a value: empty unless the user has named the units.
+   pure function unit_suffix(unit) result(suffix)
       character(*), intent(in) :: unit
+      character(:), allocatable :: suffix
 
-      has_named_unit = unit /= '1' .and. index(unit, 'length') == 0 .and. index(unit, 'force') == 0
-   end function has_named_unit
+      suffix = ''
+      if (unit /= '1' .and. index(unit, 'length') == 0 .and. index(unit, 'force') == 0) suffix = ' '//unit
+   end function unit_suffix
 
 end module mfv_summary

@@ -87,9 +87,7 @@ contains
       type(scene_type) :: scene
 
       scene%title = 'test'
-      scene%lower = new_half_plane_body()
-      scene%lower%rigid = .false.
-      scene%lower%material = new_material(shear_modulus, poisson_ratio, plane_strain)
+      scene%lower = body(shape_half_plane, modulus=shear_modulus, ratio=poisson_ratio)
       scene%mesh = mesh_request_type(nodes, half_width)
       scene%coupling = coupling_full
       if (present(coupling)) scene%coupling = coupling
