@@ -2,7 +2,7 @@
 program mfv_run
    use, intrinsic :: iso_fortran_env, only: error_unit, output_unit
    use mfv_case, only: case_type
-   use mfv_case_keys, only: keys_as_markdown
+   use mfv_case_keys, only: list_keys_as_markdown
    use mfv_case_reader, only: read_case_file
    use mfv_error, only: error_type
    use mfv_kinds, only: wp
@@ -12,7 +12,7 @@ program mfv_run
    use mfv_simulation, only: new_simulation, simulation_type
    use mfv_status
    use mfv_strings, only: string_type
-   use mfv_summary, only: check_text, summary_text
+   use mfv_summary, only: summarize, summarize_check
    use mfv_terminal
    use mfv_validity, only: validity_warnings
    use mfv_version, only: library_version
@@ -38,18 +38,19 @@ program mfv_run
       'admissible continuation, mesh exceeded), with the result up to there; 4 the result could not be written;'//line_feed// &
       '130 interrupted, with the result up to there.'//line_feed//line_feed// &
       'Draw a result with: python -m mfv plot RESULT.h5 -o PICTURE.png'
-   character(:), allocatable :: argument, option
+   character(:), allocatable :: argument, option, text
 
-   option = argument_text(1)
+   call get_argument(1, option)
    select case (option)
    case ('--help', '-h')
       write (output_unit, '(a)') usage//teaching
    case ('--version')
       write (output_unit, '(a)') 'mfv_run '//library_version
    case ('--keys')
-      write (output_unit, '(a)', advance='no') keys_as_markdown()
+      call list_keys_as_markdown(text)
+      write (output_unit, '(a)', advance='no') text
    case ('--check')
-      argument = argument_text(2)
+      call get_argument(2, argument)
       call expect_arguments(2)
       call check_case(argument)
    case default
@@ -63,10 +64,12 @@ contains
    !> Refuse any other number of arguments.
    subroutine expect_arguments(number)
       integer, intent(in) :: number
+      character(:), allocatable :: surplus
 
       if (command_argument_count() < number) call refuse('mfv_run', usage, 'a case file is missing')
-      if (command_argument_count() > number) &
-         call refuse('mfv_run', usage, "too many arguments: '"//argument_text(number + 1)//"'")
+      if (command_argument_count() <= number) return
+      call get_argument(number + 1, surplus)
+      call refuse('mfv_run', usage, "too many arguments: '"//surplus//"'")
    end subroutine expect_arguments
 
    subroutine check_case(path)
@@ -76,7 +79,8 @@ contains
 
       call read_case_file(path, case, error)
       if (allocated(error)) call fail(error)
-      write (output_unit, '(a)', advance='no') check_text(case)
+      call summarize_check(case, text)
+      write (output_unit, '(a)', advance='no') text
    end subroutine check_case
 
    subroutine run_case(path)
@@ -101,12 +105,13 @@ contains
       call observer%start()
       call simulation%run(observer)
       call observer%clear()
-      if (simulation%outcome /= MFV_COMPLETE) simulation%message = case%explained(simulation)
+      if (simulation%outcome /= MFV_COMPLETE) call case%explain(simulation)
 
       call validity_warnings(simulation, warnings)
       call write_result(case%result_path, case, simulation, warnings, error)
       if (allocated(error)) call fail(error)
-      write (output_unit, '(a)', advance='no') summary_text(case, simulation, warnings, seconds_now() - started)
+      call summarize(case, simulation, warnings, seconds_now() - started, text)
+      write (output_unit, '(a)', advance='no') text
       write (output_unit, '(a)') 'result              '//case%result_path
       if (simulation%outcome /= MFV_COMPLETE) write (error_unit, '(a)') simulation%message
       call end_program(status_exit_code(simulation%outcome))

@@ -8,7 +8,7 @@ program mfv_stress
    use mfv_stress_file
    use mfv_strings, only: to_text
    use mfv_summary, only: unit_suffix
-   use mfv_terminal, only: argument_text, end_program, fail, refuse
+   use mfv_terminal, only: end_program, fail, get_argument, refuse
    use mfv_version, only: library_version
    implicit none
 
@@ -34,9 +34,10 @@ program mfv_stress
    type(stress_request_type) :: request
    type(stress_result_type) :: result
    type(error_type), allocatable :: error
-   character(:), allocatable :: path
+   character(:), allocatable :: option, path
 
-   select case (argument_text(1))
+   call get_argument(1, option)
+   select case (option)
    case ('--help', '-h')
       write (output_unit, '(a)') usage//teaching
       call end_program(0)
@@ -60,11 +61,11 @@ contains
       path = ''
       i = 1
       do while (i <= command_argument_count())
-         argument = argument_text(i)
+         call get_argument(i, argument)
          i = i + 1
          select case (argument)
          case ('--body')
-            argument = argument_text(i)
+            call get_argument(i, argument)
             if (argument /= 'lower' .and. argument /= 'upper') &
                call refuse('mfv_stress', usage, "--body must be lower or upper, not '"//argument//"'")
             request%upper = argument == 'upper'
@@ -79,7 +80,8 @@ contains
             i = i + 1
             request%down = nint(number(i, '--points', 2.0_wp, whole=.true.))
          case ('--at')
-            call read_two_columns(argument_text(i), 'x and y', .false., request%x, request%y, error)
+            call get_argument(i, argument)
+            call read_two_columns(argument, 'x and y', .false., request%x, request%y, error)
             if (allocated(error)) call refuse('mfv_stress', usage, error%message)
          case default
             if (index(argument, '-') == 1) call refuse('mfv_stress', usage, "unknown option '"//argument//"'")
@@ -106,7 +108,7 @@ contains
 
       kind = ' a number above 0'
       if (present(whole)) kind = ' a whole number of at least '//to_text(nint(lower))
-      text = argument_text(i)
+      call get_argument(i, text)
       number = 0.0_wp
       code = 1
       if (text /= '' .and. verify(text, '0123456789+-.eEdD') == 0) read (text, *, iostat=code) number

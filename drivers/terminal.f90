@@ -11,7 +11,7 @@ module mfv_terminal
    use mfv_strings, only: to_text
    implicit none
    private
-   public :: argument_text, terminal_observer_type, catch_interrupts, end_program, fail, refuse
+   public :: get_argument, terminal_observer_type, catch_interrupts, end_program, fail, refuse
 
    !> Shows progress on a terminal, and ends the run after Ctrl-C.
    type, extends(observer_type) :: terminal_observer_type
@@ -105,15 +105,15 @@ contains
    end subroutine handle_signal
 
    !> Command-line argument `number`, empty where there is none.
-   function argument_text(number) result(text)
+   subroutine get_argument(number, text)
       integer, intent(in) :: number
-      character(:), allocatable :: text
+      character(:), allocatable, intent(out) :: text
       integer :: length
 
       call get_command_argument(number, length=length)
       allocate (character(len=length) :: text)
       if (length > 0) call get_command_argument(number, text)
-   end function argument_text
+   end subroutine get_argument
 
    !> End the program with the message and the exit code of an error.
    subroutine fail(error)

@@ -13,7 +13,7 @@ module mfv_c
    use mfv_scene, only: control_displacement, control_force, control_keep, most_cycles, step_type
    use mfv_simulation, only: new_simulation, simulation_type
    use mfv_status
-   use mfv_strings, only: add_text, copy_to_c, from_c, string_type, to_text
+   use mfv_strings, only: add_text, copy_to_c, string_type, to_text
    use mfv_validity, only: validity_warnings
    use mfv_version, only: library_version
    implicit none
@@ -44,6 +44,14 @@ module mfv_c
       real(c_double) :: rotational_target
       integer(c_int) :: rotational_control, unused
    end type c_step
+
+   interface
+      pure function c_strlen(text) bind(C, name='strlen') result(length)
+         import :: c_ptr, c_size_t
+         type(c_ptr), value :: text
+         integer(c_size_t) :: length
+      end function c_strlen
+   end interface
 
 contains
 
@@ -159,7 +167,7 @@ contains
       if (self%simulation%outcome == MFV_COMPLETE) then
          call forget(self)
          call self%simulation%run()
-         if (self%simulation%outcome /= MFV_COMPLETE) self%simulation%message = self%case%explained(self%simulation)
+         if (self%simulation%outcome /= MFV_COMPLETE) call self%case%explain(self%simulation)
       end if
       self%message = self%simulation%message
       status = self%simulation%outcome
@@ -178,7 +186,7 @@ contains
       status = refused(self, 'mfv_advance: the step is null')
       if (.not. c_associated(step)) return
       call c_f_pointer(step, given)
-      why = wrong_with(given)
+      call find_fault(given, why)
       status = refused(self, 'mfv_advance: '//why)
       if (why /= '') return
       if (self%simulation%outcome == MFV_COMPLETE) then
@@ -192,9 +200,9 @@ contains
    end function mfv_advance
 
    !> What is wrong with a step; empty when nothing is.
-   function wrong_with(step) result(why)
+   subroutine find_fault(step, why)
       type(c_step), intent(in) :: step
-      character(:), allocatable :: why
+      character(:), allocatable, intent(out) :: why
       integer, parameter :: controls(3) = [control_keep, control_force, control_displacement]
 
       why = ''
@@ -210,7 +218,7 @@ contains
       else if (step%cycles < 0 .or. step%cycles > most_cycles) then
          why = 'cycles must be from 0 to '//to_text(most_cycles)
       end if
-   end function wrong_with
+   end subroutine find_fault
 
    function mfv_message(handle, buffer, size) result(status) bind(C, name='mfv_message')
       type(c_ptr), value :: handle, buffer
@@ -650,12 +658,14 @@ contains
    !> Text of a C string.
    function text_in(pointer_to_text) result(text)
       type(c_ptr), intent(in) :: pointer_to_text
-      character(:), allocatable :: text
+      character(len=c_strlen(pointer_to_text)) :: text
       character(kind=c_char), pointer :: characters(:)
-      integer, parameter :: any_size = 1
+      integer :: i
 
-      call c_f_pointer(pointer_to_text, characters, [any_size])
-      text = from_c(characters)
+      call c_f_pointer(pointer_to_text, characters, [len(text)])
+      do i = 1, len(text)
+         text(i:i) = characters(i)
+      end do
    end function text_in
 
    !> Text into a caller's buffer; MFV_BAD_ARGUMENT where there is none.

@@ -9,12 +9,26 @@ module mfv_status
 #include "mfv_status.def"
 #undef MFV_STATUS
 
+   !> Length of the longest text in the list.
+   integer, parameter :: longest = max(len('not in the list of statuses') &
+#define MFV_STATUS(name, code, exit_code, outcome, explanation) , len(outcome), len(explanation) &
+#include "mfv_status.def"
+#undef MFV_STATUS
+                                       )
+
 contains
 
    !> Outcome of a status in words, as the result file has it; "unknown status" for a code not in the list.
    pure function status_outcome(status) result(words)
       integer, intent(in) :: status
-      character(:), allocatable :: words
+      character(len=len_trim(padded_outcome(status))) :: words
+
+      words = padded_outcome(status)
+   end function status_outcome
+
+   pure function padded_outcome(status) result(words)
+      integer, intent(in) :: status
+      character(len=longest) :: words
 
       words = 'unknown status'
       select case (status)
@@ -22,12 +36,19 @@ contains
 #include "mfv_status.def"
 #undef MFV_STATUS
       end select
-   end function status_outcome
+   end function padded_outcome
 
    !> One clause that explains a status to a user; "not in the list of statuses" for an unknown code.
    pure function status_explanation(status) result(words)
       integer, intent(in) :: status
-      character(:), allocatable :: words
+      character(len=len_trim(padded_explanation(status))) :: words
+
+      words = padded_explanation(status)
+   end function status_explanation
+
+   pure function padded_explanation(status) result(words)
+      integer, intent(in) :: status
+      character(len=longest) :: words
 
       words = 'not in the list of statuses'
       select case (status)
@@ -35,7 +56,7 @@ contains
 #include "mfv_status.def"
 #undef MFV_STATUS
       end select
-   end function status_explanation
+   end function padded_explanation
 
    !> Exit code with which the programs end for a status; -1 for an unknown code.
    pure integer function status_exit_code(status) result(exit_value)

@@ -1,4 +1,8 @@
 !> Small text helpers: numbers to text, lower case, C strings, the nearest known name.
+!>
+!> A function here, as everywhere in the library, tells the length of its text beforehand by a specification function, and
+!> a text that cannot be told beforehand comes from a subroutine: gfortran keeps the length of a deferred-length function
+!> result in static memory, where two threads mix them up.
 module mfv_strings
    use, intrinsic :: iso_c_binding, only: c_char, c_null_char
    use mfv_kinds, only: wp
@@ -15,89 +19,114 @@ module mfv_strings
    interface to_text
       module procedure integer_to_text
       module procedure real_to_text
+      module procedure real_to_text_digits
    end interface to_text
+
+   !> Significant digits of a real unless told.
+   integer, parameter :: usual_digits = 6
+   !> Room for any number.
+   integer, parameter :: longest_number = 48
 
 contains
 
    pure function integer_to_text(value) result(text)
       integer, intent(in) :: value
-      character(:), allocatable :: text
-      character(len=24) :: buffer
+      character(len=len_trim(padded_integer(value))) :: text
 
-      write (buffer, '(i0)') value
-      text = trim(buffer)
+      text = padded_integer(value)
    end function integer_to_text
 
-   !> A real with up to `digits` significant digits (6 unless told), without trailing zeros.
-   pure function real_to_text(value, digits) result(text)
-      real(wp), intent(in) :: value
-      integer, intent(in), optional :: digits
-      character(:), allocatable :: text
-      character(len=48) :: buffer
-      character(len=16) :: edit
-      integer :: significant, exponent_at, last
+   pure function padded_integer(value) result(text)
+      integer, intent(in) :: value
+      character(len=longest_number) :: text
 
-      significant = 6
-      if (present(digits)) significant = digits
-      if (abs(value) >= 1.0e-3_wp .and. abs(value) < 10.0_wp**min(significant, 6) .or. .not. abs(value) > 0.0_wp) then
-         write (edit, '(a,i0,a)') '(f0.', decimals_for(value, significant), ')'
-         write (buffer, edit) value
-         text = without_trailing_zeros(trim(adjustl(buffer)))
-         if (text(1:1) == '.') text = '0'//text
-         if (len(text) > 1) then
-            if (text(1:2) == '-.') text = '-0'//text(2:)
-         end if
-      else
-         write (edit, '(a,i0,a)') '(es32.', max(significant - 1, 0), 'e3)'
-         write (buffer, edit) value
-         buffer = adjustl(buffer)
-         exponent_at = index(buffer, 'E')
-         if (exponent_at == 0) then
-            text = trim(buffer)   ! NaN, Infinity
-         else
-            last = len_trim(buffer)
-            text = without_trailing_zeros(buffer(:exponent_at - 1))//'e'//short_exponent(buffer(exponent_at + 1:last))
-         end if
-      end if
+      write (text, '(i0)') value
+   end function padded_integer
+
+   !> A real with up to `usual_digits` significant digits.
+   pure function real_to_text(value) result(text)
+      real(wp), intent(in) :: value
+      character(len=len_trim(padded_real(value, usual_digits))) :: text
+
+      text = padded_real(value, usual_digits)
    end function real_to_text
 
-   !> Decimals that leave `significant` digits of a value of moderate size.
-   pure integer function decimals_for(value, significant) result(decimals)
+   !> A real with up to `digits` significant digits.
+   pure function real_to_text_digits(value, digits) result(text)
       real(wp), intent(in) :: value
-      integer, intent(in) :: significant
+      integer, intent(in) :: digits
+      character(len=len_trim(padded_real(value, digits))) :: text
+
+      text = padded_real(value, digits)
+   end function real_to_text_digits
+
+   !> A real with up to `digits` significant digits, without trailing zeros.
+   pure function padded_real(value, digits) result(text)
+      real(wp), intent(in) :: value
+      integer, intent(in) :: digits
+      character(len=longest_number) :: text
+
+      if (abs(value) >= 1.0e-3_wp .and. abs(value) < 10.0_wp**min(digits, 6) .or. .not. abs(value) > 0.0_wp) then
+         text = without_exponent(value, digits)
+      else
+         text = with_exponent(value, digits)
+      end if
+   end function padded_real
+
+   !> 0.25, -100
+   pure function without_exponent(value, digits) result(text)
+      real(wp), intent(in) :: value
+      integer, intent(in) :: digits
+      character(len=longest_number) :: text
+      character(len=16) :: edit
+
+      write (edit, '(a,i0,a)') '(f0.', decimals_for(value, digits), ')'
+      write (text, edit) value
+      call cut_trailing_zeros(text)
+      if (text(1:1) == '.') text = '0'//text(:longest_number - 1)
+      if (text(1:2) == '-.') text = '-0'//text(2:longest_number - 1)
+   end function without_exponent
+
+   !> 2.8e-4, 1e6; NaN and Infinity.
+   pure function with_exponent(value, digits) result(text)
+      real(wp), intent(in) :: value
+      integer, intent(in) :: digits
+      character(len=longest_number) :: text, mantissa
+      character(len=16) :: edit
+      integer :: mark, exponent
+
+      write (edit, '(a,i0,a)') '(es32.', max(digits - 1, 0), 'e3)'
+      write (text, edit) value
+      text = adjustl(text)
+      mark = index(text, 'E')
+      if (mark == 0) return
+      mantissa = text(:mark - 1)
+      call cut_trailing_zeros(mantissa)
+      read (text(mark + 1:), '(i8)') exponent
+      write (text, '(2a,i0)') trim(mantissa), 'e', exponent
+   end function with_exponent
+
+   !> Decimals that leave `digits` significant digits of a value of moderate size.
+   pure integer function decimals_for(value, digits) result(decimals)
+      real(wp), intent(in) :: value
+      integer, intent(in) :: digits
 
       decimals = 1
-      if (abs(value) > 0.0_wp) decimals = max(significant - 1 - floor(log10(abs(value))), 0)
+      if (abs(value) > 0.0_wp) decimals = max(digits - 1 - floor(log10(abs(value))), 0)
    end function decimals_for
 
-   pure function without_trailing_zeros(text) result(short)
-      character(*), intent(in) :: text
-      character(:), allocatable :: short
+   !> '2.500' to '2.5', '3.' to '3', '.0' to '0'.
+   pure subroutine cut_trailing_zeros(number)
+      character(*), intent(inout) :: number
       integer :: last
 
-      last = len(text)
-      if (index(text, '.') > 0) then
-         last = verify(text, '0', back=.true.)
-         if (text(last:last) == '.') last = last - 1
+      if (index(number, '.') > 0) then
+         last = verify(number, '0 ', back=.true.)
+         if (number(last:last) == '.') last = last - 1
+         number(last + 1:) = ''
       end if
-      short = text(:last)
-      if (short == '' .or. short == '-') short = '0'
-   end function without_trailing_zeros
-
-   !> '+003' to '3', '-012' to '-12'.
-   pure function short_exponent(text) result(short)
-      character(*), intent(in) :: text
-      character(:), allocatable :: short
-      integer :: first
-
-      first = verify(text(2:), '0')
-      if (first == 0) then
-         short = '0'
-      else
-         short = text(first + 1:)
-      end if
-      if (text(1:1) == '-') short = '-'//short
-   end function short_exponent
+      if (number == '' .or. number == '-') number = '0'
+   end subroutine cut_trailing_zeros
 
    !> `text` with A-Z turned into a-z.
    pure function lower_case(text) result(lower)
@@ -146,7 +175,7 @@ contains
    !> `text` between apostrophes.
    pure function quoted(text) result(with_quotes)
       character(*), intent(in) :: text
-      character(:), allocatable :: with_quotes
+      character(len=len(text) + 2) :: with_quotes
 
       with_quotes = "'"//text//"'"
    end function quoted
@@ -155,19 +184,36 @@ contains
    pure function nearest_name(name, names) result(nearest)
       character(*), intent(in) :: name
       type(string_type), intent(in) :: names(:)
-      character(:), allocatable :: nearest
+      character(len=length_at(names, nearest_place(name, names))) :: nearest
+
+      if (len(nearest) > 0) nearest = names(nearest_place(name, names))%text
+   end function nearest_name
+
+   !> Place of the nearest name, 0 when none is near.
+   pure integer function nearest_place(name, names) result(place)
+      character(*), intent(in) :: name
+      type(string_type), intent(in) :: names(:)
       integer :: i, distance, best
 
-      nearest = ''
+      place = 0
       best = max(len(name)/2, 2) + 1
       do i = 1, size(names)
          distance = edit_distance(name, names(i)%text)
          if (distance < best) then
             best = distance
-            nearest = names(i)%text
+            place = i
          end if
       end do
-   end function nearest_name
+   end function nearest_place
+
+   !> Length of the text at a place of a list, 0 for place 0.
+   pure integer function length_at(texts, place) result(length)
+      type(string_type), intent(in) :: texts(:)
+      integer, intent(in) :: place
+
+      length = 0
+      if (place > 0) length = len(texts(place)%text)
+   end function length_at
 
    pure integer function edit_distance(a, b) result(distance)
       character(*), intent(in) :: a, b
@@ -189,18 +235,23 @@ contains
    !> Fortran text of a null-terminated C string.
    pure function from_c(c_text) result(text)
       character(kind=c_char), intent(in) :: c_text(*)
-      character(:), allocatable :: text
-      integer :: i, length
+      character(len=length_of_c(c_text)) :: text
+      integer :: i
+
+      do i = 1, len(text)
+         text(i:i) = c_text(i)
+      end do
+   end function from_c
+
+   !> Characters before the null.
+   pure integer function length_of_c(c_text) result(length)
+      character(kind=c_char), intent(in) :: c_text(*)
 
       length = 0
       do while (c_text(length + 1) /= c_null_char)
          length = length + 1
       end do
-      allocate (character(len=length) :: text)
-      do i = 1, length
-         text(i:i) = c_text(i)
-      end do
-   end function from_c
+   end function length_of_c
 
    !> Copy `text` into a C buffer of `capacity` characters, cut where it does not fit, always null-terminated.
    pure subroutine copy_to_c(text, buffer, capacity)

@@ -18,32 +18,34 @@ module mfv_case
       !> Names of the user's units, for labels.
       character(:), allocatable :: length_unit, force_unit
    contains
-      procedure :: explained
+      procedure :: explain
    end type case_type
 
 contains
 
-   !> Why a simulation of this case ended early, with the file, the step and the targets that were not reached.
-   function explained(self, simulation) result(text)
+   !> Complete the message of a simulation of this case that ended early: the file, the step and the targets that were not
+   !> reached come before the reason.
+   subroutine explain(self, simulation)
       class(case_type), intent(in) :: self
-      type(simulation_type), intent(in) :: simulation
+      type(simulation_type), intent(inout) :: simulation
       character(:), allocatable :: text
 
       text = self%source//': '
-      if (simulation%failed_step >= 1 .and. simulation%failed_step <= size(self%scene%steps)) &
-         text = text//'&step '//to_text(simulation%failed_step)// &
-                targets_text(self%scene%steps(simulation%failed_step))//' not reached: '
-      text = text//simulation%message
-   end function explained
+      if (simulation%failed_step >= 1 .and. simulation%failed_step <= size(self%scene%steps)) then
+         text = text//'&step '//to_text(simulation%failed_step)
+         call add_targets(self%scene%steps(simulation%failed_step), text)
+         text = text//' not reached: '
+      end if
+      simulation%message = text//simulation%message
+   end subroutine explain
 
-   !> The targets of a step as the user wrote them.
-   function targets_text(step) result(text)
+   !> Append the targets of a step, as the user wrote them, to a text.
+   subroutine add_targets(step, text)
       type(step_type), intent(in) :: step
-      character(:), allocatable :: text
+      character(:), allocatable, intent(inout) :: text
 
-      text = ''
       if (step%normal_control /= control_keep) &
-         text = ' '//trim(merge('normal_force', 'approach    ', step%normal_control == control_force))//'='// &
+         text = text//' '//trim(merge('normal_force', 'approach    ', step%normal_control == control_force))//'='// &
                 to_text(step%normal_target, 10)
       if (step%tangential_control /= control_keep) &
          text = text//' '//trim(merge('tangential_force', 'shift           ', step%tangential_control == control_force))// &
@@ -51,6 +53,6 @@ contains
       if (step%rotational_control /= control_keep) &
          text = text//' '//trim(merge('moment  ', 'rotation', step%rotational_control == control_force))// &
                 '='//to_text(step%rotational_target, 10)
-   end function targets_text
+   end subroutine add_targets
 
 end module mfv_case

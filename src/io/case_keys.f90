@@ -4,11 +4,11 @@ module mfv_case_keys
    use mfv_body, only: shape_names
    use mfv_kinds, only: wp
    use mfv_scene, only: most_cycles
-   use mfv_strings, only: list_of_words, string_type, to_text
+   use mfv_strings, only: list_of_words, quoted, string_type, to_text
    implicit none
    private
    public :: key_type, case_keys, case_groups, group_list, group_repeats, kind_real, kind_integer, kind_logical, kind_text, &
-             kind_choice, keys_as_markdown, allowed_text
+             kind_choice, list_keys_as_markdown, describe_allowed
 
    integer, parameter :: kind_real = 1, kind_integer = 2, kind_logical = 3, kind_text = 4, kind_choice = 5
 
@@ -30,6 +30,7 @@ module mfv_case_keys
    character(*), parameter :: group_list = 'scene body mesh friction step solver output'
    character(*), parameter :: repeated_groups = 'body step'
 
+   character(len=1), parameter :: line_feed = achar(10)
    real(wp), parameter :: most_nodes = 1.0e8_wp, most_harmonics = 2.0e9_wp
 
 contains
@@ -234,13 +235,13 @@ contains
    end function group_repeats
 
    !> What values a key takes, in words, for messages and the reference.
-   function allowed_text(key) result(text)
+   subroutine describe_allowed(key, text)
       type(key_type), intent(in) :: key
-      character(:), allocatable :: text
+      character(:), allocatable, intent(out) :: text
 
       select case (key%kind)
       case (kind_choice)
-         text = alternatives(list_of_words(key%choices))
+         call join_alternatives(list_of_words(key%choices), text)
       case (kind_logical)
          text = '.true. or .false.'
       case (kind_text)
@@ -248,39 +249,39 @@ contains
       case (kind_integer)
          text = 'a whole number from '//to_text(nint(key%lower))//' to '//to_text(nint(key%upper))
       case default
-         text = 'a number'//range_text(key)
+         text = 'a number'
+         call add_range(key, text)
       end select
-   end function allowed_text
+   end subroutine describe_allowed
 
-   function range_text(key) result(text)
+   !> Append the range of a key to a text.
+   subroutine add_range(key, text)
       type(key_type), intent(in) :: key
-      character(:), allocatable :: text
+      character(:), allocatable, intent(inout) :: text
 
-      text = ''
-      if (key%lower > -huge(1.0_wp)) text = merge(' above   ', ' at least', key%lower_open)
-      if (key%lower > -huge(1.0_wp)) text = trim(text)//' '//to_text(key%lower)
+      if (key%lower > -huge(1.0_wp)) &
+         text = text//trim(merge(' above   ', ' at least', key%lower_open))//' '//to_text(key%lower)
       if (key%upper < huge(1.0_wp)) text = text//' and at most '//to_text(key%upper)
-   end function range_text
+   end subroutine add_range
 
-   function alternatives(words) result(text)
+   !> 'a', 'b' or 'c'
+   subroutine join_alternatives(words, text)
       type(string_type), intent(in) :: words(:)
-      character(:), allocatable :: text
+      character(:), allocatable, intent(out) :: text
       integer :: i
 
-      text = "'"//words(1)%text//"'"
+      text = quoted(words(1)%text)
       do i = 2, size(words)
-         text = text//merge(' or ', ',   ', i == size(words))
-         if (i < size(words)) text = text(:len(text) - 2)
-         text = text//"'"//words(i)%text//"'"
+         if (i < size(words)) text = text//', '//quoted(words(i)%text)
+         if (i == size(words)) text = text//' or '//quoted(words(i)%text)
       end do
-   end function alternatives
+   end subroutine join_alternatives
 
    !> The reference of all keys as Markdown tables.
-   function keys_as_markdown() result(text)
-      character(:), allocatable :: text
+   subroutine list_keys_as_markdown(text)
+      character(:), allocatable, intent(out) :: text
       type(key_type), allocatable :: keys(:)
       type(string_type), allocatable :: groups(:)
-      character(len=1), parameter :: line_feed = achar(10)
       integer :: i, j
 
       keys = case_keys()
@@ -292,22 +293,23 @@ contains
          text = text//line_feed//line_feed//'| key | value | default | unit | meaning |'//line_feed// &
                 '| --- | --- | --- | --- | --- |'//line_feed
          do j = 1, size(keys)
-            if (keys(j)%group /= groups(i)%text) cycle
-            text = text//'| `'//keys(j)%name//'` | '//allowed_text(keys(j))//' | '//default_cell(keys(j))//' | '// &
-                   keys(j)%unit//' | '//keys(j)%meaning//' |'//line_feed
+            if (keys(j)%group == groups(i)%text) call add_row(keys(j), text)
          end do
          if (i < size(groups)) text = text//line_feed
       end do
-   end function keys_as_markdown
+   end subroutine list_keys_as_markdown
 
-   function default_cell(key) result(text)
+   !> Append the row of a key to a Markdown table.
+   subroutine add_row(key, text)
       type(key_type), intent(in) :: key
-      character(:), allocatable :: text
+      character(:), allocatable, intent(inout) :: text
+      character(:), allocatable :: allowed, default
 
-      text = '-'
-      if (key%default == '') return
-      text = '`'//key%default//'`'
-      if (key%kind == kind_text .or. key%kind == kind_choice) text = "`'"//key%default//"'`"
-   end function default_cell
+      call describe_allowed(key, allowed)
+      default = '-'
+      if (key%default /= '') default = '`'//key%default//'`'
+      if (key%default /= '' .and. any(key%kind == [kind_text, kind_choice])) default = '`'//quoted(key%default)//'`'
+      text = text//'| `'//key%name//'` | '//allowed//' | '//default//' | '//key%unit//' | '//key%meaning//' |'//line_feed
+   end subroutine add_row
 
 end module mfv_case_keys

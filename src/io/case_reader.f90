@@ -92,13 +92,15 @@ contains
    subroutine check_groups(reader, error)
       type(reader_type), intent(in) :: reader
       type(error_type), allocatable, intent(out) :: error
+      character(:), allocatable :: why
       integer :: i, j
 
       do i = 1, size(reader%groups)
          associate (group => reader%groups(i))
             if (.not. any_equal(case_groups(), group%name)) then
+               call suggest(group%name, case_groups(), '&', why)
                call fail(reader, group%line, '&'//group%name//': unknown group'// &
-                         suggestion(group%name, case_groups(), '&')//'; groups are '//group_list, error)
+                         why//'; groups are '//group_list, error)
                return
             end if
             do j = 1, i - 1
@@ -115,7 +117,7 @@ contains
    subroutine check_entries(reader, error)
       type(reader_type), intent(in) :: reader
       type(error_type), allocatable, intent(out) :: error
-      character(:), allocatable :: why
+      character(:), allocatable :: why, written
       integer :: i, j, k
 
       do i = 1, size(reader%groups)
@@ -123,14 +125,16 @@ contains
             associate (group => reader%groups(i)%name, entry => reader%groups(i)%entries(j))
                k = reader%key_of(group, entry%key)
                if (k == 0) then
-                  why = 'unknown key'//suggestion(entry%key, keys_of(reader, group), '')
+                  call suggest(entry%key, keys_of(reader, group), '', why)
+                  why = 'unknown key'//why
                else if (any([(reader%groups(i)%entries(k)%key == entry%key, k=1, j - 1)])) then
                   why = 'the key is there twice'
                else
-                  why = complaint(reader%keys(reader%key_of(group, entry%key)), entry)
+                  call find_fault(reader%keys(reader%key_of(group, entry%key)), entry, why)
                end if
                if (why /= '') then
-                  call fail(reader, entry%line, '&'//group//' '//as_written(entry)//': '//why, error)
+                  call write_entry(entry, written)
+                  call fail(reader, entry%line, '&'//group//' '//written//': '//why, error)
                   return
                end if
             end associate
@@ -139,10 +143,10 @@ contains
    end subroutine check_entries
 
    !> What is wrong with the value of an entry; empty when nothing is.
-   function complaint(key, entry) result(why)
+   subroutine find_fault(key, entry, why)
       type(key_type), intent(in) :: key
       type(entry_type), intent(in) :: entry
-      character(:), allocatable :: why
+      character(:), allocatable, intent(out) :: why
       real(wp) :: value
       integer :: code
       logical :: right
@@ -162,9 +166,11 @@ contains
          end select
       end if
       why = ''
-      if (.not. right) why = 'must be '//allowed_text(key)
-      if (.not. right .and. key%unit /= '') why = why//' ('//key%unit//')'
-   end function complaint
+      if (right) return
+      call describe_allowed(key, why)
+      why = 'must be '//why
+      if (key%unit /= '') why = why//' ('//key%unit//')'
+   end subroutine find_fault
 
    !> A finite number; `code` is not 0 where the text is none.
    pure subroutine read_number(text, kind, value, code)
@@ -519,13 +525,13 @@ contains
       do i = 1, nodes
          if (scene%touchable(0.5_wp*interval*(2*i - nodes - 1))) return
       end do
-      call reader%complain('mesh', 1, mesh_key(reader), 'no node of this mesh is under the indenter', error)
+      call reader%complain('mesh', 1, trim(mesh_key(reader)), 'no node of this mesh is under the indenter', error)
    end subroutine check_mesh_is_under
 
    !> The key of the mesh to complain about.
-   function mesh_key(reader) result(key)
+   pure function mesh_key(reader) result(key)
       type(reader_type), intent(in) :: reader
-      character(:), allocatable :: key
+      character(len=10) :: key
 
       key = 'nodes'
       if (reader%has('mesh', 1, 'half_width')) key = 'half_width'
@@ -548,7 +554,7 @@ contains
       call choose_mesh(scene, nodes, interval, growing)
       intervals = 2.0_wp*pi*body%radius/interval
       if (nodes > intervals*(1.0_wp + whole)) then
-         call reader%complain('mesh', 1, mesh_key(reader), &
+         call reader%complain('mesh', 1, trim(mesh_key(reader)), &
                               'goes more than once round body '//to_text(number), error)
       else if (body%kernel == kernel_fourier .and. intervals > most_intervals) then
          call reader%complain('body', number, 'kernel', 'the circle would have '//to_text(intervals, 3)// &
@@ -694,35 +700,61 @@ contains
       class(reader_type), intent(in) :: self
       character(*), intent(in) :: group, name
       integer, intent(in) :: number
-      character(:), allocatable :: text
+      character(len=length_of_value(self, group, number, name)) :: text
+      character(:), allocatable :: value
+
+      call find_value(self, group, number, name, value)
+      text = value
+   end function text_value
+
+   pure integer function length_of_value(reader, group, number, name) result(length)
+      class(reader_type), intent(in) :: reader
+      character(*), intent(in) :: group, name
+      integer, intent(in) :: number
+      character(:), allocatable :: value
+
+      call find_value(reader, group, number, name, value)
+      length = len(value)
+   end function length_of_value
+
+   !> The value as written, or the default, as text.
+   pure subroutine find_value(reader, group, number, name, value)
+      class(reader_type), intent(in) :: reader
+      character(*), intent(in) :: group, name
+      integer, intent(in) :: number
+      character(:), allocatable, intent(out) :: value
       type(entry_type) :: entry
       logical :: found
 
-      call self%entry_of(group, number, name, entry, found)
+      call reader%entry_of(group, number, name, entry, found)
       if (found) then
-         text = entry%values(1)%text
+         value = entry%values(1)%text
       else
-         text = self%keys(self%key_of(group, name))%default
+         value = reader%keys(reader%key_of(group, name))%default
       end if
-   end function text_value
+   end subroutine find_value
 
    pure real(wp) function real_value(self, group, number, name)
       class(reader_type), intent(in) :: self
       character(*), intent(in) :: group, name
       integer, intent(in) :: number
+      character(:), allocatable :: text
       integer :: code
 
-      call read_number(self%text_value(group, number, name), kind_real, real_value, code)
+      call find_value(self, group, number, name, text)
+      call read_number(text, kind_real, real_value, code)
    end function real_value
 
    pure integer function integer_value(self, group, number, name)
       class(reader_type), intent(in) :: self
       character(*), intent(in) :: group, name
       integer, intent(in) :: number
+      character(:), allocatable :: text
       real(wp) :: value
       integer :: code
 
-      call read_number(self%text_value(group, number, name), kind_integer, value, code)
+      call find_value(self, group, number, name, text)
+      call read_number(text, kind_integer, value, code)
       integer_value = nint(value)
    end function integer_value
 
@@ -730,8 +762,10 @@ contains
       class(reader_type), intent(in) :: self
       character(*), intent(in) :: group, name
       integer, intent(in) :: number
+      character(:), allocatable :: text
 
-      logical_value = logical_code(self%text_value(group, number, name)) == 1
+      call find_value(self, group, number, name, text)
+      logical_value = logical_code(text) == 1
    end function logical_value
 
    !> Error where a key is not written.
@@ -740,12 +774,12 @@ contains
       character(*), intent(in) :: group, name
       integer, intent(in) :: number
       type(error_type), allocatable, intent(out) :: error
+      character(:), allocatable :: allowed
 
       if (self%has(group, number, name)) return
-      associate (key => self%keys(self%key_of(group, name)))
-         call fail(self, line_of(self, group, number), '&'//group//numbered(group, number)//': '//name// &
-                   ' is missing; it must be '//allowed_text(key), error)
-      end associate
+      call describe_allowed(self%keys(self%key_of(group, name)), allowed)
+      call fail(self, line_of(self, group, number), '&'//group//trim(numbered(group, number))//': '//name// &
+                ' is missing; it must be '//allowed, error)
    end subroutine need
 
    !> Error about a key of the `number`-th group of a name.
@@ -754,48 +788,50 @@ contains
       character(*), intent(in) :: group, name, why
       integer, intent(in) :: number
       type(error_type), allocatable, intent(inout) :: error
+      character(:), allocatable :: written
       type(entry_type) :: entry
       logical :: found
       integer :: line
 
       call self%entry_of(group, number, name, entry, found)
       line = merge(entry%line, line_of(self, group, number), found)
-      call fail(self, line, '&'//group//numbered(group, number)//' '// &
-                merge_text(found, as_written(entry), name)//': '//why, error)
+      written = name
+      if (found) call write_entry(entry, written)
+      call fail(self, line, '&'//group//trim(numbered(group, number))//' '//written//': '//why, error)
    end subroutine complain
 
+   !> One of two texts, without the blanks that merge wants.
    pure function merge_text(condition, yes, no) result(text)
       logical, intent(in) :: condition
       character(*), intent(in) :: yes, no
-      character(:), allocatable :: text
+      character(len=merge(len(yes), len(no), condition)) :: text
 
       text = no
       if (condition) text = yes
    end function merge_text
 
+   !> Number of a group that may come more than once, after a blank.
    pure function numbered(group, number) result(text)
       character(*), intent(in) :: group
       integer, intent(in) :: number
-      character(:), allocatable :: text
+      character(len=12) :: text
 
       text = ''
       if (group_repeats(group)) text = ' '//to_text(number)
    end function numbered
 
    !> key=value as the user wrote it.
-   pure function as_written(entry) result(text)
+   pure subroutine write_entry(entry, text)
       type(entry_type), intent(in) :: entry
-      character(:), allocatable :: text
+      character(:), allocatable, intent(out) :: text
       integer :: i
 
-      text = ''
-      if (.not. allocated(entry%key)) return
       text = entry%key//'='
       do i = 1, size(entry%values)
          if (i > 1) text = text//', '
          text = text//merge_text(entry%is_quoted(i), quoted(entry%values(i)%text), entry%values(i)%text)
       end do
-   end function as_written
+   end subroutine write_entry
 
    !> Number of groups of a name.
    pure integer function count_groups(reader, name)
@@ -847,15 +883,15 @@ contains
       end do
    end function any_equal
 
-   !> '; did you mean ...?' where a known name is near.
-   pure function suggestion(name, names, prefix) result(text)
+   !> '; did you mean ...?' where a known name is near, else empty.
+   pure subroutine suggest(name, names, prefix, text)
       character(*), intent(in) :: name, prefix
       type(string_type), intent(in) :: names(:)
-      character(:), allocatable :: text
+      character(:), allocatable, intent(out) :: text
 
       text = nearest_name(name, names)
       if (text /= '') text = '; did you mean '//prefix//text//'?'
-   end function suggestion
+   end subroutine suggest
 
    subroutine fail(reader, line, message, error)
       type(reader_type), intent(in) :: reader

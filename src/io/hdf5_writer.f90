@@ -28,7 +28,7 @@ module mfv_hdf5_writer
          integer(c_int) :: code
       end function c_rename
 
-      function c_getpid() bind(C, name='getpid') result(id)
+      pure function c_getpid() bind(C, name='getpid') result(id)
          import :: c_int
          integer(c_int) :: id
       end function c_getpid
@@ -121,12 +121,19 @@ contains
    end subroutine finish_file
 
    !> Name under which a result is written, in the same directory, of this process alone.
-   function temporary_name(path) result(name)
+   pure function temporary_name(path) result(name)
       character(*), intent(in) :: path
-      character(:), allocatable :: name
+      character(len=len(path) + len_trim(part_of_process())) :: name
 
-      name = path//'.part'//to_text(int(c_getpid()))
+      name = path//part_of_process()
    end function temporary_name
+
+   !> Ending of the name of a file that this process is writing.
+   pure function part_of_process() result(ending)
+      character(len=16) :: ending
+
+      ending = '.part'//to_text(int(c_getpid()))
+   end function part_of_process
 
    subroutine delete_file(path)
       character(*), intent(in) :: path

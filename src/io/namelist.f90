@@ -72,7 +72,7 @@ contains
 
       group%line = cursor%line
       cursor%at = cursor%at + 1
-      group%name = lower_case(read_name(cursor))
+      call read_name(cursor, group%name)
       allocate (group%entries(0))
       if (group%name == '') then
          call complain(cursor, 'a group name must follow &', error)
@@ -150,7 +150,7 @@ contains
       type(error_type), allocatable, intent(out) :: error
 
       entry%line = cursor%line
-      entry%key = lower_case(read_name(cursor))
+      call read_name(cursor, entry%key)
       if (entry%key == '') then
          call complain(cursor, '&'//group//": a key=value is wanted, not '"//rest_of_line(cursor)//"'", error)
          return
@@ -188,7 +188,7 @@ contains
                return
             end if
          else
-            value = read_bare(cursor)
+            call read_bare(cursor, value)
          end if
          call add_text(entry%values, value)
          entry%is_quoted = [entry%is_quoted, mark == "'" .or. mark == '"']
@@ -220,16 +220,16 @@ contains
    end subroutine read_quoted
 
    !> A value without quotes: up to a blank, a comma, a comment or the end of the group.
-   function read_bare(cursor) result(text)
+   subroutine read_bare(cursor, text)
       type(cursor_type), intent(inout) :: cursor
-      character(:), allocatable :: text
+      character(:), allocatable, intent(out) :: text
       integer :: length
 
       length = scan(cursor%text(cursor%at:), blanks//",/&!='""") - 1
       if (length < 0) length = len(cursor%text) - cursor%at + 1
       text = cursor%text(cursor%at:cursor%at + length - 1)
       cursor%at = cursor%at + length
-   end function read_bare
+   end subroutine read_bare
 
    !> Whether a name and then '=' come next.
    pure logical function key_follows(cursor)
@@ -243,16 +243,17 @@ contains
       if (after > 0) key_follows = cursor%text(cursor%at + length + after - 1:cursor%at + length + after - 1) == '='
    end function key_follows
 
-   function read_name(cursor) result(name)
+   !> A name of a group or a key, in lower case; empty where none comes.
+   subroutine read_name(cursor, name)
       type(cursor_type), intent(inout) :: cursor
-      character(:), allocatable :: name
+      character(:), allocatable, intent(out) :: name
       integer :: length
 
       length = verify(cursor%text(cursor%at:), name_characters) - 1
       if (length < 0) length = len(cursor%text) - cursor%at + 1
-      name = cursor%text(cursor%at:cursor%at + length - 1)
+      name = lower_case(cursor%text(cursor%at:cursor%at + length - 1))
       cursor%at = cursor%at + length
-   end function read_name
+   end subroutine read_name
 
    !> The character at the cursor, a blank at the end.
    pure character(len=1) function next(cursor)
@@ -295,17 +296,24 @@ contains
    !> What is left of the line, for messages, cut to a readable length and to printable characters.
    pure function rest_of_line(cursor) result(text)
       type(cursor_type), intent(in) :: cursor
-      character(:), allocatable :: text
-      integer, parameter :: longest = 40
-      integer :: i, length
+      character(len=length_of_rest(cursor)) :: text
+      integer :: i
 
-      length = index(cursor%text(cursor%at:), line_feed) - 1
-      if (length < 0) length = len(cursor%text) - cursor%at + 1
-      text = cursor%text(cursor%at:cursor%at + min(length, longest) - 1)
+      text = cursor%text(cursor%at:cursor%at + len(text) - 1)
       do i = 1, len(text)
          if (iachar(text(i:i)) < 32 .or. iachar(text(i:i)) == 127) text(i:i) = '?'
       end do
    end function rest_of_line
+
+   !> Characters up to the end of the line, cut to a readable length.
+   pure integer function length_of_rest(cursor) result(length)
+      type(cursor_type), intent(in) :: cursor
+      integer, parameter :: longest = 40
+
+      length = index(cursor%text(cursor%at:), line_feed) - 1
+      if (length < 0) length = len(cursor%text) - cursor%at + 1
+      length = min(length, longest)
+   end function length_of_rest
 
    subroutine complain(cursor, message, error)
       type(cursor_type), intent(in) :: cursor

@@ -14,7 +14,7 @@ module mfv_result_fields
    use mfv_simulation, only: history_none, simulation_type
    use mfv_status, only: status_outcome
    use mfv_strings, only: add_text, list_of_words, string_type, to_text
-   use mfv_text_file, only: working_directory
+   use mfv_text_file, only: find_working_directory
    use mfv_version, only: library_version
    implicit none
    private
@@ -70,13 +70,18 @@ contains
    !> Path of the group of snapshot `number`: steps/0001 and so on.
    pure function step_group(number) result(path)
       integer, intent(in) :: number
-      character(:), allocatable :: path
-      character(len=16) :: buffer
+      character(len=len_trim(padded_step_group(number))) :: path
 
-      write (buffer, '(a,i4.4)') 'steps/', number
-      if (number > 9999) buffer = 'steps/'//to_text(number)
-      path = trim(buffer)
+      path = padded_step_group(number)
    end function step_group
+
+   pure function padded_step_group(number) result(path)
+      integer, intent(in) :: number
+      character(len=17) :: path
+
+      write (path, '(a,i4.4)') 'steps/', number
+      if (number > 9999) path = 'steps/'//to_text(number)
+   end function padded_step_group
 
    !> The fields of one group; none for a group that does not exist.
    subroutine group_fields(case, simulation, group, fields)
@@ -133,9 +138,10 @@ contains
       type(string_type), intent(in) :: warnings(:)
       type(string_type), allocatable, intent(out) :: names(:), texts(:)
       character(*), parameter :: planes = 'strain stress', couplings = 'full goodman none'
-      character(:), allocatable :: text
+      character(:), allocatable :: text, directory
       integer :: i
 
+      call find_working_directory(directory)
       text = ''
       do i = 1, size(warnings)
          if (i > 1) text = text//achar(10)
@@ -147,14 +153,14 @@ contains
       call add('warnings', text)
       call add('input', case%text)
       call add('input_file', case%source)
-      call add('working_directory', working_directory())
+      call add('working_directory', directory)
       call add('mfv_version', library_version)
       call add('length_unit', case%length_unit)
       call add('force_unit', case%force_unit)
-      call add('plane', word(planes, case%scene%plane))
-      call add('coupling', word(couplings, case%scene%coupling))
-      call add('lower_body', body_name(case%scene%lower))
-      call add('upper_body', body_name(case%scene%upper))
+      call add('plane', trim(word(planes, case%scene%plane)))
+      call add('coupling', trim(word(couplings, case%scene%coupling)))
+      call add('lower_body', trim(body_name(case%scene%lower)))
+      call add('upper_body', trim(body_name(case%scene%upper)))
 
    contains
 
@@ -166,20 +172,20 @@ contains
       end subroutine add
    end subroutine result_attributes
 
-   !> Shape of a body, in words.
-   function body_name(body) result(name)
+   !> Shape of a body, in words; padded with blanks.
+   pure function body_name(body) result(name)
       type(body_type), intent(in) :: body
-      character(:), allocatable :: name
+      character(len=len('rigid ') + len(shape_names)) :: name
 
       name = word(shape_names, body%shape)
-      if (body%rigid) name = 'rigid '//name
+      if (body%rigid) name = 'rigid '//word(shape_names, body%shape)
    end function body_name
 
-   !> Word `number` of a list of words.
-   function word(words, number) result(text)
+   !> Word `number` of a list of words; padded with blanks.
+   pure function word(words, number) result(text)
       character(*), intent(in) :: words
       integer, intent(in) :: number
-      character(:), allocatable :: text
+      character(len=len(words)) :: text
       type(string_type), allocatable :: list(:)
 
       list = list_of_words(words)

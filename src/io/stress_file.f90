@@ -225,7 +225,7 @@ contains
       end if
       call field('y', result%y, case%length_unit, 'height above the pole')
       do i = 1, stress_count
-         call field(names(i)%text, result%stress(i, :), unit, meaning(names(i)%text))
+         call field(names(i)%text, result%stress(i, :), unit, trim(meaning(names(i)%text)))
       end do
       call h5dclose_f(scale_x, code)
       if (.not. allocated(request%x)) call h5dclose_f(scale_depth, code)
@@ -264,10 +264,10 @@ contains
       end subroutine scalar
    end subroutine write_group
 
-   !> What a stress of mfv_interior's stress_names is.
+   !> What a stress of mfv_interior's stress_names is; padded with blanks.
    pure function meaning(name) result(text)
       character(*), intent(in) :: name
-      character(:), allocatable :: text
+      character(len=120) :: text
 
       select case (name)
       case ('sigma_zz')

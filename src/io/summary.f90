@@ -3,126 +3,155 @@ module mfv_summary
    use mfv_case, only: case_type
    use mfv_contact_model, only: contact_model_type, new_contact_model
    use mfv_kinds, only: wp
-   use mfv_result_fields, only: field_type, group_fields
+   use mfv_result_fields, only: field_named, field_type, group_fields
    use mfv_simulation, only: simulation_type
    use mfv_status, only: status_outcome
    use mfv_strings, only: string_type, to_text
    implicit none
    private
-   public :: summary_text, check_text, unit_suffix
+   public :: summarize, summarize_check, unit_suffix
 
    character(len=1), parameter :: line_feed = achar(10)
 
 contains
 
    !> What came out, one quantity a line. `warnings`: see mfv_validity. `seconds`: time the run took.
-   function summary_text(case, simulation, warnings, seconds) result(text)
+   subroutine summarize(case, simulation, warnings, seconds, text)
       type(case_type), intent(in) :: case
       type(simulation_type), intent(in) :: simulation
       type(string_type), intent(in) :: warnings(:)
       real(wp), intent(in) :: seconds
-      character(:), allocatable :: text
+      character(:), allocatable, intent(out) :: text
       type(field_type), allocatable :: fields(:)
       integer :: i
 
       call group_fields(case, simulation, 'summary', fields)
-      text = line('outcome', status_outcome(simulation%outcome)//': '//simulation%message) &
-             //line('contact half-width', amount(fields, 'contact_half_width')) &
-             //line('nodes', to_text(simulation%contact%model%nodes())//', in contact '//amount(fields, 'contact_nodes')// &
-                    ', stuck '//amount(fields, 'stick_nodes')//', slipping '//amount(fields, 'slip_nodes'))
-      if (simulation%contact%model%tangential) text = text//line('stick ratio', amount(fields, 'stick_ratio'))
-      text = text//line('normal force', amount(fields, 'normal_force')//', approach '//amount(fields, 'approach'))
-      if (simulation%contact%model%tangential) text = text//line('tangential force', amount(fields, 'tangential_force')// &
-                                                                 ', shift '//amount(fields, 'shift')) &
-                                                      //line('dissipation', amount(fields, 'dissipation'))
-      if (simulation%contact%model%rotational) text = text//line('moment', amount(fields, 'moment')//', rotation '// &
-                                                                 amount(fields, 'rotation'))
-      text = text//line('work', amount(fields, 'events')//' events, '//amount(fields, 'linear_solves')// &
-                        ' linear solves, '//to_text(seconds, 3)//' s') &
-             //line('compliance', compliance_text(simulation%contact%model)) &
-             //line('certificate', 'largest relative residual '//amount(fields, 'largest_residual'))
-      do i = 1, size(warnings)
-         text = text//line('warning', warnings(i)%text)
-      end do
-      if (simulation%contact%model%added > 0) text = text//line('mesh', 'grew by '// &
-                                                                to_text(simulation%contact%model%added)// &
-                                                                ' nodes at either end')
-   end function summary_text
+      text = ''
+      associate (model => simulation%contact%model)
+         call add_line(text, 'outcome', status_outcome(simulation%outcome)//': '//simulation%message)
+         call add_line(text, 'contact half-width', amount(fields, 'contact_half_width'))
+         call add_line(text, 'nodes', to_text(model%nodes())//', in contact '//amount(fields, 'contact_nodes')// &
+                       ', stuck '//amount(fields, 'stick_nodes')//', slipping '//amount(fields, 'slip_nodes'))
+         if (model%tangential) call add_line(text, 'stick ratio', amount(fields, 'stick_ratio'))
+         call add_line(text, 'normal force', amount(fields, 'normal_force')//', approach '//amount(fields, 'approach'))
+         if (model%tangential) then
+            call add_line(text, 'tangential force', amount(fields, 'tangential_force')//', shift '//amount(fields, 'shift'))
+            call add_line(text, 'dissipation', amount(fields, 'dissipation'))
+         end if
+         if (model%rotational) &
+            call add_line(text, 'moment', amount(fields, 'moment')//', rotation '//amount(fields, 'rotation'))
+         call add_line(text, 'work', amount(fields, 'events')//' events, '//amount(fields, 'linear_solves')// &
+                       ' linear solves, '//to_text(seconds, 3)//' s')
+         call add_compliance(text, model)
+         call add_line(text, 'certificate', 'largest relative residual '//amount(fields, 'largest_residual'))
+         do i = 1, size(warnings)
+            call add_line(text, 'warning', warnings(i)%text)
+         end do
+         if (model%added > 0) call add_line(text, 'mesh', 'grew by '//to_text(model%added)//' nodes at either end')
+      end associate
+   end subroutine summarize
 
    !> Which blocks the scene needed, the memory of what they are made from, and the time that took.
-   function compliance_text(model) result(text)
+   subroutine add_compliance(text, model)
+      character(:), allocatable, intent(inout) :: text
       type(contact_model_type), intent(in) :: model
-      character(:), allocatable :: text
       character(*), parameter :: blocks(4) = ['C_wp', 'C_wt', 'C_up', 'C_ut'], bodies(2) = ['lower', 'upper']
+      character(:), allocatable :: words
       integer :: i
 
-      text = ''
+      words = ''
       do i = 1, size(blocks)
-         if (model%compliance%has_block(i)) text = text//' '//blocks(i)
+         if (model%compliance%has_block(i)) words = words//' '//blocks(i)
       end do
-      text = text(2:)
+      words = words(2:)
       do i = 1, size(bodies)
-         text = text//', '//bodies(i)//' body '
+         words = words//', '//bodies(i)//' body '
          if (model%compliance%deforms(i)) then
-            text = text//to_text(int(model%compliance%part(i)%compliance%bytes()))//' bytes'
+            words = words//to_text(int(model%compliance%part(i)%compliance%bytes()))//' bytes'
          else
-            text = text//'rigid'
+            words = words//'rigid'
          end if
       end do
-      text = text//', '//to_text(model%assembly_seconds, 2)//' s'
-   end function compliance_text
+      call add_line(text, 'compliance', words//', '//to_text(model%assembly_seconds, 2)//' s')
+   end subroutine add_compliance
 
    !> What a valid case asks for.
-   function check_text(case) result(text)
+   subroutine summarize_check(case, text)
       type(case_type), intent(in) :: case
-      character(:), allocatable :: text
+      character(:), allocatable, intent(out) :: text
       type(contact_model_type) :: model
 
       model = new_contact_model(case%scene)
-      text = line('case', case%source//' is valid') &
-             //line('title', case%scene%title) &
-             //line('compliance', compliance_text(model)) &
-             //line('mesh', to_text(model%nodes())//' nodes over |x| < '//to_text(model%length())// &
-                    trim(merge(', growing', '         ', model%growing))) &
-             //line('steps', to_text(size(case%scene%steps)))
-      if (case%result_path /= '') text = text//line('result', case%result_path)
-   end function check_text
+      text = ''
+      call add_line(text, 'case', case%source//' is valid')
+      call add_line(text, 'title', case%scene%title)
+      call add_compliance(text, model)
+      call add_line(text, 'mesh', to_text(model%nodes())//' nodes over |x| < '//to_text(model%length())// &
+                    trim(merge(', growing', '         ', model%growing)))
+      call add_line(text, 'steps', to_text(size(case%scene%steps)))
+      if (case%result_path /= '') call add_line(text, 'result', case%result_path)
+   end subroutine summarize_check
 
-   function line(label, value) result(text)
+   !> Append a line: a label in a column of its own, and what it labels.
+   subroutine add_line(text, label, value)
+      character(:), allocatable, intent(inout) :: text
       character(*), intent(in) :: label, value
-      character(:), allocatable :: text
       character(len=20) :: padded
 
       padded = label
-      text = padded//value//line_feed
-   end function line
+      text = text//padded//value//line_feed
+   end subroutine add_line
 
    !> The value of a field, with its unit where it has one.
-   function amount(fields, name) result(text)
+   pure function amount(fields, name) result(text)
       type(field_type), intent(in) :: fields(:)
       character(*), intent(in) :: name
-      character(:), allocatable :: text
+      character(len=length_of_amount(fields, name)) :: text
+      character(:), allocatable :: words
+
+      call find_amount(fields, name, words)
+      text = words
+   end function amount
+
+   pure integer function length_of_amount(fields, name) result(length)
+      type(field_type), intent(in) :: fields(:)
+      character(*), intent(in) :: name
+      character(:), allocatable :: words
+
+      call find_amount(fields, name, words)
+      length = len(words)
+   end function length_of_amount
+
+   !> The value of a field, with its unit where it has one; empty where there is no such field.
+   pure subroutine find_amount(fields, name, text)
+      type(field_type), intent(in) :: fields(:)
+      character(*), intent(in) :: name
+      character(:), allocatable, intent(out) :: text
       integer :: i
 
       text = ''
-      do i = 1, size(fields)
-         if (fields(i)%name /= name) cycle
-         if (allocated(fields(i)%whole)) then
-            text = to_text(fields(i)%whole(1))
-         else
-            text = to_text(fields(i)%values(1))
-         end if
-         text = text//unit_suffix(fields(i)%unit)
-      end do
-   end function amount
+      i = field_named(fields, name)
+      if (i == 0) return
+      if (allocated(fields(i)%whole)) then
+         text = to_text(fields(i)%whole(1))//unit_suffix(fields(i)%unit)
+      else
+         text = to_text(fields(i)%values(1))//unit_suffix(fields(i)%unit)
+      end if
+   end subroutine find_amount
 
    !> A unit to stand after a value: empty unless the user has named the units.
    pure function unit_suffix(unit) result(suffix)
       character(*), intent(in) :: unit
-      character(:), allocatable :: suffix
+      character(len=merge(len(unit) + 1, 0, is_named(unit))) :: suffix
 
-      suffix = ''
-      if (unit /= '1' .and. index(unit, 'length') == 0 .and. index(unit, 'force') == 0) suffix = ' '//unit
+      suffix = ' '//unit
    end function unit_suffix
+
+   !> Whether a unit has names that the user gave.
+   pure logical function is_named(unit)
+      character(*), intent(in) :: unit
+
+      is_named = unit /= '1' .and. index(unit, 'length') == 0 .and. index(unit, 'force') == 0
+   end function is_named
 
 end module mfv_summary

@@ -7,7 +7,7 @@ module mfv_text_file
    use mfv_strings, only: from_c, string_type
    implicit none
    private
-   public :: read_text, split_lines, directory_of, working_directory, path_from
+   public :: read_text, split_lines, directory_of, find_working_directory, path_from
 
    interface
       function c_getcwd(buffer, size) bind(C, name='getcwd') result(path)
@@ -69,29 +69,36 @@ contains
    !> The directory part of a path with its final slash; empty for a bare name.
    pure function directory_of(path) result(directory)
       character(*), intent(in) :: path
-      character(:), allocatable :: directory
+      character(len=index(path, '/', back=.true.)) :: directory
 
-      directory = path(:index(path, '/', back=.true.))
+      directory = path
    end function directory_of
 
    !> The directory the process works in, empty where it cannot be told.
-   function working_directory() result(path)
-      character(:), allocatable :: path
+   subroutine find_working_directory(path)
+      character(:), allocatable, intent(out) :: path
       integer(c_size_t), parameter :: longest = 4096
       character(kind=c_char) :: buffer(longest)
 
       buffer = c_null_char
       path = ''
       if (c_associated(c_getcwd(buffer, longest))) path = from_c(buffer)
-   end function working_directory
+   end subroutine find_working_directory
 
    !> A path that was given in another directory.
    pure function path_from(directory, path) result(whole)
       character(*), intent(in) :: directory, path
-      character(:), allocatable :: whole
+      character(len=len(path) + merge(len(directory) + 1, 0, given_within(directory, path))) :: whole
 
       whole = path
-      if (directory /= '' .and. path(1:min(1, len(path))) /= '/') whole = directory//'/'//path
+      if (given_within(directory, path)) whole = directory//'/'//path
    end function path_from
+
+   !> Whether a path has to be looked for in a directory: there is one, and the path does not begin at the root.
+   pure logical function given_within(directory, path)
+      character(*), intent(in) :: directory, path
+
+      given_within = directory /= '' .and. path(1:min(1, len(path))) /= '/'
+   end function given_within
 
 end module mfv_text_file
