@@ -100,7 +100,7 @@ contains
          call fail(error)
       end if
       started = seconds_now()
-      simulation = new_simulation(case%scene, case%keep_history)
+      simulation = new_simulation(case%scene, case%keep_history, case%keep_reversals)
       call catch_interrupts()
       call observer%start()
       call simulation%run(observer)

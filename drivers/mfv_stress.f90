@@ -4,7 +4,7 @@ program mfv_stress
    use mfv_error, only: error_type
    use mfv_interior, only: stress_count, stress_names
    use mfv_kinds, only: wp
-   use mfv_profile_file, only: read_two_columns
+   use mfv_profile_file, only: read_table
    use mfv_stress_file
    use mfv_strings, only: to_text
    use mfv_summary, only: unit_suffix
@@ -56,6 +56,7 @@ contains
    subroutine read_arguments()
       real(wp), parameter :: most_points = 1.0e7_wp
       character(:), allocatable :: argument
+      real(wp), allocatable :: points(:, :)
       integer :: i
 
       path = ''
@@ -81,8 +82,10 @@ contains
             request%down = nint(number(i, '--points', 2.0_wp, whole=.true.))
          case ('--at')
             call get_argument(i, argument)
-            call read_two_columns(argument, 'x and y', .false., request%x, request%y, error)
+            call read_table(argument, 'x and y', 2, .false., points, error)
             if (allocated(error)) call refuse('mfv_stress', usage, error%message)
+            request%x = points(1, :)
+            request%y = points(2, :)
          case default
             if (index(argument, '-') == 1) call refuse('mfv_stress', usage, "unknown option '"//argument//"'")
             if (path /= '') call refuse('mfv_stress', usage, "too many arguments: '"//argument//"'")

@@ -230,18 +230,17 @@ contains
       where (after%status == node_frictionless) limit = 0.0_wp
       shear = after%fields%shear
       slipped = after%fields%slip() - before%slip()
-      direction = motion_sign(after%status)
+      direction = slip_sign(after%status)
       call law_defects(model, before, memory, after, defect)
       call self%note(stick_slip, largest_of(abs(slipped), after%status == node_stick), self%tangential)
       call self%note(slip_traction, largest_of(abs(defect), slips(after%status) .or. creeps(after%status) .or. &
                                                after%status == node_frictionless), self%traction)
       call self%note(friction_limit, largest_of(abs(shear) - limit, in_contact(after%status)), self%traction)
-      call self%note(slip_direction, largest_of(-direction*slipped, slips(after%status) .or. creeps(after%status)), &
-                     self%tangential)
+      call self%note(slip_direction, largest_of(-direction*slipped, slips(after%status)), self%tangential)
    end subroutine check_friction
 
    !> By how much the tractions of slipping nodes fail the friction law, and those of creeping nodes the law's increment from
-   !> state to state; where friction is off, the shear traction. Shape (nodes), force/length^2.
+   !> state to state and what a motion against their direction does to it; where friction is off, the shear traction. Shape (nodes), force/length^2.
    subroutine law_defects(model, before, memory, after, defect)
       type(contact_model_type), intent(in) :: model
       type(contact_fields_type), intent(in) :: before
@@ -263,7 +262,9 @@ contains
          else if (creeps(after%status(i))) then
             row = model%scene%friction%law%row(after%status(i), here(i), there(i))
             if (explicit) row = model%scene%friction%law%row(after%status(i), here(i), here(i))
-            defect(i) = there(i)%shear - row%slope*there(i)%pressure - row%stiffness*there(i)%slip - row%offset
+            defect(i) = abs(there(i)%shear - row%slope*there(i)%pressure - row%stiffness*there(i)%slip - row%offset) &
+                        + model%scene%friction%law%turning(here(i)) &
+                        *max(-motion_sign(after%status(i))*(there(i)%slip - here(i)%slip), 0.0_wp)
          end if
       end do
 

@@ -49,7 +49,7 @@ module mfv_contact_path
       procedure :: settle_loads
       procedure :: dropping
       procedure :: points
-      procedure :: rooms
+      procedure :: corners
       procedure :: set_rows
       procedure :: set_status
       procedure :: holding
@@ -325,21 +325,26 @@ contains
       all_points%memory = self%state%memory
    end function points
 
-   !> How far slipping nodes can slip until their friction has a corner, length, shape (nodes); huge: no corner.
-   function rooms(self) result(room)
+   !> How far slipping nodes can slip until their friction has a corner, length; huge: no corner. How much stiffer creeping
+   !> nodes are in one direction than in the other, force/length^3. Shape (nodes).
+   subroutine corners(self, room, turning)
       class(contact_path_type), intent(in) :: self
-      real(wp) :: room(size(self%state%status))
+      real(wp), intent(out) :: room(:), turning(:)
       type(friction_point_type) :: points(size(self%state%status))
       integer :: i
 
       room = huge(1.0_wp)
+      turning = 0.0_wp
       if (.not. self%model%scene%friction%acts()) return
-      if (.not. self%model%scene%friction%law%weakening_distance < huge(1.0_wp)) return
-      points = self%points(self%state%fields)
-      do i = 1, size(room)
-         if (slips(self%state%status(i))) room(i) = self%model%scene%friction%law%room(points(i))
-      end do
-   end function rooms
+      associate (law => self%model%scene%friction%law)
+         if (law%sticks .and. .not. law%weakening_distance < huge(1.0_wp)) return
+         points = self%points(self%state%fields)
+         do i = 1, size(room)
+            if (slips(self%state%status(i))) room(i) = law%room(points(i))
+            if (creeps(self%state%status(i))) turning(i) = law%turning(points(i))
+         end do
+      end associate
+   end subroutine corners
 
    !> Statuses and lines of friction as constraints: tangents, or secants to where the fields are expected to be `after` an
    !> increment. `drop`: whether excess tractions are let go, all of them per unit of load.

@@ -23,18 +23,20 @@ module mfv_event_search
 contains
 
    !> All violations that the rates lead to.
-   !> `status`: shape (nodes). `room`: how far slipping nodes can slip until their friction has a corner, length, shape (nodes).
+   !> `status`: shape (nodes). `room`: how far slipping nodes can slip until their friction has a corner, length;
+   !> `turning`: how much stiffer creeping nodes are in one direction than in the other, force/length^3; shape (nodes).
    !> `state`, `rate`: fields now and their rates per unit of the load parameter. Rates below the part `round_off` of the
    !> largest one of their sort count as zero.
-   function find_violations(model, status, room, state, rate, round_off) result(violations)
+   function find_violations(model, status, room, turning, state, rate, round_off) result(violations)
       type(contact_model_type), intent(in) :: model
       integer, intent(in) :: status(:)
-      real(wp), intent(in) :: room(:)
+      real(wp), intent(in) :: room(:), turning(:)
       type(contact_fields_type), intent(in) :: state, rate
       real(wp), intent(in) :: round_off
       type(violations_type) :: violations
       real(wp) :: traction_scale, motion_scale, mu, full, limit_stiffness
       real(wp), dimension(size(status)) :: gap, gap_rate, slip_rate
+      real(wp), parameter :: secant_noise = 100.0_wp
       integer :: i, n
 
       n = size(status)
@@ -64,7 +66,9 @@ contains
                           mu*rate%pressure(i) + rate%shear(i), max(mu, 1.0_wp)*traction_scale)
             call consider(event_slip_left, mu*state%pressure(i) - state%shear(i), &
                           mu*rate%pressure(i) - rate%shear(i), max(mu, 1.0_wp)*traction_scale)
-            call consider(event_reverse, 0.0_wp, motion_sign(status(i))*slip_rate(i), motion_scale)
+            ! What a wrong direction does to the traction counts; and the secants' own noise is larger than round-off.
+            if (turning(i) > 0.0_wp) call consider(event_reverse, 0.0_wp, motion_sign(status(i))*turning(i)*slip_rate(i), &
+                                                   secant_noise*traction_scale)
          case (node_slip_right, node_slip_left)
             ! Bristles take over again where the limit grows faster than they, at the limit, can follow.
             call consider(event_stick, 0.0_wp, slip_sign(status(i))*slip_rate(i), motion_scale)

@@ -6,8 +6,8 @@
 !> so that a node below the limit creeps (Table B.1's partial slip). At the limit it slips as under Coulomb's law; and there
 !> it is when mu p falls below |f|. While mu p grows the bristles, without stiffness at the limit, take over again.
 !>
-!> The line of a creeping node is tau = tau0 - K (s - s0) with K at the start of the increment (appendix B) or, when the
-!> end is expected somewhere, half way there: the error is then of second order.
+!> A creeping node's tau1 = tau0 - K (s1 - s0) has K at the start of the increment (appendix B) or, in second order, half way
+!> to where the increment ends. The line is this equation linearised about the expected end (Newton): exact where it is right.
 module mfv_friction_dahl
    use mfv_friction_law
    use mfv_kinds, only: wp
@@ -22,7 +22,7 @@ module mfv_friction_dahl
    contains
       procedure :: row
       procedure :: strength
-      procedure, private :: bristle_stiffness
+      procedure, private :: creeping_row
    end type dahl_law_type
 
 contains
@@ -50,12 +50,42 @@ contains
       type(friction_row_type) :: row
 
       if (creeps(status)) then
-         row%stiffness = -self%bristle_stiffness(motion_sign(status), before, after)
-         row%offset = before%shear - row%stiffness*before%slip
+         row = self%creeping_row(motion_sign(status), before, after)
       else
          row%slope = -slip_sign(status)*before%static*self%full_part
       end if
    end function row
+
+   !> The line of a creeping node: F = tau1 - tau0 + K (s1 - s0) = 0, linearised.
+   pure function creeping_row(self, direction, before, after) result(row)
+      class(dahl_law_type), intent(in) :: self
+      integer, intent(in) :: direction
+      type(friction_point_type), intent(in) :: before, after
+      type(friction_row_type) :: row
+      real(wp) :: force, limit, room, stiffness, steepness, slipped, by_shear, by_pressure
+
+      force = -0.5_wp*(before%shear + after%shear)*direction
+      limit = 0.5_wp*before%static*(before%pressure + after%pressure)
+      room = 1.0_wp
+      if (limit > 0.0_wp) room = min(max(1.0_wp - force/limit, 0.0_wp), 2.0_wp)
+      stiffness = self%stiffness
+      steepness = 0.0_wp
+      if (self%exponent > 0.0_wp) then
+         stiffness = self%stiffness*room**self%exponent
+         if (room > 1.0_wp - self%full_part .and. limit > 0.0_wp) steepness = self%exponent*stiffness/room
+      end if
+      slipped = after%slip - before%slip
+      by_shear = 0.0_wp
+      by_pressure = 0.0_wp
+      if (limit > 0.0_wp) then
+         by_shear = 0.5_wp*steepness*direction/limit*slipped
+         by_pressure = 0.5_wp*steepness*before%static*force/limit**2*slipped
+      end if
+      by_shear = max(by_shear, 0.0_wp)
+      row%stiffness = -stiffness/(1.0_wp + by_shear)
+      row%slope = -by_pressure/(1.0_wp + by_shear)
+      row%offset = (before%shear + stiffness*before%slip + by_shear*after%shear + by_pressure*after%pressure)/(1.0_wp + by_shear)
+   end function creeping_row
 
    !> See mfv_friction_law.
    pure real(wp) function strength(self, point)
@@ -64,20 +94,5 @@ contains
 
       strength = point%static*point%pressure*self%full_part
    end function strength
-
-   !> K of eq. B.2 half way between two points, force/length^3.
-   pure real(wp) function bristle_stiffness(self, direction, before, after)
-      class(dahl_law_type), intent(in) :: self
-      integer, intent(in) :: direction
-      type(friction_point_type), intent(in) :: before, after
-      real(wp) :: force, limit, room
-
-      force = -0.5_wp*(before%shear + after%shear)*direction
-      limit = 0.5_wp*before%static*(before%pressure + after%pressure)
-      room = 1.0_wp
-      if (limit > 0.0_wp) room = min(max(1.0_wp - force/limit, 0.0_wp), 2.0_wp)
-      bristle_stiffness = self%stiffness
-      if (abs(self%exponent) > 0.0_wp) bristle_stiffness = self%stiffness*room**self%exponent
-   end function bristle_stiffness
 
 end module mfv_friction_dahl

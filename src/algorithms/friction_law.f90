@@ -5,8 +5,8 @@
 !>
 !>     tau = slope*p + stiffness*s + offset,
 !>
-!> a row of the augmented system (dissertation eq. 2.2, B.2). Laws for which no such line is exact give a secant, from where
-!> the node is to where the increment is expected to take it; the algorithm then controls the error.
+!> a row of the augmented system (dissertation eq. 2.2, B.2). Laws that are not linear give a line that is right
+!> where the increment is expected to take the node; the algorithm iterates, and controls the error.
 module mfv_friction_law
    use mfv_kinds, only: wp
    use mfv_node_status
@@ -50,6 +50,7 @@ module mfv_friction_law
       procedure :: slip_begins
       procedure :: memory_after
       procedure :: room
+      procedure :: turning
    end type friction_law_type
 
    abstract interface
@@ -110,5 +111,18 @@ contains
       if (self%weakening_distance < huge(1.0_wp) .and. point%memory < self%weakening_distance*(1.0_wp - round_off)) &
          room = self%weakening_distance - point%memory
    end function room
+
+   !> By how much the stiffness of a node that holds depends on the direction in which it moves, force/length^3.
+   pure real(wp) function turning(self, point)
+      class(friction_law_type), intent(in) :: self
+      type(friction_point_type), intent(in) :: point
+      type(friction_row_type) :: right, left
+
+      turning = 0.0_wp
+      if (self%sticks) return
+      right = self%row(node_creep_right, point, point)
+      left = self%row(node_creep_left, point, point)
+      turning = abs(right%stiffness - left%stiffness)
+   end function turning
 
 end module mfv_friction_law

@@ -3,7 +3,8 @@
 !> that results converge with the mesh. (Source: the linear law of fracture mechanics of faults, Ida 1972, J. Geophys. Res. 77,
 !> 3796; there tau against slip, here mu against slip.)
 !>
-!> tau = -+ mu(slip) p is bilinear where p changes with the load: the line is the secant, exact at both ends of an increment.
+!> tau = -+ mu(slip) p is bilinear where p changes with the load: the line is linearised about the expected end of the
+!> increment (Newton) and exact where that is right.
 module mfv_friction_weakening
    use mfv_friction_law
    use mfv_kinds, only: wp
@@ -30,22 +31,21 @@ contains
       law%weakening_distance = distance
    end function new_weakening_law
 
-   !> See mfv_friction_law: the increment of f = mu p is mean(mu) dp + mean(p) dmu, exactly.
+   !> See mfv_friction_law.
    pure function row(self, status, before, after)
       class(weakening_law_type), intent(in) :: self
       integer, intent(in) :: status
       type(friction_point_type), intent(in) :: before, after
       type(friction_row_type) :: row
-      real(wp) :: fall, slipped
+      real(wp) :: fall
       integer :: direction
 
       direction = slip_sign(status)
       fall = 0.0_wp
       if (self%room(before) < huge(1.0_wp)) fall = (before%static - before%kinetic)/self%weakening_distance
-      slipped = direction*(after%slip - before%slip)
-      row%slope = -direction*(self%coefficient(before) - 0.5_wp*fall*slipped)
-      row%stiffness = 0.5_wp*(before%pressure + after%pressure)*fall
-      row%offset = -direction*self%strength(before) - row%slope*before%pressure - row%stiffness*before%slip
+      row%slope = -direction*(self%coefficient(before) - fall*direction*(after%slip - before%slip))
+      row%stiffness = after%pressure*fall
+      row%offset = -row%stiffness*after%slip
    end function row
 
    !> See mfv_friction_law.

@@ -5,10 +5,10 @@
 !> trial load step dL0 is solved, the first violation found by interpolation (2.3 to 2.5) and solved for again, and a wrong
 !> slip direction by bisection. Both lead to the same states; the count of linear solves differs.
 !>
-!> Where friction is not linear (Dahl, weakening), the lines of friction are secants: a predictor with tangents, then a
-!> corrector until the secants agree with where they lead (the implicit midpoint rule, of second order). Their difference
-!> over the increment is what a method of first order would err by; the increment is shortened until that is within
-!> `friction_tolerance`, so that the error of the result falls with the tolerance itself.
+!> Where friction is not linear (Dahl, weakening), a predictor with tangents is followed by a corrector (Newton) until the
+!> lines of friction agree with where they lead: for Dahl's law the implicit midpoint rule, of second order. The difference
+!> of the two over the increment is what a method of first order would err by; the increment is shortened until that is
+!> within `friction_tolerance`, so that the error of the result falls with the tolerance itself.
 module mfv_increment
    use mfv_contact_fields, only: contact_fields_type
    use mfv_contact_path, only: contact_path_type
@@ -58,11 +58,13 @@ contains
    !> Whether the line of some node's friction depends on where it leads.
    logical function bends(path)
       class(contact_path_type), intent(in) :: path
+      real(wp), dimension(size(path%state%status)) :: room, turning
 
       bends = .false.
       if (.not. path%model%tangential) return
       if (path%model%scene%friction%law%is_linear) return
-      bends = any(creeps(path%state%status)) .or. any(path%rooms() < huge(1.0_wp))
+      call path%corners(room, turning)
+      bends = any(creeps(path%state%status)) .or. any(room < huge(1.0_wp))
    end function bends
 
    !> Violations by the rates, and the step to the first of them but no further than `longest`.
@@ -70,9 +72,11 @@ contains
       class(contact_path_type), intent(in) :: path
       real(wp), intent(in) :: round_off, longest
       type(increment_type), intent(inout) :: increment
+      real(wp), dimension(size(path%state%status)) :: room, turning
       real(wp) :: first
 
-      increment%violations = find_violations(path%model, path%state%status, path%rooms(), path%state%fields, &
+      call path%corners(room, turning)
+      increment%violations = find_violations(path%model, path%state%status, room, turning, path%state%fields, &
                                              increment%response%rate, round_off)
       first = minval(increment%violations%step)
       increment%step = min(first, longest)
@@ -126,7 +130,7 @@ contains
       type(increment_type), intent(inout) :: increment
       logical, intent(out) :: agrees
       integer, parameter :: most_iterations = 25
-      real(wp), parameter :: close_enough = 1.0e-13_wp
+      real(wp), parameter :: close_enough = 1.0e-12_wp
       type(constraints_type) :: secants
       type(contact_fields_type) :: expected
       type(response_type) :: before
@@ -142,6 +146,8 @@ contains
          call path%set_rows(secants, drop, expected)
          call path%system%solve(path%model, secants, increment%response, increment%singular)
          if (increment%singular) return
+         ! The lines are right at the end of the step, not on the way there.
+         call lead_straight(path, increment%response%state%plus(step, increment%response%rate), step, increment%response)
          call search(path, round_off, length, increment)
          agrees = difference(path, before%rate, increment%response%rate, step) <= close_enough .and. &
                   abs(increment%step - step) <= 1.0e-12_wp*step
@@ -195,7 +201,6 @@ contains
       real(wp), intent(in) :: step
       type(increment_type), intent(inout) :: increment
       type(constraints_type) :: target
-      type(contact_fields_type) :: rate
       integer :: i
 
       target = constraints
@@ -206,13 +211,21 @@ contains
          target%row(i)%offset = target%row(i)%offset + step*target%offset_rate(i)
       end do
       call path%system%solve(path%model, target, increment%response, increment%singular)
-      if (increment%singular) return
-      associate (response => increment%response)
-         rate = response%state%plus(-1.0_wp, path%state%fields)
-         response%rate = scaled(rate, 1.0_wp/step)
-         response%state = path%state%fields
-      end associate
+      if (.not. increment%singular) call lead_straight(path, increment%response%state, step, increment%response)
    end subroutine solve_trial
+
+   !> The response that leads from the fields now straight to the fields `after` a step.
+   subroutine lead_straight(path, after, step, response)
+      class(contact_path_type), intent(in) :: path
+      type(contact_fields_type), intent(in) :: after
+      real(wp), intent(in) :: step
+      type(response_type), intent(inout) :: response
+      type(contact_fields_type) :: change
+
+      change = after%plus(-1.0_wp, path%state%fields)
+      response%rate = scaled(change, 1.0_wp/step)
+      response%state = path%state%fields
+   end subroutine lead_straight
 
    !> The fields times a factor.
    pure function scaled(fields, factor) result(product)

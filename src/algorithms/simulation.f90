@@ -41,6 +41,8 @@ module mfv_simulation
       !> Step that could not be reached, 0 for none; and steps done.
       integer :: failed_step = 0, steps_done = 0
       integer :: keep_history = history_events
+      !> Whether the state is kept at every reversal of a step with cycles, or only at the end of the step.
+      logical :: keep_reversals = .true.
       !> The steps that were taken, the last one perhaps not to its end.
       type(step_type), allocatable :: taken(:)
       !> What the loads control now.
@@ -52,18 +54,22 @@ module mfv_simulation
       procedure :: padded_state
       procedure, private :: lead_to
       procedure, private :: take_snapshot
+      procedure, private :: is_steady
    end type simulation_type
 
 contains
 
    !> A simulation of a valid scene, at its start. `keep_history`: history_events, history_steps or history_none.
-   function new_simulation(scene, keep_history) result(self)
+   !> `keep_reversals`: see simulation_type; true unless told.
+   function new_simulation(scene, keep_history, keep_reversals) result(self)
       type(scene_type), intent(in) :: scene
       integer, intent(in) :: keep_history
+      logical, intent(in), optional :: keep_reversals
       type(simulation_type) :: self
 
       call new_contact_path(new_contact_model(scene), augmented_system_type(), keep_history == history_events, self%contact)
       self%keep_history = keep_history
+      if (present(keep_reversals)) self%keep_reversals = keep_reversals
       self%message = 'nothing has been computed yet'
       allocate (self%snapshots(8))
       allocate (self%taken(0))
@@ -104,7 +110,9 @@ contains
       class(observer_type), intent(inout), optional :: observer
       type(load_type) :: there(3), back(3)
       type(error_type), allocatable :: error
-      integer :: i
+      type(contact_state_type) :: cycle_end
+      logical :: is_last
+      integer :: i, cycles
 
       if (self%outcome /= MFV_COMPLETE) return
       self%taken = [self%taken, step]
@@ -113,6 +121,7 @@ contains
       there(3) = target_of(self%rotational, step%rotational_control, step%rotational_target)
       if (step%rotational_control /= control_keep) call self%contact%begin_rotation()
       back = [(start_of(self%contact%state, there(i), i), i=1, 3)]
+      cycles = 0
       do i = 1, reversals(step)
          call self%lead_to(merge(there, back, mod(i, 2) == 1), step, i, before, segments, observer, error)
          if (allocated(error)) then
@@ -121,10 +130,35 @@ contains
             self%failed_step = self%steps_done + 1
             return
          end if
+         cycles = i/2
+         is_last = i == reversals(step)
+         if (mod(i, 2) == 0 .and. step%steady_tolerance > 0.0_wp) then
+            if (i > 2 .and. .not. is_last) is_last = self%is_steady(cycle_end, step%steady_tolerance)
+            cycle_end = self%contact%state
+         end if
+         if (is_last .or. self%keep_reversals) call self%take_snapshot(self%steps_done + 1, i)
+         if (is_last) exit
       end do
       self%steps_done = self%steps_done + 1
       self%message = 'step '//to_text(self%steps_done)//' was reached'
+      if (step%cycles > cycles) self%message = self%message//', steady after '//to_text(cycles)//' of '// &
+                                               to_text(step%cycles)//' cycles'
    end subroutine advance
+
+   !> Whether the state is what it was at `before`, to within a part of the largest traction; a mesh that has grown is none.
+   logical function is_steady(self, before, tolerance)
+      class(simulation_type), intent(in) :: self
+      type(contact_state_type), intent(in) :: before
+      real(wp), intent(in) :: tolerance
+
+      associate (now => self%contact%state)
+         is_steady = size(now%status) == size(before%status)
+         if (.not. is_steady) return
+         is_steady = max(maxval(abs(now%fields%pressure - before%fields%pressure)), &
+                         maxval(abs(now%fields%shear - before%fields%shear))) &
+                     <= tolerance*self%contact%certificate%traction_scale()
+      end associate
+   end function is_steady
 
    !> The load that a step leads to: `value` is its target; an absent one stays as it is.
    pure type(load_type) function target_of(load, control, value)
@@ -177,7 +211,6 @@ contains
       self%rotational = load_type(targets(3)%control, targets(3)%value)
       if (self%keep_history /= history_none) &
          call self%contact%record(merge(event_stopped, event_step_end, allocated(error)), 0, 0, segment%step)
-      if (.not. allocated(error)) call self%take_snapshot(segment%step, reversal)
    end subroutine lead_to
 
    !> From the load `start` to `goal`, at a rate per segment.

@@ -130,7 +130,7 @@ contains
       allocate (self)
       self%mark = valid_mark
       self%case = case
-      self%simulation = new_simulation(case%scene, case%keep_history)
+      self%simulation = new_simulation(case%scene, case%keep_history, case%keep_reversals)
       self%message = self%simulation%message
       handle = c_loc(self)
       status = MFV_COMPLETE

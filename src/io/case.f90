@@ -15,6 +15,8 @@ module mfv_case
       character(:), allocatable :: result_path
       !> See mfv_simulation.
       integer :: keep_history = history_events
+      !> Whether the state is kept at every reversal of a step with cycles, or only at the end of the step.
+      logical :: keep_reversals = .true.
       !> Names of the user's units, for labels.
       character(:), allocatable :: length_unit, force_unit
    contains

@@ -23,6 +23,8 @@ module mfv_case_keys
       !> Allowed range of a number, each end open or closed.
       real(wp) :: lower = -huge(1.0_wp), upper = huge(1.0_wp)
       logical :: lower_open = .false.
+      !> Whether there may be several values: one a node.
+      logical :: is_list = .false.
       character(:), allocatable :: unit, meaning
    end type key_type
 
@@ -105,9 +107,29 @@ contains
    subroutine add_friction_keys(keys)
       type(key_type), allocatable, intent(inout) :: keys(:)
 
-      call add_choice_key(keys, 'friction', 'law', 'none', 'none coulomb', 'friction law')
-      call add_real_key(keys, 'friction', 'mu', '', 'coulomb: coefficient of friction, needed', lower=0.0_wp)
+      call add_choice_key(keys, 'friction', 'law', 'none', 'none coulomb static_kinetic weakening dahl', 'friction law')
+      call add_coefficient_key(keys, 'mu', 'coulomb, dahl: coefficient of friction')
+      call add_coefficient_key(keys, 'mu_static', 'static_kinetic, weakening: coefficient up to which a node sticks')
+      call add_coefficient_key(keys, 'mu_kinetic', 'static_kinetic, weakening: coefficient with which it slips, at the end; '// &
+                               'not above mu_static')
+      call add_text_key(keys, 'friction', 'mu_file', '', 'in place of the coefficients: text file with the columns x and mu, '// &
+                        'or x, mu_static and mu_kinetic; linear between its lines, constant beyond them; beside the case file')
+      call add_positive_key(keys, 'friction', 'weakening_distance', 'length', 'weakening: slip over which the coefficient '// &
+                            'falls from mu_static to mu_kinetic, needed')
+      call add_positive_key(keys, 'friction', 'stiffness', 'force/length^3', 'dahl: stiffness sigma of the bristles, traction '// &
+                            'over slip, needed')
+      call add_real_key(keys, 'friction', 'exponent', '', 'dahl: exponent gamma; left out: 1', lower=0.0_wp)
    end subroutine add_friction_keys
+
+   !> A coefficient of friction: one value, or one a node.
+   subroutine add_coefficient_key(keys, name, meaning)
+      type(key_type), allocatable, intent(inout) :: keys(:)
+      character(*), intent(in) :: name, meaning
+
+      call add_real_key(keys, 'friction', name, '', meaning//'; one value, or one a node of a mesh with half_width or '// &
+                        'half_angle', lower=0.0_wp)
+      keys(size(keys))%is_list = .true.
+   end subroutine add_coefficient_key
 
    subroutine add_step_keys(keys)
       type(key_type), allocatable, intent(inout) :: keys(:)
@@ -126,14 +148,36 @@ contains
       call add_logical_key(keys, 'step', 'friction', '.true.', 'whether friction acts during this step')
       call add_integer_key(keys, 'step', 'cycles', '0', '0: go to the targets; n: go there and back to where the step '// &
                            'began, n times', 0.0_wp, real(most_cycles, wp))
+      call add_positive_key(keys, 'step', 'steady_tolerance', '', 'cycles end early when the state after two in a row is the '// &
+                            'same to within this part of the largest traction; left out: never')
    end subroutine add_step_keys
 
    subroutine add_solver_keys(keys)
       type(key_type), allocatable, intent(inout) :: keys(:)
 
-      call add_choice_key(keys, 'solver', 'algorithm', 'mfv', 'mfv', 'mfv: Method of First Violation')
+      call add_choice_key(keys, 'solver', 'algorithm', 'mfv', 'mfv conventional', 'mfv: Method of First Violation; '// &
+                          'conventional: load steps with repairs of statuses, for comparison')
+      call add_choice_key(keys, 'solver', 'stepping', 'event', 'event nominal', 'mfv: events from rates, or from trial load '// &
+                          'steps and interpolation; both lead to the same states')
+      call add_part_key(keys, 'load_step', '0.05', 'nominal load step, part of each straight part of the load history: for '// &
+                        "algorithm='conventional', stepping='nominal', integration='explicit'")
+      call add_choice_key(keys, 'solver', 'integration', 'second_order', 'second_order explicit', 'dahl: second order with '// &
+                          'controlled error, or explicit with load_step (appendix B)')
+      call add_part_key(keys, 'friction_tolerance', '1e-4', 'dahl, weakening: error that an increment may make, part of the '// &
+                        'largest traction')
+      call add_integer_key(keys, 'solver', 'iterations', '1000', 'conventional: repairs that may be made at one load', &
+                           1.0_wp, 1.0e6_wp)
       call add_choice_key(keys, 'solver', 'linear_solver', 'dgesv', 'dgesv', 'dgesv: augmented system with LAPACK')
    end subroutine add_solver_keys
+
+   !> A number of the solver above 0 and at most 1, with a default.
+   subroutine add_part_key(keys, name, default, meaning)
+      type(key_type), allocatable, intent(inout) :: keys(:)
+      character(*), intent(in) :: name, default, meaning
+
+      call add_real_key(keys, 'solver', name, '', meaning, lower=0.0_wp, lower_open=.true., upper=1.0_wp)
+      keys(size(keys))%default = default
+   end subroutine add_part_key
 
    subroutine add_output_keys(keys)
       type(key_type), allocatable, intent(inout) :: keys(:)
@@ -142,6 +186,8 @@ contains
                         'in the working directory')
       call add_choice_key(keys, 'output', 'history', 'events', 'events steps none', &
                           'a history record an event, a step end, or none')
+      call add_choice_key(keys, 'output', 'states', 'reversals', 'reversals steps', 'state kept at every reversal of a step '// &
+                          'with cycles, or only at the end of every step')
    end subroutine add_output_keys
 
    subroutine add_text_key(keys, group, name, default, meaning)

@@ -6,14 +6,14 @@ module mfv_case_reader
    use mfv_circle, only: kernel_exact, kernel_fourier
    use mfv_case_keys
    use mfv_error, only: error_type, set_error
-   use mfv_friction, only: coulomb_friction, no_friction
+   use mfv_friction
    use mfv_compliance, only: coupling_full, coupling_goodman, coupling_none
    use mfv_contact_model, only: choose_mesh
    use mfv_kinds, only: pi, wp
    use mfv_material, only: new_material, plane_strain, plane_stress
    use mfv_matrix_file, only: read_matrix_body
    use mfv_namelist, only: entry_type, group_type, parse_namelists
-   use mfv_profile_file, only: read_profile
+   use mfv_profile_file, only: read_profile, read_table
    use mfv_scene
    use mfv_simulation, only: history_events, history_none, history_steps
    use mfv_status, only: MFV_INPUT_ERROR
@@ -32,6 +32,7 @@ module mfv_case_reader
    contains
       procedure :: has
       procedure :: real_value
+      procedure :: real_values
       procedure :: integer_value
       procedure :: logical_value
       procedure :: text_value
@@ -86,6 +87,7 @@ contains
       case%keep_history = history_events
       if (reader%text_value('output', 1, 'history') == 'steps') case%keep_history = history_steps
       if (reader%text_value('output', 1, 'history') == 'none') case%keep_history = history_none
+      case%keep_reversals = reader%text_value('output', 1, 'states') == 'reversals'
    end subroutine read_case_text
 
    !> Every group known, and those that must be alone alone.
@@ -150,21 +152,24 @@ contains
       real(wp) :: value
       integer :: code
       logical :: right
+      integer :: i
 
-      right = size(entry%values) == 1
-      if (right) right = entry%is_quoted(1) .eqv. (key%kind == kind_text .or. key%kind == kind_choice)
-      if (right) then
+      right = size(entry%values) == 1 .or. (key%is_list .and. size(entry%values) > 1)
+      do i = 1, size(entry%values)
+         if (.not. right) exit
+         right = entry%is_quoted(i) .eqv. (key%kind == kind_text .or. key%kind == kind_choice)
+         if (.not. right) exit
          select case (key%kind)
          case (kind_choice)
-            right = any_equal(list_of_words(key%choices), entry%values(1)%text)
+            right = any_equal(list_of_words(key%choices), entry%values(i)%text)
          case (kind_logical)
-            right = logical_code(entry%values(1)%text) >= 0
+            right = logical_code(entry%values(i)%text) >= 0
          case (kind_integer, kind_real)
-            call read_number(entry%values(1)%text, key%kind, value, code)
+            call read_number(entry%values(i)%text, key%kind, value, code)
             right = code == 0 .and. value >= key%lower .and. value <= key%upper
             if (right .and. key%lower_open) right = value > key%lower
          end select
-      end if
+      end do
       why = ''
       if (right) return
       call describe_allowed(key, why)
@@ -234,6 +239,8 @@ contains
       if (.not. allocated(error)) call read_steps(reader, scene, error)
       if (.not. allocated(error)) call check_matrix(reader, scene, error)
       if (.not. allocated(error)) call read_mesh(reader, scene, error)
+      if (.not. allocated(error)) call check_coefficients_a_node(reader, scene, error)
+      call read_method(reader, scene%method)
    end subroutine read_scene
 
    !> Two bodies with a shape each, of which one at least is elastic.
@@ -359,8 +366,7 @@ contains
       type(error_type), allocatable :: file_error
       character(:), allocatable :: path
 
-      path = reader%text_value('body', number, 'file')
-      if (path(1:min(1, len(path))) /= '/') path = directory_of(reader%source)//path
+      call find_file(reader, 'body', number, 'file', path)
       if (reader%text_value('body', number, 'shape') == 'profile') then
          call read_profile(path, body, file_error)
       else
@@ -565,20 +571,189 @@ contains
       end if
    end subroutine check_circle
 
+   !> The friction law with its keys.
    subroutine read_friction(reader, scene, error)
       type(reader_type), intent(in) :: reader
       type(scene_type), intent(inout) :: scene
       type(error_type), allocatable, intent(out) :: error
+      real(wp) :: exponent
 
-      scene%friction = no_friction()
-      if (reader%text_value('friction', 1, 'law') == 'coulomb') then
-         call reader%need('friction', 1, 'mu', error)
-         if (allocated(error)) return
-         scene%friction = coulomb_friction(reader%real_value('friction', 1, 'mu'))
-      else if (reader%has('friction', 1, 'mu')) then
-         call reader%complain('friction', 1, 'mu', "means nothing without law='coulomb'", error)
-      end if
+      call check_friction_keys(reader, error)
+      if (allocated(error)) return
+      select case (reader%text_value('friction', 1, 'law'))
+      case ('coulomb')
+         scene%friction = coulomb_friction(0.0_wp)
+      case ('static_kinetic')
+         scene%friction = static_kinetic_friction(0.0_wp, 0.0_wp)
+      case ('weakening')
+         scene%friction = weakening_friction(0.0_wp, 0.0_wp, reader%real_value('friction', 1, 'weakening_distance'))
+      case ('dahl')
+         exponent = 1.0_wp
+         if (reader%has('friction', 1, 'exponent')) exponent = reader%real_value('friction', 1, 'exponent')
+         scene%friction = dahl_friction(0.0_wp, reader%real_value('friction', 1, 'stiffness'), exponent)
+      case default
+         scene%friction = no_friction()
+         return
+      end select
+      call read_coefficients(reader, scene%friction, error)
    end subroutine read_friction
+
+   !> Keys that the law needs, and none that mean nothing to it.
+   subroutine check_friction_keys(reader, error)
+      type(reader_type), intent(in) :: reader
+      type(error_type), allocatable, intent(out) :: error
+      character(:), allocatable :: law, coefficients, needed
+      type(string_type), allocatable :: keys(:)
+      integer :: i
+
+      law = reader%text_value('friction', 1, 'law')
+      call keys_of_law(law, coefficients, needed)
+      keys = keys_of(reader, 'friction')
+      do i = 1, size(keys)
+         if (.not. reader%has('friction', 1, keys(i)%text)) cycle
+         if (index(' law '//coefficients//' '//needed//' exponent mu_file ', ' '//keys(i)%text//' ') == 0 .or. &
+             (keys(i)%text == 'exponent' .and. law /= 'dahl') .or. (keys(i)%text == 'mu_file' .and. law == 'none')) then
+            call reader%complain('friction', 1, keys(i)%text, "means nothing with law='"//law//"'", error)
+         else if (index(' '//coefficients//' ', ' '//keys(i)%text//' ') > 0 .and. reader%has('friction', 1, 'mu_file')) then
+            call reader%complain('friction', 1, keys(i)%text, 'mu_file is there too; give one of them', error)
+         end if
+         if (allocated(error)) return
+      end do
+      if (.not. reader%has('friction', 1, 'mu_file')) needed = coefficients//' '//needed
+      keys = list_of_words(needed)
+      do i = 1, size(keys)
+         call reader%need('friction', 1, keys(i)%text, error)
+         if (allocated(error)) return
+      end do
+   end subroutine check_friction_keys
+
+   !> Keys of a law's coefficients, and what else it needs; separated by blanks.
+   subroutine keys_of_law(law, coefficients, needed)
+      character(*), intent(in) :: law
+      character(:), allocatable, intent(out) :: coefficients, needed
+
+      coefficients = ''
+      needed = ''
+      if (law == 'coulomb' .or. law == 'dahl') coefficients = 'mu'
+      if (has_two_coefficients(law)) coefficients = 'mu_static mu_kinetic'
+      if (law == 'weakening') needed = 'weakening_distance'
+      if (law == 'dahl') needed = 'stiffness'
+   end subroutine keys_of_law
+
+   pure logical function has_two_coefficients(law)
+      character(*), intent(in) :: law
+
+      has_two_coefficients = law == 'static_kinetic' .or. law == 'weakening'
+   end function has_two_coefficients
+
+   !> Coefficients of friction: numbers, one number a node, or a file.
+   subroutine read_coefficients(reader, friction, error)
+      type(reader_type), intent(in) :: reader
+      type(friction_type), intent(inout) :: friction
+      type(error_type), allocatable, intent(out) :: error
+
+      if (reader%has('friction', 1, 'mu_file')) then
+         call read_mu_file(reader, friction, error)
+      else if (reader%has('friction', 1, 'mu')) then
+         call reader%real_values('friction', 1, 'mu', friction%static%value)
+         friction%kinetic = friction%static
+      else
+         call reader%real_values('friction', 1, 'mu_static', friction%static%value)
+         call reader%real_values('friction', 1, 'mu_kinetic', friction%kinetic%value)
+         call spread_single(friction%kinetic%value, size(friction%static%value))
+         call spread_single(friction%static%value, size(friction%kinetic%value))
+         if (size(friction%static%value) /= size(friction%kinetic%value)) then
+            call reader%complain('friction', 1, 'mu_kinetic', 'must have one value or as many as mu_static', error)
+         else if (any(friction%kinetic%value > friction%static%value)) then
+            call reader%complain('friction', 1, 'mu_kinetic', 'must not be above mu_static', error)
+         end if
+      end if
+   end subroutine read_coefficients
+
+   !> Make `number` values of a single one.
+   subroutine spread_single(values, number)
+      real(wp), allocatable, intent(inout) :: values(:)
+      integer, intent(in) :: number
+
+      if (size(values) == 1 .and. number > 1) values = spread(values(1), 1, number)
+   end subroutine spread_single
+
+   !> Coefficients along x from the file of &friction mu_file.
+   subroutine read_mu_file(reader, friction, error)
+      type(reader_type), intent(in) :: reader
+      type(friction_type), intent(inout) :: friction
+      type(error_type), allocatable, intent(out) :: error
+      type(error_type), allocatable :: file_error
+      character(:), allocatable :: path
+      real(wp), allocatable :: table(:, :)
+
+      call find_file(reader, 'friction', 1, 'mu_file', path)
+      if (has_two_coefficients(reader%text_value('friction', 1, 'law'))) then
+         call read_table(path, 'x, mu_static and mu_kinetic', 3, .true., table, file_error)
+      else
+         call read_table(path, 'x and mu', 2, .true., table, file_error)
+      end if
+      if (allocated(file_error)) then
+         call reader%complain('friction', 1, 'mu_file', file_error%message, error)
+      else if (size(table, 2) < 2) then
+         call reader%complain('friction', 1, 'mu_file', path//': needs at least 2 lines of numbers', error)
+      else if (any(table(2:, :) < 0.0_wp)) then
+         call reader%complain('friction', 1, 'mu_file', path//': coefficients must not be negative', error)
+      else if (any(table(size(table, 1), :) > table(2, :))) then
+         call reader%complain('friction', 1, 'mu_file', path//': mu_kinetic must not be above mu_static', error)
+      end if
+      if (allocated(error)) return
+      friction%static = friction_coefficient_type(table(2, :), table(1, :))
+      friction%kinetic = friction_coefficient_type(table(size(table, 1), :), table(1, :))
+   end subroutine read_mu_file
+
+   !> Path of a file that a key names, beside the case.
+   subroutine find_file(reader, group, number, name, path)
+      type(reader_type), intent(in) :: reader
+      character(*), intent(in) :: group, name
+      integer, intent(in) :: number
+      character(:), allocatable, intent(out) :: path
+
+      path = reader%text_value(group, number, name)
+      if (path(1:min(1, len(path))) /= '/') path = directory_of(reader%source)//path
+   end subroutine find_file
+
+   !> Coefficients given one a node need a mesh that is fixed, and as many nodes.
+   subroutine check_coefficients_a_node(reader, scene, error)
+      type(reader_type), intent(in) :: reader
+      type(scene_type), intent(in) :: scene
+      type(error_type), allocatable, intent(out) :: error
+      character(:), allocatable :: key
+      integer :: nodes
+
+      if (.not. allocated(scene%friction%static%value) .or. allocated(scene%friction%static%position)) return
+      if (size(scene%friction%static%value) == 1) return
+      key = 'mu_static'
+      if (reader%has('friction', 1, 'mu')) key = 'mu'
+      nodes = scene%mesh%nodes
+      if (scene%lower%shape == shape_matrix) nodes = size(scene%lower%position)
+      if (scene%lower%shape /= shape_matrix .and. .not. scene%mesh%half_width > 0.0_wp) then
+         call reader%complain('friction', 1, key, 'one value a node needs a mesh with half_width or half_angle', error)
+      else if (size(scene%friction%static%value) /= nodes) then
+         call reader%complain('friction', 1, key, 'must have one value or one a node, '//to_text(nodes)//', not '// &
+                              to_text(size(scene%friction%static%value)), error)
+      end if
+   end subroutine check_coefficients_a_node
+
+   !> How the scene is to be solved.
+   subroutine read_method(reader, method)
+      type(reader_type), intent(in) :: reader
+      type(method_type), intent(out) :: method
+
+      method%algorithm = merge(algorithm_conventional, algorithm_mfv, &
+                               reader%text_value('solver', 1, 'algorithm') == 'conventional')
+      method%stepping = merge(stepping_nominal, stepping_event, reader%text_value('solver', 1, 'stepping') == 'nominal')
+      method%integration = merge(integration_explicit, integration_second_order, &
+                                 reader%text_value('solver', 1, 'integration') == 'explicit')
+      method%load_step = reader%real_value('solver', 1, 'load_step')
+      method%friction_tolerance = reader%real_value('solver', 1, 'friction_tolerance')
+      method%most_iterations = reader%integer_value('solver', 1, 'iterations')
+   end subroutine read_method
 
    !> The steps of the load history.
    subroutine read_steps(reader, scene, error)
@@ -602,6 +777,12 @@ contains
             if (allocated(error)) return
             step%friction = reader%logical_value('step', i, 'friction')
             step%cycles = reader%integer_value('step', i, 'cycles')
+            if (reader%has('step', i, 'steady_tolerance')) then
+               step%steady_tolerance = reader%real_value('step', i, 'steady_tolerance')
+               if (step%cycles < 2) call reader%complain('step', i, 'steady_tolerance', 'means nothing without cycles of 2 or '// &
+                                                         'more', error)
+               if (allocated(error)) return
+            end if
             if (all([step%normal_control, step%tangential_control, step%rotational_control] == control_keep)) then
                call fail(reader, line_of(reader, 'step', i), '&step '//to_text(i)//': needs a target: normal_force or '// &
                          'approach, tangential_force or shift, moment or rotation', error)
@@ -639,11 +820,18 @@ contains
    subroutine check_friction_of_steps(reader, error)
       type(reader_type), intent(in) :: reader
       type(error_type), allocatable, intent(out) :: error
+      real(wp), allocatable :: coefficients(:)
       logical :: law
       integer :: i
 
       law = reader%text_value('friction', 1, 'law') /= 'none'
-      if (law .and. reader%has('friction', 1, 'mu')) law = reader%real_value('friction', 1, 'mu') > 0.0_wp
+      if (law .and. reader%has('friction', 1, 'mu')) then
+         call reader%real_values('friction', 1, 'mu', coefficients)
+         law = any(coefficients > 0.0_wp)
+      else if (law .and. reader%has('friction', 1, 'mu_static')) then
+         call reader%real_values('friction', 1, 'mu_static', coefficients)
+         law = any(coefficients > 0.0_wp)
+      end if
       do i = 1, count_groups(reader, 'step')
          if (.not. reader%has('step', i, 'tangential_force')) cycle
          if (.not. abs(reader%real_value('step', i, 'tangential_force')) > 0.0_wp) cycle
@@ -744,6 +932,24 @@ contains
       call find_value(self, group, number, name, text)
       call read_number(text, kind_real, real_value, code)
    end function real_value
+
+   !> All values of a key that is written, as numbers.
+   pure subroutine real_values(self, group, number, name, values)
+      class(reader_type), intent(in) :: self
+      character(*), intent(in) :: group, name
+      integer, intent(in) :: number
+      real(wp), allocatable, intent(out) :: values(:)
+      type(entry_type) :: entry
+      logical :: found
+      integer :: i, code
+
+      call self%entry_of(group, number, name, entry, found)
+      if (.not. found) return
+      allocate (values(size(entry%values)))
+      do i = 1, size(values)
+         call read_number(entry%values(i)%text, kind_real, values(i), code)
+      end do
+   end subroutine real_values
 
    pure integer function integer_value(self, group, number, name)
       class(reader_type), intent(in) :: self

@@ -1,4 +1,4 @@
-!> Reading the profile of a body from a text file with two columns.
+!> Reading columns of numbers from text files: the profile of a body, places, coefficients of friction.
 module mfv_profile_file
    use, intrinsic :: ieee_arithmetic, only: ieee_is_finite
    use mfv_error, only: error_type, set_error
@@ -9,7 +9,7 @@ module mfv_profile_file
    use mfv_text_file, only: read_text, split_lines
    implicit none
    private
-   public :: read_profile, read_two_columns
+   public :: read_profile, read_table
 
    !> Steffen's interpolation needs as many points.
    integer, parameter :: fewest_points = 3
@@ -22,48 +22,52 @@ contains
       character(*), intent(in) :: path
       type(body_type), intent(out) :: body
       type(error_type), allocatable, intent(out) :: error
-      real(wp), allocatable :: x(:), height(:)
+      real(wp), allocatable :: table(:, :)
 
-      call read_two_columns(path, 'x and height', .true., x, height, error)
+      call read_table(path, 'x and height', 2, .true., table, error)
       if (allocated(error)) return
-      if (size(x) < fewest_points) then
+      if (size(table, 2) < fewest_points) then
          call set_error(error, MFV_INPUT_ERROR, path//': needs at least '//to_text(fewest_points)//' points, and has '// &
-                        to_text(size(x)))
+                        to_text(size(table, 2)))
          return
       end if
-      body = new_profile(x, height)
+      body = new_profile(table(1, :), table(2, :))
    end subroutine read_profile
 
-   !> Two columns of numbers from a text file; blank lines and comments do not count. `names`: what they are, for messages;
-   !> `increasing`: whether the first must increase. Error MFV_INPUT_ERROR with the line and what is right.
-   subroutine read_two_columns(path, names, increasing, first, second, error)
+   !> Columns of numbers from a text file; blank lines and comments do not count. `names`: what they are, for messages;
+   !> `columns`: how many; `increasing`: whether the first must increase. `table`: shape (columns, lines).
+   !> Error MFV_INPUT_ERROR with the line and what is right.
+   subroutine read_table(path, names, columns, increasing, table, error)
       character(*), intent(in) :: path, names
+      integer, intent(in) :: columns
       logical, intent(in) :: increasing
-      real(wp), allocatable, intent(out) :: first(:), second(:)
+      real(wp), allocatable, intent(out) :: table(:, :)
       type(error_type), allocatable, intent(out) :: error
       character(:), allocatable :: text
       type(string_type), allocatable :: lines(:)
-      real(wp) :: columns(2)
-      integer :: i
+      real(wp) :: numbers(columns)
+      integer :: i, n
 
       call read_text(path, text, error)
       if (allocated(error)) return
       lines = split_lines(text)
-      allocate (first(0), second(0))
+      allocate (table(columns, size(lines)))
+      n = 0
       do i = 1, size(lines)
          if (is_comment(lines(i)%text)) cycle
-         call read_columns(lines(i)%text, names, columns, error)
-         if (.not. allocated(error) .and. increasing .and. size(first) > 0) then
-            if (columns(1) <= first(size(first))) call set_error(error, MFV_INPUT_ERROR, 'x must increase from line to line')
+         call read_columns(lines(i)%text, names, numbers, error)
+         if (.not. allocated(error) .and. increasing .and. n > 0) then
+            if (numbers(1) <= table(1, n)) call set_error(error, MFV_INPUT_ERROR, 'x must increase from line to line')
          end if
          if (allocated(error)) then
             error%message = path//':'//to_text(i)//': '//error%message
             return
          end if
-         first = [first, columns(1)]
-         second = [second, columns(2)]
+         n = n + 1
+         table(:, n) = numbers
       end do
-   end subroutine read_two_columns
+      table = table(:, :n)
+   end subroutine read_table
 
    pure logical function is_comment(line)
       character(*), intent(in) :: line
@@ -72,12 +76,13 @@ contains
       if (.not. is_comment) is_comment = scan(adjustl(line), '#!') == 1
    end function is_comment
 
-   !> Two finite numbers, and nothing else.
+   !> Finite numbers, and nothing else.
    subroutine read_columns(line, names, columns, error)
       character(*), intent(in) :: line, names
-      real(wp), intent(out) :: columns(2)
+      real(wp), intent(out) :: columns(:)
       type(error_type), allocatable, intent(out) :: error
       character(*), parameter :: characters = '0123456789+-.eEdD ,'//achar(9)
+      character(len=5), parameter :: counts(3) = [character(5) :: 'one', 'two', 'three']
       character(len=1) :: third
       integer :: code, after
 
@@ -89,7 +94,8 @@ contains
          if (after == 0) code = 1
       end if
       if (code == 0 .and. .not. all(ieee_is_finite(columns))) code = 1
-      if (code /= 0) call set_error(error, MFV_INPUT_ERROR, 'must be two numbers, '//names//', not '''//trim(line)//'''')
+      if (code /= 0) call set_error(error, MFV_INPUT_ERROR, 'must be '//trim(counts(size(columns)))//' numbers, '//names// &
+                                    ', not '''//trim(line)//'''')
    end subroutine read_columns
 
 end module mfv_profile_file
