@@ -528,7 +528,7 @@ contains
       call reader%complain('mesh', 1, trim(mesh_key(reader)), 'no node of this mesh is under the indenter', error)
    end subroutine check_mesh_is_under
 
-   !> The key of the mesh to complain about.
+   !> The key of the mesh to complain about; padded with blanks.
    pure function mesh_key(reader) result(key)
       type(reader_type), intent(in) :: reader
       character(len=10) :: key
@@ -707,6 +707,7 @@ contains
       text = value
    end function text_value
 
+   !> Length of the value as written, or of the default.
    pure integer function length_of_value(reader, group, number, name) result(length)
       class(reader_type), intent(in) :: reader
       character(*), intent(in) :: group, name
@@ -717,7 +718,7 @@ contains
       length = len(value)
    end function length_of_value
 
-   !> The value as written, or the default, as text.
+   !> The value as written, or the default: text_value for a caller who has a variable for it.
    pure subroutine find_value(reader, group, number, name, value)
       class(reader_type), intent(in) :: reader
       character(*), intent(in) :: group, name
@@ -734,6 +735,7 @@ contains
       end if
    end subroutine find_value
 
+   !> The value of a key for a number.
    pure real(wp) function real_value(self, group, number, name)
       class(reader_type), intent(in) :: self
       character(*), intent(in) :: group, name
@@ -745,6 +747,7 @@ contains
       call read_number(text, kind_real, real_value, code)
    end function real_value
 
+   !> The value of a key for a whole number.
    pure integer function integer_value(self, group, number, name)
       class(reader_type), intent(in) :: self
       character(*), intent(in) :: group, name
@@ -758,6 +761,7 @@ contains
       integer_value = nint(value)
    end function integer_value
 
+   !> The value of a key for .true. or .false.
    pure logical function logical_value(self, group, number, name)
       class(reader_type), intent(in) :: self
       character(*), intent(in) :: group, name
@@ -810,7 +814,7 @@ contains
       if (condition) text = yes
    end function merge_text
 
-   !> Number of a group that may come more than once, after a blank.
+   !> Number of a group that may come more than once, after a blank; padded with blanks.
    pure function numbered(group, number) result(text)
       character(*), intent(in) :: group
       integer, intent(in) :: number
