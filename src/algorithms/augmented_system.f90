@@ -113,11 +113,11 @@ contains
       carried(2:) = carried(2:) .or. in_contact(status(:n - 1))
       carried(:n - 1) = carried(:n - 1) .or. in_contact(status(2:))
       assembly%nodes = pack([(i, i=1, n)], carried)
-      assembly%tangential = any(status == node_stick .or. slips(status))
+      assembly%tangential = any(holds(status) .or. slips(status))
       assembly%stress = model%compliance%modulus
       assembly%length = model%length()
       assembly%shear_stress = assembly%stress
-      if (assembly%tangential) assembly%shear_stress = assembly%stress*min(model%scene%friction%coefficient, 1.0_wp)
+      if (assembly%tangential) assembly%shear_stress = assembly%stress*model%grip
 
       m = size(assembly%nodes)
       assembly%pressure = 0
@@ -252,23 +252,33 @@ contains
       end do
    end subroutine add_normal_constraints
 
-   !> Rows s = s0 for stuck nodes, tau + mu p = 0 (slip right) or tau - mu p = 0 (slip left), tau = 0 for the others.
+   !> Rows s = s0 for stuck nodes, tau - slope*p - stiffness*s = offset for slipping and creeping ones, tau = 0 for the
+   !> others; divided by what is largest in them.
    subroutine add_tangential_constraints(assembly, model, constraints)
       type(assembly_type), intent(inout) :: assembly
       type(contact_model_type), intent(in) :: model
       type(constraints_type), intent(in) :: constraints
-      integer :: i, row, status
+      integer :: i, node, row
+      real(wp) :: slope, stiffness, unit
 
       do i = 1, size(assembly%nodes)
          row = assembly%slip + i
-         status = constraints%status(assembly%nodes(i))
-         if (status == node_stick) then
+         node = assembly%nodes(i)
+         if (constraints%status(node) == node_stick) then
             assembly%matrix(row, assembly%slip + i) = 1.0_wp
-            assembly%right(row, 1) = constraints%stuck_slip(assembly%nodes(i))/assembly%length
+            assembly%right(row, 1) = constraints%stuck_slip(node)/assembly%length
+         else if (slips(constraints%status(node)) .or. creeps(constraints%status(node))) then
+            associate (line => constraints%row(node))
+               slope = line%slope*assembly%stress/assembly%shear_stress
+               stiffness = line%stiffness*assembly%length/assembly%shear_stress
+               unit = max(1.0_wp, abs(slope), abs(stiffness))
+               assembly%matrix(row, assembly%shear + i) = 1.0_wp/unit
+               assembly%matrix(row, assembly%pressure + i) = -slope/unit
+               assembly%matrix(row, assembly%slip + i) = -stiffness/unit
+               assembly%right(row, :) = [line%offset, constraints%offset_rate(node)]/assembly%shear_stress/unit
+            end associate
          else
             assembly%matrix(row, assembly%shear + i) = 1.0_wp
-            if (slips(status)) assembly%matrix(row, assembly%pressure + i) = &
-               slip_sign(status)*model%scene%friction%coefficient*assembly%stress/assembly%shear_stress
          end if
       end do
    end subroutine add_tangential_constraints

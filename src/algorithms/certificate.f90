@@ -8,8 +8,10 @@ module mfv_certificate
    use mfv_contact_fields, only: contact_fields_type
    use mfv_contact_model, only: along_approach, along_rotation, along_shift, contact_model_type
    use mfv_contact_state, only: contact_state_type
+   use mfv_friction_law, only: friction_point_type, friction_row_type
    use mfv_kinds, only: wp
    use mfv_node_status
+   use mfv_scene, only: algorithm_mfv, integration_explicit
    implicit none
    private
    public :: certificate_type, new_certificate, residual_count, residual_name, residual_description
@@ -67,17 +69,17 @@ contains
    !> Name of residual `kind`, as in the result file.
    pure function residual_name(kind) result(name)
       integer, intent(in) :: kind
-      character(:), allocatable :: name
+      character(len=len_trim(names(kind))) :: name
 
-      name = trim(names(kind))
+      name = names(kind)
    end function residual_name
 
    !> What residual `kind` is the size of.
    pure function residual_description(kind) result(description)
       integer, intent(in) :: kind
-      character(:), allocatable :: description
+      character(len=len_trim(descriptions(kind))) :: description
 
-      description = trim(descriptions(kind))
+      description = descriptions(kind)
    end function residual_description
 
    !> Empty certificate of a model.
@@ -89,13 +91,16 @@ contains
    end function new_certificate
 
    !> Find out what can be claimed. No energy balance under Goodman's coupling with friction, whose compliance is not
-   !> symmetric; nothing tangential where friction has not acted yet.
+   !> symmetric; nothing tangential where friction has not acted yet; of the conventional algorithm's load steps nothing but
+   !> their ends.
    subroutine claim(self, model)
       class(certificate_type), intent(inout) :: self
       type(contact_model_type), intent(in) :: model
 
-      self%claimed(energy_balance) = .not. model%tangential .or. model%scene%coupling /= coupling_goodman .or. &
-                                     .not. model%compliance%has_block(block_up)
+      self%claimed([continuity, energy_balance]) = model%scene%method%algorithm == algorithm_mfv
+      self%claimed(energy_balance) = self%claimed(continuity) .and. (.not. model%tangential .or. &
+                                     model%scene%coupling /= coupling_goodman .or. &
+                                     .not. model%compliance%has_block(block_up))
       self%claimed(moment_balance) = model%rotational
       self%claimed([elasticity_tangential, tangential_force_balance, stick_slip, slip_traction, friction_limit, &
                     slip_direction]) = model%tangential
@@ -115,17 +120,19 @@ contains
       traction_scale = self%traction
    end function traction_scale
 
-   !> Check the increment from `before` to `after`, with the statuses of `after` on the way.
-   subroutine check_increment(self, model, before, after)
+   !> Check the increment from `before` to `after`, with the statuses of `after` on the way. `memory`: what friction
+   !> remembered before, shape (nodes).
+   subroutine check_increment(self, model, before, memory, after)
       class(certificate_type), intent(inout) :: self
       type(contact_model_type), intent(in) :: model
       type(contact_fields_type), intent(in) :: before
+      real(wp), intent(in) :: memory(:)
       type(contact_state_type), intent(in) :: after
 
       self%increments = self%increments + 1
       call check_equilibrium(self, model, after%fields)
       call check_normal_contact(self, model, after)
-      if (self%claimed(slip_traction)) call check_friction(self, model, before, after)
+      if (self%claimed(slip_traction)) call check_friction(self, model, before, memory, after)
       call check_energy(self, model, before, after)
    end subroutine check_increment
 
@@ -148,7 +155,7 @@ contains
       real(wp), dimension(size(fields%pressure)) :: by_pressure, by_shear, rigid
       real(wp) :: grip
 
-      grip = min(model%scene%friction%coefficient, 1.0_wp)
+      grip = model%grip
       self%traction = max(self%traction, maxval(abs(fields%pressure)), maxval(abs(fields%shear)))
       self%normal_force = max(self%normal_force, abs(fields%normal_force), model%force(abs(fields%pressure)))
       self%tangential_force = max(self%tangential_force, grip*self%normal_force, &
@@ -211,24 +218,70 @@ contains
    end subroutine check_normal_contact
 
    !> Equalities and inequalities of slip and shear traction.
-   subroutine check_friction(self, model, before, after)
+   subroutine check_friction(self, model, before, memory, after)
       class(certificate_type), intent(inout) :: self
       type(contact_model_type), intent(in) :: model
       type(contact_fields_type), intent(in) :: before
+      real(wp), intent(in) :: memory(:)
       type(contact_state_type), intent(in) :: after
-      real(wp), dimension(size(after%status)) :: limit, shear, slipped, direction
+      real(wp), dimension(size(after%status)) :: limit, defect, shear, slipped, direction
 
-      limit = model%scene%friction%coefficient*after%fields%pressure
+      limit = model%static_friction*after%fields%pressure
       where (after%status == node_frictionless) limit = 0.0_wp
       shear = after%fields%shear
       slipped = after%fields%slip() - before%slip()
-      direction = slip_sign(after%status)
+      direction = motion_sign(after%status)
+      call law_defects(model, before, memory, after, defect)
       call self%note(stick_slip, largest_of(abs(slipped), after%status == node_stick), self%tangential)
-      call self%note(slip_traction, largest_of(abs(shear + direction*limit), slips(after%status) .or. &
+      call self%note(slip_traction, largest_of(abs(defect), slips(after%status) .or. creeps(after%status) .or. &
                                                after%status == node_frictionless), self%traction)
       call self%note(friction_limit, largest_of(abs(shear) - limit, in_contact(after%status)), self%traction)
-      call self%note(slip_direction, largest_of(-direction*slipped, slips(after%status)), self%tangential)
+      call self%note(slip_direction, largest_of(-direction*slipped, slips(after%status) .or. creeps(after%status)), &
+                     self%tangential)
    end subroutine check_friction
+
+   !> By how much the tractions of slipping nodes fail the friction law, and those of creeping nodes the law's increment from
+   !> state to state; where friction is off, the shear traction. Shape (nodes), force/length^2.
+   subroutine law_defects(model, before, memory, after, defect)
+      type(contact_model_type), intent(in) :: model
+      type(contact_fields_type), intent(in) :: before
+      real(wp), intent(in) :: memory(:)
+      type(contact_state_type), intent(in) :: after
+      real(wp), intent(out) :: defect(:)
+      type(friction_point_type), dimension(size(defect)) :: here, there
+      type(friction_row_type) :: row
+      integer :: i
+      logical :: explicit
+
+      explicit = model%scene%method%integration == integration_explicit .or. model%scene%method%algorithm /= algorithm_mfv
+      here = points_of(before, memory)
+      there = points_of(after%fields, after%memory)
+      defect = after%fields%shear
+      do i = 1, size(defect)
+         if (slips(after%status(i))) then
+            defect(i) = there(i)%shear + slip_sign(after%status(i))*model%scene%friction%law%strength(there(i))
+         else if (creeps(after%status(i))) then
+            row = model%scene%friction%law%row(after%status(i), here(i), there(i))
+            if (explicit) row = model%scene%friction%law%row(after%status(i), here(i), here(i))
+            defect(i) = there(i)%shear - row%slope*there(i)%pressure - row%stiffness*there(i)%slip - row%offset
+         end if
+      end do
+
+   contains
+
+      function points_of(fields, memories) result(points)
+         type(contact_fields_type), intent(in) :: fields
+         real(wp), intent(in) :: memories(:)
+         type(friction_point_type) :: points(size(memories))
+
+         points%static = model%static_friction
+         points%kinetic = model%kinetic_friction
+         points%pressure = fields%pressure
+         points%shear = fields%shear
+         points%slip = fields%slip()
+         points%memory = memories
+      end function points_of
+   end subroutine law_defects
 
    !> Work of the loads = stored + dissipated energy; between events everything is linear, so the trapezoid is exact.
    subroutine check_energy(self, model, before, after)

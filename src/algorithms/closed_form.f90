@@ -96,7 +96,8 @@ contains
       integer :: i
 
       associate (model => simulation%contact%model)
-         is_spence = model%compliance%has_block(block_up) .and. model%tangential .and. .not. alike(model%scene)
+         is_spence = model%compliance%has_block(block_up) .and. &
+                     model%scene%friction%is_coulomb() .and. model%tangential .and. .not. alike(model%scene)
          before = 0.0_wp
          do i = 1, size(simulation%taken)
             associate (step => simulation%taken(i))
@@ -116,10 +117,10 @@ contains
       associate (x => simulation%contact%model%x, scene => simulation%contact%model%scene, &
                  force => simulation%contact%state%fields%normal_force)
          if (is_hertz(scene)) then
-            form%shear = spence_cylinder_shear(x, force, form%half_width, scene%friction%coefficient, &
+            form%shear = spence_cylinder_shear(x, force, form%half_width, scene%friction%static%largest(), &
                                                abs(scene%dundurs_beta()))
          else
-            form%shear = spence_flat_punch_shear(x, force, form%half_width, scene%friction%coefficient, &
+            form%shear = spence_flat_punch_shear(x, force, form%half_width, scene%friction%static%largest(), &
                                                  abs(scene%dundurs_beta()))
          end if
          form%shear = sign(1.0_wp, scene%dundurs_beta())*form%shear
@@ -134,7 +135,7 @@ contains
       integer :: i
 
       associate (model => simulation%contact%model, scene => simulation%contact%model%scene)
-         is_mindlin = is_hertz(scene) .and. model%tangential
+         is_mindlin = is_hertz(scene) .and. scene%friction%is_coulomb() .and. model%tangential
          pressing = .true.
          do i = 1, size(simulation%taken)
             associate (step => simulation%taken(i))
@@ -162,7 +163,7 @@ contains
       associate (contact => simulation%contact, scene => simulation%contact%model%scene, &
                  force => simulation%contact%state%fields%normal_force)
          history = new_mindlin_history(force, form%half_width, 1.0_wp/scene%curvature(), scene%datum(), &
-                                       scene%friction%coefficient)
+                                       scene%friction%static%largest())
          do i = 1, simulation%snapshot_count
             call history%load(simulation%snapshots(i)%state%fields%tangential_force)
          end do

@@ -33,6 +33,10 @@ module mfv_contact_model
       !> By how much a unit of approach, shift and rotation of the upper body lessens the gap, and carries its surface along
       !> the lower one to the right; shape (nodes, 3), of approach and shift without unit, of rotation lengths.
       real(wp), allocatable :: normal_arm(:, :), tangential_arm(:, :)
+      !> Static and kinetic coefficient of friction at the nodes, shape (nodes), and the part of the normal tractions that
+      !> shear can have: the largest coefficient, but no more than 1.
+      real(wp), allocatable :: static_friction(:), kinetic_friction(:)
+      real(wp) :: grip = 0.0_wp
       type(body_pair_type) :: compliance
       !> Whether the tangential problem is modelled: friction acts in some step; and whether rotation is.
       logical :: tangential = .false., rotational = .false.
@@ -291,6 +295,9 @@ contains
          self%initial_gap = gap_between(self%scene%lower, self%scene%upper, self%x, self%scene%mesh%parabolic)
       end if
       self%can_touch = self%scene%touchable(self%arc)
+      self%static_friction = self%scene%friction%static%at(self%x)
+      self%kinetic_friction = self%scene%friction%kinetic%at(self%x)
+      self%grip = min(self%scene%friction%static%largest(), 1.0_wp)
       call place_arms(self)
    end subroutine place_nodes
 

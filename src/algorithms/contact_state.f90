@@ -15,6 +15,8 @@ module mfv_contact_state
       real(wp), allocatable :: stuck_slip(:)
       !> Sign of the last slip rate, 0 when there was none, shape (nodes).
       integer, allocatable :: slip_direction(:)
+      !> What the friction law remembers of the nodes, see friction_point_type, shape (nodes).
+      real(wp), allocatable :: memory(:)
       !> Work dissipated by friction so far, force (energy per unit thickness).
       real(wp) :: dissipation = 0.0_wp
    contains
@@ -35,7 +37,7 @@ contains
       state%fields = new_contact_fields(nodes)
       allocate (state%status(nodes), source=node_open)
       allocate (state%slip_direction(nodes), source=0)
-      allocate (state%stuck_slip(nodes), source=0.0_wp)
+      allocate (state%stuck_slip(nodes), state%memory(nodes), source=0.0_wp)
    end function new_contact_state
 
    !> Give the nodes of `mask` the new statuses; a node that sticks holds at the slip it has.
@@ -58,6 +60,7 @@ contains
       self%status = [(node_open, i=1, extra), self%status, (node_open, i=1, extra)]
       self%slip_direction = [(0, i=1, extra), self%slip_direction, (0, i=1, extra)]
       self%stuck_slip = [(0.0_wp, i=1, extra), self%stuck_slip, (0.0_wp, i=1, extra)]
+      self%memory = [(0.0_wp, i=1, extra), self%memory, (0.0_wp, i=1, extra)]
    end subroutine widen
 
    pure integer function contact_nodes(self)
@@ -66,10 +69,11 @@ contains
       contact_nodes = count(in_contact(self%status))
    end function contact_nodes
 
+   !> Nodes that hold: stuck, or creeping below the friction limit.
    pure integer function stick_nodes(self)
       class(contact_state_type), intent(in) :: self
 
-      stick_nodes = count(self%status == node_stick)
+      stick_nodes = count(holds(self%status))
    end function stick_nodes
 
    pure integer function slip_nodes(self)

@@ -3,6 +3,7 @@
 module mfv_contact_system
    use mfv_contact_fields, only: contact_fields_type
    use mfv_contact_model, only: contact_model_type
+   use mfv_friction_law, only: friction_row_type
    use mfv_kinds, only: wp
    use mfv_scene, only: control_displacement, control_force
    implicit none
@@ -22,6 +23,10 @@ module mfv_contact_system
       integer, allocatable :: status(:)
       !> Slip s at which a stuck node holds, length, shape (nodes).
       real(wp), allocatable :: stuck_slip(:)
+      !> The lines tau = slope*p + stiffness*s + offset of slipping and creeping nodes (mfv_friction_law), and the rate of
+      !> the offset per unit of load; shape (nodes).
+      type(friction_row_type), allocatable :: row(:)
+      real(wp), allocatable :: offset_rate(:)
       !> Normal, tangential and rotational load; the last one of no meaning where rotation is not modelled.
       type(load_type) :: normal, tangential, rotational
    end type constraints_type

@@ -23,15 +23,17 @@ module mfv_event_search
 contains
 
    !> All violations that the rates lead to.
-   !> `status`: shape (nodes). `state`, `rate`: fields now and their rates per unit of the load parameter. Rates below
-   !> the part `round_off` of the largest one of their sort count as zero.
-   function find_violations(model, status, state, rate, round_off) result(violations)
+   !> `status`: shape (nodes). `room`: how far slipping nodes can slip until their friction has a corner, length, shape (nodes).
+   !> `state`, `rate`: fields now and their rates per unit of the load parameter. Rates below the part `round_off` of the
+   !> largest one of their sort count as zero.
+   function find_violations(model, status, room, state, rate, round_off) result(violations)
       type(contact_model_type), intent(in) :: model
       integer, intent(in) :: status(:)
+      real(wp), intent(in) :: room(:)
       type(contact_fields_type), intent(in) :: state, rate
       real(wp), intent(in) :: round_off
       type(violations_type) :: violations
-      real(wp) :: traction_scale, motion_scale, mu
+      real(wp) :: traction_scale, motion_scale, mu, full, limit_stiffness
       real(wp), dimension(size(status)) :: gap, gap_rate, slip_rate
       integer :: i, n
 
@@ -39,7 +41,12 @@ contains
       allocate (violations%kind(n), source=event_none)
       allocate (violations%step(n), violations%speed(n), source=0.0_wp)
       violations%step = huge(1.0_wp)
-      mu = model%scene%friction%coefficient
+      full = 1.0_wp
+      limit_stiffness = -1.0_wp
+      if (allocated(model%scene%friction%law)) then
+         full = model%scene%friction%law%full_part
+         if (.not. model%scene%friction%law%sticks) limit_stiffness = model%scene%friction%law%limit_stiffness
+      end if
       gap = model%gap(state)
       gap_rate = rate%normal - rate%approach
       slip_rate = rate%slip()
@@ -51,13 +58,19 @@ contains
          case (node_open)
             if (model%can_touch(i)) call consider(event_close, gap(i), gap_rate(i), motion_scale)
             cycle
-         case (node_stick)
+         case (node_stick, node_creep_right, node_creep_left)
+            mu = full*model%static_friction(i)
             call consider(event_slip_right, mu*state%pressure(i) + state%shear(i), &
                           mu*rate%pressure(i) + rate%shear(i), max(mu, 1.0_wp)*traction_scale)
             call consider(event_slip_left, mu*state%pressure(i) - state%shear(i), &
                           mu*rate%pressure(i) - rate%shear(i), max(mu, 1.0_wp)*traction_scale)
+            call consider(event_reverse, 0.0_wp, motion_sign(status(i))*slip_rate(i), motion_scale)
          case (node_slip_right, node_slip_left)
+            ! Bristles take over again where the limit grows faster than they, at the limit, can follow.
             call consider(event_stick, 0.0_wp, slip_sign(status(i))*slip_rate(i), motion_scale)
+            if (limit_stiffness >= 0.0_wp) call consider(event_stick, 0.0_wp, limit_stiffness*slip_sign(status(i))*slip_rate(i) &
+                                                         - full*model%static_friction(i)*rate%pressure(i), traction_scale)
+            if (room(i) < huge(1.0_wp)) call consider(event_weakened, room(i), -slip_sign(status(i))*slip_rate(i), motion_scale)
          end select
          call consider(event_open, state%pressure(i), rate%pressure(i), traction_scale)
       end do
@@ -80,26 +93,29 @@ contains
       end subroutine consider
    end function find_violations
 
-   !> Status of a node after an event. `friction`: whether friction acts; `slip_direction`: sign of the slip rate that a
-   !> closing node had while open, 0 for none: it goes on slipping that way or, with none, sticks (dissertation 2.3.3).
-   elemental integer function status_after(event, friction, slip_direction) result(status)
-      integer, intent(in) :: event, slip_direction
+   !> Status of a node with this `status` after an event. `friction`: whether friction acts; `direction`: sign of the slip rate
+   !> that a closing node had while open, 0 for none: it goes on slipping that way or, with none, holds (dissertation 2.3.3).
+   !> `holding`: the status of a node that holds.
+   elemental integer function status_after(event, status, friction, direction, holding)
+      integer, intent(in) :: event, status, direction, holding
       logical, intent(in) :: friction
 
       select case (event)
       case (event_close)
-         status = node_frictionless
-         if (friction .and. slip_direction > 0) status = node_slip_right
-         if (friction .and. slip_direction < 0) status = node_slip_left
-         if (friction .and. slip_direction == 0) status = node_stick
+         status_after = node_frictionless
+         if (friction .and. direction > 0) status_after = node_slip_right
+         if (friction .and. direction < 0) status_after = node_slip_left
+         if (friction .and. (direction == 0 .or. holding /= node_stick)) status_after = holding
       case (event_slip_right)
-         status = node_slip_right
+         status_after = node_slip_right
       case (event_slip_left)
-         status = node_slip_left
-      case (event_stick)
-         status = node_stick
+         status_after = node_slip_left
+      case (event_stick, event_reverse)
+         status_after = holding
+      case (event_open)
+         status_after = node_open
       case default
-         status = node_open
+         status_after = status
       end select
    end function status_after
 

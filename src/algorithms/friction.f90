@@ -1,37 +1,94 @@
-!> Friction laws: how much shear traction a node in contact can carry (f(p) of dissertation Table 2.1).
+!> The friction of a scene: a law (each is a file of its own, see mfv_friction_law) and its coefficients along the surface.
 module mfv_friction
+   use mfv_friction_coefficient, only: friction_coefficient_type, uniform_coefficient
+   use mfv_friction_coulomb, only: coulomb_law_type
+   use mfv_friction_dahl, only: new_dahl_law
+   use mfv_friction_law, only: friction_law_type
+   use mfv_friction_static_kinetic, only: new_static_kinetic_law
+   use mfv_friction_weakening, only: new_weakening_law
    use mfv_kinds, only: wp
    implicit none
    private
-   public :: friction_type, no_friction, coulomb_friction
+   public :: friction_type, friction_coefficient_type, uniform_coefficient, no_friction, coulomb_friction, &
+             static_kinetic_friction, weakening_friction, dahl_friction
 
-   !> Coulomb's law |tau| <= mu p, with tau = mu p against the slip. mu = 0 is no friction and costs no more: the
-   !> tangential problem is then not modelled.
    type :: friction_type
-      !> Coefficient of friction mu.
-      real(wp) :: coefficient = 0.0_wp
+      !> Static and kinetic coefficient of friction (the same where the law knows only one).
+      type(friction_coefficient_type) :: static, kinetic
+      !> Not there: no friction.
+      class(friction_law_type), allocatable :: law
    contains
       procedure :: acts
+      procedure :: is_coulomb
    end type friction_type
 
 contains
 
-   pure type(friction_type) function no_friction()
-      no_friction = friction_type()
+   function no_friction() result(friction)
+      type(friction_type) :: friction
+
+      friction%static = uniform_coefficient(0.0_wp)
+      friction%kinetic = friction%static
    end function no_friction
 
-   !> Coulomb's law with the coefficient of friction mu >= 0.
-   pure type(friction_type) function coulomb_friction(mu)
+   !> Coulomb's law with the coefficient of friction mu >= 0. mu = 0 is no friction and costs no more: the tangential problem
+   !> is then not modelled.
+   function coulomb_friction(mu) result(friction)
       real(wp), intent(in) :: mu
+      type(friction_type) :: friction
 
-      coulomb_friction = friction_type(mu)
+      friction%static = uniform_coefficient(mu)
+      friction%kinetic = friction%static
+      allocate (coulomb_law_type :: friction%law)
    end function coulomb_friction
+
+   !> mu_static >= mu_kinetic >= 0.
+   function static_kinetic_friction(mu_static, mu_kinetic) result(friction)
+      real(wp), intent(in) :: mu_static, mu_kinetic
+      type(friction_type) :: friction
+
+      friction%static = uniform_coefficient(mu_static)
+      friction%kinetic = uniform_coefficient(mu_kinetic)
+      allocate (friction%law, source=new_static_kinetic_law())
+   end function static_kinetic_friction
+
+   !> mu_static >= mu_kinetic >= 0; `distance` of the slip between them, length, > 0.
+   function weakening_friction(mu_static, mu_kinetic, distance) result(friction)
+      real(wp), intent(in) :: mu_static, mu_kinetic, distance
+      type(friction_type) :: friction
+
+      friction%static = uniform_coefficient(mu_static)
+      friction%kinetic = uniform_coefficient(mu_kinetic)
+      allocate (friction%law, source=new_weakening_law(distance))
+   end function weakening_friction
+
+   !> Dahl's law with the limit mu p, `stiffness` sigma > 0 (force/length^3) and `exponent` gamma >= 0.
+   function dahl_friction(mu, stiffness, exponent) result(friction)
+      real(wp), intent(in) :: mu, stiffness, exponent
+      type(friction_type) :: friction
+
+      friction%static = uniform_coefficient(mu)
+      friction%kinetic = friction%static
+      allocate (friction%law, source=new_dahl_law(stiffness, exponent))
+   end function dahl_friction
 
    !> Whether there can be any shear traction.
    pure logical function acts(self)
       class(friction_type), intent(in) :: self
 
-      acts = self%coefficient > 0.0_wp
+      acts = allocated(self%law) .and. self%static%largest() > 0.0_wp
    end function acts
+
+   !> Whether it is Coulomb's law with one coefficient everywhere (closed forms know no other).
+   pure logical function is_coulomb(self)
+      class(friction_type), intent(in) :: self
+
+      is_coulomb = .false.
+      if (.not. allocated(self%law)) return
+      select type (law => self%law)
+      type is (coulomb_law_type)
+         is_coulomb = self%static%is_uniform()
+      end select
+   end function is_coulomb
 
 end module mfv_friction

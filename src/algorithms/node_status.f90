@@ -1,19 +1,23 @@
-!> What a surface node can be (dissertation Table 2.1, Fig. 2.1) and what can happen to it.
+!> What a surface node can be (dissertation Tables 2.1 and B.1, Fig. 2.1) and what can happen to it.
 module mfv_node_status
    implicit none
    private
-   public :: node_open, node_stick, node_slip_right, node_slip_left, node_frictionless, node_status_names
+   public :: node_open, node_stick, node_slip_right, node_slip_left, node_frictionless, node_creep_right, node_creep_left, &
+             node_status_names
    public :: event_none, event_close, event_open, event_slip_right, event_slip_left, event_stick, event_step_end, &
-             event_stopped, event_names, in_contact, slips, slip_sign
+             event_stopped, event_reverse, event_weakened, event_names, in_contact, slips, creeps, holds, slip_sign, motion_sign
 
-   !> Node statuses. `node_frictionless`: in contact while friction is off or absent.
-   integer, parameter :: node_open = 0, node_stick = 1, node_slip_right = 2, node_slip_left = 3, node_frictionless = 4
-   character(*), parameter :: node_status_names = 'open stick slip_right slip_left frictionless'
+   !> Node statuses. `node_frictionless`: in contact while friction is off or absent. `node_creep_right`, `node_creep_left`:
+   !> held by bristles below the friction limit (partial slip of Table B.1), which give way to the right or to the left.
+   integer, parameter :: node_open = 0, node_stick = 1, node_slip_right = 2, node_slip_left = 3, node_frictionless = 4, &
+                         node_creep_right = 5, node_creep_left = 6
+   character(*), parameter :: node_status_names = 'open stick slip_right slip_left frictionless creep_right creep_left'
 
-   !> Events: what ended an increment of the load. `event_none`: the start of the history; `event_stopped`: its early end.
+   !> Events: what ended an increment of the load. `event_none`: the start of the history; `event_stopped`: its early end;
+   !> `event_reverse`: a creeping node turns round; `event_weakened`: a slipping node's friction has fallen to its last value.
    integer, parameter :: event_none = 0, event_close = 1, event_open = 2, event_slip_right = 3, event_slip_left = 4, &
-                         event_stick = 5, event_step_end = 6, event_stopped = 7
-   character(*), parameter :: event_names = 'start close open slip_right slip_left stick step_end stopped'
+                         event_stick = 5, event_step_end = 6, event_stopped = 7, event_reverse = 8, event_weakened = 9
+   character(*), parameter :: event_names = 'start close open slip_right slip_left stick step_end stopped reverse weakened'
 
 contains
 
@@ -29,11 +33,31 @@ contains
       slips = status == node_slip_right .or. status == node_slip_left
    end function slips
 
+   elemental logical function creeps(status)
+      integer, intent(in) :: status
+
+      creeps = status == node_creep_right .or. status == node_creep_left
+   end function creeps
+
+   !> Whether the node is below the friction limit and resists every motion: stuck, or held by bristles.
+   elemental logical function holds(status)
+      integer, intent(in) :: status
+
+      holds = status == node_stick .or. creeps(status)
+   end function holds
+
    !> Sign of the slip rate s' that a slip status demands: 1 right (tau = -f), -1 left (tau = +f), 0 for the others.
    elemental integer function slip_sign(status)
       integer, intent(in) :: status
 
       slip_sign = merge(1, 0, status == node_slip_right) - merge(1, 0, status == node_slip_left)
    end function slip_sign
+
+   !> Sign of the slip rate s' that a slipping or creeping status demands.
+   elemental integer function motion_sign(status)
+      integer, intent(in) :: status
+
+      motion_sign = slip_sign(status) + merge(1, 0, status == node_creep_right) - merge(1, 0, status == node_creep_left)
+   end function motion_sign
 
 end module mfv_node_status

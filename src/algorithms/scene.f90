@@ -8,11 +8,19 @@ module mfv_scene
    use mfv_material, only: plane_strain
    implicit none
    private
-   public :: scene_type, mesh_request_type, step_type, control_keep, control_force, control_displacement, most_cycles
+   public :: scene_type, mesh_request_type, step_type, method_type, control_keep, control_force, control_displacement, &
+             most_cycles, algorithm_mfv, algorithm_conventional, stepping_event, stepping_nominal, integration_second_order, &
+             integration_explicit
 
    !> What a step does with the normal, the tangential or the rotational load: leave it as it is, lead the force (moment) to
    !> a target, or lead the rigid displacement (approach, shift, rotation) to a target.
    integer, parameter :: control_keep = 0, control_force = 1, control_displacement = 2
+   !> The Method of First Violation (dissertation section 2.3) or the conventional algorithm (2.2).
+   integer, parameter :: algorithm_mfv = 1, algorithm_conventional = 2
+   !> How the Method of First Violation finds an event: from rates, or from a trial load step and interpolation (2.3 to 2.5).
+   integer, parameter :: stepping_event = 1, stepping_nominal = 2
+   !> How friction laws that are not linear are led: with controlled error of second order, or explicitly (appendix B).
+   integer, parameter :: integration_second_order = 1, integration_explicit = 2
    !> Cycles that one step can have.
    integer, parameter :: most_cycles = 1000000
 
@@ -30,7 +38,21 @@ module mfv_scene
       integer :: rotational_control = control_keep
       !> Moment M (force) or rotation (radians), counterclockwise.
       real(wp) :: rotational_target = 0.0_wp
+      !> Cycles end early when two in a row are equal to within this part of the largest traction; 0: never.
+      real(wp) :: steady_tolerance = 0.0_wp
    end type step_type
+
+   !> How a scene is solved.
+   type :: method_type
+      integer :: algorithm = algorithm_mfv, stepping = stepping_event, integration = integration_second_order
+      !> The nominal load step dL0 of nominal stepping, the conventional algorithm and explicit integration: part of each
+      !> straight part of the load history.
+      real(wp) :: load_step = 0.05_wp
+      !> Error that an increment may make in the tractions where friction is not linear, in parts of the largest traction.
+      real(wp) :: friction_tolerance = 1.0e-4_wp
+      !> Iterations that the conventional algorithm may take at one load.
+      integer :: most_iterations = 1000
+   end type method_type
 
    !> What the user asked of the mesh. Unset: chosen from an estimate of the contact.
    type :: mesh_request_type
@@ -54,6 +76,7 @@ module mfv_scene
       type(body_type) :: lower, upper
       type(mesh_request_type) :: mesh
       type(friction_type) :: friction
+      type(method_type) :: method
       type(step_type), allocatable :: steps(:)
    contains
       procedure :: tangential

@@ -5,7 +5,9 @@ module mfv_simulation
    use mfv_contact_state, only: contact_state_type
    use mfv_contact_system, only: load_type
    use mfv_error, only: error_type
-   use mfv_first_violation
+   use mfv_contact_path, only: contact_path_type, new_contact_path, segment_type
+   use mfv_conventional, only: lead_conventionally
+   use mfv_first_violation, only: lead_by_violations
    use mfv_kinds, only: wp
    use mfv_node_status, only: event_none, event_step_end, event_stopped
    use mfv_observer, only: observer_type
@@ -29,7 +31,7 @@ module mfv_simulation
    end type snapshot_type
 
    type :: simulation_type
-      type(first_violation_type) :: contact
+      type(contact_path_type) :: contact
       !> States at the end of every step and reversal so far: the first `snapshot_count` entries are in use.
       type(snapshot_type), allocatable :: snapshots(:)
       integer :: snapshot_count = 0
@@ -60,8 +62,7 @@ contains
       integer, intent(in) :: keep_history
       type(simulation_type) :: self
 
-      self%contact = new_first_violation(new_contact_model(scene), augmented_system_type(), &
-                                         keep_history == history_events)
+      call new_contact_path(new_contact_model(scene), augmented_system_type(), keep_history == history_events, self%contact)
       self%keep_history = keep_history
       self%message = 'nothing has been computed yet'
       allocate (self%snapshots(8))
@@ -166,7 +167,11 @@ contains
       segment%step = self%steps_done + 1
       if (present(before)) segment%number = before + reversal
       if (present(segments)) segment%segments = segments
-      call self%contact%lead(segment, observer, error)
+      if (self%contact%model%scene%method%algorithm == algorithm_conventional) then
+         call lead_conventionally(self%contact, segment, observer, error)
+      else
+         call lead_by_violations(self%contact, segment, observer, error)
+      end if
       self%normal = load_type(targets(1)%control, targets(1)%value)
       self%tangential = load_type(targets(2)%control, targets(2)%value)
       self%rotational = load_type(targets(3)%control, targets(3)%value)

@@ -209,7 +209,7 @@ contains
          end if
          call add_scalar(fields, 'curvature', scene%curvature(), '1/'//units%length, &
                          'relative curvature of disks and holes at the pole')
-         call add_scalar(fields, 'friction_coefficient', scene%friction%coefficient, '1', &
+         call add_scalar(fields, 'friction_coefficient', scene%friction%static%largest(), '1', &
                          'coefficient of friction, 0 without friction')
       end associate
    end subroutine add_scene

@@ -1,0 +1,560 @@
+!> A contact on its way through a load history: the model, its state now, and what every algorithm does with them: begin a
+!> straight part of the history, hold what nothing determines, change statuses, record.
+module mfv_contact_path
+   use mfv_certificate, only: certificate_type, new_certificate
+   use mfv_contact_fields, only: contact_fields_type
+   use mfv_contact_model, only: along_rotation, along_shift, contact_model_type
+   use mfv_contact_state, only: contact_state_type, new_contact_state
+   use mfv_contact_system
+   use mfv_error, only: error_type, set_error
+   use mfv_event_search, only: status_after
+   use mfv_friction_law, only: friction_point_type, friction_row_type
+   use mfv_history, only: history_type
+   use mfv_kinds, only: wp
+   use mfv_node_status
+   use mfv_scene, only: control_displacement, control_force
+   use mfv_status
+   use mfv_strings, only: to_text
+   implicit none
+   private
+   public :: contact_path_type, new_contact_path, segment_type, moment_type, note_change, first_true
+
+   !> A straight part of the load history: the controlled loads with their targets, and whether friction acts.
+   type :: segment_type
+      type(load_type) :: normal, tangential
+      type(load_type) :: rotational = load_type(control_displacement)
+      logical :: friction = .true.
+      !> Number of this segment, how many there are, and the step that it belongs to: for records and progress.
+      integer :: number = 1, segments = 1, step = 1
+   end type segment_type
+
+   type :: contact_path_type
+      type(contact_model_type) :: model
+      class(contact_system_type), allocatable :: system
+      type(contact_state_type) :: state
+      type(history_type) :: history
+      type(certificate_type) :: certificate
+      !> Whether every event is recorded, or only what the caller records.
+      logical :: record_events = .true.
+      !> Events so far: loads at which statuses changed.
+      integer :: events = 0
+      !> Increments of the load (of the conventional algorithm: load steps) so far.
+      integer :: increments = 0
+      !> Length of the increment to try next where friction is not linear, in parts of a segment; 0: not known yet.
+      real(wp) :: trial = 0.0_wp
+   contains
+      procedure :: begin_rotation
+      procedure :: record
+      procedure :: start_segment
+      procedure :: settle_loads
+      procedure :: dropping
+      procedure :: points
+      procedure :: rooms
+      procedure :: set_rows
+      procedure :: set_status
+      procedure :: holding
+      procedure :: take_increment
+      procedure :: keep_settled
+      procedure :: keep_on_mesh
+      procedure, private :: widen
+      procedure :: no_continuation
+      procedure :: end_here
+      procedure, private :: begin_tangential
+      procedure :: close_nearest
+   end type contact_path_type
+
+   !> What is known at one load while statuses settle.
+   type :: moment_type
+      !> Status sets tried here, shape (nodes, tried).
+      integer, allocatable :: tried(:, :)
+      !> Rates below this part of the largest are round-off.
+      real(wp) :: round_off = 1.0e-12_wp
+      !> One change at a time, after a cycle.
+      logical :: one_at_a_time = .false.
+      !> First change at this load: event and node; and how many nodes changed with it.
+      integer :: event = event_none, node = 0, count = 0
+   end type moment_type
+
+contains
+
+   !> An unloaded contact, the bodies just touching. `system`: the linear solver to use.
+   subroutine new_contact_path(model, system, record_events, self)
+      type(contact_model_type), intent(in) :: model
+      class(contact_system_type), intent(in) :: system
+      logical, intent(in) :: record_events
+      type(contact_path_type), intent(out) :: self
+      real(wp), dimension(model%nodes()) :: normal, tangential
+
+      self%model = model
+      allocate (self%system, source=system)
+      self%state = new_contact_state(model%nodes())
+      self%state%fields%approach = model%nearest_approach(model%initial_gap)
+      call model%relative_displacements(self%state%fields, normal, tangential)
+      self%state%fields%normal = normal
+      self%state%fields%tangential = tangential
+      self%certificate = new_certificate(model)
+      self%record_events = record_events
+   end subroutine new_contact_path
+
+   !> Turn friction on or off in the nodes that touch; with the first friction the tangential problem begins to be
+   !> modelled. Error MFV_INADMISSIBLE_STEP: friction off where there is shear.
+   subroutine start_segment(self, segment, error)
+      class(contact_path_type), intent(inout) :: self
+      type(segment_type), intent(in) :: segment
+      type(error_type), allocatable, intent(out) :: error
+      integer :: status(size(self%state%status))
+
+      if (segment%friction .and. self%model%scene%friction%acts()) then
+         if (.not. self%model%tangential .or. any(self%state%status == node_frictionless)) call self%begin_tangential()
+         call self%set_status(self%state%status == node_frictionless, self%holding(self%state%fields%shear))
+         return
+      end if
+      if (any(abs(self%state%fields%shear) > 0.0_wp)) then
+         call self%end_here(MFV_INADMISSIBLE_STEP, 'friction cannot be switched off while there is shear traction', error)
+         return
+      end if
+      status = node_frictionless
+      call self%set_status(in_contact(self%state%status), status)
+   end subroutine start_segment
+
+   !> Friction comes on: model the tangential problem if that has not been done yet, and begin it from the present
+   !> pressures.
+   subroutine begin_tangential(self)
+      class(contact_path_type), intent(inout) :: self
+      real(wp) :: normal(self%model%nodes())
+
+      if (.not. self%model%tangential) call self%model%add_tangential()
+      call self%certificate%claim(self%model)
+      call self%model%relative_displacements(self%state%fields, normal, self%state%fields%tangential)
+   end subroutine begin_tangential
+
+   !> Model the rotation from now on, from the moment that the tractions have.
+   subroutine begin_rotation(self)
+      class(contact_path_type), intent(inout) :: self
+
+      if (self%model%rotational) return
+      call self%model%add_rotation()
+      call self%certificate%claim(self%model)
+      self%state%fields%moment = self%model%resultant(along_rotation, self%state%fields%pressure, self%state%fields%shear)
+   end subroutine begin_rotation
+
+   !> The constraints at the part `done` of the segment. A load that nothing in the present contact determines is held
+   !> (its displacement stays): the tangential one without friction, all without contact; the rotation while no two nodes
+   !> are in contact.
+   !> `settled`: false when statuses changed here and the loads must be looked at again.
+   !> Error MFV_GROSS_SLIDING: a tangential force that nothing can carry.
+   subroutine settle_loads(self, segment, done, moment, constraints, settled, error)
+      class(contact_path_type), intent(inout) :: self
+      type(segment_type), intent(in) :: segment
+      real(wp), intent(in) :: done
+      type(moment_type), intent(inout) :: moment
+      type(constraints_type), intent(out) :: constraints
+      logical, intent(out) :: settled
+      type(error_type), allocatable, intent(out) :: error
+      type(load_type) :: load
+      logical :: contact, slides, drop
+
+      settled = .true.
+      constraints%normal = at_part(segment%normal, done)
+      constraints%tangential = at_part(segment%tangential, done)
+      constraints%rotational = at_part(segment%rotational, done)
+      drop = self%dropping()
+      if (drop) then
+         constraints%normal%rate = 0.0_wp
+         constraints%tangential%rate = 0.0_wp
+         constraints%rotational%rate = 0.0_wp
+      end if
+      call self%set_rows(constraints, drop)
+      contact = any(in_contact(self%state%status))
+      if (.not. contact .and. constraints%normal%control == control_force) then
+         if (constraints%normal%rate > 0.0_wp) then
+            call self%close_nearest(segment, moment)
+            settled = .false.
+            return
+         end if
+         constraints%normal = load_type(control_displacement, self%state%fields%approach, 0.0_wp)
+      end if
+
+      slides = .not. any(holds(self%state%status))
+      if (slides .and. constraints%tangential%control == control_force) then
+         load = constraints%tangential
+         call hold_motion(self, constraints, load, along_shift, settled, error)
+         constraints%tangential = load
+         if (allocated(error) .or. .not. settled) return
+      end if
+      if (self%model%rotational .and. constraints%rotational%control == control_force) then
+         call settle_moment(self, slides, constraints, settled, error)
+         if (allocated(error) .or. .not. settled) return
+      end if
+   end subroutine settle_loads
+
+   !> A prescribed moment. While no two nodes are in contact nothing determines the rotation: it is held, which only a moment of
+   !> zero allows (a tangential force at the surface makes another one). The same where normals are along the radius and no node sticks: rotation then only slides.
+   !> Errors MFV_NO_CONTINUATION: the moment tips the upper body over; MFV_GROSS_SLIDING.
+   subroutine settle_moment(self, slides, constraints, settled, error)
+      class(contact_path_type), intent(inout) :: self
+      logical, intent(in) :: slides
+      type(constraints_type), intent(inout) :: constraints
+      logical, intent(inout) :: settled
+      type(error_type), allocatable, intent(out) :: error
+      real(wp), parameter :: no_moment = 1.0e-14_wp
+      type(load_type) :: load
+      real(wp) :: scale
+
+      if (self%state%contact_nodes() < 2) then
+         scale = self%model%compliance%modulus*self%model%length()**2
+         if (max(abs(constraints%rotational%value), abs(constraints%rotational%rate), &
+                 abs(self%state%fields%moment - constraints%rotational%value)) > no_moment*scale) &
+            call no_continuation(self, 'fewer than two nodes are in contact, and the moment tips the upper body over', error)
+         constraints%rotational = load_type(control_displacement, self%state%fields%rotation, 0.0_wp)
+      else if (slides .and. self%model%scene%mesh%radial) then
+         load = constraints%rotational
+         call hold_motion(self, constraints, load, along_rotation, settled, error)
+         constraints%rotational = load
+      end if
+   end subroutine settle_moment
+
+   !> No node is stuck and the tangential force (or moment) `load` is prescribed, so that no equation determines the shift (the
+   !> rotation). Hold it where friction balances the force all the same: no friction, no contact, or equal slip to both
+   !> sides. Otherwise the upper body moves towards the missing force; nodes that slip with it will stick first: let them
+   !> (`settled` is then false). Error MFV_GROSS_SLIDING where there are none: every contact node already gives all it has
+   !> against the force.
+   subroutine hold_motion(self, constraints, load, along, settled, error)
+      class(contact_path_type), intent(inout) :: self
+      type(constraints_type), intent(in) :: constraints
+      type(load_type), intent(inout) :: load
+      integer, intent(in) :: along
+      logical, intent(inout) :: settled
+      type(error_type), allocatable, intent(out) :: error
+      real(wp), parameter :: balanced = 1.0e-9_wp
+      type(constraints_type) :: trial
+      type(response_type) :: response
+      real(wp) :: wanted, missing, scale
+      logical :: yielding(size(self%state%status)), singular
+
+      wanted = load%rate
+      load = load_type(control_displacement, merge(self%state%fields%shift, self%state%fields%rotation, along == along_shift), &
+                       0.0_wp)
+      if (.not. any(slips(self%state%status))) then
+         scale = self%state%fields%normal_force*merge(1.0_wp, self%model%length(), along == along_shift)
+         if (abs(wanted) > balanced*scale) &
+            call self%end_here(merge(MFV_GROSS_SLIDING, MFV_SEPARATED, any(in_contact(self%state%status))), &
+                               'no node in contact has friction to carry a '//trim(force_name(along)), error)
+         return
+      end if
+      trial = constraints
+      if (along == along_shift) then
+         trial%tangential = load
+         if (self%model%scene%mesh%radial .and. trial%rotational%control == control_force) &
+            trial%rotational = load_type(control_displacement, self%state%fields%rotation, 0.0_wp)
+      else
+         trial%rotational = load
+      end if
+      call self%system%solve(self%model, trial, response, singular)
+      missing = wanted
+      scale = abs(wanted)
+      if (.not. singular) then
+         missing = wanted - self%model%resultant(along, response%rate%pressure, response%rate%shear)
+         scale = max(scale, self%model%force(abs(response%rate%shear*self%model%tangential_arm(:, along))))
+         if (abs(missing) <= balanced*scale) return
+      end if
+      yielding = slips(self%state%status)
+      if (.not. singular) yielding = yielding .and. &
+                                     slip_sign(self%state%status)*self%model%tangential_arm(:, along)*missing > 0.0_wp
+      if (any(yielding)) then
+         call self%set_status(yielding, self%holding(real(-slip_sign(self%state%status), wp)))
+         settled = .false.
+      else
+         call self%end_here(MFV_GROSS_SLIDING, 'gross sliding: every contact node slips', error)
+      end if
+   end subroutine hold_motion
+
+   !> What a motion's force is called.
+   pure character(len=16) function force_name(along)
+      integer, intent(in) :: along
+
+      force_name = 'tangential force'
+      if (along == along_rotation) force_name = 'moment'
+   end function force_name
+
+   !> Force control without contact: move the upper body, free of load, until its nearest nodes touch.
+   subroutine close_nearest(self, segment, moment)
+      class(contact_path_type), intent(inout) :: self
+      type(segment_type), intent(in) :: segment
+      type(moment_type), intent(inout) :: moment
+      real(wp), dimension(self%model%nodes()) :: gap, normal, tangential
+      real(wp) :: smallest, round_off
+      integer :: status(self%model%nodes())
+      logical :: touching(self%model%nodes())
+
+      gap = self%model%gap(self%state%fields)
+      self%state%fields%approach = self%state%fields%approach + self%model%nearest_approach(gap)
+      call self%model%relative_displacements(self%state%fields, normal, tangential)
+      self%state%fields%normal = normal
+      if (self%model%tangential) self%state%fields%tangential = tangential
+      gap = self%model%gap(self%state%fields)
+      smallest = minval(gap, mask=self%model%can_touch)
+      round_off = 8*epsilon(1.0_wp)*max(maxval(abs(self%model%initial_gap)), abs(self%state%fields%approach))
+      touching = self%model%can_touch .and. gap - smallest <= round_off
+      status = status_after(event_close, node_open, segment%friction .and. self%model%tangential, 0, &
+                            self%holding(self%state%fields%shear))
+      call note_change(moment, event_close, touching)
+      call self%set_status(touching, status)
+   end subroutine close_nearest
+
+   !> Whether shear tractions in excess of their limit have to be let go before the load goes on.
+   pure logical function dropping(self)
+      class(contact_path_type), intent(in) :: self
+
+      dropping = .false.
+      if (.not. allocated(self%model%scene%friction%law)) return
+      if (self%model%scene%friction%law%drops) dropping = any(self%state%memory > 0.0_wp)
+   end function dropping
+
+   !> What the friction law knows of the nodes where the fields are `fields`, shape (nodes).
+   pure function points(self, fields) result(all_points)
+      class(contact_path_type), intent(in) :: self
+      type(contact_fields_type), intent(in) :: fields
+      type(friction_point_type) :: all_points(size(self%state%status))
+
+      all_points%static = self%model%static_friction
+      all_points%kinetic = self%model%kinetic_friction
+      all_points%pressure = fields%pressure
+      all_points%shear = fields%shear
+      all_points%slip = fields%slip()
+      all_points%memory = self%state%memory
+   end function points
+
+   !> How far slipping nodes can slip until their friction has a corner, length, shape (nodes); huge: no corner.
+   function rooms(self) result(room)
+      class(contact_path_type), intent(in) :: self
+      real(wp) :: room(size(self%state%status))
+      type(friction_point_type) :: points(size(self%state%status))
+      integer :: i
+
+      room = huge(1.0_wp)
+      if (.not. self%model%scene%friction%acts()) return
+      if (.not. self%model%scene%friction%law%weakening_distance < huge(1.0_wp)) return
+      points = self%points(self%state%fields)
+      do i = 1, size(room)
+         if (slips(self%state%status(i))) room(i) = self%model%scene%friction%law%room(points(i))
+      end do
+   end function rooms
+
+   !> Statuses and lines of friction as constraints: tangents, or secants to where the fields are expected to be `after` an
+   !> increment. `drop`: whether excess tractions are let go, all of them per unit of load.
+   subroutine set_rows(self, constraints, drop, after)
+      class(contact_path_type), intent(in) :: self
+      type(constraints_type), intent(inout) :: constraints
+      logical, intent(in) :: drop
+      type(contact_fields_type), intent(in), optional :: after
+      type(friction_point_type), dimension(size(self%state%status)) :: here, there
+      integer :: i, n
+
+      n = size(self%state%status)
+      constraints%status = self%state%status
+      constraints%stuck_slip = self%state%stuck_slip
+      constraints%row = [(friction_row_type(), i=1, n)]
+      constraints%offset_rate = [(0.0_wp, i=1, n)]
+      if (.not. self%model%tangential) return
+      here = self%points(self%state%fields)
+      there = here
+      if (present(after)) there = self%points(after)
+      do i = 1, n
+         if (.not. slips(self%state%status(i)) .and. .not. creeps(self%state%status(i))) cycle
+         constraints%row(i) = self%model%scene%friction%law%row(self%state%status(i), here(i), there(i))
+         if (drop) constraints%offset_rate(i) = slip_sign(self%state%status(i))*self%state%memory(i)
+      end do
+   end subroutine set_rows
+
+   !> Give the nodes of `mask` the new statuses, with what their friction then remembers.
+   subroutine set_status(self, mask, status)
+      class(contact_path_type), intent(inout) :: self
+      logical, intent(in) :: mask(:)
+      integer, intent(in) :: status(:)
+      type(friction_point_type) :: points(size(mask))
+      logical :: begins
+      integer :: i
+
+      if (self%model%scene%friction%acts()) then
+         points = self%points(self%state%fields)
+         do i = 1, size(mask)
+            if (.not. mask(i)) cycle
+            begins = slips(status(i)) .and. status(i) /= self%state%status(i)
+            if (begins) self%state%memory(i) = self%model%scene%friction%law%slip_begins(points(i))
+            if (.not. slips(status(i))) self%state%memory(i) = 0.0_wp
+         end do
+      end if
+      call self%state%set_status(mask, status)
+   end subroutine set_status
+
+   !> The status that each node has if it holds; `slip_rate`: with which rates it moves, any unit, shape (nodes).
+   pure function holding(self, slip_rate) result(status)
+      class(contact_path_type), intent(in) :: self
+      real(wp), intent(in) :: slip_rate(:)
+      integer :: status(size(slip_rate))
+      integer :: i
+
+      status = node_stick
+      if (.not. allocated(self%model%scene%friction%law)) return
+      do i = 1, size(status)
+         status(i) = self%model%scene%friction%law%holding_status(merge(-1, 1, slip_rate(i) < 0.0_wp))
+      end do
+   end function holding
+
+   !> Go to the fields `after`: memories, dissipation, directions and the certificate go along. `rate`: rates of slip on the
+   !> way, any unit, shape (nodes); `dropped`: part of the excess tractions that has been let go.
+   subroutine take_increment(self, after, slip_rate, dropped)
+      class(contact_path_type), intent(inout) :: self
+      type(contact_fields_type), intent(in) :: after
+      real(wp), intent(in) :: slip_rate(:), dropped
+      real(wp), parameter :: moving = 1.0e-9_wp
+      type(contact_fields_type) :: before
+      real(wp) :: memory(size(slip_rate))
+
+      before = self%state%fields
+      memory = self%state%memory
+      call remember_slip(self, after, dropped)
+      self%state%fields = after
+      self%state%dissipation = self%state%dissipation &
+                               - 0.5_wp*self%model%force((before%shear + after%shear)*(after%slip() - before%slip()))
+      self%state%slip_direction = 0
+      where (abs(slip_rate) > moving*maxval(abs(slip_rate))) &
+         self%state%slip_direction = nint(sign(1.0_wp, slip_rate))
+      self%increments = self%increments + 1
+      call self%certificate%check_increment(self%model, before, memory, self%state)
+   end subroutine take_increment
+
+   !> What the friction law remembers after an increment to the fields `after`.
+   subroutine remember_slip(self, after, dropped)
+      class(contact_path_type), intent(inout) :: self
+      type(contact_fields_type), intent(in) :: after
+      real(wp), intent(in) :: dropped
+      type(friction_point_type), dimension(size(self%state%status)) :: here, there
+      integer :: i
+
+      if (.not. self%model%scene%friction%acts()) return
+      here = self%points(self%state%fields)
+      there = self%points(after)
+      do i = 1, size(here)
+         if (slips(self%state%status(i))) &
+            self%state%memory(i) = self%model%scene%friction%law%memory_after(here(i), there(i))
+      end do
+      if (self%model%scene%friction%law%drops) self%state%memory = self%state%memory*(1.0_wp - dropped)
+   end subroutine remember_slip
+
+   !> Where the contact has reached an end of the mesh, lengthen it. Error MFV_MESH_EXCEEDED: it may not grow.
+   subroutine keep_on_mesh(self, moment, error)
+      class(contact_path_type), intent(inout) :: self
+      type(moment_type), intent(inout) :: moment
+      type(error_type), allocatable, intent(out) :: error
+
+      if (.not. self%model%reaches_end(in_contact(self%state%status))) return
+      if (self%model%growing) then
+         call self%widen(moment)
+      else
+         call self%end_here(MFV_MESH_EXCEEDED, 'the contact reached the end of the mesh, '// &
+                            to_text(self%model%length())//' from the pole', error)
+      end if
+   end subroutine keep_on_mesh
+
+   !> Lengthen the mesh by a quarter on either side.
+   subroutine widen(self, moment)
+      class(contact_path_type), intent(inout) :: self
+      type(moment_type), intent(inout) :: moment
+      integer, parameter :: fewest = 4
+      integer :: extra, n
+
+      n = self%model%nodes()
+      extra = min(max(n/4, fewest), self%model%spare_nodes())
+      if (extra == 0) return
+      call self%model%grow(extra)
+      call self%state%widen(extra)
+      call self%history%move_nodes(extra)
+      if (moment%node > 0) moment%node = moment%node + extra
+      if (allocated(moment%tried)) deallocate (moment%tried)
+      call fill_ends(self%model, self%state%fields, extra)
+   end subroutine widen
+
+   !> Displacements of the `extra` new nodes at either end.
+   subroutine fill_ends(model, fields, extra)
+      type(contact_model_type), intent(in) :: model
+      type(contact_fields_type), intent(inout) :: fields
+      integer, intent(in) :: extra
+      real(wp) :: normal(model%nodes()), tangential(model%nodes())
+      logical :: new(model%nodes())
+
+      call model%relative_displacements(fields, normal, tangential)
+      new = .true.
+      new(extra + 1:model%nodes() - extra) = .false.
+      where (new) fields%normal = normal
+      where (new) fields%tangential = tangential
+   end subroutine fill_ends
+
+   !> Record the state after an event.
+   subroutine record(self, kind, node, count, step)
+      class(contact_path_type), intent(inout) :: self
+      integer, intent(in) :: kind, node, count, step
+
+      call self%history%append(self%state, kind, node, count, step, self%system%solves)
+   end subroutine record
+
+   !> The statuses at this load have settled: count and record what changed them.
+   subroutine keep_settled(self, segment, moment)
+      class(contact_path_type), intent(inout) :: self
+      type(segment_type), intent(in) :: segment
+      type(moment_type), intent(in) :: moment
+
+      if (moment%event == event_none) return
+      self%events = self%events + 1
+      if (self%record_events) call self%record(moment%event, moment%node, moment%count, segment%step)
+   end subroutine keep_settled
+
+   !> The load at the part `done` of its way.
+   pure type(load_type) function at_part(load, done)
+      type(load_type), intent(in) :: load
+      real(wp), intent(in) :: done
+
+      at_part = load_type(load%control, load%value + done*load%rate, load%rate)
+   end function at_part
+
+   !> Keep the first change at a load.
+   subroutine note_change(moment, event, changing)
+      type(moment_type), intent(inout) :: moment
+      integer, intent(in) :: event
+      logical, intent(in) :: changing(:)
+
+      if (moment%event /= event_none) return
+      moment%event = event
+      moment%node = first_true(changing)
+      moment%count = count(changing)
+   end subroutine note_change
+
+   pure integer function first_true(mask)
+      logical, intent(in) :: mask(:)
+
+      first_true = findloc(mask, .true., dim=1)
+   end function first_true
+
+   !> Nothing consistent leads on from here, and why.
+   subroutine no_continuation(self, why, error)
+      class(contact_path_type), intent(in) :: self
+      character(*), intent(in) :: why
+      type(error_type), allocatable, intent(out) :: error
+
+      call self%end_here(MFV_NO_CONTINUATION, 'no admissible continuation: '//why, error)
+   end subroutine no_continuation
+
+   !> An early end: why, and the load and contact now.
+   subroutine end_here(self, status, why, error)
+      class(contact_path_type), intent(in) :: self
+      integer, intent(in) :: status
+      character(*), intent(in) :: why
+      type(error_type), allocatable, intent(out) :: error
+
+      call set_error(error, status, why//' (normal force '//to_text(self%state%fields%normal_force, 10)// &
+                     ', tangential force '//to_text(self%state%fields%tangential_force, 10)//', '// &
+                     to_text(self%state%contact_nodes())//' nodes in contact, '//to_text(self%state%stick_nodes())//' stuck)')
+   end subroutine end_here
+
+end module mfv_contact_path

@@ -1,0 +1,272 @@
+!> The conventional algorithm, for comparison: dissertation section 2.2 and Fig. 2.2 (Algorithm I, after Ahn and Barber).
+!>
+!> The load goes on by nominal steps dL0. At the new load the nodes that were in contact are all taken to be stuck; then one
+!> status is repaired at a time, the worst of the first sort there is: interpenetration, negative pressure, shear beyond the
+!> friction limit, slip in the wrong direction (the last one is not in the figure's list, but it is in Table 2.1). With every
+!> repair the augmented system is solved again. Nothing says that this ends, or that what it ends with is where the load
+!> history leads: a set of statuses that comes again means cycling, too many repairs no admissible state.
+module mfv_conventional
+   use mfv_contact_fields, only: contact_fields_type
+   use mfv_contact_path
+   use mfv_contact_system
+   use mfv_error, only: error_type
+   use mfv_kinds, only: wp
+   use mfv_node_status
+   use mfv_observer, only: observer_type
+   use mfv_scene, only: control_displacement, control_force
+   use mfv_status
+   use mfv_strings, only: to_text
+   implicit none
+   private
+   public :: lead_conventionally
+
+   !> Violations below this part of the largest magnitude of their sort are round-off.
+   real(wp), parameter :: round_off = 1.0e-11_wp
+
+   !> What is to be repaired next.
+   type :: repair_type
+      integer :: kind = event_none, node = 0, status = node_open
+   end type repair_type
+
+contains
+
+   !> Lead the loads along one segment in nominal steps. `observer` is told of every load step.
+   !> Errors, each leaving the last converged state in place: MFV_CYCLING, MFV_INADMISSIBLE, MFV_GROSS_SLIDING, MFV_SEPARATED,
+   !> MFV_MESH_EXCEEDED, MFV_INADMISSIBLE_STEP, MFV_INTERRUPTED.
+   subroutine lead_conventionally(path, segment, observer, error)
+      class(contact_path_type), intent(inout) :: path
+      type(segment_type), intent(in) :: segment
+      class(observer_type), intent(inout), optional :: observer
+      type(error_type), allocatable, intent(out) :: error
+      real(wp), parameter :: whole = 1.0e-9_wp
+      real(wp) :: done
+      integer, allocatable :: converged(:)
+      real(wp), allocatable :: memory(:)
+      logical :: stop_wanted, again
+
+      call path%start_segment(segment, error)
+      done = 0.0_wp
+      do while (done < 1.0_wp .and. .not. allocated(error))
+         done = done + path%model%scene%method%load_step
+         if (done > 1.0_wp - whole) done = 1.0_wp
+         again = .true.
+         do while (again)
+            converged = path%state%status
+            memory = path%state%memory
+            call solve_load(path, segment, done, again, error)
+            if (.not. allocated(error)) cycle
+            path%state%status = converged
+            path%state%memory = memory
+            return
+         end do
+         if (.not. present(observer)) cycle
+         call observer%notify(path%state, segment%number, segment%segments, done, stop_wanted)
+         if (stop_wanted) call path%end_here(MFV_INTERRUPTED, 'stopped on request', error)
+      end do
+   end subroutine lead_conventionally
+
+   !> Repair statuses at the part `done` of the segment until nothing is violated, and go there. `again`: the mesh has grown,
+   !> or the bodies have just touched; begin this load again.
+   subroutine solve_load(path, segment, done, again, error)
+      class(contact_path_type), intent(inout) :: path
+      type(segment_type), intent(in) :: segment
+      real(wp), intent(in) :: done
+      logical, intent(out) :: again
+      type(error_type), allocatable, intent(out) :: error
+      type(moment_type) :: moment
+      type(constraints_type) :: constraints
+      type(response_type) :: response
+      type(repair_type) :: repair
+      integer, allocatable :: tried(:, :)
+      integer :: iteration, n
+      logical :: singular, touched
+
+      again = .false.
+      n = size(path%state%status)
+      call touch(path, segment, done, touched)
+      if (touched) call path%keep_on_mesh(moment, error)
+      if (allocated(error)) return
+      again = size(path%state%status) /= n
+      if (again) return
+      call stick_all(path)
+      allocate (tried(n, 0))
+      do iteration = 1, path%model%scene%method%most_iterations
+         call constrain(path, segment, done, constraints, error)
+         if (allocated(error)) return
+         call path%system%solve(path%model, constraints, response, singular)
+         if (singular) then
+            call path%end_here(MFV_INADMISSIBLE, 'inadmissible: the linear system is singular', error)
+            return
+         end if
+         repair = worst_violation(path, response%state)
+         if (repair%kind == event_none) then
+            call accept(path, segment, response%state, moment)
+            return
+         end if
+         tried = reshape([tried, path%state%status], [n, size(tried, 2) + 1])
+         call make(path, repair, moment)
+         if (any(all(tried == spread(path%state%status, 2, size(tried, 2)), dim=1))) then
+            call path%end_here(MFV_CYCLING, 'cycling: after '//to_text(iteration)//' repairs at one load the statuses are '// &
+                               'as before; node '//to_text(repair%node)//' was the last', error)
+            return
+         end if
+         call path%keep_on_mesh(moment, error)
+         again = size(path%state%status) /= n
+         if (again .or. allocated(error)) return
+      end do
+      call path%end_here(MFV_INADMISSIBLE, 'inadmissible: '//to_text(path%model%scene%method%most_iterations)// &
+                         ' repairs at one load left an inequality violated at node '//to_text(repair%node), error)
+   end subroutine solve_load
+
+   !> A growing normal force without contact: the bodies touch first.
+   subroutine touch(path, segment, done, touched)
+      class(contact_path_type), intent(inout) :: path
+      type(segment_type), intent(in) :: segment
+      real(wp), intent(in) :: done
+      logical, intent(out) :: touched
+      type(moment_type) :: moment
+
+      touched = .not. any(in_contact(path%state%status)) .and. segment%normal%control == control_force .and. &
+                segment%normal%value + done*segment%normal%rate > 0.0_wp
+      if (touched) call path%close_nearest(segment, moment)
+   end subroutine touch
+
+   !> Every node in contact is stuck at the slip it has. (A creeping node goes on as it did.)
+   subroutine stick_all(path)
+      class(contact_path_type), intent(inout) :: path
+      integer :: status(size(path%state%status))
+
+      status = path%holding(real(motion_sign(path%state%status), wp))
+      call change(path, slips(path%state%status), status)
+   end subroutine stick_all
+
+   !> Change statuses; how far a node has slipped is remembered through the repairs, and no excess is carried.
+   subroutine change(path, mask, status)
+      class(contact_path_type), intent(inout) :: path
+      logical, intent(in) :: mask(:)
+      integer, intent(in) :: status(:)
+      real(wp) :: memory(size(mask))
+
+      memory = path%state%memory
+      call path%set_status(mask, status)
+      path%state%memory = memory
+      if (allocated(path%model%scene%friction%law)) then
+         if (path%model%scene%friction%law%drops) path%state%memory = 0.0_wp
+      end if
+   end subroutine change
+
+   !> The constraints at the part `done` of the segment. Errors MFV_GROSS_SLIDING, MFV_SEPARATED: a tangential force that
+   !> nothing can carry.
+   subroutine constrain(path, segment, done, constraints, error)
+      class(contact_path_type), intent(in) :: path
+      type(segment_type), intent(in) :: segment
+      real(wp), intent(in) :: done
+      type(constraints_type), intent(out) :: constraints
+      type(error_type), allocatable, intent(out) :: error
+      real(wp), parameter :: no_force = 1.0e-12_wp
+      real(wp) :: scale
+
+      constraints%normal = load_at(segment%normal, done)
+      constraints%tangential = load_at(segment%tangential, done)
+      constraints%rotational = load_at(segment%rotational, done)
+      call path%set_rows(constraints, .false.)
+      if (.not. any(in_contact(path%state%status)) .and. constraints%normal%control == control_force) &
+         constraints%normal = load_type(control_displacement, path%state%fields%approach, 0.0_wp)
+      if (any(holds(path%state%status)) .or. constraints%tangential%control /= control_force) return
+      scale = max(path%state%fields%normal_force, abs(constraints%normal%value))
+      if (any(slips(path%state%status))) then
+         call path%end_here(MFV_GROSS_SLIDING, 'gross sliding: every contact node slips', error)
+      else if (abs(constraints%tangential%value) > no_force*scale .and. any(in_contact(path%state%status))) then
+         call path%end_here(MFV_GROSS_SLIDING, 'no node in contact has friction to carry a tangential force', error)
+      else if (abs(constraints%tangential%value) > no_force*scale) then
+         call path%end_here(MFV_SEPARATED, 'no node is in contact to carry a tangential force', error)
+      end if
+      constraints%tangential = load_type(control_displacement, path%state%fields%shift, 0.0_wp)
+   end subroutine constrain
+
+   pure type(load_type) function load_at(load, done)
+      type(load_type), intent(in) :: load
+      real(wp), intent(in) :: done
+
+      load_at = load_type(load%control, load%value + done*load%rate, 0.0_wp)
+   end function load_at
+
+   !> The worst violation of the first sort there is, and its repair.
+   function worst_violation(path, trial) result(repair)
+      class(contact_path_type), intent(in) :: path
+      type(contact_fields_type), intent(in) :: trial
+      type(repair_type) :: repair
+      real(wp), dimension(size(path%state%status)) :: gap, excess, slipped
+      real(wp) :: traction, motion
+
+      associate (status => path%state%status)
+         traction = round_off*max(maxval(abs(trial%pressure)), maxval(abs(trial%shear)), path%certificate%traction_scale())
+         motion = round_off*max(maxval(abs(trial%normal)), maxval(abs(trial%tangential)), abs(trial%approach), abs(trial%shift))
+         gap = path%model%gap(trial)
+         repair = worst(event_close, -gap, path%model%can_touch .and. .not. in_contact(status), motion)
+         if (repair%kind == event_none) repair = worst(event_open, -trial%pressure, in_contact(status), traction)
+         if (repair%kind /= event_none) return
+         excess = abs(trial%shear) - path%model%static_friction*trial%pressure
+         repair = worst(event_slip_right, excess, holds(status), traction)
+         if (repair%kind /= event_none) then
+            if (trial%shear(repair%node) > 0.0_wp) repair%kind = event_slip_left
+            return
+         end if
+         slipped = trial%slip() - path%state%fields%slip()
+         repair = worst(event_stick, -motion_sign(status)*slipped, slips(status) .or. creeps(status), motion)
+      end associate
+   end function worst_violation
+
+   !> The node of `mask` with the largest violation, if that is beyond `allowed`.
+   pure type(repair_type) function worst(kind, violation, mask, allowed)
+      integer, intent(in) :: kind
+      real(wp), intent(in) :: violation(:), allowed
+      logical, intent(in) :: mask(:)
+
+      if (.not. any(mask)) return
+      if (.not. maxval(violation, mask=mask) > allowed) return
+      worst%kind = kind
+      worst%node = maxloc(violation, mask=mask, dim=1)
+   end function worst
+
+   !> Make one repair.
+   subroutine make(path, repair, moment)
+      class(contact_path_type), intent(inout) :: path
+      type(repair_type), intent(in) :: repair
+      type(moment_type), intent(inout) :: moment
+      logical :: mask(size(path%state%status))
+      integer :: status(size(mask)), turned(size(mask))
+
+      mask = .false.
+      mask(repair%node) = .true.
+      turned = path%holding(real(-motion_sign(path%state%status), wp))
+      select case (repair%kind)
+      case (event_close)
+         status = node_frictionless
+         if (any(path%state%status == node_stick .or. motion_sign(path%state%status) /= 0)) status = turned
+      case (event_slip_right)
+         status = node_slip_right
+      case (event_slip_left)
+         status = node_slip_left
+      case (event_stick)
+         status = turned
+      case default
+         status = node_open
+      end select
+      call note_change(moment, repair%kind, mask)
+      call change(path, mask, status)
+   end subroutine make
+
+   !> Nothing is violated: go there, count and record.
+   subroutine accept(path, segment, fields, moment)
+      class(contact_path_type), intent(inout) :: path
+      type(segment_type), intent(in) :: segment
+      type(contact_fields_type), intent(in) :: fields
+      type(moment_type), intent(in) :: moment
+
+      call path%take_increment(fields, fields%slip() - path%state%fields%slip(), 0.0_wp)
+      where (.not. slips(path%state%status)) path%state%memory = 0.0_wp
+      call path%keep_settled(segment, moment)
+   end subroutine accept
+
+end module mfv_conventional

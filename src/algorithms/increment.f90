@@ -1,0 +1,226 @@
+!> One increment of the Method of First Violation: with the statuses as they are, the rates, how far they lead, and which
+!> inequalities break there.
+!>
+!> `event` stepping has the rates from the linear solve itself. `nominal` stepping is the dissertation's (section 2.3): a
+!> trial load step dL0 is solved, the first violation found by interpolation (2.3 to 2.5) and solved for again, and a wrong
+!> slip direction by bisection. Both lead to the same states; the count of linear solves differs.
+!>
+!> Where friction is not linear (Dahl, weakening), the lines of friction are secants: a predictor with tangents, then a
+!> corrector until the secants agree with where they lead (the implicit midpoint rule, of second order). Their difference
+!> over the increment is what a method of first order would err by; the increment is shortened until that is within
+!> `friction_tolerance`, so that the error of the result falls with the tolerance itself.
+module mfv_increment
+   use mfv_contact_fields, only: contact_fields_type
+   use mfv_contact_path, only: contact_path_type
+   use mfv_contact_system
+   use mfv_event_search, only: find_violations, violations_type
+   use mfv_kinds, only: wp
+   use mfv_node_status
+   use mfv_scene, only: integration_explicit, stepping_nominal
+   implicit none
+   private
+   public :: increment_type, find_increment, no_step, tie
+
+   !> Steps below this part of the segment are none; steps this much longer than the first, in parts of it, are equal.
+   real(wp), parameter :: no_step = 1.0e-13_wp, tie = 1.0e-10_wp
+
+   type :: increment_type
+      type(response_type) :: response
+      type(violations_type) :: violations
+      !> Length in parts of the segment (of the drop); and whether a violation ends it.
+      real(wp) :: step = 0.0_wp
+      logical :: ends_in_event = .false.
+      !> The linear system has no solution; the increment is then of no use.
+      logical :: singular = .false.
+   end type increment_type
+
+contains
+
+   !> `constraints`: as contact_path_type%settle_loads leaves them. `left`: what is left of the segment (of the drop: 1).
+   !> `drop`: whether excess tractions are let go at a fixed load. `round_off`: rates below this part of the largest are none.
+   subroutine find_increment(path, constraints, left, drop, round_off, increment)
+      class(contact_path_type), intent(inout) :: path
+      type(constraints_type), intent(in) :: constraints
+      real(wp), intent(in) :: left, round_off
+      logical, intent(in) :: drop
+      type(increment_type), intent(out) :: increment
+
+      if (path%model%scene%method%stepping == stepping_nominal) then
+         call nominal_increment(path, constraints, min(left, path%model%scene%method%load_step), drop, round_off, increment)
+      else
+         call path%system%solve(path%model, constraints, increment%response, increment%singular)
+         if (increment%singular) return
+         call search(path, round_off, left, increment)
+         if (bends(path)) call follow_friction(path, constraints, left, drop, round_off, increment)
+      end if
+   end subroutine find_increment
+
+   !> Whether the line of some node's friction depends on where it leads.
+   logical function bends(path)
+      class(contact_path_type), intent(in) :: path
+
+      bends = .false.
+      if (.not. path%model%tangential) return
+      if (path%model%scene%friction%law%is_linear) return
+      bends = any(creeps(path%state%status)) .or. any(path%rooms() < huge(1.0_wp))
+   end function bends
+
+   !> Violations by the rates, and the step to the first of them but no further than `longest`.
+   subroutine search(path, round_off, longest, increment)
+      class(contact_path_type), intent(in) :: path
+      real(wp), intent(in) :: round_off, longest
+      type(increment_type), intent(inout) :: increment
+      real(wp) :: first
+
+      increment%violations = find_violations(path%model, path%state%status, path%rooms(), path%state%fields, &
+                                             increment%response%rate, round_off)
+      first = minval(increment%violations%step)
+      increment%step = min(first, longest)
+      increment%ends_in_event = first*(1.0_wp - tie) - no_step <= longest
+   end subroutine search
+
+   !> Lead friction that is not linear over an increment with a controlled error, or explicitly.
+   subroutine follow_friction(path, constraints, left, drop, round_off, increment)
+      class(contact_path_type), intent(inout) :: path
+      type(constraints_type), intent(in) :: constraints
+      real(wp), intent(in) :: left, round_off
+      logical, intent(in) :: drop
+      type(increment_type), intent(inout) :: increment
+      integer, parameter :: most_attempts = 40
+      real(wp), parameter :: safety = 0.9_wp, most_growth = 4.0_wp, least_shrink = 0.1_wp, first_trial = 1.0e-3_wp
+      type(increment_type) :: predicted
+      real(wp) :: length, error, change, tolerance
+      logical :: agrees
+      integer :: attempt
+
+      if (path%model%scene%method%integration == integration_explicit .and. &
+          .not. path%model%scene%friction%law%sticks) then
+         call search(path, round_off, min(left, path%model%scene%method%load_step), increment)
+         return
+      end if
+      if (increment%step <= no_step) return
+      if (.not. path%trial > 0.0_wp) path%trial = first_trial
+      tolerance = path%model%scene%method%friction_tolerance
+      predicted = increment
+      length = min(increment%step, path%trial)
+      do attempt = 1, most_attempts
+         increment = predicted
+         call correct(path, constraints, length, drop, round_off, increment, agrees)
+         if (increment%singular) return
+         error = difference(path, predicted%response%rate, increment%response%rate, increment%step)
+         change = most_growth
+         if (error > 0.0_wp) change = min(most_growth, safety*sqrt(tolerance/error))
+         if (.not. agrees) change = min(change, 0.25_wp)
+         if ((agrees .and. error <= tolerance) .or. length < no_step) exit
+         length = length*max(change, least_shrink)
+      end do
+      path%trial = max(max(length, increment%step)*max(change, least_shrink), 100*no_step)
+   end subroutine follow_friction
+
+   !> Secants over the step until they agree with where they lead; a violation on the way shortens it. `agrees`: whether they do.
+   subroutine correct(path, constraints, length, drop, round_off, increment, agrees)
+      class(contact_path_type), intent(inout) :: path
+      type(constraints_type), intent(in) :: constraints
+      real(wp), intent(in) :: length, round_off
+      logical, intent(in) :: drop
+      type(increment_type), intent(inout) :: increment
+      logical, intent(out) :: agrees
+      integer, parameter :: most_iterations = 25
+      real(wp), parameter :: close_enough = 1.0e-13_wp
+      type(constraints_type) :: secants
+      type(contact_fields_type) :: expected
+      type(response_type) :: before
+      real(wp) :: step
+      integer :: iteration
+
+      agrees = .false.
+      secants = constraints
+      step = length
+      do iteration = 1, most_iterations
+         before = increment%response
+         expected = path%state%fields%plus(step, before%rate)
+         call path%set_rows(secants, drop, expected)
+         call path%system%solve(path%model, secants, increment%response, increment%singular)
+         if (increment%singular) return
+         call search(path, round_off, length, increment)
+         agrees = difference(path, before%rate, increment%response%rate, step) <= close_enough .and. &
+                  abs(increment%step - step) <= 1.0e-12_wp*step
+         step = increment%step
+         if (agrees .or. step <= no_step) exit
+      end do
+      agrees = agrees .or. step <= no_step
+   end subroutine correct
+
+   !> How much the tractions differ after a step with one or the other rates, in parts of the largest traction.
+   pure real(wp) function difference(path, one, other, step)
+      class(contact_path_type), intent(in) :: path
+      type(contact_fields_type), intent(in) :: one, other
+      real(wp), intent(in) :: step
+      real(wp) :: scale
+
+      scale = max(path%certificate%traction_scale(), maxval(abs(path%state%fields%pressure + step*one%pressure)))
+      difference = step*max(maxval(abs(one%shear - other%shear)), maxval(abs(one%pressure - other%pressure)))
+      if (scale > 0.0_wp) difference = difference/scale
+   end function difference
+
+   !> A nominal load step: a trial state, and the first violation on the way to it.
+   subroutine nominal_increment(path, constraints, length, drop, round_off, increment)
+      class(contact_path_type), intent(inout) :: path
+      type(constraints_type), intent(in) :: constraints
+      real(wp), intent(in) :: length, round_off
+      logical, intent(in) :: drop
+      type(increment_type), intent(inout) :: increment
+      real(wp), parameter :: shortest = 1.0e-6_wp
+      real(wp) :: trial
+
+      trial = merge(1.0_wp, length, drop)
+      call solve_trial(path, constraints, trial, increment)
+      if (increment%singular) return
+      call search(path, round_off, trial, increment)
+      ! A slip rate is constant between events: bisection finds that a wrong direction is wrong from the start.
+      do while (increment%step <= no_step .and. any(increment%violations%kind == event_stick) .and. trial > shortest*length)
+         trial = 0.5_wp*trial
+         call solve_trial(path, constraints, trial, increment)
+         if (increment%singular) return
+         call search(path, round_off, trial, increment)
+      end do
+      if (increment%step <= no_step .or. .not. increment%ends_in_event) return
+      if (increment%step < trial) call solve_trial(path, constraints, increment%step, increment)
+   end subroutine nominal_increment
+
+   !> The state after a step with the statuses as they are; the rates are differences.
+   subroutine solve_trial(path, constraints, step, increment)
+      class(contact_path_type), intent(inout) :: path
+      type(constraints_type), intent(in) :: constraints
+      real(wp), intent(in) :: step
+      type(increment_type), intent(inout) :: increment
+      type(constraints_type) :: target
+      type(contact_fields_type) :: rate
+      integer :: i
+
+      target = constraints
+      target%normal%value = target%normal%value + step*target%normal%rate
+      target%tangential%value = target%tangential%value + step*target%tangential%rate
+      target%rotational%value = target%rotational%value + step*target%rotational%rate
+      do i = 1, size(target%row)
+         target%row(i)%offset = target%row(i)%offset + step*target%offset_rate(i)
+      end do
+      call path%system%solve(path%model, target, increment%response, increment%singular)
+      if (increment%singular) return
+      associate (response => increment%response)
+         rate = response%state%plus(-1.0_wp, path%state%fields)
+         response%rate = scaled(rate, 1.0_wp/step)
+         response%state = path%state%fields
+      end associate
+   end subroutine solve_trial
+
+   !> The fields times a factor.
+   pure function scaled(fields, factor) result(product)
+      type(contact_fields_type), intent(in) :: fields
+      real(wp), intent(in) :: factor
+      type(contact_fields_type) :: product
+
+      product = fields%plus(factor - 1.0_wp, fields)
+   end function scaled
+
+end module mfv_increment
