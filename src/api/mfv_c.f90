@@ -46,6 +46,7 @@ module mfv_c
    end type c_step
 
    interface
+      !> Characters of a C string.
       pure function c_strlen(text) bind(C, name='strlen') result(length)
          import :: c_ptr, c_size_t
          type(c_ptr), value :: text

@@ -26,6 +26,7 @@ contains
       words = padded_outcome(status)
    end function status_outcome
 
+   !> The same, padded with blanks.
    pure function padded_outcome(status) result(words)
       integer, intent(in) :: status
       character(len=longest) :: words
@@ -46,6 +47,7 @@ contains
       words = padded_explanation(status)
    end function status_explanation
 
+   !> The same, padded with blanks.
    pure function padded_explanation(status) result(words)
       integer, intent(in) :: status
       character(len=longest) :: words

@@ -29,6 +29,7 @@ module mfv_strings
 
 contains
 
+   !> A whole number.
    pure function integer_to_text(value) result(text)
       integer, intent(in) :: value
       character(len=len_trim(padded_integer(value))) :: text
@@ -36,6 +37,7 @@ contains
       text = padded_integer(value)
    end function integer_to_text
 
+   !> A whole number, padded with blanks.
    pure function padded_integer(value) result(text)
       integer, intent(in) :: value
       character(len=longest_number) :: text
@@ -60,7 +62,7 @@ contains
       text = padded_real(value, digits)
    end function real_to_text_digits
 
-   !> A real with up to `digits` significant digits, without trailing zeros.
+   !> A real with up to `digits` significant digits, without trailing zeros; padded with blanks.
    pure function padded_real(value, digits) result(text)
       real(wp), intent(in) :: value
       integer, intent(in) :: digits
@@ -73,7 +75,7 @@ contains
       end if
    end function padded_real
 
-   !> 0.25, -100
+   !> A real in the form 0.25 or -100; padded with blanks.
    pure function without_exponent(value, digits) result(text)
       real(wp), intent(in) :: value
       integer, intent(in) :: digits
@@ -87,7 +89,7 @@ contains
       if (text(1:2) == '-.') text = '-0'//text(2:longest_number - 1)
    end function without_exponent
 
-   !> 2.8e-4, 1e6; NaN and Infinity.
+   !> A real in the form 2.8e-4 or 1e6; NaN and Infinity; padded with blanks.
    pure function with_exponent(value, digits) result(text)
       real(wp), intent(in) :: value
       integer, intent(in) :: digits

@@ -534,7 +534,7 @@ contains
       call reader%complain('mesh', 1, trim(mesh_key(reader)), 'no node of this mesh is under the indenter', error)
    end subroutine check_mesh_is_under
 
-   !> The key of the mesh to complain about.
+   !> The key of the mesh to complain about; padded with blanks.
    pure function mesh_key(reader) result(key)
       type(reader_type), intent(in) :: reader
       character(len=10) :: key
@@ -895,6 +895,7 @@ contains
       text = value
    end function text_value
 
+   !> Length of the value as written, or of the default.
    pure integer function length_of_value(reader, group, number, name) result(length)
       class(reader_type), intent(in) :: reader
       character(*), intent(in) :: group, name
@@ -905,7 +906,7 @@ contains
       length = len(value)
    end function length_of_value
 
-   !> The value as written, or the default, as text.
+   !> The value as written, or the default: text_value for a caller who has a variable for it.
    pure subroutine find_value(reader, group, number, name, value)
       class(reader_type), intent(in) :: reader
       character(*), intent(in) :: group, name
@@ -922,6 +923,7 @@ contains
       end if
    end subroutine find_value
 
+   !> The value of a key for a number.
    pure real(wp) function real_value(self, group, number, name)
       class(reader_type), intent(in) :: self
       character(*), intent(in) :: group, name
@@ -933,6 +935,7 @@ contains
       call read_number(text, kind_real, real_value, code)
    end function real_value
 
+<<<<<<< HEAD
    !> All values of a key that is written, as numbers.
    pure subroutine real_values(self, group, number, name, values)
       class(reader_type), intent(in) :: self
@@ -951,6 +954,9 @@ contains
       end do
    end subroutine real_values
 
+=======
+   !> The value of a key for a whole number.
+>>>>>>> text-functions
    pure integer function integer_value(self, group, number, name)
       class(reader_type), intent(in) :: self
       character(*), intent(in) :: group, name
@@ -964,6 +970,7 @@ contains
       integer_value = nint(value)
    end function integer_value
 
+   !> The value of a key for .true. or .false.
    pure logical function logical_value(self, group, number, name)
       class(reader_type), intent(in) :: self
       character(*), intent(in) :: group, name
@@ -1016,7 +1023,7 @@ contains
       if (condition) text = yes
    end function merge_text
 
-   !> Number of a group that may come more than once, after a blank.
+   !> Number of a group that may come more than once, after a blank; padded with blanks.
    pure function numbered(group, number) result(text)
       character(*), intent(in) :: group
       integer, intent(in) :: number

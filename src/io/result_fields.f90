@@ -75,6 +75,7 @@ contains
       path = padded_step_group(number)
    end function step_group
 
+   !> The same, padded with blanks.
    pure function padded_step_group(number) result(path)
       integer, intent(in) :: number
       character(len=17) :: path

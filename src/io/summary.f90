@@ -102,7 +102,7 @@ contains
       text = text//padded//value//line_feed
    end subroutine add_line
 
-   !> The value of a field, with its unit where it has one.
+   !> The value of a field, with its unit where that has a name.
    pure function amount(fields, name) result(text)
       type(field_type), intent(in) :: fields(:)
       character(*), intent(in) :: name
@@ -113,6 +113,7 @@ contains
       text = words
    end function amount
 
+   !> Length of such a value.
    pure integer function length_of_amount(fields, name) result(length)
       type(field_type), intent(in) :: fields(:)
       character(*), intent(in) :: name
@@ -122,7 +123,7 @@ contains
       length = len(words)
    end function length_of_amount
 
-   !> The value of a field, with its unit where it has one; empty where there is no such field.
+   !> The same for a caller who has a variable for it; empty where there is no such field.
    pure subroutine find_amount(fields, name, text)
       type(field_type), intent(in) :: fields(:)
       character(*), intent(in) :: name

@@ -182,7 +182,8 @@ int main(void) {
   for (size_t i = 0; i < THREADS; ++i) {
     void *different = NULL;
     pthread_join(threads[i], &different);
-    if (different != NULL) printf("thread %zu: %zu of %d texts gave something else than alone\n", i, (size_t)different, ROUNDS * TEXTS);
+    if (different != NULL)
+      printf("thread %zu: %zu of %d texts gave something else than alone\n", i, (size_t)different, ROUNDS * TEXTS);
     failures += (size_t)different;
   }
   for (size_t i = 0; i < TEXTS; ++i) free(alone[i].bytes);
