@@ -935,7 +935,6 @@ contains
       call read_number(text, kind_real, real_value, code)
    end function real_value
 
-<<<<<<< HEAD
    !> All values of a key that is written, as numbers.
    pure subroutine real_values(self, group, number, name, values)
       class(reader_type), intent(in) :: self
@@ -954,9 +953,7 @@ contains
       end do
    end subroutine real_values
 
-=======
    !> The value of a key for a whole number.
->>>>>>> text-functions
    pure integer function integer_value(self, group, number, name)
       class(reader_type), intent(in) :: self
       character(*), intent(in) :: group, name
