@@ -384,13 +384,14 @@ contains
       end associate
    end subroutine snap
 
-   !> Statuses and lines of friction as constraints: tangents, or secants to where the fields are expected to be `after` an
-   !> increment. `drop`: whether excess tractions are let go, all of them per unit of load.
-   subroutine set_rows(self, constraints, drop, after)
+   !> Statuses and lines of friction as constraints: tangents, or lines for where the fields are expected to be `after` an
+   !> increment; with `straight` the secants to there. `drop`: whether excess tractions are let go, all of them per unit of load.
+   subroutine set_rows(self, constraints, drop, after, straight)
       class(contact_path_type), intent(in) :: self
       type(constraints_type), intent(inout) :: constraints
       logical, intent(in) :: drop
       type(contact_fields_type), intent(in), optional :: after
+      logical, intent(in), optional :: straight
       type(friction_point_type), dimension(size(self%state%status)) :: here, there
       integer :: i, n
 
@@ -405,7 +406,11 @@ contains
       if (present(after)) there = self%points(after)
       do i = 1, n
          if (.not. slips(self%state%status(i)) .and. .not. creeps(self%state%status(i))) cycle
-         constraints%row(i) = self%model%scene%friction%law%row(self%state%status(i), here(i), there(i))
+         if (present(straight)) then
+            constraints%row(i) = self%model%scene%friction%law%secant(self%state%status(i), here(i), there(i))
+         else
+            constraints%row(i) = self%model%scene%friction%law%row(self%state%status(i), here(i), there(i))
+         end if
          if (drop) constraints%offset_rate(i) = slip_sign(self%state%status(i))*self%state%excess(i)
       end do
    end subroutine set_rows

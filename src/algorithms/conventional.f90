@@ -241,7 +241,11 @@ contains
       select case (repair%kind)
       case (event_close)
          status = node_frictionless
-         if (any(path%state%status == node_stick .or. motion_sign(path%state%status) /= 0)) status = turned
+         if (any(path%state%status == node_stick .or. motion_sign(path%state%status) /= 0)) then
+            status = turned
+            if (path%state%slip_direction(repair%node) > 0 .and. all(turned == node_stick)) status = node_slip_right
+            if (path%state%slip_direction(repair%node) < 0 .and. all(turned == node_stick)) status = node_slip_left
+         end if
       case (event_slip_right)
          status = node_slip_right
       case (event_slip_left)

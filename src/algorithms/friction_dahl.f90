@@ -22,6 +22,7 @@ module mfv_friction_dahl
    contains
       procedure :: row
       procedure :: strength
+      procedure :: secant
       procedure, private :: creeping_row
    end type dahl_law_type
 
@@ -35,7 +36,7 @@ contains
       law%is_linear = .false.
       law%sticks = .false.
       ! Dahl's traction comes to its limit only after endless slip: this near it is there.
-      law%full_part = 1.0_wp - 1.0e-9_wp
+      law%full_part = 1.0_wp - 1.0e-6_wp
       law%stiffness = stiffness
       law%exponent = exponent
       law%soft_limit = exponent > 0.0_wp
@@ -57,28 +58,32 @@ contains
       end if
    end function row
 
+   !> See mfv_friction_law: tau = tau0 - K (s - s0).
+   pure function secant(self, status, before, after) result(row)
+      class(dahl_law_type), intent(in) :: self
+      integer, intent(in) :: status
+      type(friction_point_type), intent(in) :: before, after
+      type(friction_row_type) :: row
+      real(wp) :: force, limit, steepness
+
+      if (creeps(status)) then
+         call find_stiffness(self, motion_sign(status), before, after, force, limit, row%stiffness, steepness)
+         row%stiffness = -row%stiffness
+         row%offset = before%shear - row%stiffness*before%slip
+      else
+         row = self%row(status, before, before)
+      end if
+   end function secant
+
    !> The line of a creeping node: F = tau1 - tau0 + K (s1 - s0) = 0, linearised.
    pure function creeping_row(self, direction, before, after) result(row)
       class(dahl_law_type), intent(in) :: self
       integer, intent(in) :: direction
       type(friction_point_type), intent(in) :: before, after
       type(friction_row_type) :: row
-      real(wp), parameter :: least_slope = 0.05_wp, most_slope = 1.0e3_wp, farthest = 10.0_wp
-      real(wp) :: force, limit, room, stiffness, steepness, slipped, by_shear, by_pressure
+      real(wp) :: force, limit, stiffness, steepness, slipped, by_shear, by_pressure
 
-      force = -0.5_wp*(before%shear + after%shear)*direction
-      limit = 0.5_wp*before%static*(before%pressure + after%pressure)
-      room = 1.0_wp
-      if (abs(force) < farthest*limit) room = min(1.0_wp - force/limit, 2.0_wp)
-      if (.not. abs(force) < farthest*limit .and. abs(force) > 0.0_wp) room = merge(1.0_wp - farthest, 2.0_wp, force > 0.0_wp)
-      stiffness = self%stiffness
-      steepness = 0.0_wp
-      if (self%exponent > 0.0_wp) then
-         ! The law goes on beyond the limit with its sign (eq. 3.9), for the iterations; where they end it is not beyond.
-         stiffness = self%stiffness*sign(abs(room)**self%exponent, room)
-         steepness = self%stiffness*self%exponent &
-                     *min(max(max(abs(room), 1.0e-9_wp)**(self%exponent - 1.0_wp), least_slope), most_slope)
-      end if
+      call find_stiffness(self, direction, before, after, force, limit, stiffness, steepness)
       slipped = after%slip - before%slip
       by_shear = 0.0_wp
       by_pressure = 0.0_wp
@@ -99,5 +104,29 @@ contains
 
       strength = point%static*point%pressure*self%full_part
    end function strength
+
+   !> K of eq. B.2 half way between two points and minus its derivative by f/(mu p), force/length^3; and f and mu p there.
+   pure subroutine find_stiffness(self, direction, before, after, force, limit, stiffness, steepness)
+      class(dahl_law_type), intent(in) :: self
+      integer, intent(in) :: direction
+      type(friction_point_type), intent(in) :: before, after
+      real(wp), intent(out) :: force, limit, stiffness, steepness
+      real(wp), parameter :: least_slope = 0.05_wp, most_slope = 1.0e3_wp, farthest = 10.0_wp
+      real(wp) :: room
+
+      force = -0.5_wp*(before%shear + after%shear)*direction
+      limit = 0.5_wp*before%static*(before%pressure + after%pressure)
+      room = 1.0_wp
+      if (abs(force) < farthest*limit) room = min(1.0_wp - force/limit, 2.0_wp)
+      if (.not. abs(force) < farthest*limit .and. abs(force) > 0.0_wp) room = merge(1.0_wp - farthest, 2.0_wp, force > 0.0_wp)
+      stiffness = self%stiffness
+      steepness = 0.0_wp
+      if (self%exponent > 0.0_wp) then
+         ! The law goes on beyond the limit with its sign (eq. 3.9), for the iterations; where they end it is not beyond.
+         stiffness = self%stiffness*sign(abs(room)**self%exponent, room)
+         steepness = self%stiffness*self%exponent &
+                     *min(max(max(abs(room), 1.0e-9_wp)**(self%exponent - 1.0_wp), least_slope), most_slope)
+      end if
+   end subroutine find_stiffness
 
 end module mfv_friction_dahl

@@ -48,6 +48,7 @@ module mfv_friction_law
    contains
       procedure(row_interface), deferred :: row
       procedure(strength_interface), deferred :: strength
+      procedure :: secant
       procedure :: holding_status
       procedure :: first_excess
       procedure :: slipped_after
@@ -76,6 +77,16 @@ module mfv_friction_law
    end interface
 
 contains
+
+   !> The line through both ends of an increment at which `after` obeys the law; of a linear law its only line.
+   pure function secant(self, status, before, after) result(row)
+      class(friction_law_type), intent(in) :: self
+      integer, intent(in) :: status
+      type(friction_point_type), intent(in) :: before, after
+      type(friction_row_type) :: row
+
+      row = self%row(status, before, before)
+   end function secant
 
    !> Status of a node that holds, and that moves to `direction` (its sign, 0: not known) if it moves at all.
    pure integer function holding_status(self, direction)

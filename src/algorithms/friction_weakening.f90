@@ -20,6 +20,7 @@ module mfv_friction_weakening
    contains
       procedure :: row
       procedure :: strength
+      procedure :: secant
       procedure, private :: coefficient
    end type weakening_law_type
 
@@ -55,6 +56,20 @@ contains
       row%stiffness = after%pressure*fall
       row%offset = -row%stiffness*after%slip
    end function row
+
+   !> See mfv_friction_law: the increment of f = mu p is mean(mu) dp + mean(p) dmu, exactly.
+   pure function secant(self, status, before, after) result(row)
+      class(weakening_law_type), intent(in) :: self
+      integer, intent(in) :: status
+      type(friction_point_type), intent(in) :: before, after
+      type(friction_row_type) :: row
+
+      row = self%row(status, before, before)
+      if (.not. self%room(before) < huge(1.0_wp)) return
+      row%slope = row%slope + 0.5_wp*(before%static - before%kinetic)/self%weakening_distance*(after%slip - before%slip)
+      row%stiffness = 0.5_wp*(before%pressure + after%pressure)*(before%static - before%kinetic)/self%weakening_distance
+      row%offset = -slip_sign(status)*self%strength(before) - row%slope*before%pressure - row%stiffness*before%slip
+   end function secant
 
    !> See mfv_friction_law.
    pure real(wp) function strength(self, point)

@@ -107,7 +107,7 @@ contains
       if (.not. path%trial > 0.0_wp) path%trial = first_trial
       tolerance = path%model%scene%method%friction_tolerance
       predicted = increment
-      length = min(increment%step, path%trial)
+      length = min(left, path%trial)
       do attempt = 1, most_attempts
          increment = predicted
          call correct(path, constraints, length, drop, round_off, increment, agrees)
@@ -126,7 +126,8 @@ contains
       path%trial = max(length, merge(path%trial, 10*shortest, attempt == 1))
    end subroutine follow_friction
 
-   !> Secants over the step until they agree with where they lead; a violation on the way shortens it. `agrees`: whether they do.
+   !> Lines of friction that are right at the end of the increment; a violation on the way shortens it. `agrees`: whether they
+   !> could be found. The rates are those of the straight way to the end.
    subroutine correct(path, constraints, length, drop, round_off, increment, agrees)
       class(contact_path_type), intent(inout) :: path
       type(constraints_type), intent(in) :: constraints
@@ -134,33 +135,58 @@ contains
       logical, intent(in) :: drop
       type(increment_type), intent(inout) :: increment
       logical, intent(out) :: agrees
-      integer, parameter :: most_iterations = 25
-      real(wp), parameter :: close_enough = 1.0e-12_wp
+      integer, parameter :: most_passes = 12
+      real(wp), parameter :: same_step = 1.0e-9_wp
       type(constraints_type) :: secants
-      type(contact_fields_type) :: expected
-      type(response_type) :: before
+      type(contact_fields_type) :: after
       real(wp) :: step
-      integer :: iteration
+      integer :: pass
 
-      agrees = .false.
-      secants = constraints
       step = length
-      do iteration = 1, most_iterations
-         before = increment%response
-         expected = path%state%fields%plus(step, before%rate)
-         call path%set_rows(secants, drop, expected)
+      secants = constraints
+      after = path%state%fields%plus(step, increment%response%rate)
+      do pass = 1, most_passes
+         call find_end(path, constraints, step, drop, after, agrees)
+         if (.not. agrees) return
+         call path%set_rows(secants, drop, after, straight=.true.)
          call path%system%solve(path%model, secants, increment%response, increment%singular)
          if (increment%singular) return
-         ! The lines are right at the end of the step, not on the way there.
-         call lead_straight(path, increment%response%state%plus(step, increment%response%rate), step, increment%response)
-         call search(path, round_off, length, increment)
-         agrees = difference(path, before%rate, increment%response%rate, step) <= close_enough .and. &
-                  abs(increment%step - step) <= 1.0e-12_wp*step
+         call search(path, round_off, step, increment)
+         if (abs(increment%step - step) <= same_step*step + no_step .or. increment%step <= no_step) return
          step = increment%step
-         if (agrees .or. step <= no_step) exit
+         after = path%state%fields%plus(step, increment%response%rate)
       end do
-      agrees = agrees .or. step <= no_step
+      agrees = .false.
    end subroutine correct
+
+   !> Newton's iteration for the fields `after` a step; they come with a guess. `converges`: whether they were found.
+   subroutine find_end(path, constraints, step, drop, after, converges)
+      class(contact_path_type), intent(inout) :: path
+      type(constraints_type), intent(in) :: constraints
+      real(wp), intent(in) :: step
+      logical, intent(in) :: drop
+      type(contact_fields_type), intent(inout) :: after
+      logical, intent(out) :: converges
+      integer, parameter :: most_iterations = 15
+      real(wp), parameter :: close_enough = 1.0e-12_wp
+      type(constraints_type) :: lines
+      type(response_type) :: response
+      type(contact_fields_type) :: before
+      logical :: singular
+      integer :: iteration
+
+      converges = .false.
+      lines = constraints
+      do iteration = 1, most_iterations
+         before = after
+         call path%set_rows(lines, drop, after)
+         call path%system%solve(path%model, lines, response, singular)
+         if (singular) return
+         after = response%state%plus(step, response%rate)
+         converges = difference(path, before, after, 1.0_wp) <= close_enough
+         if (converges) return
+      end do
+   end subroutine find_end
 
    !> How much the tractions differ after a step with one or the other rates, in parts of the largest traction.
    pure real(wp) function difference(path, one, other, step)
