@@ -3,12 +3,13 @@
 Independent of the MFV library: numpy only, no load history. With a = 1, beta = (kappa - 1)/(kappa + 1), displacements times
 4 G/(kappa + 1), p even and tau odd, the surface of the half-plane moves by
 
-    w(x) = -1/pi int_0^1 p(s) [ln|x-s| + ln(x+s)] ds - beta int_x^1 tau(s) ds    into the body,
-    u(x) = -1/pi int_0^1 tau(s) [ln|x-s| - ln(x+s)] ds - beta int_0^x p(s) ds    to the right.
+    w(x) = -1/pi int_0^1 p(s) [ln|x-s| + ln(x+s)] ds - beta int_x^1 tau(s) ds    (into the body),
+    u(x) = -1/pi int_0^1 tau(s) [ln|x-s| - ln(x+s)] ds - beta int_0^x p(s) ds    (to the right).
 
 Flat punch: the contact does not change, so the solution grows in proportion to the load and the stick zone 0 < x < c stays:
-w is constant on (0, 1), u = 0 on (0, c), tau = mu p on (c, 1), as the surface slips inwards. For any c this is a linear problem; its
-tau is singular at c unless c is right. The right c leaves tau - mu p without a square-root singularity there, which bisection finds.
+w is constant on (0, 1), u = 0 on (0, c), tau = mu p on (c, 1), as the surface slips inwards. For any c this is a linear
+problem; its tau is singular at c unless c is right. The right c leaves tau - mu p without a square-root singularity there,
+which bisection finds.
 
 Cylinder: gap and loads grow self-similarly, the contact half-width a with the square root of the force. The derivative of
 all fields with respect to a has no curvature, no strain in the stick zone and tau = mu p in the slip zones: it is a flat
@@ -20,6 +21,7 @@ Without the beta in w (Goodman) the stick ratio is that of eq. 3.4, and with c =
 
     python examples/dissertation/spence_coupled.py
 """
+
 from __future__ import annotations
 
 import numpy as np
@@ -75,8 +77,8 @@ def stick_ratio(mu: float, beta: float, goodman: bool = False) -> float:
     while high - low > 1.0e-6:
         c = 0.5 * (low + high)
         x, p, tau = punch(c, mu, beta, goodman)
-        distance = np.sqrt(c - x[CELLS - 2:CELLS])
-        excess = (tau - mu * p)[CELLS - 2:CELLS] * distance  # K + K' t for K/sqrt(t) + K' sqrt(t)
+        distance = np.sqrt(c - x[CELLS - 2 : CELLS])
+        excess = (tau - mu * p)[CELLS - 2 : CELLS] * distance  # K + K' t for K/sqrt(t) + K' sqrt(t)
         if excess[1] - (excess[0] - excess[1]) * distance[1] ** 2 / (distance[0] ** 2 - distance[1] ** 2) > 0.0:
             high = c
         else:
@@ -86,6 +88,7 @@ def stick_ratio(mu: float, beta: float, goodman: bool = False) -> float:
 
 def goodman_stick_ratio(mu: float, beta: float) -> float:
     """Root c of beta K(c) = mu K'(c), eq. 3.4, with K from the arithmetic-geometric mean."""
+
     def mean(a: float, b: float) -> float:
         while abs(a - b) > 1.0e-15 * a:
             a, b = 0.5 * (a + b), np.sqrt(a * b)
