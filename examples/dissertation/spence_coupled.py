@@ -54,7 +54,7 @@ def punch(c: float, mu: float, beta: float, goodman: bool) -> tuple[Array, Array
     near = primitive(x[:, None] - ends[:-1]) - primitive(x[:, None] - ends[1:])
     far = primitive(x[:, None] + ends[1:]) - primitive(x[:, None] + ends[:-1])
     inside = np.tril(np.ones((n, n)), -1) * width + np.diag(0.5 * width)  # int_0^x
-    outside = inside[::-1, ::-1] * 0.0 + width - inside  # int_x^1
+    outside = width - inside  # int_x^1
     w_p, w_tau = -(near + far) / np.pi, -beta * outside * (0.0 if goodman else 1.0)
     u_tau, u_p = -(near - far) / np.pi, -beta * inside
     slips = np.where(x < c, 0.0, mu)  # tau = slips p, but unknown where stuck
@@ -70,16 +70,17 @@ def punch(c: float, mu: float, beta: float, goodman: bool) -> tuple[Array, Array
 
 
 def stick_ratio(mu: float, beta: float, goodman: bool = False) -> float:
-    """c at which tau - mu p vanishes at the end of the stick zone, extrapolated from its last two cells."""
+    """c at which tau - mu p is not singular at the end of the stick zone, from its last two cells."""
     if beta == 0.0:
         return 1.0
     low, high = 0.0, 1.0
     while high - low > 1.0e-6:
         c = 0.5 * (low + high)
         x, p, tau = punch(c, mu, beta, goodman)
-        distance = np.sqrt(c - x[CELLS - 2 : CELLS])
-        excess = (tau - mu * p)[CELLS - 2 : CELLS] * distance  # K + K' t for K/sqrt(t) + K' sqrt(t)
-        if excess[1] - (excess[0] - excess[1]) * distance[1] ** 2 / (distance[0] ** 2 - distance[1] ** 2) > 0.0:
+        last = slice(CELLS - 2, CELLS)
+        t = c - x[last]
+        excess = (tau - mu * p)[last] * np.sqrt(t)  # tau - mu p = K/sqrt(t) + K' sqrt(t), so this is K + K' t
+        if excess[1] * t[0] > excess[0] * t[1]:  # K > 0
             high = c
         else:
             low = c

@@ -92,7 +92,7 @@ def test_cycle_is_steady_at_once_and_mirrored_up_to_a_node() -> None:
     """Sub-figures 12 and 20 are the ends of steps 11 and 18; the last step goes round once more."""
     result = solved(18)
     left, right, *again = (result.steps[i].shear for i in (10, 17, -2, -1))
-    for state, repeated in zip((left, right), again, strict=True):
+    for state, repeated in zip((left, right), again):
         np.testing.assert_allclose(repeated, state, atol=1.0e-11 * np.abs(state).max())
     assert abs(np.argmin(left) - (left.size - 1 - np.argmax(right))) <= 1
     assert np.abs(left + right[::-1]).sum() < 0.15 * np.abs(left).sum()
