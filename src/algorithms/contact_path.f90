@@ -337,20 +337,27 @@ contains
 
       n = size(points)
       allocate (corners%room(n), source=huge(1.0_wp))
-      allocate (corners%turning(n), corners%surplus_rate(n), corners%by_pressure(n), corners%by_slip(n), source=0.0_wp)
-      allocate (corners%surplus(n), source=-1.0_wp)
+      allocate (corners%turning(n), corners%surplus_rate(n), corners%by_pressure(n), corners%by_slip(n), &
+                corners%head_by_pressure(n), source=0.0_wp)
+      allocate (corners%surplus(n), corners%headroom(n), source=-1.0_wp)
       if (.not. self%model%scene%friction%acts()) return
       associate (law => self%model%scene%friction%law)
-         if (law%sticks .and. .not. law%weakening_distance < huge(1.0_wp)) return
+         if (law%sticks .and. .not. law%weakening_distance < huge(1.0_wp) .and. .not. self%dropping()) return
          points = self%points(self%state%fields)
          do i = 1, n
             if (creeps(self%state%status(i))) corners%turning(i) = law%turning(points(i))
             if (.not. slips(self%state%status(i))) cycle
             corners%room(i) = law%room(points(i))
             if (.not. points(i)%excess > 0.0_wp) cycle
+            corners%surplus_rate(i) = -points(i)%excess
+            if (.not. self%state%capped(i)) then
+               corners%head_by_pressure(i) = points(i)%static - points(i)%kinetic
+               corners%headroom(i) = max(corners%head_by_pressure(i)*points(i)%pressure - points(i)%excess, 0.0_wp)
+            end if
+            if (.not. law%weakening_distance < huge(1.0_wp)) cycle
             call law%lawful_excess(points(i), excess, by_pressure, by_slip)
             corners%surplus(i) = max(points(i)%excess - excess, 0.0_wp)
-            corners%surplus_rate(i) = -points(i)%excess
+            if (self%state%capped(i)) corners%surplus_rate(i) = 0.0_wp
             corners%by_pressure(i) = -by_pressure
             corners%by_slip(i) = -by_slip
          end do
@@ -411,7 +418,11 @@ contains
          else
             constraints%row(i) = self%model%scene%friction%law%row(self%state%status(i), here(i), there(i))
          end if
-         if (drop) constraints%offset_rate(i) = slip_sign(self%state%status(i))*self%state%excess(i)
+         if (self%state%capped(i)) then
+            constraints%row(i) = friction_row_type(slope=-slip_sign(self%state%status(i))*here(i)%static)
+         else if (drop) then
+            constraints%offset_rate(i) = slip_sign(self%state%status(i))*self%state%excess(i)
+         end if
       end do
    end subroutine set_rows
 
@@ -432,6 +443,7 @@ contains
             if (begins .or. .not. slips(status(i))) then
                self%state%slipped(i) = 0.0_wp
                self%state%excess(i) = 0.0_wp
+               self%state%capped(i) = .false.
             end if
             if (begins .and. self%model%scene%friction%law%drops) &
                self%state%excess(i) = self%model%scene%friction%law%first_excess(points(i))
@@ -492,7 +504,12 @@ contains
          if (slips(self%state%status(i))) &
             self%state%slipped(i) = self%model%scene%friction%law%slipped_after(here(i), there(i))
       end do
-      self%state%excess = self%state%excess*(1.0_wp - dropped)
+      where (self%state%capped)
+         self%state%excess = (there%static - there%kinetic)*max(there%pressure, 0.0_wp)
+      elsewhere
+         self%state%excess = self%state%excess*(1.0_wp - dropped)
+      end where
+      if (dropped >= 1.0_wp) self%state%capped = .false.
    end subroutine remember_slip
 
    !> Where the contact has reached an end of the mesh, lengthen it. Error MFV_MESH_EXCEEDED: it may not grow.

@@ -18,6 +18,8 @@ module mfv_contact_state
       !> Slip of the nodes since they last held, length, and excess of their |tau| over mu_k p, force/length^2: see
       !> friction_point_type; shape (nodes).
       real(wp), allocatable :: slipped(:), excess(:)
+      !> Whether the excess is all that the static limit allows and falls with it, shape (nodes).
+      logical, allocatable :: capped(:)
       !> Work dissipated by friction so far, force (energy per unit thickness).
       real(wp) :: dissipation = 0.0_wp
    contains
@@ -38,6 +40,7 @@ contains
       state%fields = new_contact_fields(nodes)
       allocate (state%status(nodes), source=node_open)
       allocate (state%slip_direction(nodes), source=0)
+      allocate (state%capped(nodes), source=.false.)
       allocate (state%stuck_slip(nodes), state%slipped(nodes), state%excess(nodes), source=0.0_wp)
    end function new_contact_state
 
@@ -63,6 +66,7 @@ contains
       self%stuck_slip = [(0.0_wp, i=1, extra), self%stuck_slip, (0.0_wp, i=1, extra)]
       self%slipped = [(0.0_wp, i=1, extra), self%slipped, (0.0_wp, i=1, extra)]
       self%excess = [(0.0_wp, i=1, extra), self%excess, (0.0_wp, i=1, extra)]
+      self%capped = [(.false., i=1, extra), self%capped, (.false., i=1, extra)]
    end subroutine widen
 
    pure integer function contact_nodes(self)

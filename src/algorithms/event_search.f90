@@ -19,6 +19,9 @@ module mfv_event_search
       !> Excess of snapping nodes over what their law says, force/length^2 (negative: none snaps), its rate while excess falls
       !> (per unit of the fall), and how it changes with pressure (no unit) and with slip (force/length^3).
       real(wp), allocatable :: surplus(:), surplus_rate(:), by_pressure(:), by_slip(:)
+      !> How much more excess the static limit allows, force/length^2 (negative: no excess), and how much more it allows with
+      !> pressure (no unit).
+      real(wp), allocatable :: headroom(:), head_by_pressure(:)
    end type corners_type
 
    !> For every node the first inequality that breaks.
@@ -75,7 +78,8 @@ contains
             cycle
          case (node_stick, node_creep_right, node_creep_left)
             mu = full*model%static_friction(i)
-            if (.not. (soft_limit .and. .not. state%pressure(i) > 0.0_wp)) then
+            if (.not. (soft_limit .and. .not. state%pressure(i) > 0.0_wp .and. &
+                       rate%pressure(i) > round_off*traction_scale)) then
                call consider(event_slip_right, mu*state%pressure(i) + state%shear(i), &
                              mu*rate%pressure(i) + rate%shear(i), max(mu, 1.0_wp)*traction_scale)
                call consider(event_slip_left, mu*state%pressure(i) - state%shear(i), &
@@ -93,6 +97,9 @@ contains
                                                          secant_noise*traction_scale)
             if (corners%room(i) < huge(1.0_wp)) &
                call consider(event_weakened, corners%room(i), -slip_sign(status(i))*slip_rate(i), motion_scale)
+            if (corners%headroom(i) >= 0.0_wp) &
+               call consider(event_capped, corners%headroom(i), corners%head_by_pressure(i)*rate%pressure(i) &
+                             - corners%surplus_rate(i), traction_scale)
             if (corners%surplus(i) >= 0.0_wp) &
                call consider(event_caught, corners%surplus(i), corners%surplus_rate(i) &
                              + corners%by_pressure(i)*rate%pressure(i) &

@@ -31,6 +31,8 @@ module mfv_first_violation
    integer, parameter :: most_tiny_steps = 1000
    !> The rates' round-off where a cycle of statuses suggests that some of them are noise.
    real(wp), parameter :: larger_round_off = 1.0e-9_wp
+   !> The shortest increment worth trying, in parts of a segment.
+   real(wp), parameter :: shortest_trial = 1.0e-8_wp
    !> A certificate beyond this is no result.
    real(wp), parameter :: failed_certificate = 1.0e-6_wp
    !> A jump of the tractions beyond this, in parts of the largest, is no continuation.
@@ -96,7 +98,7 @@ contains
             if (last) return
             moment = moment_type()
             standing = 0
-            creeping = merge(creeping + 1, 0, increment%step < tie .and. .not. drop)
+            if (.not. drop) creeping = merge(creeping + 1, 0, increment%step < tie)
             if (creeping > most_tiny_steps) then
                call path%no_continuation('the load does not advance', error)
                return
@@ -149,6 +151,12 @@ contains
       call snap_if_unstable(path, increment, moment, snapped)
       if (snapped) return
       if (was_tried(moment, path%state%status)) then
+         if (path%trial > shortest_trial) then
+            ! Over a shorter increment friction that is not linear may have rates that agree.
+            path%trial = 0.1_wp*path%trial
+            deallocate (moment%tried)
+            return
+         end if
          if (moment%one_at_a_time .and. moment%round_off >= larger_round_off) then
             if (.not. moment%snapped) call path%snap(snapped)
             if (snapped) then
@@ -179,6 +187,11 @@ contains
          where (changing .and. violations%kind == event_weakened) &
             path%state%slipped = path%model%scene%friction%law%weakening_distance
          where (changing .and. violations%kind == event_caught) path%state%excess = 0.0_wp
+         ! These change what friction remembers, not the statuses: what was tried says nothing any more.
+         if (any(changing .and. (violations%kind == event_weakened .or. violations%kind == event_caught .or. &
+                                 violations%kind == event_capped)) .and. allocated(moment%tried)) deallocate (moment%tried)
+         path%state%capped = (path%state%capped .or. (changing .and. violations%kind == event_capped)) .and. &
+                             path%state%excess > 0.0_wp
       end associate
       call path%keep_on_mesh(moment, error)
    end subroutine change_statuses

@@ -121,6 +121,7 @@ contains
          length = length*max(change, least_shrink)
       end do
       increment%diverges = .not. accepted
+      if (increment%step <= no_step) return
       ! An increment that an event cut short says nothing against longer ones.
       length = max(length, increment%step)*max(change, least_shrink)
       path%trial = max(length, merge(path%trial, 10*shortest, attempt == 1))
