@@ -1,20 +1,13 @@
 !> mfv_run CASE.nml: solve one case and write its result.
 program mfv_run
-   use, intrinsic :: iso_fortran_env, only: error_unit, output_unit
+   use, intrinsic :: iso_fortran_env, only: output_unit
    use mfv_case, only: case_type
    use mfv_case_keys, only: list_keys_as_markdown
    use mfv_case_reader, only: read_case_file
    use mfv_error, only: error_type
-   use mfv_kinds, only: wp
-   use mfv_clock, only: seconds_now
-   use mfv_hdf5_writer, only: check_writable
-   use mfv_result_file, only: write_result
-   use mfv_simulation, only: new_simulation, simulation_type
-   use mfv_status
-   use mfv_strings, only: string_type
-   use mfv_summary, only: summarize, summarize_check
+   use mfv_run_case, only: run_case
+   use mfv_summary, only: summarize_check
    use mfv_terminal
-   use mfv_validity, only: validity_warnings
    use mfv_version, only: library_version
    implicit none
 
@@ -35,8 +28,8 @@ program mfv_run
       "  &step     tangential_force=2.8e-4 /                                    ! shear"//line_feed// &
       "  &output   file='mindlin.h5' /"//line_feed//line_feed// &
       'Exit codes: 0 complete; 2 the input cannot be used; 3 the computation ended early (gross sliding, no'//line_feed// &
-      'admissible continuation, mesh exceeded), with the result up to there; 4 the result could not be written;'//line_feed// &
-      '130 interrupted, with the result up to there.'//line_feed//line_feed// &
+      'admissible continuation, separated, mesh exceeded), with the result up to there; 4 the result could not be'//line_feed// &
+      'written; 130 interrupted, with the result up to there.'//line_feed//line_feed// &
       'Draw a result with: python -m mfv plot RESULT.h5 -o PICTURE.png'
    character(:), allocatable :: argument, option, text
 
@@ -82,39 +75,5 @@ contains
       call summarize_check(case, text)
       write (output_unit, '(a)', advance='no') text
    end subroutine check_case
-
-   subroutine run_case(path)
-      character(*), intent(in) :: path
-      type(case_type) :: case
-      type(simulation_type) :: simulation
-      type(string_type), allocatable :: warnings(:)
-      type(terminal_observer_type) :: observer
-      type(error_type), allocatable :: error
-      real(wp) :: started
-
-      call read_case_file(path, case, error)
-      if (allocated(error)) call fail(error)
-      call check_writable(case%result_path, error)
-      if (allocated(error)) then
-         error%message = path//": &output file='"//case%result_path//"': "//error%message
-         call fail(error)
-      end if
-      started = seconds_now()
-      simulation = new_simulation(case%scene, case%keep_history, case%keep_reversals)
-      call catch_interrupts()
-      call observer%start()
-      call simulation%run(observer)
-      call observer%clear()
-      if (simulation%outcome /= MFV_COMPLETE) call case%explain(simulation)
-
-      call validity_warnings(simulation, warnings)
-      call write_result(case%result_path, case, simulation, warnings, error)
-      if (allocated(error)) call fail(error)
-      call summarize(case, simulation, warnings, seconds_now() - started, text)
-      write (output_unit, '(a)', advance='no') text
-      write (output_unit, '(a)') 'result              '//case%result_path
-      if (simulation%outcome /= MFV_COMPLETE) write (error_unit, '(a)') simulation%message
-      call end_program(status_exit_code(simulation%outcome))
-   end subroutine run_case
 
 end program mfv_run

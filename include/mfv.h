@@ -44,8 +44,10 @@ typedef struct mfv_step {
   double rotational_target; /* moment M [force] or rotation [radians], counterclockwise */
   int rotational_control;   /* MFV_KEEP, MFV_FORCE (moment) or MFV_DISPLACEMENT (rotation) */
   int unused;               /* 0 */
+  double steady_tolerance;  /* cycles end early when the state after two in a row is the same to within this part of the
+                               largest traction; 0: never */
 } mfv_step;
-#define MFV_STEP_INIT {sizeof(mfv_step), 0.0, 0.0, MFV_KEEP, MFV_KEEP, 1, 0, 0.0, MFV_KEEP, 0}
+#define MFV_STEP_INIT {sizeof(mfv_step), 0.0, 0.0, MFV_KEEP, MFV_KEEP, 1, 0, 0.0, MFV_KEEP, 0, 0.0}
 
 /* Version of the library, such as "0.1.0". Since 0.1.0. */
 int mfv_version(char *buffer, size_t size);

@@ -45,6 +45,7 @@ class Step(ctypes.Structure):
         ("rotational_target", c_double),
         ("rotational_control", c_int),
         ("unused", c_int),
+        ("steady_tolerance", c_double),
     ]
 
 

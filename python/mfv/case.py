@@ -115,14 +115,16 @@ class Case:
         rotation: float | None = None,
         friction: bool = True,
         cycles: int = 0,
+        steady_tolerance: float = 0.0,
         check: bool = False,
     ) -> str:
         """Lead the loads through one more step, whatever the steps of the case are; return the outcome.
 
         Targets are reached linearly from the loads now; a load without a target keeps what it has. Give `normal_force`
         [force/length] or `approach` [length], `tangential_force` or `shift` likewise, `moment` [force] or `rotation`
-        [radians]. `friction`: whether it acts
-        during this step. `cycles`: go to the targets and back this many times. `check`: as for `run`.
+        [radians]. `friction`: whether it acts during this step. `cycles`: go to the targets and back this many times,
+        ending early when two cycles in a row end with the same tractions to within `steady_tolerance` times the
+        largest one (0: never). `check`: as for `run`.
         Raises BadArgument.
         """
         normal_control, normal_target = _control("normal_force", normal_force, "approach", approach)
@@ -138,6 +140,7 @@ class Case:
             cycles=cycles,
             rotational_target=rotational_target,
             rotational_control=rotational_control,
+            steady_tolerance=steady_tolerance,
         )
         return self._lead(check, "mfv_advance", byref(step))
 

@@ -11,6 +11,8 @@ class NodeStatus(IntEnum):
     SLIP_RIGHT = 2  #: slips to the right: tau = -mu p
     SLIP_LEFT = 3  #: slips to the left: tau = +mu p
     FRICTIONLESS = 4  #: in contact while friction is off or absent
+    CREEP_RIGHT = 5  #: held by bristles below the friction limit, which give way to the right
+    CREEP_LEFT = 6  #: the same, to the left
 
 
 class EventKind(IntEnum):
@@ -24,3 +26,5 @@ class EventKind(IntEnum):
     STICK = 5
     STEP_END = 6
     STOPPED = 7
+    REVERSE = 8  #: a creeping node turns round
+    WEAKENED = 9  #: a slipping node's friction has fallen to its last value

@@ -30,6 +30,8 @@ ZONES: dict[int, dict[str, Any]] = {
     NodeStatus.STICK: dict(label="stick", facecolor=STICK, edgecolor="none"),
     NodeStatus.SLIP_RIGHT: dict(label="slip to the right", facecolor=RIGHT, edgecolor="#C9A24B", hatch="///"),
     NodeStatus.SLIP_LEFT: dict(label="slip to the left", facecolor=LEFT, edgecolor="#B98AA6", hatch="\\\\\\"),
+    NodeStatus.CREEP_RIGHT: dict(label="creep to the right", facecolor=STICK, edgecolor="#9FC3DA", hatch="//"),
+    NodeStatus.CREEP_LEFT: dict(label="creep to the left", facecolor=STICK, edgecolor="#9FC3DA", hatch="\\\\"),
     NodeStatus.FRICTIONLESS: dict(label="frictionless contact", facecolor=WITHOUT_FRICTION, edgecolor="none"),
 }
 
@@ -175,15 +177,29 @@ def pressure(result: Result, ax: Axes, step: int | None = None) -> None:
 def shear(result: Result, ax: Axes, step: int | None = None) -> None:
     """Shear traction over x between the limits of friction, stick and slip zones, closed form where one holds."""
     state = result.at(step)
-    limit = np.where(state.status != NodeStatus.OPEN, result.scene.friction_coefficient * state.pressure, np.nan)
     _shade_zones(ax, result, state)
-    for sign in (1.0, -1.0):
-        ax.plot(result.mesh.x, sign * limit, color="0.35", linewidth=0.7, label=r"limit $\pm\mu p$")
+    for coefficient, style in _coefficients(result):
+        limit = np.where(state.status != NodeStatus.OPEN, coefficient * state.pressure, np.nan)
+        for sign in (1.0, -1.0):
+            ax.plot(result.mesh.x, sign * limit, color="0.35", linewidth=0.7, **style)
     _draw_points(ax, result, state, state.shear)
     if "shear" in result.reference and _is_last(result, state):
         _draw_closed_form(ax, result, result.reference.shear)
     ax.set_ylabel(_label("shear traction", r"\tau", state.unit("shear")))
     _frame_contact(ax, result, state)
+
+
+def _coefficients(result: Result) -> list[tuple[np.ndarray, dict[str, Any]]]:
+    """Coefficients of friction at the nodes, and how their limits are drawn: one, or static and kinetic."""
+    mesh = result.mesh
+    if "static_friction" not in mesh:
+        return []
+    if np.array_equal(mesh.static_friction, mesh.kinetic_friction):
+        return [(mesh.static_friction, dict(label=r"limit $\pm\mu p$"))]
+    return [
+        (mesh.static_friction, dict(label=r"limit $\pm\mu_s p$")),
+        (mesh.kinetic_friction, dict(label=r"limit $\pm\mu_k p$", linestyle=(0, (2, 2)))),
+    ]
 
 
 def surfaces(result: Result, ax: Axes, step: int | None = None) -> None:

@@ -17,6 +17,8 @@ module mfv_friction
       type(friction_coefficient_type) :: static, kinetic
       !> Not there: no friction.
       class(friction_law_type), allocatable :: law
+      !> Name of the law, as in a case.
+      character(len=16) :: name = 'none'
    contains
       procedure :: acts
       procedure :: is_coulomb
@@ -40,6 +42,7 @@ contains
       friction%static = uniform_coefficient(mu)
       friction%kinetic = friction%static
       allocate (coulomb_law_type :: friction%law)
+      friction%name = 'coulomb'
    end function coulomb_friction
 
    !> mu_static >= mu_kinetic >= 0.
@@ -50,6 +53,7 @@ contains
       friction%static = uniform_coefficient(mu_static)
       friction%kinetic = uniform_coefficient(mu_kinetic)
       allocate (friction%law, source=new_static_kinetic_law())
+      friction%name = 'static_kinetic'
    end function static_kinetic_friction
 
    !> mu_static >= mu_kinetic >= 0; `distance` of the slip between them, length, > 0.
@@ -60,6 +64,7 @@ contains
       friction%static = uniform_coefficient(mu_static)
       friction%kinetic = uniform_coefficient(mu_kinetic)
       allocate (friction%law, source=new_weakening_law(distance))
+      friction%name = 'weakening'
    end function weakening_friction
 
    !> Dahl's law with the limit mu p, `stiffness` sigma > 0 (force/length^3) and `exponent` gamma >= 0.
@@ -70,6 +75,7 @@ contains
       friction%static = uniform_coefficient(mu)
       friction%kinetic = friction%static
       allocate (friction%law, source=new_dahl_law(stiffness, exponent))
+      friction%name = 'dahl'
    end function dahl_friction
 
    !> Whether there can be any shear traction.

@@ -43,6 +43,7 @@ module mfv_c
       integer(c_int) :: normal_control, tangential_control, friction, cycles
       real(c_double) :: rotational_target
       integer(c_int) :: rotational_control, unused
+      real(c_double) :: steady_tolerance
    end type c_step
 
    interface
@@ -194,7 +195,8 @@ contains
          call forget(self)
          call self%simulation%advance(step_type(given%normal_control, given%tangential_control, given%normal_target, &
                                                 given%tangential_target, given%friction /= 0, given%cycles, &
-                                                given%rotational_control, given%rotational_target))
+                                                given%rotational_control, given%rotational_target, &
+                                                given%steady_tolerance))
       end if
       self%message = self%simulation%message
       status = self%simulation%outcome
@@ -216,6 +218,8 @@ contains
          why = 'a target is not finite'
       else if (step%normal_control == control_force .and. step%normal_target < 0.0_wp) then
          why = 'the normal force must not be negative'
+      else if (.not. (step%steady_tolerance >= 0.0_wp .and. ieee_is_finite(step%steady_tolerance))) then
+         why = 'steady_tolerance must not be negative'
       else if (step%cycles < 0 .or. step%cycles > most_cycles) then
          why = 'cycles must be from 0 to '//to_text(most_cycles)
       end if

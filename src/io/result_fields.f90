@@ -138,7 +138,8 @@ contains
       type(simulation_type), intent(in) :: simulation
       type(string_type), intent(in) :: warnings(:)
       type(string_type), allocatable, intent(out) :: names(:), texts(:)
-      character(*), parameter :: planes = 'strain stress', couplings = 'full goodman none'
+      character(*), parameter :: planes = 'strain stress', couplings = 'full goodman none', &
+                                 algorithms = 'mfv conventional', steppings = 'event nominal'
       character(:), allocatable :: text, directory
       integer :: i
 
@@ -160,6 +161,9 @@ contains
       call add('force_unit', case%force_unit)
       call add('plane', trim(word(planes, case%scene%plane)))
       call add('coupling', trim(word(couplings, case%scene%coupling)))
+      call add('friction_law', trim(case%scene%friction%name))
+      call add('algorithm', word(algorithms, case%scene%method%algorithm))
+      call add('stepping', word(steppings, case%scene%method%stepping))
       call add('lower_body', trim(body_name(case%scene%lower)))
       call add('upper_body', trim(body_name(case%scene%upper)))
 
@@ -210,7 +214,7 @@ contains
          call add_scalar(fields, 'curvature', scene%curvature(), '1/'//units%length, &
                          'relative curvature of disks and holes at the pole')
          call add_scalar(fields, 'friction_coefficient', scene%friction%static%largest(), '1', &
-                         'coefficient of friction, 0 without friction')
+                         'largest (static) coefficient of friction, 0 without friction')
       end associate
    end subroutine add_scene
 
@@ -274,6 +278,12 @@ contains
                           'the surface')
          call add_scalar(fields, 'interval', model%interval(), units%length, 'width of an interval')
          call add_real(fields, 'width', model%width, along_nodes, units%length, 'surface that belongs to each node')
+         if (model%scene%friction%acts()) then
+            call add_real(fields, 'static_friction', model%static_friction, along_nodes, '1', &
+                          'coefficient of friction of nodes that hold')
+            call add_real(fields, 'kinetic_friction', model%kinetic_friction, along_nodes, '1', &
+                          'coefficient of friction of nodes that slip, in the end')
+         end if
       end associate
    end subroutine add_mesh
 
