@@ -28,3 +28,4 @@ class EventKind(IntEnum):
     STOPPED = 7
     REVERSE = 8  #: a creeping node turns round
     WEAKENED = 9  #: a slipping node's friction has fallen to its last value
+    CAUGHT = 10  #: a node that snapped is where its friction law holds again

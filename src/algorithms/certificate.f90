@@ -120,20 +120,17 @@ contains
       traction_scale = self%traction
    end function traction_scale
 
-   !> Check the increment from `before` to `after`, with the statuses of `after` on the way. `memory`: what friction
-   !> remembered before, shape (nodes).
-   subroutine check_increment(self, model, before, memory, after)
+   !> Check the increment from `before` to `after`, with the statuses of `after` on the way.
+   subroutine check_increment(self, model, before, after)
       class(certificate_type), intent(inout) :: self
       type(contact_model_type), intent(in) :: model
-      type(contact_fields_type), intent(in) :: before
-      real(wp), intent(in) :: memory(:)
-      type(contact_state_type), intent(in) :: after
+      type(contact_state_type), intent(in) :: before, after
 
       self%increments = self%increments + 1
       call check_equilibrium(self, model, after%fields)
       call check_normal_contact(self, model, after)
-      if (self%claimed(slip_traction)) call check_friction(self, model, before, memory, after)
-      call check_energy(self, model, before, after)
+      if (self%claimed(slip_traction)) call check_friction(self, model, before, after)
+      call check_energy(self, model, before%fields, after)
    end subroutine check_increment
 
    !> Note a jump of the tractions at an unchanged load.
@@ -218,20 +215,18 @@ contains
    end subroutine check_normal_contact
 
    !> Equalities and inequalities of slip and shear traction.
-   subroutine check_friction(self, model, before, memory, after)
+   subroutine check_friction(self, model, before, after)
       class(certificate_type), intent(inout) :: self
       type(contact_model_type), intent(in) :: model
-      type(contact_fields_type), intent(in) :: before
-      real(wp), intent(in) :: memory(:)
-      type(contact_state_type), intent(in) :: after
+      type(contact_state_type), intent(in) :: before, after
       real(wp), dimension(size(after%status)) :: limit, defect, shear, slipped, direction
 
       limit = model%static_friction*after%fields%pressure
       where (after%status == node_frictionless) limit = 0.0_wp
       shear = after%fields%shear
-      slipped = after%fields%slip() - before%slip()
+      slipped = after%fields%slip() - before%fields%slip()
       direction = slip_sign(after%status)
-      call law_defects(model, before, memory, after, defect)
+      call law_defects(model, before, after, defect)
       call self%note(stick_slip, largest_of(abs(slipped), after%status == node_stick), self%tangential)
       call self%note(slip_traction, largest_of(abs(defect), slips(after%status) .or. creeps(after%status) .or. &
                                                after%status == node_frictionless), self%traction)
@@ -241,11 +236,9 @@ contains
 
    !> By how much the tractions of slipping nodes fail the friction law, and those of creeping nodes the law's increment from
    !> state to state and what a motion against their direction does to it; where friction is off, the shear traction. Shape (nodes), force/length^2.
-   subroutine law_defects(model, before, memory, after, defect)
+   subroutine law_defects(model, before, after, defect)
       type(contact_model_type), intent(in) :: model
-      type(contact_fields_type), intent(in) :: before
-      real(wp), intent(in) :: memory(:)
-      type(contact_state_type), intent(in) :: after
+      type(contact_state_type), intent(in) :: before, after
       real(wp), intent(out) :: defect(:)
       type(friction_point_type), dimension(size(defect)) :: here, there
       type(friction_row_type) :: row
@@ -253,8 +246,8 @@ contains
       logical :: explicit
 
       explicit = model%scene%method%integration == integration_explicit .or. model%scene%method%algorithm /= algorithm_mfv
-      here = points_of(before, memory)
-      there = points_of(after%fields, after%memory)
+      here = points_of(before)
+      there = points_of(after)
       defect = after%fields%shear
       do i = 1, size(defect)
          if (slips(after%status(i))) then
@@ -270,17 +263,17 @@ contains
 
    contains
 
-      function points_of(fields, memories) result(points)
-         type(contact_fields_type), intent(in) :: fields
-         real(wp), intent(in) :: memories(:)
-         type(friction_point_type) :: points(size(memories))
+      function points_of(state) result(points)
+         type(contact_state_type), intent(in) :: state
+         type(friction_point_type) :: points(size(state%status))
 
          points%static = model%static_friction
          points%kinetic = model%kinetic_friction
-         points%pressure = fields%pressure
-         points%shear = fields%shear
-         points%slip = fields%slip()
-         points%memory = memories
+         points%pressure = state%fields%pressure
+         points%shear = state%fields%shear
+         points%slip = state%fields%slip()
+         points%slipped = state%slipped
+         points%excess = state%excess
       end function points_of
    end subroutine law_defects
 

@@ -7,7 +7,7 @@ module mfv_contact_path
    use mfv_contact_state, only: contact_state_type, new_contact_state
    use mfv_contact_system
    use mfv_error, only: error_type, set_error
-   use mfv_event_search, only: status_after
+   use mfv_event_search, only: corners_type, status_after
    use mfv_friction_law, only: friction_point_type, friction_row_type
    use mfv_history, only: history_type
    use mfv_kinds, only: wp
@@ -49,7 +49,8 @@ module mfv_contact_path
       procedure :: settle_loads
       procedure :: dropping
       procedure :: points
-      procedure :: corners
+      procedure :: find_corners
+      procedure :: snap
       procedure :: set_rows
       procedure :: set_status
       procedure :: holding
@@ -71,6 +72,8 @@ module mfv_contact_path
       real(wp) :: round_off = 1.0e-12_wp
       !> One change at a time, after a cycle.
       logical :: one_at_a_time = .false.
+      !> Whether nodes have been let snap here.
+      logical :: snapped = .false.
       !> First change at this load: event and node; and how many nodes changed with it.
       integer :: event = event_none, node = 0, count = 0
    end type moment_type
@@ -306,9 +309,7 @@ contains
    pure logical function dropping(self)
       class(contact_path_type), intent(in) :: self
 
-      dropping = .false.
-      if (.not. allocated(self%model%scene%friction%law)) return
-      if (self%model%scene%friction%law%drops) dropping = any(self%state%memory > 0.0_wp)
+      dropping = any(self%state%excess > 0.0_wp)
    end function dropping
 
    !> What the friction law knows of the nodes where the fields are `fields`, shape (nodes).
@@ -322,29 +323,66 @@ contains
       all_points%pressure = fields%pressure
       all_points%shear = fields%shear
       all_points%slip = fields%slip()
-      all_points%memory = self%state%memory
+      all_points%slipped = self%state%slipped
+      all_points%excess = self%state%excess
    end function points
 
-   !> How far slipping nodes can slip until their friction has a corner, length; huge: no corner. How much stiffer creeping
-   !> nodes are in one direction than in the other, force/length^3. Shape (nodes).
-   subroutine corners(self, room, turning)
+   !> Where friction has corners of its own.
+   subroutine find_corners(self, corners)
       class(contact_path_type), intent(in) :: self
-      real(wp), intent(out) :: room(:), turning(:)
+      type(corners_type), intent(out) :: corners
       type(friction_point_type) :: points(size(self%state%status))
-      integer :: i
+      real(wp) :: excess, by_pressure, by_slip
+      integer :: i, n
 
-      room = huge(1.0_wp)
-      turning = 0.0_wp
+      n = size(points)
+      allocate (corners%room(n), source=huge(1.0_wp))
+      allocate (corners%turning(n), corners%surplus_rate(n), corners%by_pressure(n), corners%by_slip(n), source=0.0_wp)
+      allocate (corners%surplus(n), source=-1.0_wp)
       if (.not. self%model%scene%friction%acts()) return
       associate (law => self%model%scene%friction%law)
          if (law%sticks .and. .not. law%weakening_distance < huge(1.0_wp)) return
          points = self%points(self%state%fields)
-         do i = 1, size(room)
-            if (slips(self%state%status(i))) room(i) = law%room(points(i))
-            if (creeps(self%state%status(i))) turning(i) = law%turning(points(i))
+         do i = 1, n
+            if (creeps(self%state%status(i))) corners%turning(i) = law%turning(points(i))
+            if (.not. slips(self%state%status(i))) cycle
+            corners%room(i) = law%room(points(i))
+            if (.not. points(i)%excess > 0.0_wp) cycle
+            call law%lawful_excess(points(i), excess, by_pressure, by_slip)
+            corners%surplus(i) = max(points(i)%excess - excess, 0.0_wp)
+            corners%surplus_rate(i) = -points(i)%excess
+            corners%by_pressure(i) = -by_pressure
+            corners%by_slip(i) = -by_slip
          end do
       end associate
-   end subroutine corners
+   end subroutine find_corners
+
+   !> Nodes at their static limit, and those on their way from static to kinetic friction: where they can neither hold nor slip
+   !> on in equilibrium, let them snap. `snapped`: whether there are any.
+   subroutine snap(self, snapped)
+      class(contact_path_type), intent(inout) :: self
+      logical, intent(out) :: snapped
+      real(wp), parameter :: at_limit = 1.0e-9_wp
+      type(friction_point_type) :: points(size(self%state%status))
+      logical :: mask(size(points))
+      integer :: status(size(points)), i
+
+      snapped = .false.
+      if (.not. self%model%scene%friction%acts()) return
+      associate (law => self%model%scene%friction%law)
+         if (.not. law%weakening_distance < huge(1.0_wp)) return
+         points = self%points(self%state%fields)
+         mask = in_contact(self%state%status) .and. points%pressure > 0.0_wp .and. .not. points%excess > 0.0_wp .and. &
+                (abs(points%shear) >= points%static*points%pressure*(1.0_wp - at_limit) .or. &
+                 (slips(self%state%status) .and. points%slipped < law%weakening_distance))
+         snapped = any(mask)
+         status = merge(node_slip_left, node_slip_right, points%shear > 0.0_wp)
+         call self%set_status(mask, status)
+         do i = 1, size(mask)
+            if (mask(i)) self%state%excess(i) = law%first_excess(points(i))
+         end do
+      end associate
+   end subroutine snap
 
    !> Statuses and lines of friction as constraints: tangents, or secants to where the fields are expected to be `after` an
    !> increment. `drop`: whether excess tractions are let go, all of them per unit of load.
@@ -368,7 +406,7 @@ contains
       do i = 1, n
          if (.not. slips(self%state%status(i)) .and. .not. creeps(self%state%status(i))) cycle
          constraints%row(i) = self%model%scene%friction%law%row(self%state%status(i), here(i), there(i))
-         if (drop) constraints%offset_rate(i) = slip_sign(self%state%status(i))*self%state%memory(i)
+         if (drop) constraints%offset_rate(i) = slip_sign(self%state%status(i))*self%state%excess(i)
       end do
    end subroutine set_rows
 
@@ -386,8 +424,12 @@ contains
          do i = 1, size(mask)
             if (.not. mask(i)) cycle
             begins = slips(status(i)) .and. status(i) /= self%state%status(i)
-            if (begins) self%state%memory(i) = self%model%scene%friction%law%slip_begins(points(i))
-            if (.not. slips(status(i))) self%state%memory(i) = 0.0_wp
+            if (begins .or. .not. slips(status(i))) then
+               self%state%slipped(i) = 0.0_wp
+               self%state%excess(i) = 0.0_wp
+            end if
+            if (begins .and. self%model%scene%friction%law%drops) &
+               self%state%excess(i) = self%model%scene%friction%law%first_excess(points(i))
          end do
       end if
       call self%state%set_status(mask, status)
@@ -414,11 +456,11 @@ contains
       type(contact_fields_type), intent(in) :: after
       real(wp), intent(in) :: slip_rate(:), dropped
       real(wp), parameter :: moving = 1.0e-9_wp
+      type(contact_state_type) :: start
       type(contact_fields_type) :: before
-      real(wp) :: memory(size(slip_rate))
 
-      before = self%state%fields
-      memory = self%state%memory
+      start = self%state
+      before = start%fields
       call remember_slip(self, after, dropped)
       self%state%fields = after
       self%state%dissipation = self%state%dissipation &
@@ -427,7 +469,7 @@ contains
       where (abs(slip_rate) > moving*maxval(abs(slip_rate))) &
          self%state%slip_direction = nint(sign(1.0_wp, slip_rate))
       self%increments = self%increments + 1
-      call self%certificate%check_increment(self%model, before, memory, self%state)
+      call self%certificate%check_increment(self%model, start, self%state)
    end subroutine take_increment
 
    !> What the friction law remembers after an increment to the fields `after`.
@@ -443,9 +485,9 @@ contains
       there = self%points(after)
       do i = 1, size(here)
          if (slips(self%state%status(i))) &
-            self%state%memory(i) = self%model%scene%friction%law%memory_after(here(i), there(i))
+            self%state%slipped(i) = self%model%scene%friction%law%slipped_after(here(i), there(i))
       end do
-      if (self%model%scene%friction%law%drops) self%state%memory = self%state%memory*(1.0_wp - dropped)
+      self%state%excess = self%state%excess*(1.0_wp - dropped)
    end subroutine remember_slip
 
    !> Where the contact has reached an end of the mesh, lengthen it. Error MFV_MESH_EXCEEDED: it may not grow.

@@ -15,8 +15,9 @@ module mfv_contact_state
       real(wp), allocatable :: stuck_slip(:)
       !> Sign of the last slip rate, 0 when there was none, shape (nodes).
       integer, allocatable :: slip_direction(:)
-      !> What the friction law remembers of the nodes, see friction_point_type, shape (nodes).
-      real(wp), allocatable :: memory(:)
+      !> Slip of the nodes since they last held, length, and excess of their |tau| over mu_k p, force/length^2: see
+      !> friction_point_type; shape (nodes).
+      real(wp), allocatable :: slipped(:), excess(:)
       !> Work dissipated by friction so far, force (energy per unit thickness).
       real(wp) :: dissipation = 0.0_wp
    contains
@@ -37,7 +38,7 @@ contains
       state%fields = new_contact_fields(nodes)
       allocate (state%status(nodes), source=node_open)
       allocate (state%slip_direction(nodes), source=0)
-      allocate (state%stuck_slip(nodes), state%memory(nodes), source=0.0_wp)
+      allocate (state%stuck_slip(nodes), state%slipped(nodes), state%excess(nodes), source=0.0_wp)
    end function new_contact_state
 
    !> Give the nodes of `mask` the new statuses; a node that sticks holds at the slip it has.
@@ -60,7 +61,8 @@ contains
       self%status = [(node_open, i=1, extra), self%status, (node_open, i=1, extra)]
       self%slip_direction = [(0, i=1, extra), self%slip_direction, (0, i=1, extra)]
       self%stuck_slip = [(0.0_wp, i=1, extra), self%stuck_slip, (0.0_wp, i=1, extra)]
-      self%memory = [(0.0_wp, i=1, extra), self%memory, (0.0_wp, i=1, extra)]
+      self%slipped = [(0.0_wp, i=1, extra), self%slipped, (0.0_wp, i=1, extra)]
+      self%excess = [(0.0_wp, i=1, extra), self%excess, (0.0_wp, i=1, extra)]
    end subroutine widen
 
    pure integer function contact_nodes(self)

@@ -41,7 +41,7 @@ contains
       real(wp), parameter :: whole = 1.0e-9_wp
       real(wp) :: done
       integer, allocatable :: converged(:)
-      real(wp), allocatable :: memory(:)
+      real(wp), allocatable :: slipped(:)
       logical :: stop_wanted, again
 
       call path%start_segment(segment, error)
@@ -52,11 +52,11 @@ contains
          again = .true.
          do while (again)
             converged = path%state%status
-            memory = path%state%memory
+            slipped = path%state%slipped
             call solve_load(path, segment, done, again, error)
             if (.not. allocated(error)) cycle
             path%state%status = converged
-            path%state%memory = memory
+            path%state%slipped = slipped
             return
          end do
          if (.not. present(observer)) cycle
@@ -145,14 +145,12 @@ contains
       class(contact_path_type), intent(inout) :: path
       logical, intent(in) :: mask(:)
       integer, intent(in) :: status(:)
-      real(wp) :: memory(size(mask))
+      real(wp) :: slipped(size(mask))
 
-      memory = path%state%memory
+      slipped = path%state%slipped
       call path%set_status(mask, status)
-      path%state%memory = memory
-      if (allocated(path%model%scene%friction%law)) then
-         if (path%model%scene%friction%law%drops) path%state%memory = 0.0_wp
-      end if
+      path%state%slipped = slipped
+      path%state%excess = 0.0_wp
    end subroutine change
 
    !> The constraints at the part `done` of the segment. Errors MFV_GROSS_SLIDING, MFV_SEPARATED: a tangential force that
@@ -265,7 +263,7 @@ contains
       type(moment_type), intent(in) :: moment
 
       call path%take_increment(fields, fields%slip() - path%state%fields%slip(), 0.0_wp)
-      where (.not. slips(path%state%status)) path%state%memory = 0.0_wp
+      where (.not. slips(path%state%status)) path%state%slipped = 0.0_wp
       call path%keep_settled(segment, moment)
    end subroutine accept
 

@@ -8,7 +8,18 @@ module mfv_event_search
    use mfv_node_status
    implicit none
    private
-   public :: violations_type, find_violations, status_after
+   public :: violations_type, corners_type, find_violations, status_after
+
+   !> Where friction has corners of its own, shape (nodes) each.
+   type :: corners_type
+      !> How far slipping nodes can slip until their friction has a corner, length; huge: no corner.
+      real(wp), allocatable :: room(:)
+      !> How much stiffer creeping nodes are in one direction than in the other, force/length^3.
+      real(wp), allocatable :: turning(:)
+      !> Excess of snapping nodes over what their law says, force/length^2 (negative: none snaps), its rate while excess falls
+      !> (per unit of the fall), and how it changes with pressure (no unit) and with slip (force/length^3).
+      real(wp), allocatable :: surplus(:), surplus_rate(:), by_pressure(:), by_slip(:)
+   end type corners_type
 
    !> For every node the first inequality that breaks.
    type :: violations_type
@@ -23,18 +34,18 @@ module mfv_event_search
 contains
 
    !> All violations that the rates lead to.
-   !> `status`: shape (nodes). `room`: how far slipping nodes can slip until their friction has a corner, length;
-   !> `turning`: how much stiffer creeping nodes are in one direction than in the other, force/length^3; shape (nodes).
+   !> `status`: shape (nodes). `corners`: what friction adds to them.
    !> `state`, `rate`: fields now and their rates per unit of the load parameter. Rates below the part `round_off` of the
    !> largest one of their sort count as zero.
-   function find_violations(model, status, room, turning, state, rate, round_off) result(violations)
+   function find_violations(model, status, corners, state, rate, round_off) result(violations)
       type(contact_model_type), intent(in) :: model
       integer, intent(in) :: status(:)
-      real(wp), intent(in) :: room(:), turning(:)
+      type(corners_type), intent(in) :: corners
       type(contact_fields_type), intent(in) :: state, rate
       real(wp), intent(in) :: round_off
       type(violations_type) :: violations
       real(wp) :: traction_scale, motion_scale, mu, full, limit_stiffness
+      logical :: soft_limit
       real(wp), dimension(size(status)) :: gap, gap_rate, slip_rate
       real(wp), parameter :: secant_noise = 100.0_wp
       integer :: i, n
@@ -45,8 +56,10 @@ contains
       violations%step = huge(1.0_wp)
       full = 1.0_wp
       limit_stiffness = -1.0_wp
+      soft_limit = .false.
       if (allocated(model%scene%friction%law)) then
          full = model%scene%friction%law%full_part
+         soft_limit = model%scene%friction%law%soft_limit
          if (.not. model%scene%friction%law%sticks) limit_stiffness = model%scene%friction%law%limit_stiffness
       end if
       gap = model%gap(state)
@@ -62,19 +75,28 @@ contains
             cycle
          case (node_stick, node_creep_right, node_creep_left)
             mu = full*model%static_friction(i)
-            call consider(event_slip_right, mu*state%pressure(i) + state%shear(i), &
-                          mu*rate%pressure(i) + rate%shear(i), max(mu, 1.0_wp)*traction_scale)
-            call consider(event_slip_left, mu*state%pressure(i) - state%shear(i), &
-                          mu*rate%pressure(i) - rate%shear(i), max(mu, 1.0_wp)*traction_scale)
+            if (.not. (soft_limit .and. .not. state%pressure(i) > 0.0_wp)) then
+               call consider(event_slip_right, mu*state%pressure(i) + state%shear(i), &
+                             mu*rate%pressure(i) + rate%shear(i), max(mu, 1.0_wp)*traction_scale)
+               call consider(event_slip_left, mu*state%pressure(i) - state%shear(i), &
+                             mu*rate%pressure(i) - rate%shear(i), max(mu, 1.0_wp)*traction_scale)
+            end if
             ! What a wrong direction does to the traction counts; and the secants' own noise is larger than round-off.
-            if (turning(i) > 0.0_wp) call consider(event_reverse, 0.0_wp, motion_sign(status(i))*turning(i)*slip_rate(i), &
-                                                   secant_noise*traction_scale)
+            if (corners%turning(i) > 0.0_wp) &
+               call consider(event_reverse, 0.0_wp, motion_sign(status(i))*corners%turning(i)*slip_rate(i), &
+                             secant_noise*traction_scale)
          case (node_slip_right, node_slip_left)
             ! Bristles take over again where the limit grows faster than they, at the limit, can follow.
             call consider(event_stick, 0.0_wp, slip_sign(status(i))*slip_rate(i), motion_scale)
             if (limit_stiffness >= 0.0_wp) call consider(event_stick, 0.0_wp, limit_stiffness*slip_sign(status(i))*slip_rate(i) &
-                                                         - full*model%static_friction(i)*rate%pressure(i), traction_scale)
-            if (room(i) < huge(1.0_wp)) call consider(event_weakened, room(i), -slip_sign(status(i))*slip_rate(i), motion_scale)
+                                                         - full*model%static_friction(i)*rate%pressure(i), &
+                                                         secant_noise*traction_scale)
+            if (corners%room(i) < huge(1.0_wp)) &
+               call consider(event_weakened, corners%room(i), -slip_sign(status(i))*slip_rate(i), motion_scale)
+            if (corners%surplus(i) >= 0.0_wp) &
+               call consider(event_caught, corners%surplus(i), corners%surplus_rate(i) &
+                             + corners%by_pressure(i)*rate%pressure(i) &
+                             + corners%by_slip(i)*slip_sign(status(i))*slip_rate(i), traction_scale)
          end select
          call consider(event_open, state%pressure(i), rate%pressure(i), traction_scale)
       end do

@@ -16,7 +16,7 @@ module mfv_first_violation
    use mfv_contact_path
    use mfv_contact_system
    use mfv_error, only: error_type
-   use mfv_event_search, only: status_after, violations_type
+   use mfv_event_search, only: corners_type, status_after, violations_type
    use mfv_increment
    use mfv_kinds, only: wp
    use mfv_node_status
@@ -50,14 +50,20 @@ contains
       type(constraints_type) :: constraints
       type(increment_type) :: increment
       real(wp) :: done
-      integer :: creeping
-      logical :: settled, stop_wanted, drop, last
+      integer :: creeping, standing
+      logical :: settled, stop_wanted, drop, last, snapped
 
       call path%start_segment(segment, error)
       if (allocated(error)) return
       done = 0.0_wp
       creeping = 0
+      standing = 0
       do
+         standing = standing + 1
+         if (standing > most_tiny_steps + 10*size(path%state%status)) then
+            call path%no_continuation('the load does not advance', error)
+            return
+         end if
          drop = path%dropping()
          call path%settle_loads(segment, done, moment, constraints, settled, error)
          if (allocated(error)) return
@@ -65,6 +71,13 @@ contains
          call find_increment(path, constraints, merge(1.0_wp, 1.0_wp - done, drop), drop, moment%round_off, increment)
          if (increment%singular) then
             call path%no_continuation('the linear system is singular', error)
+            return
+         else if (increment%diverges) then
+            snapped = .false.
+            if (.not. moment%snapped) call path%snap(snapped)
+            moment%snapped = snapped
+            if (snapped) cycle
+            call path%no_continuation('the equations of friction have no solution nearby', error)
             return
          end if
          if (increment%step > no_step) then
@@ -82,6 +95,7 @@ contains
             end if
             if (last) return
             moment = moment_type()
+            standing = 0
             creeping = merge(creeping + 1, 0, increment%step < tie .and. .not. drop)
             if (creeping > most_tiny_steps) then
                call path%no_continuation('the load does not advance', error)
@@ -129,11 +143,18 @@ contains
       type(increment_type), intent(in) :: increment
       type(moment_type), intent(inout) :: moment
       type(error_type), allocatable, intent(out) :: error
-      logical :: changing(size(path%state%status))
+      logical :: changing(size(path%state%status)), snapped
       integer :: fastest
 
+      call snap_if_unstable(path, increment, moment, snapped)
+      if (snapped) return
       if (was_tried(moment, path%state%status)) then
          if (moment%one_at_a_time .and. moment%round_off >= larger_round_off) then
+            if (.not. moment%snapped) call path%snap(snapped)
+            if (snapped) then
+               moment = moment_type(snapped=.true.)
+               return
+            end if
             call path%no_continuation('no set of statuses has consistent rates; node '// &
                                       to_text(maxloc(increment%violations%speed, dim=1))//' cannot decide', error)
             return
@@ -156,10 +177,29 @@ contains
                                                      path%model%tangential, path%state%slip_direction, &
                                                      path%holding(increment%response%rate%slip())))
          where (changing .and. violations%kind == event_weakened) &
-            path%state%memory = path%model%scene%friction%law%weakening_distance
+            path%state%slipped = path%model%scene%friction%law%weakening_distance
+         where (changing .and. violations%kind == event_caught) path%state%excess = 0.0_wp
       end associate
       call path%keep_on_mesh(moment, error)
    end subroutine change_statuses
+
+   !> Where a node that is still weakening would turn back, it either comes to rest or the bodies can no longer unload as fast
+   !> as its friction falls. Let it snap, once at each load: one that need not is caught again at once, and comes to rest.
+   subroutine snap_if_unstable(path, increment, moment, snapped)
+      class(contact_path_type), intent(inout) :: path
+      type(increment_type), intent(in) :: increment
+      type(moment_type), intent(inout) :: moment
+      logical, intent(out) :: snapped
+      type(corners_type) :: corners
+
+      snapped = .false.
+      if (moment%snapped .or. .not. any(increment%violations%kind == event_stick)) return
+      call path%find_corners(corners)
+      if (.not. any(increment%violations%kind == event_stick .and. increment%violations%step <= no_step .and. &
+                    corners%room < huge(1.0_wp))) return
+      call path%snap(snapped)
+      if (snapped) moment = moment_type(snapped=.true., event=moment%event, node=moment%node, count=moment%count)
+   end subroutine snap_if_unstable
 
    pure logical function was_tried(moment, status)
       type(moment_type), intent(in) :: moment

@@ -38,6 +38,7 @@ contains
       law%full_part = 1.0_wp - 1.0e-9_wp
       law%stiffness = stiffness
       law%exponent = exponent
+      law%soft_limit = exponent > 0.0_wp
       law%limit_stiffness = stiffness
       if (exponent > 0.0_wp) law%limit_stiffness = stiffness*(1.0_wp - law%full_part)**exponent
    end function new_dahl_law
@@ -62,17 +63,21 @@ contains
       integer, intent(in) :: direction
       type(friction_point_type), intent(in) :: before, after
       type(friction_row_type) :: row
+      real(wp), parameter :: least_slope = 0.05_wp, most_slope = 1.0e3_wp, farthest = 10.0_wp
       real(wp) :: force, limit, room, stiffness, steepness, slipped, by_shear, by_pressure
 
       force = -0.5_wp*(before%shear + after%shear)*direction
       limit = 0.5_wp*before%static*(before%pressure + after%pressure)
       room = 1.0_wp
-      if (limit > 0.0_wp) room = min(max(1.0_wp - force/limit, 0.0_wp), 2.0_wp)
+      if (abs(force) < farthest*limit) room = min(1.0_wp - force/limit, 2.0_wp)
+      if (.not. abs(force) < farthest*limit .and. abs(force) > 0.0_wp) room = merge(1.0_wp - farthest, 2.0_wp, force > 0.0_wp)
       stiffness = self%stiffness
       steepness = 0.0_wp
       if (self%exponent > 0.0_wp) then
-         stiffness = self%stiffness*room**self%exponent
-         if (room > 1.0_wp - self%full_part .and. limit > 0.0_wp) steepness = self%exponent*stiffness/room
+         ! The law goes on beyond the limit with its sign (eq. 3.9), for the iterations; where they end it is not beyond.
+         stiffness = self%stiffness*sign(abs(room)**self%exponent, room)
+         steepness = self%stiffness*self%exponent &
+                     *min(max(max(abs(room), 1.0e-9_wp)**(self%exponent - 1.0_wp), least_slope), most_slope)
       end if
       slipped = after%slip - before%slip
       by_shear = 0.0_wp

@@ -20,9 +20,9 @@ module mfv_friction_law
       real(wp) :: static = 0.0_wp, kinetic = 0.0_wp
       !> Pressure p and shear traction tau, force/length^2; slip s = u - U, length.
       real(wp) :: pressure = 0.0_wp, shear = 0.0_wp, slip = 0.0_wp
-      !> What is remembered of the node: the excess of |tau| over its kinetic limit (force/length^2) where the law `drops`;
-      !> else how far it has slipped since it last held (length).
-      real(wp) :: memory = 0.0_wp
+      !> How far the node has slipped since it last held, length; and by how much its |tau| is still beyond mu_k p while that
+      !> falls at a fixed load, force/length^2.
+      real(wp) :: slipped = 0.0_wp, excess = 0.0_wp
    end type friction_point_type
 
    !> The line tau = slope*p + stiffness*s + offset: no unit, force/length^3, force/length^2.
@@ -41,14 +41,17 @@ module mfv_friction_law
       real(wp) :: weakening_distance = huge(1.0_wp)
       !> Part of the limit mu_s p at which a holding node slips.
       real(wp) :: full_part = 1.0_wp
+      !> Whether creeping nodes come to the limit without a corner: a node that has just touched then has a part of it.
+      logical :: soft_limit = .false.
       !> Stiffness that creeping nodes have left there, force/length^3.
       real(wp) :: limit_stiffness = 0.0_wp
    contains
       procedure(row_interface), deferred :: row
       procedure(strength_interface), deferred :: strength
       procedure :: holding_status
-      procedure :: slip_begins
-      procedure :: memory_after
+      procedure :: first_excess
+      procedure :: slipped_after
+      procedure :: lawful_excess
       procedure :: room
       procedure :: turning
    end type friction_law_type
@@ -83,23 +86,37 @@ contains
       if (.not. self%sticks) holding_status = merge(node_creep_left, node_creep_right, direction < 0)
    end function holding_status
 
-   !> The memory of a node that begins to slip.
-   pure real(wp) function slip_begins(self, point)
+   !> The excess of |tau| over mu_k p with which a node begins to slip where the law drops, force/length^2.
+   pure real(wp) function first_excess(self, point)
       class(friction_law_type), intent(in) :: self
       type(friction_point_type), intent(in) :: point
 
-      slip_begins = 0.0_wp
-      if (self%drops) slip_begins = max(abs(point%shear) - point%kinetic*point%pressure, 0.0_wp)
-   end function slip_begins
+      first_excess = max(abs(point%shear) - point%kinetic*point%pressure, 0.0_wp)
+   end function first_excess
 
-   !> The memory of a slipping node after an increment. (An excess is led by the algorithm, not here.)
-   pure real(wp) function memory_after(self, before, after) result(memory)
+   !> How far a slipping node has slipped after an increment, length; not counted beyond the weakening distance.
+   pure real(wp) function slipped_after(self, before, after) result(slipped)
       class(friction_law_type), intent(in) :: self
       type(friction_point_type), intent(in) :: before, after
 
-      memory = before%memory
-      if (.not. self%drops) memory = min(memory + abs(after%slip - before%slip), self%weakening_distance)
-   end function memory_after
+      slipped = min(before%slipped + abs(after%slip - before%slip), self%weakening_distance)
+   end function slipped_after
+
+   !> What the excess of a falling node is by the law itself, (mu - mu_k) p: where the two meet the fall is over. And how it
+   !> changes with pressure (no unit) and with slip (force/length^3). Zero unless the law weakens with slip.
+   pure subroutine lawful_excess(self, point, excess, by_pressure, by_slip)
+      class(friction_law_type), intent(in) :: self
+      type(friction_point_type), intent(in) :: point
+      real(wp), intent(out) :: excess, by_pressure, by_slip
+      real(wp) :: fall
+
+      fall = 0.0_wp
+      if (self%weakening_distance < huge(1.0_wp)) fall = (point%static - point%kinetic)/self%weakening_distance
+      by_pressure = max(self%weakening_distance - point%slipped, 0.0_wp)*fall
+      excess = by_pressure*point%pressure
+      by_slip = 0.0_wp
+      if (by_pressure > 0.0_wp) by_slip = -fall*point%pressure
+   end subroutine lawful_excess
 
    !> How much further a slipping node can slip until its line has a corner, length.
    pure real(wp) function room(self, point)
@@ -108,8 +125,8 @@ contains
       real(wp), parameter :: round_off = 1.0e-12_wp
 
       room = huge(1.0_wp)
-      if (self%weakening_distance < huge(1.0_wp) .and. point%memory < self%weakening_distance*(1.0_wp - round_off)) &
-         room = self%weakening_distance - point%memory
+      if (self%weakening_distance < huge(1.0_wp) .and. .not. point%excess > 0.0_wp .and. &
+          point%slipped < self%weakening_distance*(1.0_wp - round_off)) room = self%weakening_distance - point%slipped
    end function room
 
    !> By how much the stiffness of a node that holds depends on the direction in which it moves, force/length^3.

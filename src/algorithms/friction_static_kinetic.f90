@@ -36,7 +36,7 @@ contains
       type(friction_row_type) :: row
 
       row%slope = -slip_sign(status)*before%kinetic
-      row%offset = -slip_sign(status)*before%memory
+      row%offset = -slip_sign(status)*before%excess
    end function row
 
    !> See mfv_friction_law.
@@ -44,7 +44,7 @@ contains
       class(static_kinetic_law_type), intent(in) :: self
       type(friction_point_type), intent(in) :: point
 
-      strength = point%kinetic*point%pressure + point%memory
+      strength = point%kinetic*point%pressure + point%excess
    end function strength
 
 end module mfv_friction_static_kinetic

@@ -5,6 +5,9 @@
 !>
 !> tau = -+ mu(slip) p is bilinear where p changes with the load: the line is linearised about the expected end of the
 !> increment (Newton) and exact where that is right.
+!>
+!> Where the bodies cannot unload as fast as friction falls, no slip in equilibrium begins: the node snaps. As under static and
+!> kinetic friction its traction then falls at a fixed load, until the law holds again or the node is at mu_k.
 module mfv_friction_weakening
    use mfv_friction_law
    use mfv_kinds, only: wp
@@ -41,6 +44,11 @@ contains
       integer :: direction
 
       direction = slip_sign(status)
+      if (before%excess > 0.0_wp) then
+         row%slope = -direction*before%kinetic
+         row%offset = -direction*before%excess
+         return
+      end if
       fall = 0.0_wp
       if (self%room(before) < huge(1.0_wp)) fall = (before%static - before%kinetic)/self%weakening_distance
       row%slope = -direction*(self%coefficient(before) - fall*direction*(after%slip - before%slip))
@@ -54,6 +62,7 @@ contains
       type(friction_point_type), intent(in) :: point
 
       strength = self%coefficient(point)*point%pressure
+      if (point%excess > 0.0_wp) strength = point%kinetic*point%pressure + point%excess
    end function strength
 
    !> mu after the slip that the point remembers.
@@ -62,7 +71,7 @@ contains
       type(friction_point_type), intent(in) :: point
       real(wp) :: part
 
-      part = min(point%memory/self%weakening_distance, 1.0_wp)
+      part = min(point%slipped/self%weakening_distance, 1.0_wp)
       coefficient = (1.0_wp - part)*point%static + part*point%kinetic
    end function coefficient
 

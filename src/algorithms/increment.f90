@@ -13,7 +13,7 @@ module mfv_increment
    use mfv_contact_fields, only: contact_fields_type
    use mfv_contact_path, only: contact_path_type
    use mfv_contact_system
-   use mfv_event_search, only: find_violations, violations_type
+   use mfv_event_search, only: corners_type, find_violations, violations_type
    use mfv_kinds, only: wp
    use mfv_node_status
    use mfv_scene, only: integration_explicit, stepping_nominal
@@ -30,8 +30,8 @@ module mfv_increment
       !> Length in parts of the segment (of the drop); and whether a violation ends it.
       real(wp) :: step = 0.0_wp
       logical :: ends_in_event = .false.
-      !> The linear system has no solution; the increment is then of no use.
-      logical :: singular = .false.
+      !> The linear system has no solution, or the corrector does not converge; the increment is then of no use.
+      logical :: singular = .false., diverges = .false.
    end type increment_type
 
 contains
@@ -58,13 +58,13 @@ contains
    !> Whether the line of some node's friction depends on where it leads.
    logical function bends(path)
       class(contact_path_type), intent(in) :: path
-      real(wp), dimension(size(path%state%status)) :: room, turning
+      type(corners_type) :: corners
 
       bends = .false.
       if (.not. path%model%tangential) return
       if (path%model%scene%friction%law%is_linear) return
-      call path%corners(room, turning)
-      bends = any(creeps(path%state%status)) .or. any(room < huge(1.0_wp))
+      call path%find_corners(corners)
+      bends = any(creeps(path%state%status)) .or. any(corners%room < huge(1.0_wp))
    end function bends
 
    !> Violations by the rates, and the step to the first of them but no further than `longest`.
@@ -72,11 +72,11 @@ contains
       class(contact_path_type), intent(in) :: path
       real(wp), intent(in) :: round_off, longest
       type(increment_type), intent(inout) :: increment
-      real(wp), dimension(size(path%state%status)) :: room, turning
+      type(corners_type) :: corners
       real(wp) :: first
 
-      call path%corners(room, turning)
-      increment%violations = find_violations(path%model, path%state%status, room, turning, path%state%fields, &
+      call path%find_corners(corners)
+      increment%violations = find_violations(path%model, path%state%status, corners, path%state%fields, &
                                              increment%response%rate, round_off)
       first = minval(increment%violations%step)
       increment%step = min(first, longest)
@@ -91,10 +91,11 @@ contains
       logical, intent(in) :: drop
       type(increment_type), intent(inout) :: increment
       integer, parameter :: most_attempts = 40
-      real(wp), parameter :: safety = 0.9_wp, most_growth = 4.0_wp, least_shrink = 0.1_wp, first_trial = 1.0e-3_wp
+      real(wp), parameter :: safety = 0.9_wp, most_growth = 4.0_wp, least_shrink = 0.1_wp, first_trial = 1.0e-3_wp, &
+                             shortest = 1.0e-9_wp
       type(increment_type) :: predicted
       real(wp) :: length, error, change, tolerance
-      logical :: agrees
+      logical :: agrees, accepted
       integer :: attempt
 
       if (path%model%scene%method%integration == integration_explicit .and. &
@@ -115,10 +116,14 @@ contains
          change = most_growth
          if (error > 0.0_wp) change = min(most_growth, safety*sqrt(tolerance/error))
          if (.not. agrees) change = min(change, 0.25_wp)
-         if ((agrees .and. error <= tolerance) .or. length < no_step) exit
+         accepted = agrees .and. error <= tolerance
+         if (accepted .or. length < shortest) exit
          length = length*max(change, least_shrink)
       end do
-      path%trial = max(max(length, increment%step)*max(change, least_shrink), 100*no_step)
+      increment%diverges = .not. accepted
+      ! An increment that an event cut short says nothing against longer ones.
+      length = max(length, increment%step)*max(change, least_shrink)
+      path%trial = max(length, merge(path%trial, 10*shortest, attempt == 1))
    end subroutine follow_friction
 
    !> Secants over the step until they agree with where they lead; a violation on the way shortens it. `agrees`: whether they do.
