@@ -219,19 +219,25 @@ contains
       class(certificate_type), intent(inout) :: self
       type(contact_model_type), intent(in) :: model
       type(contact_state_type), intent(in) :: before, after
-      real(wp), dimension(size(after%status)) :: limit, defect, shear, slipped, direction
+      real(wp), dimension(size(after%status)) :: limit, defect, shear, slipped, direction, growth
 
       limit = model%static_friction*after%fields%pressure
       where (after%status == node_frictionless) limit = 0.0_wp
       shear = after%fields%shear
       slipped = after%fields%slip() - before%fields%slip()
       direction = slip_sign(after%status)
+      growth = model%static_friction*(after%fields%pressure - before%fields%pressure)*model%scene%friction%law%full_part
       call law_defects(model, before, after, defect)
       call self%note(stick_slip, largest_of(abs(slipped), after%status == node_stick), self%tangential)
       call self%note(slip_traction, largest_of(abs(defect), slips(after%status) .or. creeps(after%status) .or. &
                                                after%status == node_frictionless), self%traction)
       call self%note(friction_limit, largest_of(abs(shear) - limit, in_contact(after%status)), self%traction)
-      call self%note(slip_direction, largest_of(-direction*slipped, slips(after%status)), self%tangential)
+      if (model%scene%friction%law%sticks) then
+         call self%note(slip_direction, largest_of(-direction*slipped, slips(after%status)), self%tangential)
+      else
+         call self%note(slip_direction, largest_of(-model%scene%friction%law%yields(direction*slipped, growth), &
+                                                   slips(after%status)), self%traction)
+      end if
    end subroutine check_friction
 
    !> By how much the tractions of slipping nodes fail the friction law, and those of creeping nodes the law's increment from

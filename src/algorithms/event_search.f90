@@ -47,8 +47,8 @@ contains
       type(contact_fields_type), intent(in) :: state, rate
       real(wp), intent(in) :: round_off
       type(violations_type) :: violations
-      real(wp) :: traction_scale, motion_scale, mu, full, limit_stiffness
-      logical :: soft_limit
+      real(wp) :: traction_scale, motion_scale, mu, full
+      logical :: soft_limit, sticks
       real(wp), dimension(size(status)) :: gap, gap_rate, slip_rate
       real(wp), parameter :: secant_noise = 100.0_wp
       integer :: i, n
@@ -58,12 +58,12 @@ contains
       allocate (violations%step(n), violations%speed(n), source=0.0_wp)
       violations%step = huge(1.0_wp)
       full = 1.0_wp
-      limit_stiffness = -1.0_wp
+      sticks = .true.
       soft_limit = .false.
       if (allocated(model%scene%friction%law)) then
          full = model%scene%friction%law%full_part
          soft_limit = model%scene%friction%law%soft_limit
-         if (.not. model%scene%friction%law%sticks) limit_stiffness = model%scene%friction%law%limit_stiffness
+         sticks = model%scene%friction%law%sticks
       end if
       gap = model%gap(state)
       gap_rate = rate%normal - rate%approach
@@ -90,11 +90,14 @@ contains
                call consider(event_reverse, 0.0_wp, motion_sign(status(i))*corners%turning(i)*slip_rate(i), &
                              secant_noise*traction_scale)
          case (node_slip_right, node_slip_left)
-            ! Bristles take over again where the limit grows faster than they, at the limit, can follow.
-            call consider(event_stick, 0.0_wp, slip_sign(status(i))*slip_rate(i), motion_scale)
-            if (limit_stiffness >= 0.0_wp) call consider(event_stick, 0.0_wp, limit_stiffness*slip_sign(status(i))*slip_rate(i) &
-                                                         - full*model%static_friction(i)*rate%pressure(i), &
-                                                         secant_noise*traction_scale)
+            if (sticks) then
+               call consider(event_stick, 0.0_wp, slip_sign(status(i))*slip_rate(i), motion_scale)
+            else
+               call consider(event_stick, 0.0_wp, &
+                             model%scene%friction%law%yields(slip_sign(status(i))*slip_rate(i), &
+                                                             full*model%static_friction(i)*rate%pressure(i)), &
+                             secant_noise*traction_scale)
+            end if
             if (corners%room(i) < huge(1.0_wp)) &
                call consider(event_weakened, corners%room(i), -slip_sign(status(i))*slip_rate(i), motion_scale)
             if (corners%headroom(i) >= 0.0_wp) &

@@ -4,7 +4,8 @@
 !>     df/ds = sigma (1 - f/(mu p) sgn(s'))^gamma,   f = -tau,
 !>
 !> so that a node below the limit creeps (Table B.1's partial slip). At the limit it slips as under Coulomb's law; and there
-!> it is when mu p falls below |f|. While mu p grows the bristles, without stiffness at the limit, take over again.
+!> it is when mu p falls below |f|, whichever way it then moves. While mu p grows faster than the bristles load, they take over
+!> again.
 !>
 !> A creeping node's tau1 = tau0 - K (s1 - s0) has K at the start of the increment (appendix B) or, in second order, half way
 !> to where the increment ends. The line is this equation linearised about the expected end (Newton): exact where it is right.
@@ -41,7 +42,11 @@ contains
       law%exponent = exponent
       law%soft_limit = exponent > 0.0_wp
       law%limit_stiffness = stiffness
-      if (exponent > 0.0_wp) law%limit_stiffness = stiffness*(1.0_wp - law%full_part)**exponent
+      law%back_stiffness = stiffness
+      if (exponent > 0.0_wp) then
+         law%limit_stiffness = stiffness*(1.0_wp - law%full_part)**exponent
+         law%back_stiffness = stiffness*(1.0_wp + law%full_part)**exponent
+      end if
    end function new_dahl_law
 
    !> See mfv_friction_law.

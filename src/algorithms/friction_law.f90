@@ -43,8 +43,8 @@ module mfv_friction_law
       real(wp) :: full_part = 1.0_wp
       !> Whether creeping nodes come to the limit without a corner: a node that has just touched then has a part of it.
       logical :: soft_limit = .false.
-      !> Stiffness that creeping nodes have left there, force/length^3.
-      real(wp) :: limit_stiffness = 0.0_wp
+      !> Stiffness that creeping nodes have there, on and back, force/length^3.
+      real(wp) :: limit_stiffness = 0.0_wp, back_stiffness = 0.0_wp
    contains
       procedure(row_interface), deferred :: row
       procedure(strength_interface), deferred :: strength
@@ -55,6 +55,7 @@ module mfv_friction_law
       procedure :: lawful_excess
       procedure :: room
       procedure :: turning
+      procedure :: yields
    end type friction_law_type
 
    abstract interface
@@ -152,5 +153,15 @@ contains
       left = self%row(node_creep_left, point, point)
       turning = abs(right%stiffness - left%stiffness)
    end function turning
+
+   !> By how much more bristles at the limit would load than it grows, force/length^2: while this is not negative they give way,
+   !> and the node slips. `moved`: motion in the direction of the slip, length; `growth`: of the limit, force/length^2; or
+   !> their rates.
+   elemental real(wp) function yields(self, moved, growth)
+      class(friction_law_type), intent(in) :: self
+      real(wp), intent(in) :: moved, growth
+
+      yields = merge(self%limit_stiffness, self%back_stiffness, moved > 0.0_wp)*moved - growth
+   end function yields
 
 end module mfv_friction_law
