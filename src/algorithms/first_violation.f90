@@ -28,7 +28,7 @@ module mfv_first_violation
    public :: lead_by_violations
 
    !> So many steps in a row below the tie are no progress.
-   integer, parameter :: most_tiny_steps = 1000
+   integer, parameter :: most_tiny_steps = 200
    !> The rates' round-off where a cycle of statuses suggests that some of them are noise.
    real(wp), parameter :: larger_round_off = 1.0e-9_wp
    !> The shortest increment worth trying, in parts of a segment.

@@ -95,7 +95,7 @@ contains
                              shortest = 1.0e-9_wp
       type(increment_type) :: predicted
       real(wp) :: length, error, change, tolerance
-      logical :: agrees, accepted
+      logical :: agrees, accepted, touched
       integer :: attempt
 
       if (path%model%scene%method%integration == integration_explicit .and. &
@@ -103,7 +103,9 @@ contains
          call search(path, round_off, min(left, path%model%scene%method%load_step), increment)
          return
       end if
-      if (increment%step <= no_step) return
+      ! Of a node that has just touched, tangents know nothing: its part of the limit comes out of the increment itself.
+      touched = any(creeps(path%state%status) .and. .not. path%state%fields%pressure > 0.0_wp)
+      if (increment%step <= no_step .and. .not. touched) return
       if (.not. path%trial > 0.0_wp) path%trial = first_trial
       tolerance = path%model%scene%method%friction_tolerance
       predicted = increment
@@ -180,6 +182,7 @@ contains
       lines = constraints
       do iteration = 1, most_iterations
          before = after
+         call keep_within_limits(path, after)
          call path%set_rows(lines, drop, after)
          call path%system%solve(path%model, lines, response, singular)
          if (singular) return
@@ -188,6 +191,15 @@ contains
          if (converges) return
       end do
    end subroutine find_end
+
+   !> Bring the shear tractions of creeping nodes back to the friction limit: beyond it the iteration has gone astray.
+   subroutine keep_within_limits(path, fields)
+      class(contact_path_type), intent(in) :: path
+      type(contact_fields_type), intent(inout) :: fields
+
+      where (creeps(path%state%status)) &
+         fields%shear = sign(min(abs(fields%shear), path%model%static_friction*max(fields%pressure, 0.0_wp)), fields%shear)
+   end subroutine keep_within_limits
 
    !> How much the tractions differ after a step with one or the other rates, in parts of the largest traction.
    pure real(wp) function difference(path, one, other, step)
