@@ -94,6 +94,7 @@ contains
       real(wp), parameter :: safety = 0.9_wp, most_growth = 4.0_wp, least_shrink = 0.1_wp, first_trial = 1.0e-3_wp, &
                              shortest = 1.0e-9_wp
       type(increment_type) :: predicted
+      type(contact_fields_type) :: guess
       real(wp) :: length, error, change, tolerance
       logical :: agrees, accepted, touched
       integer :: attempt
@@ -114,7 +115,10 @@ contains
          increment = predicted
          call correct(path, constraints, length, drop, round_off, increment, agrees)
          if (increment%singular) return
-         error = difference(path, predicted%response%rate, increment%response%rate, increment%step)
+         guess = path%state%fields%plus(increment%step, predicted%response%rate)
+         call keep_within_limits(path, guess)
+         error = difference(path, guess, path%state%fields%plus(increment%step, increment%response%rate), &
+                            maxval(abs(increment%response%rate%pressure)))
          change = most_growth
          if (error > 0.0_wp) change = min(most_growth, safety*sqrt(tolerance/error))
          if (.not. agrees) change = min(change, 0.25_wp)
@@ -187,7 +191,7 @@ contains
          call path%system%solve(path%model, lines, response, singular)
          if (singular) return
          after = response%state%plus(step, response%rate)
-         converges = difference(path, before, after, 1.0_wp) <= close_enough
+         converges = difference(path, before, after, 0.0_wp) <= close_enough
          if (converges) return
       end do
    end subroutine find_end
@@ -201,15 +205,15 @@ contains
          fields%shear = sign(min(abs(fields%shear), path%model%static_friction*max(fields%pressure, 0.0_wp)), fields%shear)
    end subroutine keep_within_limits
 
-   !> How much the tractions differ after a step with one or the other rates, in parts of the largest traction.
-   pure real(wp) function difference(path, one, other, step)
+   !> How much the tractions of two fields differ, in parts of the largest traction so far, there, or `elsewhere`.
+   pure real(wp) function difference(path, one, other, elsewhere)
       class(contact_path_type), intent(in) :: path
       type(contact_fields_type), intent(in) :: one, other
-      real(wp), intent(in) :: step
+      real(wp), intent(in) :: elsewhere
       real(wp) :: scale
 
-      scale = max(path%certificate%traction_scale(), maxval(abs(path%state%fields%pressure + step*one%pressure)))
-      difference = step*max(maxval(abs(one%shear - other%shear)), maxval(abs(one%pressure - other%pressure)))
+      scale = max(path%certificate%traction_scale(), maxval(abs(other%pressure)), elsewhere)
+      difference = max(maxval(abs(one%shear - other%shear)), maxval(abs(one%pressure - other%pressure)))
       if (scale > 0.0_wp) difference = difference/scale
    end function difference
 
