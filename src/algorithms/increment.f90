@@ -116,7 +116,7 @@ contains
          call correct(path, constraints, length, drop, round_off, increment, agrees)
          if (increment%singular) return
          guess = path%state%fields%plus(increment%step, predicted%response%rate)
-         call keep_within_limits(path, guess)
+         call guess_touching(path, guess)
          error = difference(path, guess, path%state%fields%plus(increment%step, increment%response%rate), &
                             maxval(abs(increment%response%rate%pressure)))
          change = most_growth
@@ -152,6 +152,7 @@ contains
       step = length
       secants = constraints
       after = path%state%fields%plus(step, increment%response%rate)
+      call guess_touching(path, after)
       do pass = 1, most_passes
          call find_end(path, constraints, step, drop, after, agrees)
          if (.not. agrees) return
@@ -186,7 +187,6 @@ contains
       lines = constraints
       do iteration = 1, most_iterations
          before = after
-         call keep_within_limits(path, after)
          call path%set_rows(lines, drop, after)
          call path%system%solve(path%model, lines, response, singular)
          if (singular) return
@@ -196,14 +196,15 @@ contains
       end do
    end subroutine find_end
 
-   !> Bring the shear tractions of creeping nodes back to the friction limit: beyond it the iteration has gone astray.
-   subroutine keep_within_limits(path, fields)
+   !> A guess for nodes that creep since they have just touched: half way to the friction limit at the most.
+   subroutine guess_touching(path, fields)
       class(contact_path_type), intent(in) :: path
       type(contact_fields_type), intent(inout) :: fields
+      real(wp), parameter :: half = 0.5_wp
 
-      where (creeps(path%state%status)) &
-         fields%shear = sign(min(abs(fields%shear), path%model%static_friction*max(fields%pressure, 0.0_wp)), fields%shear)
-   end subroutine keep_within_limits
+      where (creeps(path%state%status) .and. .not. path%state%fields%pressure > 0.0_wp) &
+         fields%shear = sign(min(abs(fields%shear), half*path%model%static_friction*max(fields%pressure, 0.0_wp)), fields%shear)
+   end subroutine guess_touching
 
    !> How much the tractions of two fields differ, in parts of the largest traction so far, there, or `elsewhere`.
    pure real(wp) function difference(path, one, other, elsewhere)
