@@ -262,7 +262,7 @@ contains
             row = model%scene%friction%law%row(after%status(i), here(i), there(i))
             if (explicit) row = model%scene%friction%law%row(after%status(i), here(i), here(i))
             defect(i) = abs(there(i)%shear - row%slope*there(i)%pressure - row%stiffness*there(i)%slip - row%offset) &
-                        + model%scene%friction%law%turning(here(i)) &
+                        + max(model%scene%friction%law%turning(here(i)), model%scene%friction%law%turning(there(i))) &
                         *max(-motion_sign(after%status(i))*(there(i)%slip - here(i)%slip), 0.0_wp)
          end if
       end do

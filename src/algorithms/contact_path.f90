@@ -327,11 +327,12 @@ contains
       all_points%excess = self%state%excess
    end function points
 
-   !> Where friction has corners of its own.
-   subroutine find_corners(self, corners)
+   !> Where friction has corners of its own, in an increment that is expected to lead to the fields `after`.
+   subroutine find_corners(self, after, corners)
       class(contact_path_type), intent(in) :: self
+      type(contact_fields_type), intent(in) :: after
       type(corners_type), intent(out) :: corners
-      type(friction_point_type) :: points(size(self%state%status))
+      type(friction_point_type), dimension(size(self%state%status)) :: points, there
       real(wp) :: excess, by_pressure, by_slip
       integer :: i, n
 
@@ -344,8 +345,9 @@ contains
       associate (law => self%model%scene%friction%law)
          if (law%sticks .and. .not. law%weakening_distance < huge(1.0_wp) .and. .not. self%dropping()) return
          points = self%points(self%state%fields)
+         there = self%points(after)
          do i = 1, n
-            if (creeps(self%state%status(i))) corners%turning(i) = law%turning(points(i))
+            if (creeps(self%state%status(i))) corners%turning(i) = max(law%turning(points(i)), law%turning(there(i)))
             if (.not. slips(self%state%status(i))) cycle
             corners%room(i) = law%room(points(i))
             if (.not. points(i)%excess > 0.0_wp) cycle

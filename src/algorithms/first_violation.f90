@@ -28,7 +28,7 @@ module mfv_first_violation
    public :: lead_by_violations
 
    !> So many steps in a row below the tie are no progress.
-   integer, parameter :: most_tiny_steps = 1000
+   integer, parameter :: most_tiny_steps = 200
    !> The rates' round-off where a cycle of statuses suggests that some of them are noise.
    real(wp), parameter :: larger_round_off = 1.0e-9_wp
    !> The shortest increment worth trying, in parts of a segment.
@@ -207,7 +207,7 @@ contains
 
       snapped = .false.
       if (moment%snapped .or. .not. any(increment%violations%kind == event_stick)) return
-      call path%find_corners(corners)
+      call path%find_corners(path%state%fields, corners)
       if (.not. any(increment%violations%kind == event_stick .and. increment%violations%step <= no_step .and. &
                     corners%room < huge(1.0_wp))) return
       call path%snap(snapped)

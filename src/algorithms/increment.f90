@@ -63,7 +63,7 @@ contains
       bends = .false.
       if (.not. path%model%tangential) return
       if (path%model%scene%friction%law%is_linear) return
-      call path%find_corners(corners)
+      call path%find_corners(path%state%fields, corners)
       bends = any(creeps(path%state%status)) .or. any(corners%room < huge(1.0_wp))
    end function bends
 
@@ -75,7 +75,7 @@ contains
       type(corners_type) :: corners
       real(wp) :: first
 
-      call path%find_corners(corners)
+      call path%find_corners(path%state%fields%plus(longest, increment%response%rate), corners)
       increment%violations = find_violations(path%model, path%state%status, corners, path%state%fields, &
                                              increment%response%rate, round_off)
       first = minval(increment%violations%step)
@@ -94,8 +94,9 @@ contains
       real(wp), parameter :: safety = 0.9_wp, most_growth = 4.0_wp, least_shrink = 0.1_wp, first_trial = 1.0e-3_wp, &
                              shortest = 1.0e-9_wp
       type(increment_type) :: predicted
+      type(contact_fields_type) :: guess
       real(wp) :: length, error, change, tolerance
-      logical :: agrees, accepted
+      logical :: agrees, accepted, touched
       integer :: attempt
 
       if (path%model%scene%method%integration == integration_explicit .and. &
@@ -103,7 +104,9 @@ contains
          call search(path, round_off, min(left, path%model%scene%method%load_step), increment)
          return
       end if
-      if (increment%step <= no_step) return
+      ! Of a node that has just touched, tangents know nothing: its part of the limit comes out of the increment itself.
+      touched = any(creeps(path%state%status) .and. .not. path%state%fields%pressure > 0.0_wp)
+      if (increment%step <= no_step .and. .not. touched) return
       if (.not. path%trial > 0.0_wp) path%trial = first_trial
       tolerance = path%model%scene%method%friction_tolerance
       predicted = increment
@@ -112,7 +115,10 @@ contains
          increment = predicted
          call correct(path, constraints, length, drop, round_off, increment, agrees)
          if (increment%singular) return
-         error = difference(path, predicted%response%rate, increment%response%rate, increment%step)
+         guess = path%state%fields%plus(increment%step, predicted%response%rate)
+         call guess_touching(path, guess)
+         error = difference(path, guess, path%state%fields%plus(increment%step, increment%response%rate), &
+                            maxval(abs(increment%response%rate%pressure)))
          change = most_growth
          if (error > 0.0_wp) change = min(most_growth, safety*sqrt(tolerance/error))
          if (.not. agrees) change = min(change, 0.25_wp)
@@ -146,6 +152,7 @@ contains
       step = length
       secants = constraints
       after = path%state%fields%plus(step, increment%response%rate)
+      call guess_touching(path, after)
       do pass = 1, most_passes
          call find_end(path, constraints, step, drop, after, agrees)
          if (.not. agrees) return
@@ -184,20 +191,30 @@ contains
          call path%system%solve(path%model, lines, response, singular)
          if (singular) return
          after = response%state%plus(step, response%rate)
-         converges = difference(path, before, after, 1.0_wp) <= close_enough
+         converges = difference(path, before, after, 0.0_wp) <= close_enough
          if (converges) return
       end do
    end subroutine find_end
 
-   !> How much the tractions differ after a step with one or the other rates, in parts of the largest traction.
-   pure real(wp) function difference(path, one, other, step)
+   !> A guess for nodes that creep since they have just touched: half way to the friction limit at the most.
+   subroutine guess_touching(path, fields)
+      class(contact_path_type), intent(in) :: path
+      type(contact_fields_type), intent(inout) :: fields
+      real(wp), parameter :: half = 0.5_wp
+
+      where (creeps(path%state%status) .and. .not. path%state%fields%pressure > 0.0_wp) &
+         fields%shear = sign(min(abs(fields%shear), half*path%model%static_friction*max(fields%pressure, 0.0_wp)), fields%shear)
+   end subroutine guess_touching
+
+   !> How much the tractions of two fields differ, in parts of the largest traction so far, there, or `elsewhere`.
+   pure real(wp) function difference(path, one, other, elsewhere)
       class(contact_path_type), intent(in) :: path
       type(contact_fields_type), intent(in) :: one, other
-      real(wp), intent(in) :: step
+      real(wp), intent(in) :: elsewhere
       real(wp) :: scale
 
-      scale = max(path%certificate%traction_scale(), maxval(abs(path%state%fields%pressure + step*one%pressure)))
-      difference = step*max(maxval(abs(one%shear - other%shear)), maxval(abs(one%pressure - other%pressure)))
+      scale = max(path%certificate%traction_scale(), maxval(abs(other%pressure)), elsewhere)
+      difference = max(maxval(abs(one%shear - other%shear)), maxval(abs(one%pressure - other%pressure)))
       if (scale > 0.0_wp) difference = difference/scale
    end function difference
 
