@@ -58,6 +58,7 @@ module mfv_certificate
    contains
       procedure :: largest
       procedure :: traction_scale
+      procedure :: force_scale
       procedure :: claim
       procedure :: check_increment
       procedure :: note_jump
@@ -119,6 +120,13 @@ contains
 
       traction_scale = self%traction
    end function traction_scale
+
+   !> The largest normal force so far, force/length.
+   pure real(wp) function force_scale(self)
+      class(certificate_type), intent(in) :: self
+
+      force_scale = self%normal_force
+   end function force_scale
 
    !> Check the increment from `before` to `after`, with the statuses of `after` on the way.
    subroutine check_increment(self, model, before, after)

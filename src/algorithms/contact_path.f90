@@ -229,22 +229,26 @@ contains
       integer, intent(in) :: along
       logical, intent(inout) :: settled
       type(error_type), allocatable, intent(out) :: error
-      real(wp), parameter :: balanced = 1.0e-9_wp
+      real(wp), parameter :: balanced = 1.0e-9_wp, nothing = 1.0e-12_wp
       type(constraints_type) :: trial
       type(response_type) :: response
-      real(wp) :: wanted, missing, scale
+      real(wp) :: wanted, missing, scale, arm, negligible
+      logical :: pressed
       logical :: yielding(size(self%state%status)), singular
 
       wanted = load%rate
       load = load_type(control_displacement, merge(self%state%fields%shift, self%state%fields%rotation, along == along_shift), &
                        0.0_wp)
+      arm = merge(1.0_wp, self%model%length(), along == along_shift)
+      negligible = nothing*self%certificate%force_scale()*arm
+      pressed = self%state%fields%normal_force > nothing*self%certificate%force_scale()
       if (.not. any(slips(self%state%status))) then
-         scale = self%state%fields%normal_force*merge(1.0_wp, self%model%length(), along == along_shift)
-         if (abs(wanted) > balanced*scale) &
-            call self%end_here(merge(MFV_GROSS_SLIDING, MFV_SEPARATED, any(in_contact(self%state%status))), &
+         if (abs(wanted) > max(balanced*self%state%fields%normal_force*arm, negligible)) &
+            call self%end_here(merge(MFV_GROSS_SLIDING, MFV_SEPARATED, pressed), &
                                'no node in contact has friction to carry a '//trim(force_name(along)), error)
          return
       end if
+      if (.not. pressed .and. abs(wanted) <= negligible) return
       trial = constraints
       if (along == along_shift) then
          trial%tangential = load
@@ -259,7 +263,7 @@ contains
       if (.not. singular) then
          missing = wanted - self%model%resultant(along, response%rate%pressure, response%rate%shear)
          scale = max(scale, self%model%force(abs(response%rate%shear*self%model%tangential_arm(:, along))))
-         if (abs(missing) <= balanced*scale) return
+         if (abs(missing) <= max(balanced*scale, negligible)) return
       end if
       yielding = slips(self%state%status)
       if (.not. singular) yielding = yielding .and. &
@@ -268,7 +272,12 @@ contains
          call self%set_status(yielding, self%holding(real(-slip_sign(self%state%status), wp)))
          settled = .false.
       else
-         call self%end_here(MFV_GROSS_SLIDING, 'gross sliding: every contact node slips', error)
+         if (pressed) then
+            call self%end_here(MFV_GROSS_SLIDING, 'gross sliding: every contact node slips', error)
+         else
+            call self%end_here(MFV_SEPARATED, 'the bodies are no longer pressed together to carry a '// &
+                               trim(force_name(along)), error)
+         end if
       end if
    end subroutine hold_motion
 

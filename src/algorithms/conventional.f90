@@ -77,12 +77,13 @@ contains
       type(constraints_type) :: constraints
       type(response_type) :: response
       type(repair_type) :: repair
-      integer, allocatable :: tried(:, :)
+      integer, allocatable :: tried(:, :), start(:)
       integer :: iteration, n
       logical :: singular, touched
 
       again = .false.
       n = size(path%state%status)
+      start = path%state%status
       call touch(path, segment, done, touched)
       if (touched) call path%keep_on_mesh(moment, error)
       if (allocated(error)) return
@@ -106,6 +107,7 @@ contains
          tried = reshape([tried, path%state%status], [n, size(tried, 2) + 1])
          call make(path, repair, moment)
          if (any(all(tried == spread(path%state%status, 2, size(tried, 2)), dim=1))) then
+            path%state%status = start
             call path%end_here(MFV_CYCLING, 'cycling: after '//to_text(iteration)//' repairs at one load the statuses are '// &
                                'as before; node '//to_text(repair%node)//' was the last', error)
             return
@@ -114,6 +116,7 @@ contains
          again = size(path%state%status) /= n
          if (again .or. allocated(error)) return
       end do
+      path%state%status = start
       call path%end_here(MFV_INADMISSIBLE, 'inadmissible: '//to_text(path%model%scene%method%most_iterations)// &
                          ' repairs at one load left an inequality violated at node '//to_text(repair%node), error)
    end subroutine solve_load

@@ -703,8 +703,11 @@ contains
          call reader%complain('friction', 1, 'mu_file', path//': mu_kinetic must not be above mu_static', error)
       end if
       if (allocated(error)) return
-      friction%static = friction_coefficient_type(table(2, :), table(1, :))
-      friction%kinetic = friction_coefficient_type(table(size(table, 1), :), table(1, :))
+      ! Component by component: gfortran 12 makes garbage of a constructor with sections of an array.
+      friction%static%value = table(2, :)
+      friction%static%position = table(1, :)
+      friction%kinetic%value = table(size(table, 1), :)
+      friction%kinetic%position = table(1, :)
    end subroutine read_mu_file
 
    !> Path of a file that a key names, beside the case.
