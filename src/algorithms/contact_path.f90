@@ -248,7 +248,8 @@ contains
                                'no node in contact has friction to carry a '//trim(force_name(along)), error)
          return
       end if
-      if (.not. pressed .and. abs(wanted) <= negligible) return
+      ! What is lifted off opens next; its last round-off of pressure slides nothing.
+      if (.not. pressed .and. abs(wanted) <= negligible .and. constraints%normal%rate < 0.0_wp) return
       trial = constraints
       if (along == along_shift) then
          trial%tangential = load
