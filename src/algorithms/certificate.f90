@@ -249,7 +249,8 @@ contains
    end subroutine check_friction
 
    !> By how much the tractions of slipping nodes fail the friction law, and those of creeping nodes the law's increment from
-   !> state to state and what a motion against their direction does to it; where friction is off, the shear traction. Shape (nodes), force/length^2.
+   !> state to state and what a motion against their direction does to it; where friction is off, the shear traction.
+   !> Shape (nodes), force/length^2.
    subroutine law_defects(model, before, after, defect)
       type(contact_model_type), intent(in) :: model
       type(contact_state_type), intent(in) :: before, after

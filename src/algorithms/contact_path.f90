@@ -192,7 +192,8 @@ contains
    end subroutine settle_loads
 
    !> A prescribed moment. While no two nodes are in contact nothing determines the rotation: it is held, which only a moment of
-   !> zero allows (a tangential force at the surface makes another one). The same where normals are along the radius and no node sticks: rotation then only slides.
+   !> zero allows (a tangential force at the surface makes another one). The same where normals are along the radius and no node
+   !> sticks: rotation then only slides.
    !> Errors MFV_NO_CONTINUATION: the moment tips the upper body over; MFV_GROSS_SLIDING.
    subroutine settle_moment(self, slides, constraints, settled, error)
       class(contact_path_type), intent(inout) :: self
@@ -404,7 +405,8 @@ contains
    end subroutine snap
 
    !> Statuses and lines of friction as constraints: tangents, or lines for where the fields are expected to be `after` an
-   !> increment; with `straight` the secants to there. `drop`: whether excess tractions are let go, all of them per unit of load.
+   !> increment; with `straight` the secants to there. `drop`: whether excess tractions are let go, all of them per unit of
+   !> load.
    subroutine set_rows(self, constraints, drop, after, straight)
       class(contact_path_type), intent(in) :: self
       type(constraints_type), intent(inout) :: constraints

@@ -99,7 +99,8 @@ contains
       by_shear = max(by_shear, 0.0_wp)
       row%stiffness = -stiffness/(1.0_wp + by_shear)
       row%slope = -by_pressure/(1.0_wp + by_shear)
-      row%offset = (before%shear + stiffness*before%slip + by_shear*after%shear + by_pressure*after%pressure)/(1.0_wp + by_shear)
+      row%offset = (before%shear + stiffness*before%slip + by_shear*after%shear + by_pressure*after%pressure) &
+                   /(1.0_wp + by_shear)
    end function creeping_row
 
    !> See mfv_friction_law.
