@@ -246,6 +246,8 @@ contains
          if (in_contact(constraints%status(assembly%nodes(i)))) then
             assembly%matrix(row, assembly%normal + i) = 1.0_wp
             assembly%right(row, 1) = -model%initial_gap(assembly%nodes(i))/assembly%length
+            if (allocated(constraints%gap_rate)) &
+               assembly%right(row, 2) = constraints%gap_rate(assembly%nodes(i))/assembly%length
          else
             assembly%matrix(row, assembly%pressure + i) = 1.0_wp
          end if
@@ -267,6 +269,7 @@ contains
          if (constraints%status(node) == node_stick) then
             assembly%matrix(row, assembly%slip + i) = 1.0_wp
             assembly%right(row, 1) = constraints%stuck_slip(node)/assembly%length
+            if (allocated(constraints%slip_rate)) assembly%right(row, 2) = constraints%slip_rate(node)/assembly%length
          else if (slips(constraints%status(node)) .or. creeps(constraints%status(node))) then
             associate (line => constraints%row(node))
                slope = line%slope*assembly%stress/assembly%shear_stress

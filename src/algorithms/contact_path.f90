@@ -47,6 +47,7 @@ module mfv_contact_path
       procedure :: record
       procedure :: start_segment
       procedure :: settle_loads
+      procedure :: loads_at
       procedure :: dropping
       procedure :: points
       procedure :: find_corners
@@ -72,8 +73,8 @@ module mfv_contact_path
       real(wp) :: round_off = 1.0e-12_wp
       !> One change at a time, after a cycle.
       logical :: one_at_a_time = .false.
-      !> Whether nodes have been let snap here.
-      logical :: snapped = .false.
+      !> Whether nodes have been let snap here, and whether the rates of all have been solved for.
+      logical :: snapped = .false., solved = .false.
       !> First change at this load: event and node; and how many nodes changed with it.
       integer :: event = event_none, node = 0, count = 0
    end type moment_type
@@ -141,6 +142,18 @@ contains
       self%state%fields%moment = self%model%resultant(along_rotation, self%state%fields%pressure, self%state%fields%shear)
    end subroutine begin_rotation
 
+   !> The loads at the part `done` of the segment, as they are prescribed.
+   subroutine loads_at(self, segment, done, constraints)
+      class(contact_path_type), intent(in) :: self
+      type(segment_type), intent(in) :: segment
+      real(wp), intent(in) :: done
+      type(constraints_type), intent(inout) :: constraints
+
+      constraints%normal = at_part(segment%normal, done)
+      constraints%tangential = at_part(segment%tangential, done)
+      constraints%rotational = at_part(segment%rotational, done)
+   end subroutine loads_at
+
    !> The constraints at the part `done` of the segment. A load that nothing in the present contact determines is held
    !> (its displacement stays): the tangential one without friction, all without contact; the rotation while no two nodes
    !> are in contact.
@@ -158,9 +171,7 @@ contains
       logical :: contact, slides, drop
 
       settled = .true.
-      constraints%normal = at_part(segment%normal, done)
-      constraints%tangential = at_part(segment%tangential, done)
-      constraints%rotational = at_part(segment%rotational, done)
+      call self%loads_at(segment, done, constraints)
       drop = self%dropping()
       if (drop) then
          constraints%normal%rate = 0.0_wp

@@ -27,6 +27,8 @@ module mfv_contact_system
       !> the offset per unit of load; shape (nodes).
       type(friction_row_type), allocatable :: row(:)
       real(wp), allocatable :: offset_rate(:)
+      !> Rates with which nodes in contact part and stuck nodes slip, length per unit of load, shape (nodes); not there: none.
+      real(wp), allocatable :: gap_rate(:), slip_rate(:)
       !> Normal, tangential and rotational load; the last one of no meaning where rotation is not modelled.
       type(load_type) :: normal, tangential, rotational
    end type constraints_type

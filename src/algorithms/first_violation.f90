@@ -7,7 +7,8 @@
 !> At one load several changes can follow each other (a corner of the load path, a node that has just changed): they are
 !> increments of zero length in the same loop. All violations of one moment change together, so that what is symmetric
 !> stays symmetric. The status sets tried at one load are remembered; a repeated one means a cycle: then only the fastest
-!> violation changes at a time, and when that repeats too there is no admissible continuation (Klarbring 1990).
+!> violation changes at a time, and when that repeats too the rates of all are solved for at once (mfv_rate_problem). Where
+!> even that fails there is no admissible continuation (Klarbring 1990).
 !>
 !> Under static and kinetic friction a node that begins to slip has more shear traction than it may keep. The load then
 !> waits while the excess is let go, an internal load with the same search for events: so every state on the way is
@@ -21,6 +22,7 @@ module mfv_first_violation
    use mfv_kinds, only: wp
    use mfv_node_status
    use mfv_observer, only: observer_type
+   use mfv_rate_problem, only: settle_by_rates
    use mfv_status
    use mfv_strings, only: to_text
    implicit none
@@ -105,7 +107,7 @@ contains
             end if
          end if
          if (.not. increment%ends_in_event) cycle
-         call change_statuses(path, segment, increment, moment, error)
+         call change_statuses(path, segment, done, increment, moment, error)
          if (allocated(error)) return
       end do
    end subroutine lead_by_violations
@@ -139,9 +141,10 @@ contains
 
    !> Change the statuses of the nodes whose inequalities break first, together.
    !> Errors MFV_NO_CONTINUATION: every way out has been tried at this load; MFV_MESH_EXCEEDED.
-   subroutine change_statuses(path, segment, increment, moment, error)
+   subroutine change_statuses(path, segment, done, increment, moment, error)
       class(contact_path_type), intent(inout) :: path
       type(segment_type), intent(in) :: segment
+      real(wp), intent(in) :: done
       type(increment_type), intent(in) :: increment
       type(moment_type), intent(inout) :: moment
       type(error_type), allocatable, intent(out) :: error
@@ -158,6 +161,13 @@ contains
             return
          end if
          if (moment%one_at_a_time .and. moment%round_off >= larger_round_off) then
+            if (.not. moment%solved) then
+               call settle_at_once(path, segment, done, snapped)
+               if (snapped) then
+                  moment = moment_type(solved=.true., event=moment%event, node=moment%node, count=moment%count)
+                  return
+               end if
+            end if
             if (.not. moment%snapped) call path%snap(snapped)
             if (snapped) then
                moment = moment_type(snapped=.true.)
@@ -195,6 +205,19 @@ contains
       end associate
       call path%keep_on_mesh(moment, error)
    end subroutine change_statuses
+
+   !> Statuses of all undecided nodes at once. `settled`: whether they were found.
+   subroutine settle_at_once(path, segment, done, settled)
+      class(contact_path_type), intent(inout) :: path
+      type(segment_type), intent(in) :: segment
+      real(wp), intent(in) :: done
+      logical, intent(out) :: settled
+      type(constraints_type) :: constraints
+
+      call path%loads_at(segment, done, constraints)
+      call path%set_rows(constraints, .false.)
+      call settle_by_rates(path, constraints, settled)
+   end subroutine settle_at_once
 
    !> Where a node that is still weakening would turn back, it either comes to rest or the bodies can no longer unload as fast
    !> as its friction falls. Let it snap, once at each load: one that need not is caught again at once, and comes to rest.
