@@ -31,6 +31,8 @@ module mfv_first_violation
 
    !> So many steps in a row below the tie are no progress.
    integer, parameter :: most_tiny_steps = 200
+   !> So many changes at one load, and one a node, before the rates of all are solved for at once.
+   integer, parameter :: patience = 30
    !> The rates' round-off where a cycle of statuses suggests that some of them are noise.
    real(wp), parameter :: larger_round_off = 1.0e-9_wp
    !> The shortest increment worth trying, in parts of a segment.
@@ -67,6 +69,11 @@ contains
          if (standing > most_tiny_steps + 10*size(path%state%status)) then
             call path%no_continuation('the load does not advance', error)
             return
+         end if
+         if (standing == patience + size(path%state%status) .and. .not. moment%solved) then
+            call settle_at_once(path, segment, done, settled)
+            moment%solved = .true.
+            if (settled .and. allocated(moment%tried)) deallocate (moment%tried)
          end if
          drop = path%dropping()
          call path%settle_loads(segment, done, moment, constraints, settled, error)
