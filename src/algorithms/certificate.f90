@@ -260,7 +260,8 @@ contains
       integer :: i
       logical :: explicit
 
-      explicit = model%scene%method%integration == integration_explicit .or. model%scene%method%algorithm /= algorithm_mfv
+      explicit = model%scene%method%integration == integration_explicit .and. &
+                 model%scene%method%algorithm == algorithm_mfv
       here = points_of(before)
       there = points_of(after)
       defect = after%fields%shear

@@ -77,6 +77,7 @@ contains
       type(constraints_type) :: constraints
       type(response_type) :: response
       type(repair_type) :: repair
+      type(contact_fields_type) :: expected
       integer, allocatable :: tried(:, :), start(:)
       integer :: iteration, n
       logical :: singular, touched
@@ -91,8 +92,9 @@ contains
       if (again) return
       call stick_all(path)
       allocate (tried(n, 0))
+      expected = path%state%fields
       do iteration = 1, path%model%scene%method%most_iterations
-         call constrain(path, segment, done, constraints, error)
+         call constrain(path, segment, done, expected, constraints, error)
          if (allocated(error)) return
          call path%system%solve(path%model, constraints, response, singular)
          if (singular) then
@@ -100,7 +102,10 @@ contains
             return
          end if
          repair = worst_violation(path, response%state)
-         if (repair%kind == event_none) then
+         if (repair%kind == event_none .and. .not. agrees(path, expected, response%state)) then
+            expected = response%state
+            cycle
+         else if (repair%kind == event_none) then
             call accept(path, segment, response%state, moment)
             return
          end if
@@ -156,12 +161,25 @@ contains
       path%state%excess = 0.0_wp
    end subroutine change
 
-   !> The constraints at the part `done` of the segment. Errors MFV_GROSS_SLIDING, MFV_SEPARATED: a tangential force that
+   !> Whether friction that is not linear is right at the end of the load step: its lines were made for `expected`.
+   logical function agrees(path, expected, fields)
+      class(contact_path_type), intent(in) :: path
+      type(contact_fields_type), intent(in) :: expected, fields
+
+      agrees = .true.
+      if (.not. path%model%tangential) return
+      if (path%model%scene%friction%law%is_linear) return
+      agrees = max(maxval(abs(fields%shear - expected%shear)), maxval(abs(fields%pressure - expected%pressure))) &
+               <= 0.1_wp*round_off*maxval(abs(fields%pressure))
+   end function agrees
+
+   !> The constraints at the part `done` of the segment, with friction right where the fields `expected` are. Errors MFV_GROSS_SLIDING, MFV_SEPARATED: a tangential force that
    !> nothing can carry.
-   subroutine constrain(path, segment, done, constraints, error)
+   subroutine constrain(path, segment, done, expected, constraints, error)
       class(contact_path_type), intent(in) :: path
       type(segment_type), intent(in) :: segment
       real(wp), intent(in) :: done
+      type(contact_fields_type), intent(in) :: expected
       type(constraints_type), intent(out) :: constraints
       type(error_type), allocatable, intent(out) :: error
       real(wp), parameter :: no_force = 1.0e-12_wp
@@ -170,7 +188,7 @@ contains
       constraints%normal = load_at(segment%normal, done)
       constraints%tangential = load_at(segment%tangential, done)
       constraints%rotational = load_at(segment%rotational, done)
-      call path%set_rows(constraints, .false.)
+      call path%set_rows(constraints, .false., expected)
       if (.not. any(in_contact(path%state%status)) .and. constraints%normal%control == control_force) &
          constraints%normal = load_type(control_displacement, path%state%fields%approach, 0.0_wp)
       if (any(holds(path%state%status)) .or. constraints%tangential%control /= control_force) return
@@ -214,9 +232,29 @@ contains
             return
          end if
          slipped = trial%slip() - path%state%fields%slip()
-         repair = worst(event_stick, -motion_sign(status)*slipped, slips(status) .or. creeps(status), motion)
+         if (path%model%tangential .and. any(slips(status))) call mend_bristles(path, trial, slipped, repair, traction)
+         if (repair%kind == event_none) &
+            repair = worst(event_stick, -motion_sign(status)*slipped, slips(status) .or. creeps(status), motion)
       end associate
    end function worst_violation
+
+   !> Where nodes creep instead of sticking: slipping ones whose bristles take over again. Their `slipped` then counts as none.
+   subroutine mend_bristles(path, trial, slipped, repair, allowed)
+      class(contact_path_type), intent(in) :: path
+      type(contact_fields_type), intent(in) :: trial
+      real(wp), intent(inout) :: slipped(:)
+      type(repair_type), intent(inout) :: repair
+      real(wp), intent(in) :: allowed
+      real(wp), dimension(size(slipped)) :: yields
+
+      associate (law => path%model%scene%friction%law, status => path%state%status)
+         if (law%sticks) return
+         yields = law%yields(motion_sign(status)*slipped, law%full_part*path%model%static_friction &
+                             *(trial%pressure - path%state%fields%pressure))
+         repair = worst(event_stick, -yields, slips(status), allowed)
+         where (slips(status)) slipped = 0.0_wp
+      end associate
+   end subroutine mend_bristles
 
    !> The node of `mask` with the largest violation, if that is beyond `allowed`.
    pure type(repair_type) function worst(kind, violation, mask, allowed)

@@ -31,6 +31,9 @@ module mfv_first_violation
 
    !> So many steps in a row below the tie are no progress.
    integer, parameter :: most_tiny_steps = 200
+   !> So many increments for this part of a segment, and ten a node, are no progress either (stick-slip without end).
+   integer, parameter :: most_events = 5000
+   real(wp), parameter :: worth_telling = 1.0e-5_wp
    !> So many changes at one load, and one a node, before the rates of all are solved for at once.
    integer, parameter :: patience = 30
    !> The rates' round-off where a cycle of statuses suggests that some of them are noise.
@@ -55,8 +58,8 @@ contains
       type(moment_type) :: moment
       type(constraints_type) :: constraints
       type(increment_type) :: increment
-      real(wp) :: done
-      integer :: creeping, standing
+      real(wp) :: done, milestone
+      integer :: creeping, standing, since
       logical :: settled, stop_wanted, drop, last, snapped
 
       call path%start_segment(segment, error)
@@ -64,6 +67,8 @@ contains
       done = 0.0_wp
       creeping = 0
       standing = 0
+      milestone = 0.0_wp
+      since = 0
       do
          standing = standing + 1
          if (standing > most_tiny_steps + 10*size(path%state%status)) then
@@ -108,7 +113,12 @@ contains
             moment = moment_type()
             standing = 0
             if (.not. drop) creeping = merge(creeping + 1, 0, increment%step < tie)
-            if (creeping > most_tiny_steps) then
+            since = since + 1
+            if (done > milestone + worth_telling) then
+               milestone = done
+               since = 0
+            end if
+            if (creeping > most_tiny_steps .or. since > most_events + 10*size(path%state%status)) then
                call path%no_continuation('the load does not advance', error)
                return
             end if

@@ -175,7 +175,7 @@ contains
       logical, intent(in) :: drop
       type(contact_fields_type), intent(inout) :: after
       logical, intent(out) :: converges
-      integer, parameter :: most_iterations = 15
+      integer, parameter :: most_iterations = 50
       real(wp), parameter :: close_enough = 1.0e-12_wp
       type(constraints_type) :: lines
       type(response_type) :: response

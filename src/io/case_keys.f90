@@ -158,7 +158,7 @@ contains
       call add_choice_key(keys, 'solver', 'algorithm', 'mfv', 'mfv conventional', 'mfv: Method of First Violation; '// &
                           'conventional: load steps with repairs of statuses, for comparison')
       call add_choice_key(keys, 'solver', 'stepping', 'event', 'event nominal', 'mfv: events from rates, or from trial load '// &
-                          'steps and interpolation; both lead to the same states')
+                          'steps and interpolation; both lead to the same states (coulomb, static_kinetic)')
       call add_part_key(keys, 'load_step', '0.05', 'nominal load step, part of each straight part of the load history: for '// &
                         "algorithm='conventional', stepping='nominal', integration='explicit'")
       call add_choice_key(keys, 'solver', 'integration', 'second_order', 'second_order explicit', 'dahl: second order with '// &
@@ -170,12 +170,12 @@ contains
       call add_choice_key(keys, 'solver', 'linear_solver', 'dgesv', 'dgesv', 'dgesv: augmented system with LAPACK')
    end subroutine add_solver_keys
 
-   !> A number of the solver above 0 and at most 1, with a default.
+   !> A number of the solver from 1e-12 to 1, with a default.
    subroutine add_part_key(keys, name, default, meaning)
       type(key_type), allocatable, intent(inout) :: keys(:)
       character(*), intent(in) :: name, default, meaning
 
-      call add_real_key(keys, 'solver', name, '', meaning, lower=0.0_wp, lower_open=.true., upper=1.0_wp)
+      call add_real_key(keys, 'solver', name, '', meaning, lower=1.0e-12_wp, upper=1.0_wp)
       keys(size(keys))%default = default
    end subroutine add_part_key
 

@@ -76,6 +76,7 @@ contains
       call parse_namelists(text, source, reader%groups, error)
       if (.not. allocated(error)) call check_groups(reader, error)
       if (.not. allocated(error)) call check_entries(reader, error)
+      if (.not. allocated(error)) call check_friction_keys(reader, error)
       if (.not. allocated(error)) call check_friction_of_steps(reader, error)
       if (.not. allocated(error)) call read_scene(reader, case%scene, error)
       if (allocated(error)) return
@@ -240,6 +241,7 @@ contains
       if (.not. allocated(error)) call check_matrix(reader, scene, error)
       if (.not. allocated(error)) call read_mesh(reader, scene, error)
       if (.not. allocated(error)) call check_coefficients_a_node(reader, scene, error)
+      if (.not. allocated(error)) call check_method(reader, error)
       call read_method(reader, scene%method)
    end subroutine read_scene
 
@@ -743,6 +745,24 @@ contains
       end if
    end subroutine check_coefficients_a_node
 
+   !> Choices of the solver that do not go together, or with the friction law.
+   subroutine check_method(reader, error)
+      type(reader_type), intent(in) :: reader
+      type(error_type), allocatable, intent(out) :: error
+      character(:), allocatable :: law
+
+      law = reader%text_value('friction', 1, 'law')
+      if (reader%text_value('solver', 1, 'stepping') == 'nominal') then
+         if (reader%text_value('solver', 1, 'algorithm') == 'conventional') &
+            call reader%complain('solver', 1, 'stepping', "means nothing with algorithm='conventional'", error)
+         if (law == 'weakening' .or. law == 'dahl') &
+            call reader%complain('solver', 1, 'stepping', "must be 'event' with law='"//law//"', which is not linear "// &
+                                 'between events', error)
+      end if
+      if (reader%text_value('solver', 1, 'integration') == 'explicit' .and. law /= 'dahl') &
+         call reader%complain('solver', 1, 'integration', "means nothing without law='dahl'", error)
+   end subroutine check_method
+
    !> How the scene is to be solved.
    subroutine read_method(reader, method)
       type(reader_type), intent(in) :: reader
@@ -839,7 +859,8 @@ contains
          if (.not. reader%has('step', i, 'tangential_force')) cycle
          if (.not. abs(reader%real_value('step', i, 'tangential_force')) > 0.0_wp) cycle
          if (law .and. reader%logical_value('step', i, 'friction')) cycle
-         call reader%complain('step', i, 'tangential_force', 'must be 0 in a step without friction', error)
+         call reader%complain('step', i, 'tangential_force', 'must be 0 in a step without friction (or where every '// &
+                              'coefficient is 0)', error)
          return
       end do
    end subroutine check_friction_of_steps

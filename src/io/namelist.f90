@@ -31,6 +31,8 @@ module mfv_namelist
    type :: cursor_type
       character(:), allocatable :: text, source
       integer :: at = 1, line = 1
+      !> Commas passed on the way to it.
+      integer :: commas = 0
    end type cursor_type
 
    character(*), parameter :: line_feed = achar(10), tab = achar(9), carriage_return = achar(13)
@@ -180,6 +182,10 @@ contains
          mark = next(cursor)
          if (cursor%at > len(cursor%text) .or. mark == '/' .or. mark == '&' .or. mark == '=') return
          if (key_follows(cursor)) return
+         if (cursor%commas > min(size(entry%values), 1)) then
+            call complain(cursor, '&'//group//' '//entry%key//': a value is missing beside a comma', error)
+            return
+         end if
          if (mark == "'" .or. mark == '"') then
             call read_quoted(cursor, mark, value, error)
             if (allocated(error)) then
@@ -287,7 +293,9 @@ contains
       type(cursor_type), intent(inout) :: cursor
 
       call skip_blanks(cursor)
+      cursor%commas = 0
       do while (next(cursor) == ',')
+         cursor%commas = cursor%commas + 1
          cursor%at = cursor%at + 1
          call skip_blanks(cursor)
       end do
