@@ -28,8 +28,9 @@ program mfv_run
       "  &step     tangential_force=2.8e-4 /                                    ! shear"//line_feed// &
       "  &output   file='mindlin.h5' /"//line_feed//line_feed// &
       'Exit codes: 0 complete; 2 the input cannot be used; 3 the computation ended early (gross sliding, no'//line_feed// &
-      'admissible continuation, separated, mesh exceeded), with the result up to there; 4 the result could not be'//line_feed// &
-      'written; 130 interrupted, with the result up to there.'//line_feed//line_feed// &
+      'admissible continuation, separated, inadmissible step, mesh exceeded; conventional: cycling, inadmissible),'//line_feed// &
+      'with the result up to there; 4 the result could not be written; 130 interrupted, with the result up to'//line_feed// &
+      'there.'//line_feed//line_feed// &
       'Draw a result with: python -m mfv plot RESULT.h5 -o PICTURE.png'
    character(:), allocatable :: argument, option, text
 
