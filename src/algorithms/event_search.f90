@@ -6,6 +6,7 @@ module mfv_event_search
    use mfv_contact_model, only: contact_model_type
    use mfv_kinds, only: wp
    use mfv_node_status
+   use mfv_scene, only: integration_explicit
    implicit none
    private
    public :: violations_type, corners_type, find_violations, status_after
@@ -62,7 +63,8 @@ contains
       soft_limit = .false.
       if (allocated(model%scene%friction%law)) then
          full = model%scene%friction%law%full_part
-         soft_limit = model%scene%friction%law%soft_limit
+         ! Of a node that has just touched, explicit tangents say nothing about its limit; the corrector's rates do.
+         soft_limit = model%scene%friction%law%soft_limit .and. model%scene%method%integration == integration_explicit
          sticks = model%scene%friction%law%sticks
       end if
       gap = model%gap(state)
