@@ -262,8 +262,8 @@ contains
 
       explicit = model%scene%method%integration == integration_explicit .and. &
                  model%scene%method%algorithm == algorithm_mfv
-      here = points_of(before)
-      there = points_of(after)
+      here = before%friction_points(before%fields, model%static_friction, model%kinetic_friction)
+      there = after%friction_points(after%fields, model%static_friction, model%kinetic_friction)
       defect = after%fields%shear
       do i = 1, size(defect)
          if (slips(after%status(i))) then
@@ -276,21 +276,6 @@ contains
                         *max(-motion_sign(after%status(i))*(there(i)%slip - here(i)%slip), 0.0_wp)
          end if
       end do
-
-   contains
-
-      function points_of(state) result(points)
-         type(contact_state_type), intent(in) :: state
-         type(friction_point_type) :: points(size(state%status))
-
-         points%static = model%static_friction
-         points%kinetic = model%kinetic_friction
-         points%pressure = state%fields%pressure
-         points%shear = state%fields%shear
-         points%slip = state%fields%slip()
-         points%slipped = state%slipped
-         points%excess = state%excess
-      end function points_of
    end subroutine law_defects
 
    !> Work of the loads = stored + dissipated energy; between events everything is linear, so the trapezoid is exact.

@@ -38,8 +38,6 @@ module mfv_contact_path
       logical :: record_events = .true.
       !> Events so far: loads at which statuses changed.
       integer :: events = 0
-      !> Increments of the load (of the conventional algorithm: load steps) so far.
-      integer :: increments = 0
       !> Length of the increment to try next where friction is not linear, in parts of a segment; 0: not known yet.
       real(wp) :: trial = 0.0_wp
    contains
@@ -284,13 +282,10 @@ contains
       if (any(yielding)) then
          call self%set_status(yielding, self%holding(real(-slip_sign(self%state%status), wp)))
          settled = .false.
+      else if (pressed) then
+         call self%end_here(MFV_GROSS_SLIDING, 'gross sliding: every contact node slips', error)
       else
-         if (pressed) then
-            call self%end_here(MFV_GROSS_SLIDING, 'gross sliding: every contact node slips', error)
-         else
-            call self%end_here(MFV_SEPARATED, 'the bodies are no longer pressed together to carry a '// &
-                               trim(force_name(along)), error)
-         end if
+         call self%end_here(MFV_SEPARATED, 'the bodies are no longer pressed together to carry a '//trim(force_name(along)), error)
       end if
    end subroutine hold_motion
 
@@ -340,13 +335,7 @@ contains
       type(contact_fields_type), intent(in) :: fields
       type(friction_point_type) :: all_points(size(self%state%status))
 
-      all_points%static = self%model%static_friction
-      all_points%kinetic = self%model%kinetic_friction
-      all_points%pressure = fields%pressure
-      all_points%shear = fields%shear
-      all_points%slip = fields%slip()
-      all_points%slipped = self%state%slipped
-      all_points%excess = self%state%excess
+      all_points = self%state%friction_points(fields, self%model%static_friction, self%model%kinetic_friction)
    end function points
 
    !> Where friction has corners of its own, in an increment that is expected to lead to the fields `after`.
@@ -491,27 +480,25 @@ contains
       end do
    end function holding
 
-   !> Go to the fields `after`: memories, dissipation, directions and the certificate go along. `rate`: rates of slip on the
-   !> way, any unit, shape (nodes); `dropped`: part of the excess tractions that has been let go.
+   !> Go to the fields `after`: memories, dissipation, directions and the certificate go along. `slip_rate`: rates of slip on
+   !> the way, any unit, shape (nodes); `dropped`: part of the excess tractions that has been let go.
    subroutine take_increment(self, after, slip_rate, dropped)
       class(contact_path_type), intent(inout) :: self
       type(contact_fields_type), intent(in) :: after
       real(wp), intent(in) :: slip_rate(:), dropped
       real(wp), parameter :: moving = 1.0e-9_wp
-      type(contact_state_type) :: start
-      type(contact_fields_type) :: before
+      type(contact_state_type) :: before
 
-      start = self%state
-      before = start%fields
+      before = self%state
       call remember_slip(self, after, dropped)
       self%state%fields = after
       self%state%dissipation = self%state%dissipation &
-                               - 0.5_wp*self%model%force((before%shear + after%shear)*(after%slip() - before%slip()))
+                               - 0.5_wp*self%model%force((before%fields%shear + after%shear) &
+                                                         *(after%slip() - before%fields%slip()))
       self%state%slip_direction = 0
       where (abs(slip_rate) > moving*maxval(abs(slip_rate))) &
          self%state%slip_direction = nint(sign(1.0_wp, slip_rate))
-      self%increments = self%increments + 1
-      call self%certificate%check_increment(self%model, start, self%state)
+      call self%certificate%check_increment(self%model, before, self%state)
    end subroutine take_increment
 
    !> What the friction law remembers after an increment to the fields `after`.

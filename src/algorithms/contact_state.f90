@@ -1,6 +1,7 @@
 !> A contact state: the fields and what the nodes remember.
 module mfv_contact_state
    use mfv_contact_fields, only: contact_fields_type, new_contact_fields
+   use mfv_friction_law, only: friction_point_type
    use mfv_kinds, only: wp
    use mfv_node_status
    implicit none
@@ -24,6 +25,7 @@ module mfv_contact_state
       real(wp) :: dissipation = 0.0_wp
    contains
       procedure :: set_status
+      procedure :: friction_points
       procedure :: widen
       procedure :: contact_nodes
       procedure :: stick_nodes
@@ -53,6 +55,23 @@ contains
       where (mask .and. status == node_stick .and. self%status /= node_stick) self%stuck_slip = self%fields%slip()
       where (mask) self%status = status
    end subroutine set_status
+
+   !> What a friction law knows of the nodes where the fields are `fields` and the coefficients of friction `static` and
+   !> `kinetic`, shape (nodes).
+   pure function friction_points(self, fields, static, kinetic) result(points)
+      class(contact_state_type), intent(in) :: self
+      type(contact_fields_type), intent(in) :: fields
+      real(wp), intent(in) :: static(:), kinetic(:)
+      type(friction_point_type) :: points(size(static))
+
+      points%static = static
+      points%kinetic = kinetic
+      points%pressure = fields%pressure
+      points%shear = fields%shear
+      points%slip = fields%slip()
+      points%slipped = self%slipped
+      points%excess = self%excess
+   end function friction_points
 
    !> Add `extra` open nodes at either end; the caller fills in their displacements.
    pure subroutine widen(self, extra)

@@ -10,6 +10,7 @@ module mfv_conventional
    use mfv_contact_path
    use mfv_contact_system
    use mfv_error, only: error_type
+   use mfv_event_search, only: status_after
    use mfv_kinds, only: wp
    use mfv_node_status
    use mfv_observer, only: observer_type
@@ -25,7 +26,7 @@ module mfv_conventional
 
    !> What is to be repaired next.
    type :: repair_type
-      integer :: kind = event_none, node = 0, status = node_open
+      integer :: kind = event_none, node = 0
    end type repair_type
 
 contains
@@ -173,8 +174,8 @@ contains
                <= 0.1_wp*round_off*maxval(abs(fields%pressure))
    end function agrees
 
-   !> The constraints at the part `done` of the segment, with friction right where the fields `expected` are. Errors MFV_GROSS_SLIDING, MFV_SEPARATED: a tangential force that
-   !> nothing can carry.
+   !> The constraints at the part `done` of the segment, with friction right where the fields `expected` are. (Rates of the loads
+   !> are there, and of no use here.) Errors MFV_GROSS_SLIDING, MFV_SEPARATED: a tangential force that nothing can carry.
    subroutine constrain(path, segment, done, expected, constraints, error)
       class(contact_path_type), intent(in) :: path
       type(segment_type), intent(in) :: segment
@@ -185,9 +186,7 @@ contains
       real(wp), parameter :: no_force = 1.0e-12_wp
       real(wp) :: scale
 
-      constraints%normal = load_at(segment%normal, done)
-      constraints%tangential = load_at(segment%tangential, done)
-      constraints%rotational = load_at(segment%rotational, done)
+      call path%loads_at(segment, done, constraints)
       call path%set_rows(constraints, .false., expected)
       if (.not. any(in_contact(path%state%status)) .and. constraints%normal%control == control_force) &
          constraints%normal = load_type(control_displacement, path%state%fields%approach, 0.0_wp)
@@ -202,13 +201,6 @@ contains
       end if
       constraints%tangential = load_type(control_displacement, path%state%fields%shift, 0.0_wp)
    end subroutine constrain
-
-   pure type(load_type) function load_at(load, done)
-      type(load_type), intent(in) :: load
-      real(wp), intent(in) :: done
-
-      load_at = load_type(load%control, load%value + done*load%rate, 0.0_wp)
-   end function load_at
 
    !> The worst violation of the first sort there is, and its repair.
    function worst_violation(path, trial) result(repair)
@@ -274,30 +266,14 @@ contains
       type(repair_type), intent(in) :: repair
       type(moment_type), intent(inout) :: moment
       logical :: mask(size(path%state%status))
-      integer :: status(size(mask)), turned(size(mask))
+      logical :: friction
 
       mask = .false.
       mask(repair%node) = .true.
-      turned = path%holding(real(-motion_sign(path%state%status), wp))
-      select case (repair%kind)
-      case (event_close)
-         status = node_frictionless
-         if (any(path%state%status == node_stick .or. motion_sign(path%state%status) /= 0)) then
-            status = turned
-            if (path%state%slip_direction(repair%node) > 0 .and. all(turned == node_stick)) status = node_slip_right
-            if (path%state%slip_direction(repair%node) < 0 .and. all(turned == node_stick)) status = node_slip_left
-         end if
-      case (event_slip_right)
-         status = node_slip_right
-      case (event_slip_left)
-         status = node_slip_left
-      case (event_stick)
-         status = turned
-      case default
-         status = node_open
-      end select
+      friction = any(path%state%status == node_stick .or. motion_sign(path%state%status) /= 0)
       call note_change(moment, repair%kind, mask)
-      call change(path, mask, status)
+      call change(path, mask, status_after(repair%kind, path%state%status, friction, path%state%slip_direction, &
+                                           path%holding(real(-motion_sign(path%state%status), wp))))
    end subroutine make
 
    !> Nothing is violated: go there, count and record.

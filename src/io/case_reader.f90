@@ -573,15 +573,13 @@ contains
       end if
    end subroutine check_circle
 
-   !> The friction law with its keys.
+   !> The friction law; its keys have been checked.
    subroutine read_friction(reader, scene, error)
       type(reader_type), intent(in) :: reader
       type(scene_type), intent(inout) :: scene
       type(error_type), allocatable, intent(out) :: error
       real(wp) :: exponent
 
-      call check_friction_keys(reader, error)
-      if (allocated(error)) return
       select case (reader%text_value('friction', 1, 'law'))
       case ('coulomb')
          scene%friction = coulomb_friction(0.0_wp)
