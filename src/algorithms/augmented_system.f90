@@ -53,10 +53,11 @@ module mfv_augmented_system
 contains
 
    !> See mfv_contact_system.
-   subroutine solve(self, model, constraints, response, singular)
+   subroutine solve(self, model, constraints, start, response, singular)
       class(augmented_system_type), intent(inout) :: self
       type(contact_model_type), intent(in) :: model
       type(constraints_type), intent(in) :: constraints
+      type(contact_fields_type), intent(in) :: start
       type(response_type), intent(out) :: response
       logical, intent(out) :: singular
       type(assembly_type) :: assembly

@@ -11,6 +11,7 @@ module mfv_contact_path
    use mfv_friction_law, only: friction_point_type, friction_row_type
    use mfv_history, only: history_type
    use mfv_kinds, only: wp
+   use mfv_linear_solvers, only: new_contact_system
    use mfv_node_status
    use mfv_scene, only: control_displacement, control_force
    use mfv_status
@@ -79,16 +80,15 @@ module mfv_contact_path
 
 contains
 
-   !> An unloaded contact, the bodies just touching. `system`: the linear solver to use.
-   subroutine new_contact_path(model, system, record_events, self)
+   !> An unloaded contact, the bodies just touching.
+   subroutine new_contact_path(model, record_events, self)
       type(contact_model_type), intent(in) :: model
-      class(contact_system_type), intent(in) :: system
       logical, intent(in) :: record_events
       type(contact_path_type), intent(out) :: self
       real(wp), dimension(model%nodes()) :: normal, tangential
 
       self%model = model
-      allocate (self%system, source=system)
+      call new_contact_system(model, self%system)
       self%state = new_contact_state(model%nodes())
       self%state%fields%approach = model%nearest_approach(model%initial_gap)
       call model%relative_displacements(self%state%fields, normal, tangential)
@@ -268,7 +268,7 @@ contains
       else
          trial%rotational = load
       end if
-      call self%system%solve(self%model, trial, response, singular)
+      call self%system%solve(self%model, trial, self%state%fields, response, singular)
       missing = wanted
       scale = abs(wanted)
       if (.not. singular) then

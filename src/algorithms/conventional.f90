@@ -97,7 +97,7 @@ contains
       do iteration = 1, path%model%scene%method%most_iterations
          call constrain(path, segment, done, expected, constraints, error)
          if (allocated(error)) return
-         call path%system%solve(path%model, constraints, response, singular)
+         call path%system%solve(path%model, constraints, path%state%fields, response, singular)
          if (singular) then
             call path%end_here(MFV_INADMISSIBLE, 'inadmissible: the linear system is singular', error)
             return

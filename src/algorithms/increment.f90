@@ -48,7 +48,8 @@ contains
       if (path%model%scene%method%stepping == stepping_nominal) then
          call nominal_increment(path, constraints, min(left, path%model%scene%method%load_step), drop, round_off, increment)
       else
-         call path%system%solve(path%model, constraints, increment%response, increment%singular)
+         call path%system%solve(path%model, constraints, path%state%fields, increment%response, &
+                                increment%singular)
          if (increment%singular) return
          call search(path, round_off, left, increment)
          if (bends(path)) call follow_friction(path, constraints, left, drop, round_off, increment)
@@ -157,7 +158,7 @@ contains
          call find_end(path, constraints, step, drop, after, agrees)
          if (.not. agrees) return
          call path%set_rows(secants, drop, after, straight=.true.)
-         call path%system%solve(path%model, secants, increment%response, increment%singular)
+         call path%system%solve(path%model, secants, path%state%fields, increment%response, increment%singular)
          if (increment%singular) return
          call search(path, round_off, step, increment)
          if (abs(increment%step - step) <= same_step*step + no_step .or. increment%step <= no_step) return
@@ -188,7 +189,7 @@ contains
       do iteration = 1, most_iterations
          before = after
          call path%set_rows(lines, drop, after)
-         call path%system%solve(path%model, lines, response, singular)
+         call path%system%solve(path%model, lines, path%state%fields, response, singular)
          if (singular) return
          after = response%state%plus(step, response%rate)
          converges = difference(path, before, after, 0.0_wp) <= close_enough
@@ -259,7 +260,7 @@ contains
       do i = 1, size(target%row)
          target%row(i)%offset = target%row(i)%offset + step*target%offset_rate(i)
       end do
-      call path%system%solve(path%model, target, increment%response, increment%singular)
+      call path%system%solve(path%model, target, path%state%fields, increment%response, increment%singular)
       if (.not. increment%singular) call lead_straight(path, increment%response%state, step, increment%response)
    end subroutine solve_trial
 

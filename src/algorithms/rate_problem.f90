@@ -128,7 +128,7 @@ contains
          type(response_type) :: response
 
          w = 0.0_wp
-         call path%system%solve(path%model, constraints, response, singular)
+         call path%system%solve(path%model, constraints, path%state%fields, response, singular)
          if (singular) return
          w = response%rate%pressure(node)
          where (sort /= opens) w = path%model%static_friction(node)*w + sort*response%rate%shear(node)

@@ -9,16 +9,20 @@ module mfv_scene
    implicit none
    private
    public :: scene_type, mesh_request_type, step_type, method_type, control_keep, control_force, control_displacement, &
-             most_cycles, algorithm_mfv, algorithm_conventional, stepping_event, stepping_nominal, integration_second_order, &
-             integration_explicit
+             most_cycles, algorithm_mfv, algorithm_conventional, stepping_event, stepping_nominal, stepping_leap, &
+             integration_second_order, integration_explicit, solver_auto, solver_dgesv, solver_reduced, solver_fft
 
    !> What a step does with the normal, the tangential or the rotational load: leave it as it is, lead the force (moment) to
    !> a target, or lead the rigid displacement (approach, shift, rotation) to a target.
    integer, parameter :: control_keep = 0, control_force = 1, control_displacement = 2
    !> The Method of First Violation (dissertation section 2.3) or the conventional algorithm (2.2).
    integer, parameter :: algorithm_mfv = 1, algorithm_conventional = 2
-   !> How the Method of First Violation finds an event: from rates, or from a trial load step and interpolation (2.3 to 2.5).
-   integer, parameter :: stepping_event = 1, stepping_nominal = 2
+   !> How the Method of First Violation finds an event: from rates, or from a trial load step and interpolation (2.3 to 2.5); or
+   !> how it goes without events: a whole part of the load history at once, halved where halves lead elsewhere.
+   integer, parameter :: stepping_event = 1, stepping_nominal = 2, stepping_leap = 3
+   !> Linear solvers: chosen by size and structure; the augmented system with LAPACK's dgesv; the reduced system with a
+   !> factorisation that is updated; products through FFTW and Krylov's iteration.
+   integer, parameter :: solver_auto = 0, solver_dgesv = 1, solver_reduced = 2, solver_fft = 3
    !> How friction laws that are not linear are led: with controlled error of second order, or explicitly (appendix B).
    integer, parameter :: integration_second_order = 1, integration_explicit = 2
    !> Cycles that one step can have.
@@ -52,6 +56,13 @@ module mfv_scene
       real(wp) :: friction_tolerance = 1.0e-4_wp
       !> Iterations that the conventional algorithm may take at one load.
       integer :: most_iterations = 1000
+      integer :: linear_solver = solver_auto
+      !> Relative residual to which an iterative linear solver goes.
+      real(wp) :: linear_tolerance = 1.0e-11_wp
+      !> Events closer to each other than this part of a straight part of the load history are taken together.
+      real(wp) :: event_tolerance = 0.0_wp
+      !> By how much a leap and its two halves may differ, in parts of the largest traction.
+      real(wp) :: leap_tolerance = 1.0e-3_wp
    end type method_type
 
    !> What the user asked of the mesh. Unset: chosen from an estimate of the contact.

@@ -1,6 +1,5 @@
 !> A scene led through its load history: steps, their reversals, the state at the end of each, and how it all ended.
 module mfv_simulation
-   use mfv_augmented_system, only: augmented_system_type
    use mfv_contact_model, only: new_contact_model
    use mfv_contact_state, only: contact_state_type
    use mfv_contact_system, only: load_type
@@ -67,7 +66,7 @@ contains
       logical, intent(in), optional :: keep_reversals
       type(simulation_type) :: self
 
-      call new_contact_path(new_contact_model(scene), augmented_system_type(), keep_history == history_events, self%contact)
+      call new_contact_path(new_contact_model(scene), keep_history == history_events, self%contact)
       self%keep_history = keep_history
       if (present(keep_reversals)) self%keep_reversals = keep_reversals
       self%message = 'nothing has been computed yet'

@@ -17,6 +17,8 @@ module mfv_case
       integer :: keep_history = history_events
       !> Whether the state is kept at every reversal of a step with cycles, or only at the end of the step.
       logical :: keep_reversals = .true.
+      !> Whether companions on coarser meshes are solved for an estimate of the discretisation error.
+      logical :: error_estimate = .false.
       !> Names of the user's units, for labels.
       character(:), allocatable :: length_unit, force_unit
    contains

@@ -157,8 +157,14 @@ contains
 
       call add_choice_key(keys, 'solver', 'algorithm', 'mfv', 'mfv conventional', 'mfv: Method of First Violation; '// &
                           'conventional: load steps with repairs of statuses, for comparison')
-      call add_choice_key(keys, 'solver', 'stepping', 'event', 'event nominal', 'mfv: events from rates, or from trial load '// &
-                          'steps and interpolation; both lead to the same states (coulomb, static_kinetic)')
+      call add_choice_key(keys, 'solver', 'stepping', 'event', 'event nominal leap', 'mfv: events from rates, or from trial '// &
+                          'load steps and interpolation; both lead to the same states (coulomb, static_kinetic); leap: each '// &
+                          'straight part of the load history at once, halved where halves lead elsewhere (coulomb)')
+      call add_part_key(keys, 'leap_tolerance', '1e-3', "stepping='leap': by how much a leap and its two halves may differ, "// &
+                        'part of the largest traction')
+      call add_real_key(keys, 'solver', 'event_tolerance', '', 'mfv: events closer to each other than this part of a straight '// &
+                        'part of the load history are taken together: fewer solves, less accuracy', lower=0.0_wp, upper=0.1_wp)
+      keys(size(keys))%default = '0'
       call add_part_key(keys, 'load_step', '0.05', 'nominal load step, part of each straight part of the load history: for '// &
                         "algorithm='conventional', stepping='nominal', integration='explicit'")
       call add_choice_key(keys, 'solver', 'integration', 'second_order', 'second_order explicit', 'dahl: second order with '// &
@@ -167,7 +173,10 @@ contains
                         'largest traction')
       call add_integer_key(keys, 'solver', 'iterations', '1000', 'conventional: repairs that may be made at one load', &
                            1.0_wp, 1.0e6_wp)
-      call add_choice_key(keys, 'solver', 'linear_solver', 'dgesv', 'dgesv', 'dgesv: augmented system with LAPACK')
+      call add_choice_key(keys, 'solver', 'linear_solver', 'auto', 'auto dgesv reduced fft', 'auto: chosen by size and '// &
+                          'structure; dgesv: augmented system with LAPACK, the reference; reduced: factorisation that is '// &
+                          'updated at every event; fft: products through FFTW and iteration, no matrix')
+      call add_part_key(keys, 'linear_tolerance', '1e-11', "linear_solver='fft': relative residual to which it iterates")
    end subroutine add_solver_keys
 
    !> A number of the solver from 1e-12 to 1, with a default.
@@ -188,6 +197,8 @@ contains
                           'a history record an event, a step end, or none')
       call add_choice_key(keys, 'output', 'states', 'reversals', 'reversals steps', 'state kept at every reversal of a step '// &
                           'with cycles, or only at the end of every step')
+      call add_logical_key(keys, 'output', 'error_estimate', '.false.', 'whether the case is also solved on coarser meshes, to '// &
+                           'tell the discretisation error of half-width, stick ratio, peak tractions and dissipation')
    end subroutine add_output_keys
 
    subroutine add_text_key(keys, group, name, default, meaning)

@@ -89,6 +89,7 @@ contains
       if (reader%text_value('output', 1, 'history') == 'steps') case%keep_history = history_steps
       if (reader%text_value('output', 1, 'history') == 'none') case%keep_history = history_none
       case%keep_reversals = reader%text_value('output', 1, 'states') == 'reversals'
+      case%error_estimate = reader%logical_value('output', 1, 'error_estimate')
    end subroutine read_case_text
 
    !> Every group known, and those that must be alone alone.
@@ -757,6 +758,13 @@ contains
             call reader%complain('solver', 1, 'stepping', "must be 'event' with law='"//law//"', which is not linear "// &
                                  'between events', error)
       end if
+      if (reader%text_value('solver', 1, 'stepping') == 'leap') then
+         if (reader%text_value('solver', 1, 'algorithm') == 'conventional') then
+            call reader%complain('solver', 1, 'stepping', "means nothing with algorithm='conventional'", error)
+         else if (law /= 'coulomb' .and. law /= 'none') then
+            call reader%complain('solver', 1, 'stepping', "'leap' needs law='coulomb' or 'none', not '"//law//"'", error)
+         end if
+      end if
       if (reader%text_value('solver', 1, 'integration') == 'explicit' .and. law /= 'dahl') &
          call reader%complain('solver', 1, 'integration', "means nothing without law='dahl'", error)
    end subroutine check_method
@@ -768,7 +776,27 @@ contains
 
       method%algorithm = merge(algorithm_conventional, algorithm_mfv, &
                                reader%text_value('solver', 1, 'algorithm') == 'conventional')
-      method%stepping = merge(stepping_nominal, stepping_event, reader%text_value('solver', 1, 'stepping') == 'nominal')
+      select case (reader%text_value('solver', 1, 'stepping'))
+      case ('nominal')
+         method%stepping = stepping_nominal
+      case ('leap')
+         method%stepping = stepping_leap
+      case default
+         method%stepping = stepping_event
+      end select
+      select case (reader%text_value('solver', 1, 'linear_solver'))
+      case ('dgesv')
+         method%linear_solver = solver_dgesv
+      case ('reduced')
+         method%linear_solver = solver_reduced
+      case ('fft')
+         method%linear_solver = solver_fft
+      case default
+         method%linear_solver = solver_auto
+      end select
+      method%linear_tolerance = reader%real_value('solver', 1, 'linear_tolerance')
+      method%event_tolerance = reader%real_value('solver', 1, 'event_tolerance')
+      method%leap_tolerance = reader%real_value('solver', 1, 'leap_tolerance')
       method%integration = merge(integration_explicit, integration_second_order, &
                                  reader%text_value('solver', 1, 'integration') == 'explicit')
       method%load_step = reader%real_value('solver', 1, 'load_step')
