@@ -4,7 +4,7 @@
 !> their sort so far, so that units do not matter; the largest over all increments is kept.
 module mfv_certificate
    use, intrinsic :: ieee_arithmetic, only: ieee_is_finite
-   use mfv_compliance, only: block_up, block_ut, block_wp, block_wt, coupling_goodman
+   use mfv_compliance, only: block_up, coupling_goodman
    use mfv_contact_fields, only: contact_fields_type
    use mfv_contact_model, only: along_approach, along_rotation, along_shift, contact_model_type
    use mfv_contact_state, only: contact_state_type
@@ -157,7 +157,8 @@ contains
       class(certificate_type), intent(inout) :: self
       type(contact_model_type), intent(in) :: model
       type(contact_fields_type), intent(in) :: fields
-      real(wp), dimension(size(fields%pressure)) :: by_pressure, by_shear, rigid
+      real(wp), dimension(size(fields%pressure)) :: normal_by_pressure, normal_by_shear, tangential_by_pressure, &
+                                                    tangential_by_shear, rigid
       real(wp) :: grip
 
       grip = model%grip
@@ -165,17 +166,19 @@ contains
       self%normal_force = max(self%normal_force, abs(fields%normal_force), model%force(abs(fields%pressure)))
       self%tangential_force = max(self%tangential_force, grip*self%normal_force, &
                                   model%force(abs(fields%shear)), abs(fields%tangential_force))
-      call displacement_parts(block_wp, block_wt)
-      self%normal = max(self%normal, maxval(abs(by_pressure)), maxval(abs(by_shear)))
+      ! By pressure and by shear apart: their sizes are the scale, however much they cancel.
+      call model%compliance%parts(fields%pressure, fields%shear, normal_by_pressure, normal_by_shear, tangential_by_pressure, &
+                                  tangential_by_shear)
+      self%normal = max(self%normal, maxval(abs(normal_by_pressure)), maxval(abs(normal_by_shear)))
       rigid = model%rigid_normal(fields)
-      call self%note(elasticity_normal, maxval(abs(fields%normal + rigid - by_pressure - by_shear)), &
+      call self%note(elasticity_normal, maxval(abs(fields%normal + rigid - normal_by_pressure - normal_by_shear)), &
                      max(self%normal, maxval(abs(rigid))))
-      call displacement_parts(block_up, block_ut)
-      self%tangential = max(self%tangential, grip*self%normal, maxval(abs(by_pressure)), maxval(abs(by_shear)), &
-                            abs(fields%shift))
+      self%tangential = max(self%tangential, grip*self%normal, maxval(abs(tangential_by_pressure)), &
+                            maxval(abs(tangential_by_shear)), abs(fields%shift))
       rigid = model%rigid_tangential(fields)
       self%tangential = max(self%tangential, maxval(abs(rigid)))
-      call self%note(elasticity_tangential, maxval(abs(fields%tangential + rigid - by_pressure - by_shear)), self%tangential)
+      call self%note(elasticity_tangential, maxval(abs(fields%tangential + rigid - tangential_by_pressure &
+                                                       - tangential_by_shear)), self%tangential)
       call self%note(normal_force_balance, abs(fields%normal_force - model%resultant(along_approach, fields%pressure, &
                                                                                      fields%shear)), &
                      self%normal_force)
@@ -188,18 +191,6 @@ contains
                         + model%force(abs(model%tangential_arm(:, along_rotation)*fields%shear)))
       call self%note(moment_balance, abs(fields%moment - model%resultant(along_rotation, fields%pressure, fields%shear)), &
                      self%moment)
-
-   contains
-
-      !> Displacements by pressure and by shear apart: their sizes are the scale, however much they cancel.
-      subroutine displacement_parts(pressure_block, shear_block)
-         integer, intent(in) :: pressure_block, shear_block
-
-         by_pressure = 0.0_wp
-         by_shear = 0.0_wp
-         call model%compliance%product(pressure_block, fields%pressure, by_pressure)
-         call model%compliance%product(shear_block, fields%shear, by_shear)
-      end subroutine displacement_parts
    end subroutine check_equilibrium
 
    !> Equalities and inequalities of gap and pressure.
