@@ -246,25 +246,26 @@ contains
       type(contact_model_type), intent(in) :: model
       type(contact_state_type), intent(in) :: before, after
       real(wp), intent(out) :: defect(:)
-      type(friction_point_type), dimension(size(defect)) :: here, there
+      type(friction_point_type) :: here, there
       type(friction_row_type) :: row
       integer :: i
       logical :: explicit
 
       explicit = model%scene%method%integration == integration_explicit .and. &
                  model%scene%method%algorithm == algorithm_mfv
-      here = before%friction_points(before%fields, model%static_friction, model%kinetic_friction)
-      there = after%friction_points(after%fields, model%static_friction, model%kinetic_friction)
       defect = after%fields%shear
       do i = 1, size(defect)
+         if (.not. slips(after%status(i)) .and. .not. creeps(after%status(i))) cycle
+         there = after%friction_point(after%fields, i, model%static_friction(i), model%kinetic_friction(i))
          if (slips(after%status(i))) then
-            defect(i) = there(i)%shear + slip_sign(after%status(i))*model%scene%friction%law%strength(there(i))
-         else if (creeps(after%status(i))) then
-            row = model%scene%friction%law%row(after%status(i), here(i), there(i))
-            if (explicit) row = model%scene%friction%law%row(after%status(i), here(i), here(i))
-            defect(i) = abs(there(i)%shear - row%slope*there(i)%pressure - row%stiffness*there(i)%slip - row%offset) &
-                        + max(model%scene%friction%law%turning(here(i)), model%scene%friction%law%turning(there(i))) &
-                        *max(-motion_sign(after%status(i))*(there(i)%slip - here(i)%slip), 0.0_wp)
+            defect(i) = there%shear + slip_sign(after%status(i))*model%scene%friction%law%strength(there)
+         else
+            here = before%friction_point(before%fields, i, model%static_friction(i), model%kinetic_friction(i))
+            row = model%scene%friction%law%row(after%status(i), here, there)
+            if (explicit) row = model%scene%friction%law%row(after%status(i), here, here)
+            defect(i) = abs(there%shear - row%slope*there%pressure - row%stiffness*there%slip - row%offset) &
+                        + max(model%scene%friction%law%turning(here), model%scene%friction%law%turning(there)) &
+                        *max(-motion_sign(after%status(i))*(there%slip - here%slip), 0.0_wp)
          end if
       end do
    end subroutine law_defects
