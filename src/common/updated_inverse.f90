@@ -24,7 +24,7 @@ module mfv_updated_inverse
       integer :: rebuilds = 0
       !> The inverse but for the pending products: base + sum of weight(k) vector(:, k) vector(:, k)'; leading parts of
       !> shapes (capacity, capacity), (capacity, most_pending), (most_pending).
-      real(wp), allocatable, private :: base(:, :), vector(:, :), weight(:)
+      real(wp), allocatable, private :: base(:, :), vector(:, :), weight(:), weighed(:, :)
       integer, private :: pending = 0
       !> The last change: its vector and weight; the leading `order` values (before rows moved) are in use.
       real(wp), allocatable :: change(:)
@@ -216,8 +216,8 @@ contains
       end if
       call move_alloc(wider, self%base)
       call move_alloc(longer, self%vector)
-      if (allocated(self%change)) deallocate (self%change)
-      allocate (self%change(capacity))
+      if (allocated(self%change)) deallocate (self%change, self%weighed)
+      allocate (self%change(capacity), self%weighed(capacity, most_pending))
       if (.not. allocated(self%weight)) allocate (self%weight(most_pending))
    end subroutine reserve
 
@@ -225,7 +225,6 @@ contains
    subroutine append(self, weight)
       class(updated_inverse_type), intent(inout) :: self
       real(wp), intent(in) :: weight
-      real(wp) :: weighed(self%order, most_pending)
       integer :: k, n, rows
 
       n = self%order
@@ -235,10 +234,10 @@ contains
       self%vector(:n, self%pending) = self%change(:n)
       if (self%pending < most_pending) return
       do k = 1, most_pending
-         weighed(:, k) = self%weight(k)*self%vector(:n, k)
+         self%weighed(:n, k) = self%weight(k)*self%vector(:n, k)
       end do
       rows = size(self%base, 1)
-      call dgemm('N', 'T', n, n, most_pending, 1.0_wp, weighed, n, self%vector, rows, 1.0_wp, self%base, rows)
+      call dgemm('N', 'T', n, n, most_pending, 1.0_wp, self%weighed, rows, self%vector, rows, 1.0_wp, self%base, rows)
       self%pending = 0
    end subroutine append
 
