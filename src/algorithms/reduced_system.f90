@@ -69,7 +69,8 @@ module mfv_reduced_system
       procedure, private :: set_constraints
       procedure, private :: release
       procedure, private :: constrain
-      procedure, private :: add_unknown
+      procedure, private :: add_unknowns
+      procedure, private :: add_named
       procedure, private :: remove_unknown
       procedure, private :: rebuild
       procedure, private :: part_of
@@ -263,11 +264,8 @@ contains
                if (self%place(i, sort) > 0 .and. .not. wanted(i, sort)) call self%remove_unknown(sort, i, singular)
             end do
          end do
-         do sort = a_pressure, a_shear
-            do i = 1, size(wanted, 1)
-               if (singular) exit
-               if (self%place(i, sort) == 0 .and. wanted(i, sort)) call self%add_unknown(model, sort, i, singular)
-            end do
+         do part = 1, 2
+            if (.not. singular) call self%add_unknowns(model, part, wanted, singular)
          end do
          if (.not. singular) call self%change_motions(model, wanted_motion, .true., singular)
          if (.not. singular) return
@@ -286,36 +284,60 @@ contains
       do i = 1, 3
          if (singular) return
          if (adding .and. wanted_motion(i) .and. self%motion_place(i) == 0) then
-            call self%add_unknown(model, a_motion, i, singular)
+            call self%add_named(model, self%part_of(a_motion, i), [a_motion], [i], singular)
          else if (.not. adding .and. self%motion_place(i) > 0 .and. .not. wanted_motion(i)) then
             call self%remove_unknown(a_motion, i, singular)
          end if
       end do
    end subroutine change_motions
 
-   !> One more unknown of a part.
-   subroutine add_unknown(self, model, sort, number, singular)
+   !> The unknowns of nodes that a part lacks.
+   subroutine add_unknowns(self, model, p, wanted, singular)
       class(reduced_system_type), intent(inout) :: self
       type(contact_model_type), intent(in) :: model
-      integer, intent(in) :: sort, number
+      integer, intent(in) :: p
+      logical, intent(in) :: wanted(:, :)
       logical, intent(out) :: singular
-      real(wp), allocatable :: border(:), diagonal(:)
-      integer :: p
+      integer :: new_sort(2*size(wanted, 1)), new_of(2*size(wanted, 1)), i, number, sort
 
-      p = self%part_of(sort, number)
-      allocate (border(self%part(p)%unknowns), diagonal(1))
-      call entries_of(model, self%part(p)%sort(:self%part(p)%unknowns), self%part(p)%of(:self%part(p)%unknowns), sort, number, &
-                      border)
-      call entries_of(model, [sort], [number], sort, number, diagonal)
-      call self%part(p)%system%add_unknown(border, diagonal(1), singular)
-      if (singular) return
-      call enlist(self%part(p), sort, number)
-      if (sort == a_motion) then
-         self%motion_place(number) = self%part(p)%unknowns
-      else
-         self%place(number, sort) = self%part(p)%unknowns
-      end if
-   end subroutine add_unknown
+      singular = .false.
+      number = 0
+      do sort = a_pressure, a_shear
+         if (self%part_of(sort, 0) /= p) cycle
+         do i = 1, size(wanted, 1)
+            if (self%place(i, sort) > 0 .or. .not. wanted(i, sort)) cycle
+            number = number + 1
+            new_sort(number) = sort
+            new_of(number) = i
+         end do
+      end do
+      if (number > 0) call self%add_named(model, p, new_sort(:number), new_of(:number), singular)
+   end subroutine add_unknowns
+
+   !> More unknowns of a part: their sorts and nodes or motions.
+   subroutine add_named(self, model, p, new_sort, new_of, singular)
+      class(reduced_system_type), intent(inout) :: self
+      type(contact_model_type), intent(in) :: model
+      integer, intent(in) :: p, new_sort(:), new_of(:)
+      logical, intent(out) :: singular
+      real(wp), allocatable :: borders(:, :)
+      integer :: i, n
+
+      do i = 1, size(new_sort)
+         call enlist(self%part(p), new_sort(i), new_of(i))
+         if (new_sort(i) == a_motion) then
+            self%motion_place(new_of(i)) = self%part(p)%unknowns
+         else
+            self%place(new_of(i), new_sort(i)) = self%part(p)%unknowns
+         end if
+      end do
+      n = self%part(p)%unknowns
+      allocate (borders(n, size(new_sort)))
+      do i = 1, size(new_sort)
+         call entries_of(model, self%part(p)%sort(:n), self%part(p)%of(:n), new_sort(i), new_of(i), borders(:, i))
+      end do
+      call self%part(p)%system%add_unknowns(borders, singular)
+   end subroutine add_named
 
    !> One more name in the list of a part's unknowns.
    subroutine enlist(part, sort, number)
@@ -573,8 +595,8 @@ contains
       end do
       if (.not. rates) call open_up(self, model, fields)
       do pass = 1, most_passes
-         call self%find_residual(model, constraints, rates, fields, residual)
-         if (residual <= fine .and. (pass > 1 .or. .not. rates)) exit
+         call self%find_residual(model, constraints, rates, pass == 1 .and. rates, fields, residual)
+         if (residual <= fine) exit
          if (pass > 3 .and. residual <= fair) exit
          if (pass > 2 - merge(0, 1, rates)) self%refinements = self%refinements + 1
          call self%correct(model, constraints, rates, fields, singular)
@@ -641,19 +663,23 @@ contains
    end function motion_of
 
    !> What is missing in every row and constraint, in their units, as right sides for a correction; and the largest of them,
-   !> relative to the magnitudes of their sort.
-   subroutine find_residual(self, model, constraints, rates, fields, largest)
+   !> relative to the magnitudes of their sort. `at_rest`: all fields are zero yet.
+   subroutine find_residual(self, model, constraints, rates, at_rest, fields, largest)
       class(reduced_system_type), intent(inout) :: self
       type(contact_model_type), intent(in) :: model
       type(constraints_type), intent(in) :: constraints
-      logical, intent(in) :: rates
+      logical, intent(in) :: rates, at_rest
       type(contact_fields_type), intent(in) :: fields
       real(wp), intent(out) :: largest
       real(wp) :: normal_scale, shear_scale, traction_scale, force, length, modulus, interval, missing, value
       type(load_type) :: load
       integer :: i, node, p
 
-      call find_scales(model, fields, normal_scale, shear_scale, traction_scale, force)
+      normal_scale = 1.0_wp
+      shear_scale = 1.0_wp
+      traction_scale = 1.0_wp
+      force = 1.0_wp
+      if (.not. at_rest) call find_scales(model, fields, normal_scale, shear_scale, traction_scale, force)
       length = model%length()
       modulus = model%compliance%modulus
       interval = model%interval()
@@ -709,6 +735,7 @@ contains
             end do
          end associate
       end do
+      if (at_rest) largest = huge(1.0_wp)
    end subroutine find_residual
 
    !> Magnitudes: of normal and of tangential displacements, of tractions, and of forces.
@@ -761,7 +788,7 @@ contains
       singular = .false.
       do p = 1, 2
          if (self%part(p)%unknowns == 0) cycle
-         if (p == 2) call self%find_residual(model, constraints, rates, fields, residual)
+         if (p == 2) call self%find_residual(model, constraints, rates, .false., fields, residual)
          associate (part => self%part(p), n => self%part(p)%unknowns)
             call part%system%solve(part%right(:n), part%values(:part%system%constraints), part%solution(:n), singular)
          end associate
