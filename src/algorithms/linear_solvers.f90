@@ -17,7 +17,7 @@ contains
       class(contact_system_type), allocatable, intent(out) :: system
 
       select case (model%scene%method%linear_solver)
-      case (solver_reduced)
+      case (solver_auto, solver_reduced)
          allocate (reduced_system_type :: system)
       case default
          allocate (augmented_system_type :: system)
