@@ -105,7 +105,8 @@ contains
             if (allocated(error)) return
             if (.not. drop) done = done + increment%step
             if (present(observer)) then
-               call observer%notify(path%state, segment%number, segment%segments, done, stop_wanted)
+               call observer%notify(path%state, segment%number, segment%segments, &
+                                    segment%from + (1.0_wp - segment%from)*done, stop_wanted)
                if (stop_wanted) call path%end_here(MFV_INTERRUPTED, 'stopped on request', error)
                if (allocated(error)) return
             end if
