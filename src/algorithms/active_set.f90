@@ -1,7 +1,8 @@
 !> The statuses at one load without the way there: all nodes that violate an inequality of dissertation Table 2.1 change
 !> together, solve again, until none does (the primal-dual active set method: Hintermueller, Ito and Kunisch, SIAM J. Optim.
 !> 13, 2003). Without friction the end is the state that every way leads to. With Coulomb friction stuck nodes hold at the slip
-!> that they have at the start, and the end is what one step of an integrator leads to.
+!> that they have at the start (nodes that touch on the way: at about the slip that they had then), and the end is what one step
+!> of an integrator leads to.
 !>
 !> Where a zone is a little too large, its traction (less the friction limit) has K/sqrt(t) + A sqrt(t) at the distance t from
 !> its edge, and moving the edge by s changes K by A s/2, whatever the other edges do. So the edge belongs at twice the distance
@@ -28,7 +29,8 @@ module mfv_active_set
 contains
 
    !> Statuses and fields at the part `done` of the segment, from the statuses of `path` as a first guess and its fields as the
-   !> start. `settled`: whether they were found; `path` then has the statuses, and its fields are still those of the start.
+   !> start. `settled`: whether they were found; `path` then has the statuses, and as stuck_slip of every node the slip from which
+   !> its slip on the way counts; its fields are still those of the start.
    !> Not found: the system is singular, the statuses come again, nothing is in contact that carries a prescribed force, or
    !> every node slips; the statuses of `path` are then of no use.
    subroutine settle_at(path, segment, done, fields, settled)
@@ -41,6 +43,7 @@ contains
       type(response_type) :: response
       integer, dimension(size(path%state%status)) :: wanted
       integer :: tried(size(path%state%status), most_solves)
+      real(wp) :: hold(size(path%state%status))
       logical :: possible, singular, by_edges
       integer :: solve, first
 
@@ -48,6 +51,9 @@ contains
       by_edges = .true.
       first = 1
       fields = path%state%fields
+      hold = fields%slip()
+      where (path%state%status == node_stick) hold = path%state%stuck_slip
+      path%state%stuck_slip = hold
       do solve = 1, most_solves
          tried(:, solve) = path%state%status
          call constrain(path, segment, done, constraints, possible)
@@ -59,7 +65,9 @@ contains
          settled = all(wanted == path%state%status)
          if (settled) return
          if (by_edges) call move_edges(path%state%status, wanted)
+         call find_touching(path, fields, wanted, hold)
          call path%set_status(wanted /= path%state%status, wanted)
+         path%state%stuck_slip = hold
          if (.not. came_before(tried(:, first:solve), wanted)) cycle
          if (.not. by_edges) return
          by_edges = .false.
@@ -138,7 +146,7 @@ contains
                              abs(fields%shift))
       gap = path%model%gap(fields)
       slipped = 0.0_wp
-      if (path%model%tangential) slipped = fields%slip() - path%state%fields%slip()
+      if (path%model%tangential) slipped = fields%slip() - path%state%stuck_slip
       closed = node_frictionless
       if (segment%friction .and. path%model%tangential) closed = node_stick
       wanted = path%state%status
@@ -156,6 +164,23 @@ contains
       end do
       if (closed == node_stick) call go_with_neighbours(path%state%status, wanted)
    end subroutine find_wanted
+
+   !> The slip at which nodes hold that close on the way: that of the moment at which they touch, were gap and slip to change
+   !> evenly from the start to the `fields`, in which the nodes are still open.
+   subroutine find_touching(path, fields, wanted, hold)
+      class(contact_path_type), intent(in) :: path
+      type(contact_fields_type), intent(in) :: fields
+      integer, intent(in) :: wanted(:)
+      real(wp), intent(inout) :: hold(:)
+      real(wp), dimension(size(wanted)) :: before, after, slip
+
+      if (.not. path%model%tangential) return
+      before = max(path%model%gap(path%state%fields), 0.0_wp)
+      after = path%model%gap(fields)
+      slip = path%state%fields%slip()
+      where (in_contact(wanted) .and. .not. in_contact(path%state%status) .and. after < 0.0_wp) &
+         hold = slip + before/(before - after)*(fields%slip() - slip)
+   end subroutine find_touching
 
    !> Nodes that close at an edge of the contact do as the edge does.
    pure subroutine go_with_neighbours(status, wanted)

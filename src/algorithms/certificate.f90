@@ -146,7 +146,7 @@ contains
       if (leaps) self%leaps = self%leaps + 1
       call check_equilibrium(self, model, after%fields)
       call check_normal_contact(self, model, after)
-      if (self%claimed(slip_traction)) call check_friction(self, model, before, after)
+      if (self%claimed(slip_traction)) call check_friction(self, model, before, after, leaps)
       call check_energy(self, model, before%fields, after, leaps)
       if (self%leaps > 0) call self%claim(model)
    end subroutine check_increment
@@ -232,17 +232,20 @@ contains
       call self%note(pressure_sign, largest_of(-state%fields%pressure, contact), self%traction)
    end subroutine check_normal_contact
 
-   !> Equalities and inequalities of slip and shear traction.
-   subroutine check_friction(self, model, before, after)
+   !> Equalities and inequalities of slip and shear traction. Over a leap, slip counts from what the leap says: of nodes that
+   !> touch on the way from then.
+   subroutine check_friction(self, model, before, after, leap)
       class(certificate_type), intent(inout) :: self
       type(contact_model_type), intent(in) :: model
       type(contact_state_type), intent(in) :: before, after
+      logical, intent(in) :: leap
       real(wp), dimension(size(after%status)) :: limit, defect, shear, slipped, direction, growth
 
       limit = model%static_friction*after%fields%pressure
       where (after%status == node_frictionless) limit = 0.0_wp
       shear = after%fields%shear
       slipped = after%fields%slip() - before%fields%slip()
+      if (leap) slipped = merge(slipped, after%fields%slip() - before%stuck_slip, before%fields%pressure > 0.0_wp)
       direction = slip_sign(after%status)
       growth = model%static_friction*(after%fields%pressure - before%fields%pressure)*model%scene%friction%law%full_part
       call law_defects(model, before, after, defect)

@@ -27,8 +27,8 @@ module mfv_contact_path
       logical :: friction = .true.
       !> Number of this segment, how many there are, and the step that it belongs to: for records and progress.
       integer :: number = 1, segments = 1, step = 1
-      !> Part of the whole that was done before this one begins, for progress: 0 unless it is the rest of one.
-      real(wp) :: from = 0.0_wp
+      !> Where this one begins and ends in parts of the whole that it belongs to, for progress.
+      real(wp) :: from = 0.0_wp, to = 1.0_wp
    end type segment_type
 
    type :: contact_path_type

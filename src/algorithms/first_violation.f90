@@ -106,7 +106,7 @@ contains
             if (.not. drop) done = done + increment%step
             if (present(observer)) then
                call observer%notify(path%state, segment%number, segment%segments, &
-                                    segment%from + (1.0_wp - segment%from)*done, stop_wanted)
+                                    segment%from + (segment%to - segment%from)*done, stop_wanted)
                if (stop_wanted) call path%end_here(MFV_INTERRUPTED, 'stopped on request', error)
                if (allocated(error)) return
             end if

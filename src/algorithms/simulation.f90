@@ -7,6 +7,7 @@ module mfv_simulation
    use mfv_contact_path, only: contact_path_type, new_contact_path, segment_type
    use mfv_conventional, only: lead_conventionally
    use mfv_kinds, only: wp
+   use mfv_leap, only: lead_by_leaps
    use mfv_node_status, only: event_none, event_step_end, event_stopped
    use mfv_observer, only: observer_type
    use mfv_scene
@@ -202,6 +203,8 @@ contains
       if (present(segments)) segment%segments = segments
       if (self%contact%model%scene%method%algorithm == algorithm_conventional) then
          call lead_conventionally(self%contact, segment, observer, error)
+      else if (self%contact%model%scene%method%stepping == stepping_leap) then
+         call lead_by_leaps(self%contact, segment, observer, error)
       else
          call lead_straight(self%contact, segment, observer, error)
       end if

@@ -16,7 +16,7 @@ module mfv_straight
    use mfv_status, only: MFV_INTERRUPTED
    implicit none
    private
-   public :: lead_straight, settle_on_mesh, before_separation, rest_of
+   public :: lead_straight, settle_on_mesh, grow_mesh, before_separation, part_of
 
 contains
 
@@ -31,52 +31,76 @@ contains
       logical :: settled, stop_wanted, friction
       real(wp) :: part
 
-      part = 0.0_wp
       friction = segment%friction .and. path%model%scene%friction%acts()
-      if (.not. friction .and. path%model%scene%method%stepping /= stepping_nominal) then
-         call path%start_segment(segment, error)
-         if (allocated(error)) return
-         part = before_separation(segment)
-         settled = .false.
-         if (part > 0.0_wp) call settle_on_mesh(path, segment, part, fields, settled)
-         if (settled) then
-            call path%take_increment(fields, fields%slip() - path%state%fields%slip(), 0.0_wp, dissipated=0.0_wp)
-            if (present(observer)) then
-               call observer%notify(path%state, segment%number, segment%segments, part, stop_wanted)
-               if (stop_wanted) call path%end_here(MFV_INTERRUPTED, 'stopped on request', error)
-            end if
-            if (allocated(error) .or. .not. part < 1.0_wp) return
-         else
-            part = 0.0_wp
-         end if
+      if (friction .or. path%model%scene%method%stepping == stepping_nominal) then
+         call lead_by_violations(path, segment, observer, error)
+         return
       end if
-      call lead_by_violations(path, rest_of(segment, part), observer, error)
+      call path%start_segment(segment, error)
+      if (allocated(error)) return
+      part = before_separation(segment)
+      settled = .false.
+      if (part > 0.0_wp) call settle_and_grow(path, segment, part, fields, settled)
+      if (.not. settled) part = 0.0_wp
+      if (settled) then
+         call path%take_increment(fields, fields%slip() - path%state%fields%slip(), 0.0_wp, dissipated=0.0_wp)
+         if (present(observer)) then
+            call observer%notify(path%state, segment%number, segment%segments, part, stop_wanted)
+            if (stop_wanted) call path%end_here(MFV_INTERRUPTED, 'stopped on request', error)
+         end if
+         if (allocated(error) .or. .not. part < 1.0_wp) return
+      end if
+      call lead_by_violations(path, part_of(segment, part, 1.0_wp), observer, error)
    end subroutine lead_straight
 
-   !> Statuses and fields at a part of the segment, on a mesh that grows with the contact where it may. The statuses of `path`
-   !> are the first guess; where nothing is in contact there is another. `settled`: whether they were found; the statuses are as
-   !> they were otherwise. The fields of `path` stay those of the start.
-   subroutine settle_on_mesh(path, segment, part, fields, settled)
+   !> Statuses and fields at a part of the segment, on a mesh that grows with the contact where it may. `settled`: whether they
+   !> were found; the statuses are as they were otherwise. The fields of `path` stay those of the start.
+   subroutine settle_and_grow(path, segment, part, fields, settled)
       class(contact_path_type), intent(inout) :: path
       type(segment_type), intent(in) :: segment
       real(wp), intent(in) :: part
       type(contact_fields_type), intent(out) :: fields
       logical, intent(out) :: settled
       type(contact_state_type) :: start
-      type(moment_type) :: moment
+      logical :: exceeded, grown
 
       do
          start = path%state
-         call guess_contact(path, segment, part)
-         call settle_at(path, segment, part, fields, settled)
-         if (settled .and. .not. path%model%reaches_end(in_contact(path%state%status))) return
+         call settle_on_mesh(path, segment, part, fields, settled, exceeded)
+         if (settled) return
          path%state = start
-         if (.not. settled) return
-         settled = .false.
-         if (.not. path%model%growing .or. path%model%spare_nodes() == 0) return
-         call path%widen(moment)
+         if (.not. exceeded) return
+         call grow_mesh(path, grown)
+         if (.not. grown) return
       end do
+   end subroutine settle_and_grow
+
+   !> Statuses and fields at a part of the segment. The statuses of `path` are the first guess; where nothing is in contact there
+   !> is another. `settled`: whether they were found, on this mesh; if not, the statuses are of no use, and `exceeded` tells
+   !> whether only the mesh is too short. The fields of `path` stay those of the start.
+   subroutine settle_on_mesh(path, segment, part, fields, settled, exceeded)
+      class(contact_path_type), intent(inout) :: path
+      type(segment_type), intent(in) :: segment
+      real(wp), intent(in) :: part
+      type(contact_fields_type), intent(out) :: fields
+      logical, intent(out) :: settled, exceeded
+
+      call guess_contact(path, segment, part)
+      call settle_at(path, segment, part, fields, settled)
+      exceeded = settled
+      if (settled) exceeded = path%model%reaches_end(in_contact(path%state%status))
+      settled = settled .and. .not. exceeded
    end subroutine settle_on_mesh
+
+   !> Lengthen the mesh, if it may grow. `grown`: whether it did.
+   subroutine grow_mesh(path, grown)
+      class(contact_path_type), intent(inout) :: path
+      logical, intent(out) :: grown
+      type(moment_type) :: moment
+
+      grown = path%model%growing .and. path%model%spare_nodes() > 0
+      if (grown) call path%widen(moment)
+   end subroutine grow_mesh
 
    !> A first guess of the contact where there is none.
    subroutine guess_contact(path, segment, part)
@@ -108,24 +132,25 @@ contains
       end associate
    end function before_separation
 
-   !> What is left of a segment after a part of it.
-   pure type(segment_type) function rest_of(segment, part) result(rest)
+   !> The segment from a part `begin` of it to a part `end`.
+   pure type(segment_type) function part_of(segment, begin, end) result(part)
       type(segment_type), intent(in) :: segment
-      real(wp), intent(in) :: part
+      real(wp), intent(in) :: begin, end
 
-      rest = segment
-      if (.not. part > 0.0_wp) return
-      rest%normal = rest_of_load(segment%normal, part)
-      rest%tangential = rest_of_load(segment%tangential, part)
-      rest%rotational = rest_of_load(segment%rotational, part)
-      rest%from = segment%from + (1.0_wp - segment%from)*part
-   end function rest_of
+      part = segment
+      if (.not. begin > 0.0_wp .and. .not. end < 1.0_wp) return
+      part%normal = part_of_load(segment%normal, begin, end)
+      part%tangential = part_of_load(segment%tangential, begin, end)
+      part%rotational = part_of_load(segment%rotational, begin, end)
+      part%from = segment%from + (segment%to - segment%from)*begin
+      part%to = segment%from + (segment%to - segment%from)*end
+   end function part_of
 
-   pure type(load_type) function rest_of_load(load, part) result(rest)
+   pure type(load_type) function part_of_load(load, begin, end) result(part)
       type(load_type), intent(in) :: load
-      real(wp), intent(in) :: part
+      real(wp), intent(in) :: begin, end
 
-      rest = load_type(load%control, load%value + part*load%rate, (1.0_wp - part)*load%rate)
-   end function rest_of_load
+      part = load_type(load%control, load%value + begin*load%rate, (end - begin)*load%rate)
+   end function part_of_load
 
 end module mfv_straight
