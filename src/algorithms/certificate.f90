@@ -4,7 +4,7 @@
 !> their sort so far, so that units do not matter; the largest over all increments is kept.
 module mfv_certificate
    use, intrinsic :: ieee_arithmetic, only: ieee_is_finite
-   use mfv_compliance, only: block_up, block_ut, block_wp, block_wt, coupling_goodman
+   use mfv_compliance, only: block_up, coupling_goodman
    use mfv_contact_fields, only: contact_fields_type
    use mfv_contact_model, only: along_approach, along_rotation, along_shift, contact_model_type
    use mfv_contact_state, only: contact_state_type
@@ -167,7 +167,8 @@ contains
       class(certificate_type), intent(inout) :: self
       type(contact_model_type), intent(in) :: model
       type(contact_fields_type), intent(in) :: fields
-      real(wp), dimension(size(fields%pressure)) :: by_pressure, by_shear, rigid
+      real(wp), dimension(size(fields%pressure)) :: normal_by_pressure, normal_by_shear, tangential_by_pressure, &
+                                                    tangential_by_shear, rigid
       real(wp) :: grip
 
       grip = model%grip
@@ -175,17 +176,19 @@ contains
       self%normal_force = max(self%normal_force, abs(fields%normal_force), model%force(abs(fields%pressure)))
       self%tangential_force = max(self%tangential_force, grip*self%normal_force, &
                                   model%force(abs(fields%shear)), abs(fields%tangential_force))
-      call displacement_parts(block_wp, block_wt)
-      self%normal = max(self%normal, maxval(abs(by_pressure)), maxval(abs(by_shear)))
+      ! By pressure and by shear apart: their sizes are the scale, however much they cancel.
+      call model%compliance%parts(fields%pressure, fields%shear, normal_by_pressure, normal_by_shear, tangential_by_pressure, &
+                                  tangential_by_shear)
+      self%normal = max(self%normal, maxval(abs(normal_by_pressure)), maxval(abs(normal_by_shear)))
       rigid = model%rigid_normal(fields)
-      call self%note(elasticity_normal, maxval(abs(fields%normal + rigid - by_pressure - by_shear)), &
+      call self%note(elasticity_normal, maxval(abs(fields%normal + rigid - normal_by_pressure - normal_by_shear)), &
                      max(self%normal, maxval(abs(rigid))))
-      call displacement_parts(block_up, block_ut)
-      self%tangential = max(self%tangential, grip*self%normal, maxval(abs(by_pressure)), maxval(abs(by_shear)), &
-                            abs(fields%shift))
+      self%tangential = max(self%tangential, grip*self%normal, maxval(abs(tangential_by_pressure)), &
+                            maxval(abs(tangential_by_shear)), abs(fields%shift))
       rigid = model%rigid_tangential(fields)
       self%tangential = max(self%tangential, maxval(abs(rigid)))
-      call self%note(elasticity_tangential, maxval(abs(fields%tangential + rigid - by_pressure - by_shear)), self%tangential)
+      call self%note(elasticity_tangential, maxval(abs(fields%tangential + rigid - tangential_by_pressure &
+                                                       - tangential_by_shear)), self%tangential)
       call self%note(normal_force_balance, abs(fields%normal_force - model%resultant(along_approach, fields%pressure, &
                                                                                      fields%shear)), &
                      self%normal_force)
@@ -198,18 +201,6 @@ contains
                         + model%force(abs(model%tangential_arm(:, along_rotation)*fields%shear)))
       call self%note(moment_balance, abs(fields%moment - model%resultant(along_rotation, fields%pressure, fields%shear)), &
                      self%moment)
-
-   contains
-
-      !> Displacements by pressure and by shear apart: their sizes are the scale, however much they cancel.
-      subroutine displacement_parts(pressure_block, shear_block)
-         integer, intent(in) :: pressure_block, shear_block
-
-         by_pressure = 0.0_wp
-         by_shear = 0.0_wp
-         call model%compliance%product(pressure_block, fields%pressure, by_pressure)
-         call model%compliance%product(shear_block, fields%shear, by_shear)
-      end subroutine displacement_parts
    end subroutine check_equilibrium
 
    !> Equalities and inequalities of gap and pressure.
@@ -268,25 +259,26 @@ contains
       type(contact_model_type), intent(in) :: model
       type(contact_state_type), intent(in) :: before, after
       real(wp), intent(out) :: defect(:)
-      type(friction_point_type), dimension(size(defect)) :: here, there
+      type(friction_point_type) :: here, there
       type(friction_row_type) :: row
       integer :: i
       logical :: explicit
 
       explicit = model%scene%method%integration == integration_explicit .and. &
                  model%scene%method%algorithm == algorithm_mfv
-      here = before%friction_points(before%fields, model%static_friction, model%kinetic_friction)
-      there = after%friction_points(after%fields, model%static_friction, model%kinetic_friction)
       defect = after%fields%shear
       do i = 1, size(defect)
+         if (.not. slips(after%status(i)) .and. .not. creeps(after%status(i))) cycle
+         there = after%friction_point(after%fields, i, model%static_friction(i), model%kinetic_friction(i))
          if (slips(after%status(i))) then
-            defect(i) = there(i)%shear + slip_sign(after%status(i))*model%scene%friction%law%strength(there(i))
-         else if (creeps(after%status(i))) then
-            row = model%scene%friction%law%row(after%status(i), here(i), there(i))
-            if (explicit) row = model%scene%friction%law%row(after%status(i), here(i), here(i))
-            defect(i) = abs(there(i)%shear - row%slope*there(i)%pressure - row%stiffness*there(i)%slip - row%offset) &
-                        + max(model%scene%friction%law%turning(here(i)), model%scene%friction%law%turning(there(i))) &
-                        *max(-motion_sign(after%status(i))*(there(i)%slip - here(i)%slip), 0.0_wp)
+            defect(i) = there%shear + slip_sign(after%status(i))*model%scene%friction%law%strength(there)
+         else
+            here = before%friction_point(before%fields, i, model%static_friction(i), model%kinetic_friction(i))
+            row = model%scene%friction%law%row(after%status(i), here, there)
+            if (explicit) row = model%scene%friction%law%row(after%status(i), here, here)
+            defect(i) = abs(there%shear - row%slope*there%pressure - row%stiffness*there%slip - row%offset) &
+                        + max(model%scene%friction%law%turning(here), model%scene%friction%law%turning(there)) &
+                        *max(-motion_sign(after%status(i))*(there%slip - here%slip), 0.0_wp)
          end if
       end do
    end subroutine law_defects
