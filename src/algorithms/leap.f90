@@ -21,6 +21,7 @@ module mfv_leap
    use mfv_kinds, only: wp
    use mfv_node_status
    use mfv_observer, only: observer_type
+   use mfv_scene, only: control_force
    use mfv_status, only: MFV_INTERRUPTED
    use mfv_straight, only: before_separation, grow_mesh, lead_straight, part_of, settle_on_mesh
    implicit none
@@ -147,7 +148,7 @@ contains
       integer :: status(size(path%state%status))
 
       start = path%state
-      call turn_slip(path, segment)
+      call guess_slip(path, segment, done + length)
       call settle_on_mesh(path, segment, done + length, whole, leap%settled, leap%exceeded)
       status = path%state%status
       if (leap%settled) then
@@ -181,7 +182,7 @@ contains
       real(wp), parameter :: half = 0.5_wp
 
       leap%parts = 2
-      call turn_slip(path, segment)
+      call guess_slip(path, segment, done + half*length)
       call settle_on_mesh(path, segment, done + half*length, leap%after(1), leap%settled, leap%exceeded)
       if (.not. leap%settled) return
       leap%state(1) = path%state
@@ -193,16 +194,35 @@ contains
       if (leap%settled) leap%dissipated(2) = dissipation(path%model, path%state, leap%after(2))
    end subroutine halve
 
-   !> Nodes that slip will go on slipping with the tangential load, if there is a change of it: a first guess.
-   subroutine turn_slip(path, segment)
+   !> A first guess of who slips at the part `part` of the segment: where the tangential load changes, nodes slip with it. Where
+   !> the normal load does not change, nor the pressures with it, and the tangential force does, as many as slip in Mindlin's contact of cylinders: the edge of
+   !> the stick zone is there where the pressure is sqrt(Q/(mu P)) of the largest; after a reversal with half the change in place
+   !> of Q.
+   subroutine guess_slip(path, segment, part)
       class(contact_path_type), intent(inout) :: path
       type(segment_type), intent(in) :: segment
-      integer :: status(size(path%state%status))
+      real(wp), intent(in) :: part
+      integer, dimension(size(path%state%status)) :: status
+      real(wp) :: force, grip
+      logical :: reverses
 
       if (.not. abs(segment%tangential%rate) > 0.0_wp) return
       status = merge(node_slip_left, node_slip_right, segment%tangential%rate > 0.0_wp)
-      call path%set_status(slips(path%state%status), status)
-   end subroutine turn_slip
+      reverses = any(slips(path%state%status) .and. path%state%status /= status)
+      associate (fields => path%state%fields, load => segment%tangential)
+         grip = path%model%force(path%model%static_friction*fields%pressure)
+         if (load%control /= control_force .or. abs(segment%normal%rate) > 0.0_wp .or. .not. grip > 0.0_wp .or. &
+             path%model%compliance%has_block(block_wt)) then
+            call path%set_status(slips(path%state%status), status)
+            return
+         end if
+         force = load%value + part*load%rate
+         if (reverses) force = 0.5_wp*(force - fields%tangential_force)
+         force = max(sign(1.0_wp, load%rate)*force, 0.0_wp)
+         where (fields%pressure > sqrt(force/grip)*maxval(fields%pressure)) status = node_stick
+      end associate
+      call path%set_status(in_contact(path%state%status), status)
+   end subroutine guess_slip
 
    !> Whether pressing without coupling, tangential load or shear is all that a leap to the fields `after` does: no way matters.
    logical function moves_nothing(path, segment, after)
