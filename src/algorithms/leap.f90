@@ -23,7 +23,7 @@ module mfv_leap
    use mfv_observer, only: observer_type
    use mfv_scene, only: control_force
    use mfv_status, only: MFV_INTERRUPTED
-   use mfv_straight, only: before_separation, grow_mesh, lead_straight, part_of, settle_on_mesh
+   use mfv_straight, only: before_separation, carries_nothing_yet, grow_mesh, lead_straight, part_of, settle_on_mesh
    implicit none
    private
    public :: lead_by_leaps
@@ -67,6 +67,7 @@ contains
       call path%start_segment(segment, error)
       if (allocated(error)) return
       goal = before_separation(segment)
+      if (carries_nothing_yet(path, segment)) goal = 0.0_wp
       done = 0.0_wp
       length = goal
       by_events = shortest

@@ -16,7 +16,7 @@ module mfv_straight
    use mfv_status, only: MFV_INTERRUPTED
    implicit none
    private
-   public :: lead_straight, settle_on_mesh, grow_mesh, before_separation, part_of
+   public :: lead_straight, settle_on_mesh, grow_mesh, before_separation, carries_nothing_yet, part_of
 
 contains
 
@@ -39,6 +39,7 @@ contains
       call path%start_segment(segment, error)
       if (allocated(error)) return
       part = before_separation(segment)
+      if (carries_nothing_yet(path, segment)) part = 0.0_wp
       settled = .false.
       if (part > 0.0_wp) call settle_and_grow(path, segment, part, fields, settled)
       if (.not. settled) part = 0.0_wp
@@ -131,6 +132,25 @@ contains
          if (start > 0.0_wp) part = (1.0_wp - little)*start/(-change)
       end associate
    end function before_separation
+
+   !> Whether a tangential force or a moment begins to act while the bodies are apart and only draw near: it has nothing to carry
+   !> it until they touch.
+   pure logical function carries_nothing_yet(path, segment)
+      class(contact_path_type), intent(in) :: path
+      type(segment_type), intent(in) :: segment
+
+      carries_nothing_yet = .false.
+      if (segment%normal%control == control_force .or. any(in_contact(path%state%status))) return
+      carries_nothing_yet = acts(segment%tangential) .or. (path%model%rotational .and. acts(segment%rotational))
+
+   contains
+
+      pure logical function acts(load)
+         type(load_type), intent(in) :: load
+
+         acts = load%control == control_force .and. max(abs(load%value), abs(load%rate)) > 0.0_wp
+      end function acts
+   end function carries_nothing_yet
 
    !> The segment from a part `begin` of it to a part `end`.
    pure type(segment_type) function part_of(segment, begin, end) result(part)
