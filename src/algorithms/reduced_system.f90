@@ -23,7 +23,7 @@ module mfv_reduced_system
    use mfv_contact_model, only: along_approach, along_rotation, along_shift, contact_model_type
    use mfv_contact_system
    use mfv_kinds, only: wp
-   use mfv_node_status
+   use mfv_node_status, only: node_stick
    use mfv_scene, only: control_force
    implicit none
    private
@@ -69,7 +69,8 @@ module mfv_reduced_system
       procedure, private :: set_constraints
       procedure, private :: release
       procedure, private :: constrain
-      procedure, private :: add_unknown
+      procedure, private :: add_unknowns
+      procedure, private :: add_named
       procedure, private :: remove_unknown
       procedure, private :: rebuild
       procedure, private :: part_of
@@ -171,14 +172,16 @@ contains
       type(contact_model_type), intent(in) :: model
       type(constraints_type), intent(in) :: constraints
       logical, intent(out) :: singular
+      logical, parameter :: touches(0:6) = [.false., .true., .true., .true., .true., .true., .true.], &
+                            has_shear(0:6) = [.false., .true., .true., .true., .false., .true., .true.]
       logical :: wanted(size(constraints%status), 2), wanted_motion(3)
 
-      wanted(:, a_pressure) = in_contact(constraints%status)
-      wanted(:, a_shear) = holds(constraints%status) .or. slips(constraints%status)
+      wanted(:, a_pressure) = touches(constraints%status)
+      wanted(:, a_shear) = has_shear(constraints%status)
       wanted_motion = .false.
       wanted_motion(along_approach) = any(wanted(:, a_pressure))
       wanted_motion(along_shift) = any(wanted(:, a_shear))
-      wanted_motion(along_rotation) = model%rotational .and. count(wanted(:, a_pressure)) > 1
+      if (model%rotational) wanted_motion(along_rotation) = count(wanted(:, a_pressure)) > 1
       call self%lose_constraints(constraints, wanted, wanted_motion)
       call self%change_unknowns(model, wanted, wanted_motion, singular)
       if (singular) return
@@ -190,17 +193,20 @@ contains
       class(reduced_system_type), intent(inout) :: self
       type(constraints_type), intent(in) :: constraints
       logical, intent(in) :: wanted(:, :), wanted_motion(3)
-      logical :: going(size(wanted, 1))
-      integer :: i, part
+      integer :: going(size(wanted, 1)), i, number, part
 
       part = self%part_of(a_shear, 0)
-      going = self%constraint_of > 0 .and. .not. (wanted(:, a_shear) .and. constraints%status /= node_stick)
-      if (any(going)) then
-         if (2*count(going) > count(self%constraint_of > 0)) call self%part(part)%system%postpone()
-         do i = 1, size(going)
-            if (going(i)) call self%release(part, self%constraint_of(i))
-         end do
-      end if
+      number = 0
+      do i = 1, size(wanted, 1)
+         if (self%constraint_of(i) == 0) cycle
+         if (wanted(i, a_shear) .and. constraints%status(i) /= node_stick) cycle
+         number = number + 1
+         going(number) = i
+      end do
+      if (2*number > self%part(part)%system%constraints) call self%part(part)%system%postpone()
+      do i = 1, number
+         call self%release(part, self%constraint_of(going(i)))
+      end do
       do i = 1, 3
          if (self%motion_constraint(i) == 0) cycle
          if (is_held(constraints, i) .and. wanted_motion(i)) cycle
@@ -244,7 +250,9 @@ contains
       changes = 0
       do sort = a_pressure, a_shear
          part = self%part_of(sort, 0)
-         changes(part) = changes(part) + count(wanted(:, sort) .neqv. self%place(:, sort) > 0)
+         do i = 1, size(wanted, 1)
+            if (wanted(i, sort) .neqv. self%place(i, sort) > 0) changes(part) = changes(part) + 1
+         end do
       end do
       singular = .false.
       if (all(changes == 0) .and. all(wanted_motion .eqv. self%motion_place > 0)) return
@@ -256,11 +264,8 @@ contains
                if (self%place(i, sort) > 0 .and. .not. wanted(i, sort)) call self%remove_unknown(sort, i, singular)
             end do
          end do
-         do sort = a_pressure, a_shear
-            do i = 1, size(wanted, 1)
-               if (singular) exit
-               if (self%place(i, sort) == 0 .and. wanted(i, sort)) call self%add_unknown(model, sort, i, singular)
-            end do
+         do part = 1, 2
+            if (.not. singular) call self%add_unknowns(model, part, wanted, singular)
          end do
          if (.not. singular) call self%change_motions(model, wanted_motion, .true., singular)
          if (.not. singular) return
@@ -279,36 +284,60 @@ contains
       do i = 1, 3
          if (singular) return
          if (adding .and. wanted_motion(i) .and. self%motion_place(i) == 0) then
-            call self%add_unknown(model, a_motion, i, singular)
+            call self%add_named(model, self%part_of(a_motion, i), [a_motion], [i], singular)
          else if (.not. adding .and. self%motion_place(i) > 0 .and. .not. wanted_motion(i)) then
             call self%remove_unknown(a_motion, i, singular)
          end if
       end do
    end subroutine change_motions
 
-   !> One more unknown of a part.
-   subroutine add_unknown(self, model, sort, number, singular)
+   !> The unknowns of nodes that a part lacks.
+   subroutine add_unknowns(self, model, p, wanted, singular)
       class(reduced_system_type), intent(inout) :: self
       type(contact_model_type), intent(in) :: model
-      integer, intent(in) :: sort, number
+      integer, intent(in) :: p
+      logical, intent(in) :: wanted(:, :)
       logical, intent(out) :: singular
-      real(wp), allocatable :: border(:), diagonal(:)
-      integer :: p
+      integer :: new_sort(2*size(wanted, 1)), new_of(2*size(wanted, 1)), i, number, sort
 
-      p = self%part_of(sort, number)
-      allocate (border(self%part(p)%unknowns), diagonal(1))
-      call entries_of(model, self%part(p)%sort(:self%part(p)%unknowns), self%part(p)%of(:self%part(p)%unknowns), sort, number, &
-                      border)
-      call entries_of(model, [sort], [number], sort, number, diagonal)
-      call self%part(p)%system%add_unknown(border, diagonal(1), singular)
-      if (singular) return
-      call enlist(self%part(p), sort, number)
-      if (sort == a_motion) then
-         self%motion_place(number) = self%part(p)%unknowns
-      else
-         self%place(number, sort) = self%part(p)%unknowns
-      end if
-   end subroutine add_unknown
+      singular = .false.
+      number = 0
+      do sort = a_pressure, a_shear
+         if (self%part_of(sort, 0) /= p) cycle
+         do i = 1, size(wanted, 1)
+            if (self%place(i, sort) > 0 .or. .not. wanted(i, sort)) cycle
+            number = number + 1
+            new_sort(number) = sort
+            new_of(number) = i
+         end do
+      end do
+      if (number > 0) call self%add_named(model, p, new_sort(:number), new_of(:number), singular)
+   end subroutine add_unknowns
+
+   !> More unknowns of a part: their sorts and nodes or motions.
+   subroutine add_named(self, model, p, new_sort, new_of, singular)
+      class(reduced_system_type), intent(inout) :: self
+      type(contact_model_type), intent(in) :: model
+      integer, intent(in) :: p, new_sort(:), new_of(:)
+      logical, intent(out) :: singular
+      real(wp), allocatable :: borders(:, :)
+      integer :: i, n
+
+      do i = 1, size(new_sort)
+         call enlist(self%part(p), new_sort(i), new_of(i))
+         if (new_sort(i) == a_motion) then
+            self%motion_place(new_of(i)) = self%part(p)%unknowns
+         else
+            self%place(new_of(i), new_sort(i)) = self%part(p)%unknowns
+         end if
+      end do
+      n = self%part(p)%unknowns
+      allocate (borders(n, size(new_sort)))
+      do i = 1, size(new_sort)
+         call entries_of(model, self%part(p)%sort(:n), self%part(p)%of(:n), new_sort(i), new_of(i), borders(:, i))
+      end do
+      call self%part(p)%system%add_unknowns(borders, singular)
+   end subroutine add_named
 
    !> One more name in the list of a part's unknowns.
    subroutine enlist(part, sort, number)
@@ -564,10 +593,10 @@ contains
          if (i == along_approach .and. load%control == control_force) cycle
          call set_motion(fields, i, value)
       end do
-      call open_up(self, model, fields)
+      if (.not. rates) call open_up(self, model, fields)
       do pass = 1, most_passes
-         call self%find_residual(model, constraints, rates, fields, residual)
-         if (residual <= fine .and. (pass > 1 .or. .not. rates)) exit
+         call self%find_residual(model, constraints, rates, pass == 1 .and. rates, fields, residual)
+         if (residual <= fine) exit
          if (pass > 3 .and. residual <= fair) exit
          if (pass > 2 - merge(0, 1, rates)) self%refinements = self%refinements + 1
          call self%correct(model, constraints, rates, fields, singular)
@@ -575,12 +604,13 @@ contains
       end do
       singular = .not. residual <= fair
       do i = 1, 3
+         if (i == along_rotation .and. .not. model%rotational) cycle
          load = load_of(constraints, i)
          value = model%resultant(i, fields%pressure, fields%shear)
          if (load%control == control_force .and. self%motion_place(i) > 0) value = merge(load%rate, load%value, rates)
          if (i == along_approach) fields%normal_force = value
          if (i == along_shift) fields%tangential_force = value
-         if (i == along_rotation .and. model%rotational) fields%moment = value
+         if (i == along_rotation) fields%moment = value
       end do
    end subroutine refine
 
@@ -592,17 +622,21 @@ contains
       real(wp), parameter :: nothing = 1.0e-14_wp
       real(wp), dimension(size(fields%pressure)) :: normal, tangential
       real(wp) :: largest, scale
+      integer :: i
 
-      scale = max(maxval(abs(fields%pressure)), maxval(abs(fields%shear)))
+      scale = 0.0_wp
       largest = 0.0_wp
-      where (self%place(:, a_pressure) == 0) normal = fields%pressure
-      where (self%place(:, a_pressure) > 0) normal = 0.0_wp
-      where (self%place(:, a_shear) == 0) tangential = fields%shear
-      where (self%place(:, a_shear) > 0) tangential = 0.0_wp
-      largest = max(maxval(abs(normal)), maxval(abs(tangential)))
-      if (.not. largest > 0.0_wp) return
-      where (self%place(:, a_pressure) == 0) fields%pressure = 0.0_wp
-      where (self%place(:, a_shear) == 0) fields%shear = 0.0_wp
+      do i = 1, size(fields%pressure)
+         scale = max(scale, abs(fields%pressure(i)), abs(fields%shear(i)))
+         if (self%place(i, a_pressure) == 0) then
+            largest = max(largest, abs(fields%pressure(i)))
+            fields%pressure(i) = 0.0_wp
+         end if
+         if (self%place(i, a_shear) == 0) then
+            largest = max(largest, abs(fields%shear(i)))
+            fields%shear(i) = 0.0_wp
+         end if
+      end do
       if (largest <= nothing*scale) return
       call model%relative_displacements(fields, normal, tangential)
       fields%normal = normal
@@ -629,22 +663,26 @@ contains
    end function motion_of
 
    !> What is missing in every row and constraint, in their units, as right sides for a correction; and the largest of them,
-   !> relative to the magnitudes of their sort.
-   subroutine find_residual(self, model, constraints, rates, fields, largest)
+   !> relative to the magnitudes of their sort. `at_rest`: all fields are zero yet.
+   subroutine find_residual(self, model, constraints, rates, at_rest, fields, largest)
       class(reduced_system_type), intent(inout) :: self
       type(contact_model_type), intent(in) :: model
       type(constraints_type), intent(in) :: constraints
-      logical, intent(in) :: rates
+      logical, intent(in) :: rates, at_rest
       type(contact_fields_type), intent(in) :: fields
       real(wp), intent(out) :: largest
-      real(wp) :: normal_scale, shear_scale, traction_scale, missing, unit, force, value
+      real(wp) :: normal_scale, shear_scale, traction_scale, force, length, modulus, interval, missing, value
       type(load_type) :: load
       integer :: i, node, p
 
-      traction_scale = max(maxval(abs(fields%pressure)), maxval(abs(fields%shear)), tiny(1.0_wp))
-      normal_scale = max(maxval(abs(fields%normal)), abs(fields%approach), tiny(1.0_wp))
-      shear_scale = max(maxval(abs(fields%tangential)), abs(fields%shift), model%grip*normal_scale, tiny(1.0_wp))
-      force = max(model%force(abs(fields%pressure)), tiny(1.0_wp))
+      normal_scale = 1.0_wp
+      shear_scale = 1.0_wp
+      traction_scale = 1.0_wp
+      force = 1.0_wp
+      if (.not. at_rest) call find_scales(model, fields, normal_scale, shear_scale, traction_scale, force)
+      length = model%length()
+      modulus = model%compliance%modulus
+      interval = model%interval()
       largest = 0.0_wp
       do p = 1, 2
          associate (part => self%part(p))
@@ -652,48 +690,73 @@ contains
                deallocate (part%values)
                allocate (part%values(2*part%system%constraints))
             end if
-            part%values(:part%system%constraints) = 0.0_wp
             do i = 1, part%unknowns
                node = part%of(i)
                missing = 0.0_wp
                select case (part%sort(i))
                case (a_pressure)
                   missing = fields%approach - fields%normal(node)
-                  if (.not. rates) missing = missing - model%initial_gap(node)
-                  if (rates .and. allocated(constraints%gap_rate)) missing = missing + constraints%gap_rate(node)
+                  if (.not. rates) then
+                     missing = missing - model%initial_gap(node)
+                  else if (allocated(constraints%gap_rate)) then
+                     missing = missing + constraints%gap_rate(node)
+                  end if
                   largest = max(largest, abs(missing)/normal_scale)
-                  part%right(i) = missing/model%length()
+                  missing = missing/length
                case (a_shear)
                   if (constraints%status(node) == node_stick) then
                      missing = fields%shift - fields%tangential(node)
-                     if (.not. rates) missing = missing + constraints%stuck_slip(node)
-                     if (rates .and. allocated(constraints%slip_rate)) missing = missing + constraints%slip_rate(node)
+                     if (.not. rates) then
+                        missing = missing + constraints%stuck_slip(node)
+                     else if (allocated(constraints%slip_rate)) then
+                        missing = missing + constraints%slip_rate(node)
+                     end if
                      largest = max(largest, abs(missing)/shear_scale)
+                     missing = missing/length
                   else
-                     unit = model%width(node)/model%interval()/model%compliance%modulus
                      value = missing_shear(constraints, rates, fields, node)
                      largest = max(largest, abs(value)/traction_scale)
-                     part%values(self%constraint_of(node)) = unit*value
+                     part%values(self%constraint_of(node)) = value*model%width(node)/(interval*modulus)
                   end if
-                  part%right(i) = missing/model%length()
                case (a_motion)
                   load = load_of(constraints, node)
                   value = merge(load%rate, load%value, rates)
                   if (self%motion_constraint(node) > 0) then
-                     part%right(i) = 0.0_wp
-                     missing = (value - motion_of(fields, node))*arm_unit(model, node)
-                     largest = max(largest, abs(missing)/max(normal_scale, shear_scale))
-                     part%values(self%motion_constraint(node)) = missing/model%length()
+                     value = (value - motion_of(fields, node))*arm_unit(model, node)
+                     largest = max(largest, abs(value)/max(normal_scale, shear_scale))
+                     part%values(self%motion_constraint(node)) = value/length
                   else
-                     missing = value - model%resultant(node, fields%pressure, fields%shear)
-                     largest = max(largest, abs(missing)/(force*arm_unit(model, node)))
-                     part%right(i) = -missing/(model%interval()*model%compliance%modulus*arm_unit(model, node))
+                     missing = (model%resultant(node, fields%pressure, fields%shear) - value)/arm_unit(model, node)
+                     largest = max(largest, abs(missing)/force)
+                     missing = missing/(interval*modulus)
                   end if
                end select
+               part%right(i) = missing
             end do
          end associate
       end do
+      if (at_rest) largest = huge(1.0_wp)
    end subroutine find_residual
+
+   !> Magnitudes: of normal and of tangential displacements, of tractions, and of forces.
+   pure subroutine find_scales(model, fields, normal, tangential, traction, force)
+      type(contact_model_type), intent(in) :: model
+      type(contact_fields_type), intent(in) :: fields
+      real(wp), intent(out) :: normal, tangential, traction, force
+      integer :: i
+
+      normal = max(abs(fields%approach), tiny(1.0_wp))
+      tangential = max(abs(fields%shift), tiny(1.0_wp))
+      traction = tiny(1.0_wp)
+      force = tiny(1.0_wp)
+      do i = 1, size(fields%pressure)
+         normal = max(normal, abs(fields%normal(i)))
+         tangential = max(tangential, abs(fields%tangential(i)))
+         traction = max(traction, abs(fields%pressure(i)), abs(fields%shear(i)))
+         force = force + model%width(i)*abs(fields%pressure(i))
+      end do
+      tangential = max(tangential, model%grip*normal)
+   end subroutine find_scales
 
    !> What is missing to the shear traction of a slipping or creeping node.
    pure real(wp) function missing_shear(constraints, rates, fields, node)
@@ -725,7 +788,7 @@ contains
       singular = .false.
       do p = 1, 2
          if (self%part(p)%unknowns == 0) cycle
-         if (p == 2) call self%find_residual(model, constraints, rates, fields, residual)
+         if (p == 2) call self%find_residual(model, constraints, rates, .false., fields, residual)
          associate (part => self%part(p), n => self%part(p)%unknowns)
             call part%system%solve(part%right(:n), part%values(:part%system%constraints), part%solution(:n), singular)
          end associate
@@ -749,25 +812,24 @@ contains
       real(wp) :: unit
       integer :: i, node
 
-      associate (part => self%part(p))
+      associate (part => self%part(p), stress => model%compliance%modulus*model%interval())
          do i = 1, part%unknowns
             node = part%of(i)
             if (part%sort(i) == a_motion) then
                call set_motion(fields, node, motion_of(fields, node) + part%solution(i)*model%length()/arm_unit(model, node))
                cycle
             end if
-            unit = model%compliance%modulus*model%interval()/model%width(node)
+            unit = stress/model%width(node)
             if (part%sort(i) == a_pressure) then
                fields%pressure(node) = fields%pressure(node) + unit*part%solution(i)
             else
                fields%shear(node) = fields%shear(node) + unit*part%solution(i)
             end if
          end do
-         do i = 1, part%unknowns
-            node = part%of(i)
-            if (part%sort(i) /= a_shear .or. constraints%status(node) == node_stick) cycle
-            if (abs(constraints%row(node)%stiffness) > 0.0_wp) cycle
-            fields%shear(node) = fields%shear(node) + missing_shear(constraints, rates, fields, node)
+         do i = 1, size(self%constraint_of)
+            if (self%constraint_of(i) == 0 .or. p /= self%part_of(a_shear, i)) cycle
+            if (abs(constraints%row(i)%stiffness) > 0.0_wp) cycle
+            fields%shear(i) = fields%shear(i) + missing_shear(constraints, rates, fields, i)
          end do
       end associate
    end subroutine apply
