@@ -5,8 +5,9 @@
 !> iterate on but the coupling of pressure and shear, whose strength does not depend on the mesh. Where a set of nodes has gaps,
 !> the inverse on all nodes between its ends is restricted to it.
 !>
-!> Nodes that bristles hold (softness c, mfv_krylov_system) need 1/(C_ut + c): their rows are interpolated between inverses for
-!> a few values of c, circulant ones.
+!> Nodes that bristles hold (softness c > 0, mfv_krylov_system) need 1/(C_ut + c): their rows are interpolated between inverses
+!> for a few values of c, circulant ones. Those of nodes whose friction falls with slip (c < 0) are taken by themselves: where the
+!> bodies can unload as fast as friction falls, |c| is the larger part of C_ut + c.
 module mfv_krylov_preconditioner
    use mfv_compliance, only: block_wp, compliance_type
    use mfv_fourier, only: back_transform, fast_length, real_transform
@@ -143,9 +144,9 @@ contains
       end do
       do i = 1, size(softness)
          place = 0.0_wp
-         if (abs(softness(i)) > first/ratio) place = 1.0_wp + log(abs(softness(i))/first)/log(ratio)
+         if (softness(i) > first/ratio) place = 1.0_wp + log(softness(i)/first)/log(ratio)
          level = min(int(place), levels)
-         if (place >= levels) cycle
+         if (place >= levels .or. softness(i) < 0.0_wp) cycle
          self%weight(i, level) = 1.0_wp - (place - level)
          self%weight(i, level + 1) = place - level
       end do
@@ -165,38 +166,38 @@ contains
       real(wp), intent(inout) :: values(:)
       real(wp), allocatable :: right(:)
 
-      if (self%soft) right = values
-      if (self%soft) values = 0.0_wp
       if (.not. self%soft) then
          call apply_block(self, self%held, values)
          return
       end if
-      if (any(self%weight(:, 0) > 0.0_wp)) then
-         values = right
-         call apply_block(self, self%held, values)
-         values = self%weight(:, 0)*values
-      end if
-      call add_levels(self, right, values)
+      right = values
+      ! What is by itself has no part in the others' displacements.
+      where (sum(self%weight, dim=2) <= 0.0_wp) values = 0.0_wp
+      right = merge(right/merge(self%softness, 1.0_wp, abs(self%softness) > 0.0_wp), values, &
+                    sum(self%weight, dim=2) <= 0.0_wp)
+      call add_levels(self, values)
+      where (sum(self%weight, dim=2) <= 0.0_wp) values = right
    end subroutine apply_held
 
-   subroutine add_levels(self, right, values)
+   !> The inverses of all levels, each weighed.
+   subroutine add_levels(self, values)
       type(krylov_preconditioner_type), intent(inout) :: self
-      real(wp), intent(in) :: right(:)
       real(wp), intent(inout) :: values(:)
       complex(wp) :: spectrum(size(self%symbol, 1)), product(size(self%symbol, 1))
       real(wp) :: work(2*(size(self%symbol, 1) - 1))
       integer :: level
 
       work = 0.0_wp
-      work(self%held%nodes - self%held%before) = right
+      work(self%held%nodes - self%held%before) = values
       call real_transform(work, spectrum)
+      if (any(self%weight(:, 0) > 0.0_wp)) call apply_block(self, self%held, values)
+      values = self%weight(:, 0)*values
       do level = 1, size(self%symbol, 2)
          if (.not. any(self%weight(:, level) > 0.0_wp)) cycle
          product = self%symbol(:, level)*spectrum
          call back_transform(product, work)
-         values = values + sign(self%weight(:, level), self%softness)*work(self%held%nodes - self%held%before)
+         values = values + self%weight(:, level)*work(self%held%nodes - self%held%before)
       end do
-      where (sum(self%weight, dim=2) <= 0.0_wp) values = right/self%softness
    end subroutine add_levels
 
    subroutine apply_block(self, block, values)

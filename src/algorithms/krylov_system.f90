@@ -80,11 +80,12 @@ contains
       type(contact_fields_type), intent(in) :: start
       type(response_type), intent(out) :: response
       logical, intent(out) :: singular
+      real(wp), parameter :: margin = 4.0_wp
       type(right_side_type) :: right
       real(wp), allocatable :: unknowns(:)
 
       self%solves = self%solves + 1
-      self%noise = max(self%noise, model%scene%method%linear_tolerance)
+      self%noise = max(self%noise, margin*model%scene%method%linear_tolerance)
       call meet_mesh(self, model)
       call choose_unknowns(self, model, constraints)
       call prepare_preconditioner(self, model, singular)

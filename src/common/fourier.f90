@@ -16,7 +16,7 @@ module mfv_fourier
    integer, parameter :: to_values = 1, to_coefficients = 2
    !> Directions of complex_transform: exp(-2 pi i j k/N) and exp(2 pi i j k/N).
    integer, parameter :: forward = 3, backward = 4
-   integer, parameter :: most_plans = 64
+   integer, parameter :: most_plans = 256
    !> The boundary, bytes, at which an array is aligned.
    integer(c_intptr_t), parameter :: boundary = 16
 
@@ -142,8 +142,8 @@ contains
       is_aligned = modulo(transfer(address, boundary), boundary) == 0
    end function is_aligned
 
-   !> The smallest even length, not less than `at_least`, that is 1, 3, 5, 9 or 15 times a power of 2: transforms of many lengths
-   !> then need few plans.
+   !> The smallest length, not less than `at_least` nor than 16, that is 1, 3, 5, 9 or 15 times a power of 2: transforms of many
+   !> lengths then need few plans.
    pure integer function fast_length(at_least)
       integer, intent(in) :: at_least
       integer, parameter :: odd(5) = [1, 3, 5, 9, 15]
@@ -152,7 +152,7 @@ contains
       fast_length = huge(1)
       do i = 1, size(odd)
          length = 2*odd(i)
-         do while (length < at_least)
+         do while (length < max(at_least, 16))
             length = 2*length
          end do
          fast_length = min(fast_length, length)
