@@ -249,6 +249,7 @@ contains
 
       snapped = .false.
       if (moment%snapped .or. .not. any(increment%violations%kind == event_stick)) return
+      if (.not. path%has_corners()) return
       call path%find_corners(path%state%fields, corners)
       if (.not. any(increment%violations%kind == event_stick .and. increment%violations%step <= no_step_of(path) .and. &
                     corners%room < huge(1.0_wp))) return

@@ -79,7 +79,8 @@ contains
       if (.not. path%model%tangential) return
       if (path%model%scene%friction%law%is_linear) return
       call path%find_corners(path%state%fields, corners)
-      bends = any(creeps(path%state%status)) .or. any(corners%room < huge(1.0_wp))
+      bends = any(creeps(path%state%status))
+      if (allocated(corners%room)) bends = bends .or. any(corners%room < huge(1.0_wp))
    end function bends
 
    !> Violations by the rates, and the step to the first of them but no further than `longest`.
@@ -90,7 +91,7 @@ contains
       type(corners_type) :: corners
       real(wp) :: first
 
-      call path%find_corners(path%state%fields%plus(longest, increment%response%rate), corners)
+      if (path%has_corners()) call path%find_corners(path%state%fields%plus(longest, increment%response%rate), corners)
       increment%violations = find_violations(path%model, path%state%status, corners, path%state%fields, &
                                              increment%response%rate, max(round_off, path%system%noise))
       first = minval(increment%violations%step)
