@@ -62,6 +62,8 @@ module mfv_krylov_system
       real(wp), allocatable :: pressure(:), shear(:), normal(:), tangential(:), found(:, :)
       !> The rates found last, shape (nodes), and their motions.
       real(wp), allocatable :: last_pressure(:), last_shear(:)
+      !> First and last node in contact and held then; zero where there were gaps.
+      integer :: last_contact(2) = 0, last_held(2) = 0
       real(wp) :: last_motion(3) = 0.0_wp
    contains
       procedure :: solve
@@ -100,13 +102,15 @@ contains
       call meet_loads(self, model, constraints, response%state, .false.)
 
       right = right_of_rates(self, model, constraints)
-      unknowns = packed(self, self%last_pressure, self%last_shear, self%last_motion)
+      unknowns = guess_of_rates(self)
       call iterate(self, model, right, unknowns, singular)
       if (singular) return
       response%rate = fields_of(self, model, right, unknowns)
       call meet_loads(self, model, constraints, response%rate, .true.)
       self%last_pressure = self%found(:, 1)
       self%last_shear = self%found(:, 2)
+      self%last_contact = ends_of(self%contact)
+      self%last_held = ends_of(self%held)
       self%last_motion = motion_of(self, right, unknowns)
    end subroutine solve
 
@@ -132,6 +136,10 @@ contains
       self%normal_arm(:, along_rotation) = self%normal_arm(:, along_rotation)/self%length
       self%tangential_arm(:, along_rotation) = self%tangential_arm(:, along_rotation)/self%length
       self%width = model%width/self%length
+      if (allocated(self%last_pressure)) then
+         where (self%last_contact > 0) self%last_contact = self%last_contact + (n - size(self%last_pressure))/2
+         where (self%last_held > 0) self%last_held = self%last_held + (n - size(self%last_pressure))/2
+      end if
       call widen(self%last_pressure, n)
       call widen(self%last_shear, n)
    end subroutine meet_mesh
@@ -303,6 +311,47 @@ contains
 
       unknowns = [pressure(self%contact), shear(self%held), motion(self%free)]
    end function packed
+
+   !> The rates found last as a guess: on nodes without gaps stretched to where these are now, so that what is singular at the
+   !> ends stays there; else node by node.
+   function guess_of_rates(self) result(unknowns)
+      class(krylov_system_type), intent(in) :: self
+      real(wp), allocatable :: unknowns(:)
+      real(wp), dimension(size(self%last_pressure)) :: pressure, shear
+
+      pressure = self%last_pressure
+      shear = self%last_shear
+      call stretch(self%last_contact, ends_of(self%contact), pressure)
+      call stretch(self%last_held, ends_of(self%held), shear)
+      unknowns = packed(self, pressure, shear, self%last_motion)
+   end function guess_of_rates
+
+   !> First and last of nodes without gaps; zero where there are gaps, or none.
+   pure function ends_of(nodes) result(ends)
+      integer, intent(in) :: nodes(:)
+      integer :: ends(2)
+
+      ends = 0
+      if (size(nodes) == 0) return
+      if (nodes(size(nodes)) - nodes(1) == size(nodes) - 1) ends = [nodes(1), nodes(size(nodes))]
+   end function ends_of
+
+   !> Values between the nodes `old(1)` and `old(2)` on those between `new(1)` and `new(2)`, by linear interpolation.
+   pure subroutine stretch(old, new, values)
+      integer, intent(in) :: old(2), new(2)
+      real(wp), intent(inout) :: values(:)
+      real(wp) :: before(size(values)), place, ratio
+      integer :: i, left
+
+      if (all(old == new) .or. any([old, new] == 0) .or. old(2) == old(1) .or. new(2) == new(1)) return
+      before = values
+      ratio = real(old(2) - old(1), wp)/(new(2) - new(1))
+      do i = new(1), new(2)
+         place = old(1) + ratio*(i - new(1))
+         left = min(int(place), old(2) - 1)
+         values(i) = before(left) + (place - left)*(before(left + 1) - before(left))
+      end do
+   end subroutine stretch
 
    !> All three motions.
    pure function motion_of(self, right, unknowns) result(motion)
@@ -509,7 +558,7 @@ contains
       if (m == 0) return
       call self%preconditioner%apply_contact(rows(:m))
       if (size(self%held) == 0) return
-      if (self%coupled) then
+      if (self%coupled .and. any(abs(rows(:m)) > 0.0_wp)) then
          self%pressure = 0.0_wp
          self%pressure(self%contact) = rows(:m)
          self%shear = self%slope*self%pressure
