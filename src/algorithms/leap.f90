@@ -1,15 +1,15 @@
 !> Leaps: a part of the load history at once, as an integrator would take it.
 !>
-!> A leap holds stuck nodes at the slip that they have at its start, and asks at its end alone that every equality and inequality
-!> of dissertation Table 2.1 holds, slip counted from start to end (mfv_active_set). Two leaps of half the length go the same way
-!> again; where they end with the same tractions, to a part `leap_tolerance` of the largest, they are taken, else the leap is
-!> shortened. Where every node slips in one direction only, and holds before and after at one place, no way matters and one leap
-!> is exact (Mindlin: constant pressure, growing shear). Where it matters, a node that touches on the way holds at the slip that
-!> it had at the start, a node that slips and sticks again on the way is taken never to have slipped: errors of the first power of
-!> the length, which the tolerance bounds leap by leap, not in sum.
+!> A leap holds stuck nodes at the slip that they have at its start, and asks at its end alone that every equality and
+!> inequality of dissertation Table 2.1 holds, slip counted from start to end (mfv_active_set). Two leaps of half the length go
+!> the same way again; where they end with the same tractions, and have dissipated the same, to a part `leap_tolerance` of the
+!> largest, they are taken, else the leap is shortened. Where nodes slip one way only under constant pressures, no way matters
+!> and one leap is exact (Mindlin). Where it matters, a node that touches on the way holds at about the slip that it then had,
+!> and a node that slips and sticks again on the way is taken never to have slipped: errors that fall with the length, which
+!> the tolerance bounds leap by leap, not in sum.
 !>
-!> What leaps cannot settle, however short, goes by events (mfv_first_violation) for as long: so gross sliding, separation and the
-!> like end as they do there. Of leaps the certificate checks the ends.
+!> What leaps cannot settle, however short, goes by events (mfv_first_violation) for as long: so gross sliding, separation and
+!> the like end as they do there. Of leaps the certificate checks the ends.
 module mfv_leap
    use mfv_compliance, only: block_up, block_wt
    use mfv_contact_fields, only: contact_fields_type
@@ -42,8 +42,8 @@ module mfv_leap
       integer :: parts = 0
       !> Whether the statuses were found, or at least the mesh was too short for them.
       logical :: settled = .false., exceeded = .false.
-      !> Largest difference of the tractions at the end between the leap and its halves, and the largest of them, force/length^2;
-      !> the same of what friction dissipates.
+      !> Largest difference of the tractions at the end between the leap and its halves, and the largest of them,
+      !> force/length^2; the same of what friction dissipates.
       real(wp) :: difference = 0.0_wp, traction = 0.0_wp, work_difference = 0.0_wp, work = 0.0_wp
    end type leap_type
 
@@ -195,10 +195,10 @@ contains
       if (leap%settled) leap%dissipated(2) = dissipation(path%model, path%state, leap%after(2))
    end subroutine halve
 
-   !> A first guess of who slips at the part `part` of the segment: where the tangential load changes, nodes slip with it. Where
-   !> the normal load does not change, nor the pressures with it, and the tangential force does, as many as slip in Mindlin's contact of cylinders: the edge of
-   !> the stick zone is there where the pressure is sqrt(Q/(mu P)) of the largest; after a reversal with half the change in place
-   !> of Q.
+   !> A first guess of who slips at the part `part` of the segment: where the tangential load changes, nodes slip with it.
+   !> Where the normal load does not change, nor the pressures with it, and the tangential force does, as many as slip in
+   !> Mindlin's contact of cylinders: the edge of the stick zone is there where the pressure is sqrt(Q/(mu P)) of the largest;
+   !> after a reversal with half the change in place of Q.
    subroutine guess_slip(path, segment, part)
       class(contact_path_type), intent(inout) :: path
       type(segment_type), intent(in) :: segment
@@ -256,10 +256,10 @@ contains
       end do
    end subroutine take
 
-   !> What friction dissipates on the way from `before`, which has the statuses on the way, to the fields `after`, energy per unit
-   !> thickness. Nodes that slip already at the start do so with tractions from those then to those after: the trapezoid. Others
-   !> begin to slip on the way, half way on the average; and nodes that part do so half way on the average. With constant
-   !> pressures this is exact, else of second order in the length of the leap.
+   !> What friction dissipates on the way from `before`, which has the statuses on the way, to the fields `after`, energy per
+   !> unit thickness. Nodes that slip already at the start do so with tractions from those then to those after: the trapezoid.
+   !> Others begin to slip on the way, half way on the average; and nodes that part do so half way on the average. With
+   !> constant pressures this is exact, else of second order in the length of the leap.
    pure real(wp) function dissipation(model, before, after)
       type(contact_model_type), intent(in) :: model
       type(contact_state_type), intent(in) :: before

@@ -76,9 +76,9 @@ contains
       end do
    end subroutine settle_and_grow
 
-   !> Statuses and fields at a part of the segment. The statuses of `path` are the first guess; where nothing is in contact there
-   !> is another. `settled`: whether they were found, on this mesh; if not, the statuses are of no use, and `exceeded` tells
-   !> whether only the mesh is too short. The fields of `path` stay those of the start.
+   !> Statuses and fields at a part of the segment. The statuses of `path` are the first guess; where nothing is in contact
+   !> there is another. `settled`: whether they were found, on this mesh; if not, the statuses are of no use, and `exceeded`
+   !> tells whether only the mesh is too short. The fields of `path` stay those of the start.
    subroutine settle_on_mesh(path, segment, part, fields, settled, exceeded)
       class(contact_path_type), intent(inout) :: path
       type(segment_type), intent(in) :: segment
@@ -118,8 +118,8 @@ contains
       call path%set_status(contact, status)
    end subroutine guess_contact
 
-   !> How far along the segment the bodies are certainly pressed together: the whole of it unless the normal force falls to zero,
-   !> then up to where little of it is left. (At zero the pressures of any contact are zero.)
+   !> How far along the segment the bodies are certainly pressed together: the whole of it unless the normal force falls to
+   !> zero, then up to where little of it is left. (At zero the pressures of any contact are zero.)
    pure real(wp) function before_separation(segment) result(part)
       type(segment_type), intent(in) :: segment
       real(wp), parameter :: nothing = 1.0e-9_wp, little = 1.0e-4_wp
@@ -133,8 +133,8 @@ contains
       end associate
    end function before_separation
 
-   !> Whether a tangential force or a moment begins to act while the bodies are apart and only draw near: it has nothing to carry
-   !> it until they touch.
+   !> Whether a tangential force or a moment begins to act while the bodies are apart and only draw near: it has nothing to
+   !> carry it until they touch.
    pure logical function carries_nothing_yet(path, segment)
       class(contact_path_type), intent(in) :: path
       type(segment_type), intent(in) :: segment
