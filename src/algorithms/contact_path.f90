@@ -243,19 +243,20 @@ contains
       integer, intent(in) :: along
       logical, intent(inout) :: settled
       type(error_type), allocatable, intent(out) :: error
-      real(wp), parameter :: balanced = 1.0e-9_wp, nothing = 1.0e-12_wp
+      real(wp), parameter :: balanced = 1.0e-9_wp, nothing = 1.0e-12_wp, noises = 10.0_wp
       type(constraints_type) :: trial
       type(response_type) :: response
-      real(wp) :: wanted, missing, scale, arm, negligible
+      real(wp) :: wanted, missing, scale, arm, negligible, none
       logical :: pressed
       logical :: yielding(size(self%state%status)), singular
 
       wanted = load%rate
+      none = max(nothing, noises*self%system%noise)
       load = load_type(control_displacement, merge(self%state%fields%shift, self%state%fields%rotation, along == along_shift), &
                        0.0_wp)
       arm = merge(1.0_wp, self%model%length(), along == along_shift)
-      negligible = nothing*self%certificate%force_scale()*arm
-      pressed = self%state%fields%normal_force > nothing*self%certificate%force_scale()
+      negligible = none*self%certificate%force_scale()*arm
+      pressed = self%state%fields%normal_force > none*self%certificate%force_scale()
       if (.not. any(slips(self%state%status))) then
          if (abs(wanted) > max(balanced*self%state%fields%normal_force*arm, negligible)) &
             call self%end_here(merge(MFV_GROSS_SLIDING, MFV_SEPARATED, pressed), &
@@ -278,7 +279,7 @@ contains
       if (.not. singular) then
          missing = wanted - self%model%resultant(along, response%rate%pressure, response%rate%shear)
          scale = max(scale, self%model%force(abs(response%rate%shear*self%model%tangential_arm(:, along))))
-         if (abs(missing) <= max(balanced*scale, negligible)) return
+         if (abs(missing) <= max(balanced*scale, noises*self%system%noise*scale, negligible)) return
       end if
       yielding = slips(self%state%status)
       if (.not. singular) yielding = yielding .and. &

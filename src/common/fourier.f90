@@ -8,14 +8,17 @@ module mfv_fourier
    use mfv_kinds, only: wp
    implicit none
    private
-   public :: fourier_sum, fourier_coefficients, complex_transform, transform_length, forward, backward, plans_kept
+   public :: fourier_sum, fourier_coefficients, complex_transform, real_transform, back_transform, transform_length, fast_length, &
+             forward, backward, plans_kept
 
    include 'fftw3.f03'
 
    integer, parameter :: to_values = 1, to_coefficients = 2
    !> Directions of complex_transform: exp(-2 pi i j k/N) and exp(2 pi i j k/N).
    integer, parameter :: forward = 3, backward = 4
-   integer, parameter :: most_plans = 64
+   integer, parameter :: most_plans = 256
+   !> The boundary, bytes, at which an array is aligned.
+   integer(c_intptr_t), parameter :: boundary = 16
 
    type :: plan_type
       integer :: size = 0, direction = 0
@@ -98,14 +101,63 @@ contains
    subroutine complex_transform(direction, values)
       integer, intent(in) :: direction
       complex(wp), intent(inout), contiguous, target :: values(:)
-      integer(c_intptr_t), parameter :: boundary = 16
       type(c_ptr) :: plan
       logical :: kept
 
-      call get_plan(size(values), direction, plan, kept, modulo(transfer(c_loc(values), boundary), boundary) == 0)
+      call get_plan(size(values), direction, plan, kept, is_aligned(c_loc(values)))
       call execute_in_place(plan, c_loc(values), c_loc(values))
       if (.not. kept) call throw_away(plan)
    end subroutine complex_transform
+
+   !> `spectrum(m+1)` = sum over k of values(k+1) exp(-2 pi i m k/N), m = 0 to N/2; N = size(values), size(spectrum) = N/2 + 1.
+   !> `values` is used as work space.
+   subroutine real_transform(values, spectrum)
+      real(wp), intent(inout), contiguous, target :: values(:)
+      complex(wp), intent(out), contiguous, target :: spectrum(:)
+      type(c_ptr) :: plan
+      logical :: kept
+
+      call get_plan(size(values), to_coefficients, plan, kept, is_aligned(c_loc(values)) .and. is_aligned(c_loc(spectrum)))
+      call fftw_execute_dft_r2c(plan, values, spectrum)
+      if (.not. kept) call throw_away(plan)
+   end subroutine real_transform
+
+   !> N times the values of which `spectrum` is the real_transform; N = size(values), size(spectrum) = N/2 + 1. `spectrum` is used
+   !> as work space.
+   subroutine back_transform(spectrum, values)
+      complex(wp), intent(inout), contiguous, target :: spectrum(:)
+      real(wp), intent(out), contiguous, target :: values(:)
+      type(c_ptr) :: plan
+      logical :: kept
+
+      call get_plan(size(values), to_values, plan, kept, is_aligned(c_loc(values)) .and. is_aligned(c_loc(spectrum)))
+      call fftw_execute_dft_c2r(plan, spectrum, values)
+      if (.not. kept) call throw_away(plan)
+   end subroutine back_transform
+
+   !> Whether an address is on a boundary that vector instructions want.
+   logical function is_aligned(address)
+      type(c_ptr), intent(in) :: address
+
+      is_aligned = modulo(transfer(address, boundary), boundary) == 0
+   end function is_aligned
+
+   !> The smallest length, not less than `at_least` nor than 16, that is 1, 3, 5, 9 or 15 times a power of 2: transforms of many
+   !> lengths then need few plans.
+   pure integer function fast_length(at_least)
+      integer, intent(in) :: at_least
+      integer, parameter :: odd(5) = [1, 3, 5, 9, 15]
+      integer :: i, length
+
+      fast_length = huge(1)
+      do i = 1, size(odd)
+         length = 2*odd(i)
+         do while (length < max(at_least, 16))
+            length = 2*length
+         end do
+         fast_length = min(fast_length, length)
+      end do
+   end function fast_length
 
    !> The smallest length of a transform, not less than `at_least`, that has no prime factors but 2, 3 and 5.
    pure integer function transform_length(at_least) result(length)
