@@ -77,6 +77,7 @@ module mfv_reduced_system
       procedure, private :: rebuild
       procedure, private :: part_of
       procedure, private :: refine
+      procedure, private :: set_known_motions
       procedure, private :: find_residual
       procedure, private :: correct
    end type reduced_system_type
@@ -592,19 +593,8 @@ contains
 
       singular = .false.
       fine = merge(5.0e-14_wp, 1.0e-14_wp, rates)
-      do i = 1, 3
-         if (self%motion_place(i) > 0) cycle
-         load = load_of(constraints, i)
-         value = merge(load%rate, load%value, rates)
-         if (i == along_rotation .and. .not. model%rotational) value = 0.0_wp
-         if (i == along_approach .and. load%control == control_force) cycle
-         call set_motion(fields, i, value)
-      end do
+      call self%set_known_motions(model, constraints, rates, fields)
       if (.not. rates) call open_up(self, model, fields)
-      if (rates .and. (model%rotational .or. .not. model%upright)) then
-         fields%normal = -model%rigid_normal(fields)
-         fields%tangential = -model%rigid_tangential(fields)
-      end if
       do pass = 1, most_passes
          call self%find_residual(model, constraints, rates, pass == 1 .and. rates, fields, residual)
          if (residual <= fine) exit
@@ -624,6 +614,33 @@ contains
          if (i == along_rotation) fields%moment = value
       end do
    end subroutine refine
+
+   !> Motions that are not among the unknowns, with what they do to the displacements.
+   subroutine set_known_motions(self, model, constraints, rates, fields)
+      class(reduced_system_type), intent(in) :: self
+      type(contact_model_type), intent(in) :: model
+      type(constraints_type), intent(in) :: constraints
+      logical, intent(in) :: rates
+      type(contact_fields_type), intent(inout) :: fields
+      type(load_type) :: load
+      integer :: i
+
+      if (all(self%motion_place > 0)) return
+      if (model%rotational .or. .not. model%upright) then
+         fields%normal = fields%normal + model%rigid_normal(fields)
+         fields%tangential = fields%tangential + model%rigid_tangential(fields)
+      end if
+      do i = 1, 3
+         load = load_of(constraints, i)
+         if (self%motion_place(i) > 0 .or. (i == along_rotation .and. .not. model%rotational) .or. &
+             (i == along_approach .and. load%control == control_force)) cycle
+         call set_motion(fields, i, merge(load%rate, load%value, rates))
+      end do
+      if (model%rotational .or. .not. model%upright) then
+         fields%normal = fields%normal - model%rigid_normal(fields)
+         fields%tangential = fields%tangential - model%rigid_tangential(fields)
+      end if
+   end subroutine set_known_motions
 
    !> No tractions on nodes without unknowns.
    subroutine open_up(self, model, fields)
@@ -759,6 +776,8 @@ contains
 
       normal = max(abs(fields%approach), tiny(1.0_wp))
       tangential = max(abs(fields%shift), tiny(1.0_wp))
+      if (model%rotational .or. .not. model%upright) &
+         normal = max(normal, abs(fields%shift), abs(fields%rotation)*model%length())
       traction = tiny(1.0_wp)
       force = tiny(1.0_wp)
       shear_force = 0.0_wp
