@@ -22,8 +22,7 @@ module mfv_leap
    use mfv_node_status
    use mfv_observer, only: observer_type
    use mfv_scene, only: control_force
-   use mfv_status, only: MFV_INTERRUPTED
-   use mfv_straight, only: before_separation, carries_nothing_yet, grow_mesh, lead_straight, part_of, settle_on_mesh
+   use mfv_straight, only: before_separation, carries_nothing_yet, close_leap, grow_mesh, lead_straight, part_of, settle_on_mesh
    implicit none
    private
    public :: lead_by_leaps
@@ -88,7 +87,7 @@ contains
             call take(path, leap)
             done = merge(goal, done + length, length >= goal - done)
             by_events = shortest
-            call tell(path, part_of(segment, 0.0_wp, done), observer, error)
+            call close_leap(path, segment, done, observer, error)
          else if (length <= shortest) then
             length = min(by_events, goal - done)
             call lead_by_violations(path, part_of(segment, done, done + length), observer, error)
@@ -124,19 +123,6 @@ contains
          change = max(min(change, most_shrink), least_shrink)
       end if
    end function change
-
-   !> Tell the observer of where `done` ends. Error MFV_INTERRUPTED.
-   subroutine tell(path, done, observer, error)
-      class(contact_path_type), intent(inout) :: path
-      type(segment_type), intent(in) :: done
-      class(observer_type), intent(inout), optional :: observer
-      type(error_type), allocatable, intent(out) :: error
-      logical :: stop_wanted
-
-      if (.not. present(observer)) return
-      call observer%notify(path%state, done%number, done%segments, done%to, stop_wanted)
-      if (stop_wanted) call path%end_here(MFV_INTERRUPTED, 'stopped on request', error)
-   end subroutine tell
 
    !> Leap from the part `done` of the segment as far as `length`, at once and in halves. `path` stays as it is.
    subroutine try_leap(path, segment, done, length, leap)
