@@ -138,11 +138,12 @@ contains
       type(contact_fields_type), intent(in) :: fields
       integer, intent(out) :: wanted(:)
       real(wp), dimension(size(wanted)) :: gap, slipped
-      real(wp) :: traction, motion
+      real(wp) :: traction, motion, noise
       integer :: i, closed
 
-      traction = round_off*max(maxval(abs(fields%pressure)), maxval(abs(fields%shear)), path%certificate%traction_scale())
-      motion = round_off*max(maxval(abs(fields%normal)), maxval(abs(fields%tangential)), abs(fields%approach), &
+      noise = max(round_off, path%system%noise)
+      traction = noise*max(maxval(abs(fields%pressure)), maxval(abs(fields%shear)), path%certificate%traction_scale())
+      motion = noise*max(maxval(abs(fields%normal)), maxval(abs(fields%tangential)), abs(fields%approach), &
                              abs(fields%shift))
       gap = path%model%gap(fields)
       slipped = 0.0_wp

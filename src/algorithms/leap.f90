@@ -140,7 +140,7 @@ contains
       status = path%state%status
       if (leap%settled) then
          leap%traction = max(maxval(abs(whole%pressure)), maxval(abs(whole%shear)))
-         leap%work = dissipation(path%model, path%state, whole)
+         leap%work = dissipation(path%model, path%state, whole, path%system%noise)
          if (moves_nothing(path, segment, whole)) then
             leap%parts = 1
             leap%state(1) = path%state
@@ -173,12 +173,13 @@ contains
       call settle_on_mesh(path, segment, done + half*length, leap%after(1), leap%settled, leap%exceeded)
       if (.not. leap%settled) return
       leap%state(1) = path%state
-      leap%dissipated(1) = dissipation(path%model, path%state, leap%after(1))
+      leap%dissipated(1) = dissipation(path%model, path%state, leap%after(1), path%system%noise)
       path%state%fields = leap%after(1)
       call path%set_status(in_contact(path%state%status), status)
       call settle_on_mesh(path, segment, done + length, leap%after(2), leap%settled, leap%exceeded)
       leap%state(2) = path%state
-      if (leap%settled) leap%dissipated(2) = dissipation(path%model, path%state, leap%after(2))
+      if (leap%settled) leap%dissipated(2) = dissipation(path%model, path%state, leap%after(2), &
+                                                              path%system%noise)
    end subroutine halve
 
    !> A first guess of who slips at the part `part` of the segment: where the tangential load changes, nodes slip with it.
@@ -225,7 +226,7 @@ contains
       if (.not. moves_nothing) return
       moves_nothing = .not. abs(segment%tangential%rate) > 0.0_wp .and. .not. any(slips(path%state%status)) .and. &
                       max(maxval(abs(path%state%fields%shear)), maxval(abs(after%shear))) &
-                      <= nothing*max(path%certificate%traction_scale(), maxval(abs(after%pressure)))
+                      <= max(nothing, path%system%noise)*max(path%certificate%traction_scale(), maxval(abs(after%pressure)))
    end function moves_nothing
 
    !> Go where the leap led.
@@ -245,17 +246,21 @@ contains
    !> What friction dissipates on the way from `before`, which has the statuses on the way, to the fields `after`, energy per
    !> unit thickness. Nodes that slip already at the start do so with tractions from those then to those after: the trapezoid.
    !> Others begin to slip on the way, half way on the average; and nodes that part do so half way on the average. With
-   !> constant pressures this is exact, else of second order in the length of the leap.
-   pure real(wp) function dissipation(model, before, after)
+   !> constant pressures this is exact, else of second order in the length of the leap. `noise`: the linear solver's.
+   pure real(wp) function dissipation(model, before, after, noise)
       type(contact_model_type), intent(in) :: model
       type(contact_state_type), intent(in) :: before
       type(contact_fields_type), intent(in) :: after
-      real(wp), parameter :: at_limit = 1.0e-9_wp
+      real(wp), intent(in) :: noise
+      real(wp), parameter :: at_limit = 1.0e-9_wp, noises = 100.0_wp
       real(wp), dimension(size(before%status)) :: work, slipped, limit
+      logical :: on(size(work))
 
       slipped = after%slip() - before%stuck_slip
       limit = model%static_friction*before%fields%pressure
-      where (slips(before%status) .and. -before%fields%shear*slip_sign(before%status) >= limit*(1.0_wp - at_limit))
+      on = slips(before%status) .and. -before%fields%shear*slip_sign(before%status) &
+           >= limit*(1.0_wp - max(at_limit, noises*noise))
+      where (on)
          work = -0.5_wp*(before%fields%shear + after%shear)*slipped
       elsewhere (slips(before%status))
          work = (0.75_wp*abs(after%shear) + 0.25_wp*limit)*abs(slipped)

@@ -8,7 +8,7 @@ module mfv_straight
    use mfv_contact_state, only: contact_state_type
    use mfv_contact_system, only: load_type
    use mfv_error, only: error_type
-   use mfv_first_violation, only: failed_certificate, lead_by_violations
+   use mfv_first_violation, only: failed_certificate, lead_by_violations, noises
    use mfv_kinds, only: wp
    use mfv_node_status
    use mfv_observer, only: observer_type
@@ -63,7 +63,7 @@ contains
       type(error_type), allocatable, intent(out) :: error
       logical :: stop_wanted
 
-      if (path%certificate%largest() > failed_certificate) &
+      if (path%certificate%largest() > max(failed_certificate, noises*path%system%noise)) &
          call path%no_continuation('the equations are no longer satisfied (certificate '// &
                                    to_text(path%certificate%largest())//')', error)
       if (allocated(error) .or. .not. present(observer)) return
