@@ -118,10 +118,10 @@ contains
       grouping = path%model%scene%friction%law%is_linear .and. .not. path%model%scene%friction%law%drops
    end function grouping
 
-   !> Violations that follow the first one within `event_tolerance`, in parts of what is then done of the segment, happen together
-   !> with the last of them. Until then inequalities are broken, by what the rates do over that part of the load; measured, this
-   !> errs less than to change the nodes too early. (What is violated already at the start has no time.)
-   !> `left`: what is left of the segment.
+   !> Violations that follow the first one within `event_tolerance`, in parts of what is then done of the segment, happen
+   !> together with the last of them. Until then inequalities are broken, by what the rates do over that part of the load;
+   !> measured, this errs less than to change the nodes too early. (What is violated already at the start has no time.) `left`:
+   !> what is left of the segment.
    subroutine take_together(path, left, increment)
       class(contact_path_type), intent(in) :: path
       real(wp), intent(in) :: left
