@@ -8,6 +8,7 @@ program bench_solvers
    use mfv_friction, only: coulomb_friction
    use mfv_kinds, only: pi, wp
    use mfv_material, only: new_material, plane_strain
+   use mfv_reduced_system, only: reduced_system_type
    use mfv_scene
    use mfv_simulation, only: history_none, new_simulation, simulation_type
    implicit none
@@ -36,6 +37,10 @@ program bench_solvers
       simulation%contact%state%contact_nodes(), ',', simulation%contact%events, ',', simulation%contact%system%solves, ',', &
       best, ',', norm2(simulation%contact%state%fields%shear), ',', simulation%contact%certificate%largest(), ',', &
       simulation%outcome
+   select type (system => simulation%contact%system)
+   type is (reduced_system_type)
+      write (output_unit, '(a,2(1x,i0))') 'refinements, rebuilds', system%refinements, system%rebuilds()
+   end select
 
 contains
 

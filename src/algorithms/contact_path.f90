@@ -27,6 +27,8 @@ module mfv_contact_path
       logical :: friction = .true.
       !> Number of this segment, how many there are, and the step that it belongs to: for records and progress.
       integer :: number = 1, segments = 1, step = 1
+      !> Where this one begins and ends in parts of the whole that it belongs to, for progress.
+      real(wp) :: from = 0.0_wp, to = 1.0_wp
    end type segment_type
 
    type :: contact_path_type
@@ -59,7 +61,7 @@ module mfv_contact_path
       procedure :: take_increment
       procedure :: keep_settled
       procedure :: keep_on_mesh
-      procedure, private :: widen
+      procedure :: widen
       procedure :: no_continuation
       procedure :: end_here
       procedure, private :: begin_tangential
@@ -507,24 +509,30 @@ contains
    end function holding
 
    !> Go to the fields `after`: memories, dissipation, directions and the certificate go along. `slip_rate`: rates of slip on
-   !> the way, any unit, shape (nodes); `dropped`: part of the excess tractions that has been let go.
-   subroutine take_increment(self, after, slip_rate, dropped)
+   !> the way, any unit, shape (nodes); `dropped`: part of the excess tractions that has been let go. `dissipated`: of a leap,
+   !> whose way is not known, what friction dissipates (energy per unit thickness); else everything is linear on the way.
+   subroutine take_increment(self, after, slip_rate, dropped, dissipated)
       class(contact_path_type), intent(inout) :: self
       type(contact_fields_type), intent(in) :: after
       real(wp), intent(in) :: slip_rate(:), dropped
+      real(wp), intent(in), optional :: dissipated
       real(wp), parameter :: moving = 1.0e-9_wp
       type(contact_state_type) :: before
 
       before = self%state
       call remember_slip(self, after, dropped)
       self%state%fields = after
-      self%state%dissipation = self%state%dissipation &
-                               - 0.5_wp*self%model%force((before%fields%shear + after%shear) &
-                                                         *(after%slip() - before%fields%slip()))
+      if (present(dissipated)) then
+         self%state%dissipation = self%state%dissipation + dissipated
+      else
+         self%state%dissipation = self%state%dissipation &
+                                  - 0.5_wp*self%model%force((before%fields%shear + after%shear) &
+                                                            *(after%slip() - before%fields%slip()))
+      end if
       self%state%slip_direction = 0
       where (abs(slip_rate) > moving*maxval(abs(slip_rate))) &
          self%state%slip_direction = nint(sign(1.0_wp, slip_rate))
-      call self%certificate%check_increment(self%model, before, self%state)
+      call self%certificate%check_increment(self%model, before, self%state, present(dissipated))
    end subroutine take_increment
 
    !> What the friction law remembers after an increment to the fields `after`.

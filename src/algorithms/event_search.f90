@@ -48,7 +48,7 @@ contains
       type(contact_fields_type), intent(in) :: state, rate
       real(wp), intent(in) :: round_off
       type(violations_type) :: violations
-      real(wp) :: traction_scale, motion_scale, mu, full, gap_rate, slip_rate
+      real(wp) :: traction_scale, motion_scale, mu, full, gap_rate, slip_rate, noise
       logical :: soft_limit, sticks, has_corners
       real(wp), parameter :: secant_noise = 100.0_wp
       integer :: i, n
@@ -68,22 +68,24 @@ contains
       end if
       has_corners = allocated(corners%room)
       call find_scales(rate, traction_scale, motion_scale)
+      noise = round_off*traction_scale
       do i = 1, n
-         gap_rate = rate%normal(i) - rate%approach
          slip_rate = rate%tangential(i) - rate%shift
          select case (status(i))
          case (node_open)
-            if (model%can_touch(i)) call consider(event_close, model%initial_gap(i) - state%approach + state%normal(i), &
-                                                  gap_rate, motion_scale)
+            gap_rate = rate%normal(i) - rate%approach
+            if (gap_rate < 0.0_wp .and. model%can_touch(i)) &
+               call consider(event_close, model%initial_gap(i) - state%approach + state%normal(i), gap_rate, motion_scale)
             cycle
          case (node_stick, node_creep_right, node_creep_left)
             mu = full*model%static_friction(i)
-            if (.not. (soft_limit .and. .not. state%pressure(i) > 0.0_wp .and. &
-                       rate%pressure(i) > round_off*traction_scale)) then
-               call consider(event_slip_right, mu*state%pressure(i) + state%shear(i), &
-                             mu*rate%pressure(i) + rate%shear(i), max(mu, 1.0_wp)*traction_scale)
-               call consider(event_slip_left, mu*state%pressure(i) - state%shear(i), &
-                             mu*rate%pressure(i) - rate%shear(i), max(mu, 1.0_wp)*traction_scale)
+            if (mu*rate%pressure(i) - abs(rate%shear(i)) < 0.0_wp) then
+               if (.not. (soft_limit .and. .not. state%pressure(i) > 0.0_wp .and. rate%pressure(i) > noise)) then
+                  call consider(event_slip_right, mu*state%pressure(i) + state%shear(i), &
+                                mu*rate%pressure(i) + rate%shear(i), max(mu, 1.0_wp)*traction_scale)
+                  call consider(event_slip_left, mu*state%pressure(i) - state%shear(i), &
+                                mu*rate%pressure(i) - rate%shear(i), max(mu, 1.0_wp)*traction_scale)
+               end if
             end if
             ! What a wrong direction does to the traction counts; and the secants' own noise is larger than round-off.
             if (has_corners) then
@@ -93,7 +95,8 @@ contains
             end if
          case (node_slip_right, node_slip_left)
             if (sticks) then
-               call consider(event_stick, 0.0_wp, slip_sign(status(i))*slip_rate, motion_scale)
+               if (merge(slip_rate, -slip_rate, status(i) == node_slip_right) < 0.0_wp) &
+                  call consider(event_stick, 0.0_wp, -abs(slip_rate), motion_scale)
             else
                call consider(event_stick, 0.0_wp, &
                              model%scene%friction%law%yields(slip_sign(status(i))*slip_rate, &
@@ -102,7 +105,7 @@ contains
             end if
             if (has_corners) call consider_corners(i)
          end select
-         call consider(event_open, state%pressure(i), rate%pressure(i), traction_scale)
+         if (rate%pressure(i) < 0.0_wp) call consider(event_open, state%pressure(i), rate%pressure(i), traction_scale)
       end do
 
    contains

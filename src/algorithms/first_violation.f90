@@ -107,7 +107,8 @@ contains
             if (allocated(error)) return
             if (.not. drop) done = done + increment%step
             if (present(observer)) then
-               call observer%notify(path%state, segment%number, segment%segments, done, stop_wanted)
+               call observer%notify(path%state, segment%number, segment%segments, &
+                                    segment%from + (segment%to - segment%from)*done, stop_wanted)
                if (stop_wanted) call path%end_here(MFV_INTERRUPTED, 'stopped on request', error)
                if (allocated(error)) return
             end if
@@ -145,7 +146,8 @@ contains
          scale = max(path%certificate%traction_scale(), &
                      maxval(abs(response%rate%pressure)), maxval(abs(response%rate%shear)))
          if (max(maxval(abs(response%state%pressure - before%pressure)), &
-                 maxval(abs(response%state%shear - before%shear))) > max(largest_jump, noises*path%system%noise)*scale) then
+                 maxval(abs(response%state%shear - before%shear))) &
+             > max(largest_jump, allowed(path), noises*path%system%noise)*scale) then
             call path%no_continuation('the tractions would have to jump', error)
             return
          end if
@@ -153,10 +155,18 @@ contains
       end associate
       call path%take_increment(increment%response%state%plus(increment%step, increment%response%rate), &
                                increment%response%rate%slip(), merge(increment%step, 0.0_wp, drop))
-      if (path%certificate%largest() > max(failed_certificate, noises*path%system%noise)) &
+      if (path%certificate%largest() > max(failed_certificate, allowed(path), noises*path%system%noise)) &
          call path%no_continuation('the equations are no longer satisfied (certificate '// &
                                    to_text(path%certificate%largest())//')', error)
    end subroutine advance
+
+   !> By how much inequalities may be broken where events close to each other are taken together: rates near an edge are large.
+   pure real(wp) function allowed(path)
+      class(contact_path_type), intent(in) :: path
+      real(wp), parameter :: magnification = 100.0_wp
+
+      allowed = magnification*path%model%scene%method%event_tolerance
+   end function allowed
 
    !> Change the statuses of the nodes whose inequalities break first, together.
    !> Errors MFV_NO_CONTINUATION: every way out has been tried at this load; MFV_MESH_EXCEEDED.
@@ -203,7 +213,7 @@ contains
       call remember(moment, path%state%status)
 
       associate (violations => increment%violations)
-         changing = violations%step <= minval(violations%step)*(1.0_wp + tie_of(path)) + no_step_of(path)
+         changing = violations%step <= increment%reach
          if (moment%one_at_a_time) then
             fastest = maxloc(violations%speed, dim=1, mask=changing)
             changing = .false.

@@ -16,7 +16,7 @@ module mfv_increment
    use mfv_event_search, only: corners_type, find_violations, violations_type
    use mfv_kinds, only: wp
    use mfv_node_status
-   use mfv_scene, only: integration_explicit, stepping_nominal
+   use mfv_scene, only: integration_explicit, stepping_event, stepping_nominal
    implicit none
    private
    public :: increment_type, find_increment, no_step_of, tie_of
@@ -29,6 +29,8 @@ module mfv_increment
       type(violations_type) :: violations
       !> Length in parts of the segment (of the drop); and whether a violation ends it.
       real(wp) :: step = 0.0_wp
+      !> Violations up to this step happen together at its end.
+      real(wp) :: reach = 0.0_wp
       logical :: ends_in_event = .false.
       !> The linear system has no solution, or the corrector does not converge; the increment is then of no use.
       logical :: singular = .false., diverges = .false.
@@ -66,6 +68,7 @@ contains
                                 increment%singular)
          if (increment%singular) return
          call search(path, round_off, left, increment)
+         if (grouping(path)) call take_together(path, left, increment)
          if (bends(path)) call follow_friction(path, constraints, left, drop, round_off, increment)
       end if
    end subroutine find_increment
@@ -92,12 +95,47 @@ contains
       real(wp) :: first
 
       if (path%has_corners()) call path%find_corners(path%state%fields%plus(longest, increment%response%rate), corners)
-      increment%violations = find_violations(path%model, path%state%status, corners, path%state%fields, &
-                                             increment%response%rate, max(round_off, path%system%noise))
+      if (grouping(path)) then
+         ! Inequalities that were broken hold again in the state that the new statuses make.
+         increment%violations = find_violations(path%model, path%state%status, corners, increment%response%state, &
+                                                increment%response%rate, max(round_off, path%system%noise))
+      else
+         increment%violations = find_violations(path%model, path%state%status, corners, path%state%fields, &
+                                                increment%response%rate, max(round_off, path%system%noise))
+      end if
       first = minval(increment%violations%step)
       increment%step = min(first, longest)
+      increment%reach = first*(1.0_wp + tie_of(path)) + no_step_of(path)
       increment%ends_in_event = first*(1.0_wp - tie_of(path)) - no_step_of(path) <= longest
    end subroutine search
+
+   !> Whether events close to each other are taken together: asked for, and friction is Coulomb's or none.
+   pure logical function grouping(path)
+      class(contact_path_type), intent(in) :: path
+
+      grouping = path%model%scene%method%event_tolerance > 0.0_wp .and. path%model%scene%method%stepping == stepping_event
+      if (.not. (grouping .and. path%model%scene%friction%acts())) return
+      grouping = path%model%scene%friction%law%is_linear .and. .not. path%model%scene%friction%law%drops
+   end function grouping
+
+   !> Violations that follow the first one within `event_tolerance`, in parts of what is then done of the segment, happen together
+   !> with the last of them. Until then inequalities are broken, by what the rates do over that part of the load; measured, this
+   !> errs less than to change the nodes too early. (What is violated already at the start has no time.)
+   !> `left`: what is left of the segment.
+   subroutine take_together(path, left, increment)
+      class(contact_path_type), intent(in) :: path
+      real(wp), intent(in) :: left
+      type(increment_type), intent(inout) :: increment
+      real(wp) :: furthest, window
+
+      if (increment%step <= no_step_of(path) .or. .not. increment%ends_in_event) return
+      window = path%model%scene%method%event_tolerance*(1.0_wp - left + increment%step)
+      furthest = min(increment%step + window, left)
+      furthest = maxval(increment%violations%step, mask=increment%violations%step <= furthest)
+      if (.not. furthest > increment%step) return
+      increment%step = furthest
+      increment%reach = max(increment%reach, furthest)
+   end subroutine take_together
 
    !> Lead friction that is not linear over an increment with a controlled error, or explicitly.
    subroutine follow_friction(path, constraints, left, drop, round_off, increment)

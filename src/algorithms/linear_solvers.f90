@@ -20,7 +20,7 @@ contains
       select case (model%scene%method%linear_solver)
       case (solver_fft)
          allocate (krylov_system_type :: system)
-      case (solver_reduced)
+      case (solver_auto, solver_reduced)
          allocate (reduced_system_type :: system)
       case default
          allocate (augmented_system_type :: system)

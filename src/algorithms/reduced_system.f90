@@ -53,6 +53,8 @@ module mfv_reduced_system
       !> Constraint of every node (shape (nodes)) and motion; 0: none.
       integer, allocatable :: constraint_of(:)
       integer :: motion_constraint(3) = 0
+      !> Unit of length: half the mesh when the first unknown came; it stays while the mesh grows.
+      real(wp) :: length = 1.0_wp
       !> What the inverses were built for.
       logical :: block(4) = .false., rotational = .false.
       type(augmented_system_type) :: augmented
@@ -69,7 +71,8 @@ module mfv_reduced_system
       procedure, private :: set_constraints
       procedure, private :: release
       procedure, private :: constrain
-      procedure, private :: add_unknown
+      procedure, private :: add_unknowns
+      procedure, private :: add_named
       procedure, private :: remove_unknown
       procedure, private :: rebuild
       procedure, private :: part_of
@@ -142,6 +145,7 @@ contains
       end if
       self%block = model%compliance%has_block
       self%rotational = model%rotational
+      self%length = model%length()
       self%apart = .not. (self%block(block_wt) .or. self%rotational .or. model%scene%mesh%radial)
       self%motion_place = 0
       self%motion_constraint = 0
@@ -180,7 +184,9 @@ contains
       wanted_motion = .false.
       wanted_motion(along_approach) = any(wanted(:, a_pressure))
       wanted_motion(along_shift) = any(wanted(:, a_shear))
-      if (model%rotational) wanted_motion(along_rotation) = count(wanted(:, a_pressure)) > 1
+      ! Where normals are along the radius a rotation only slides: nothing but friction determines it.
+      if (model%rotational) wanted_motion(along_rotation) = count(wanted(:, a_pressure)) > 1 .and. &
+                                                            (model%upright .or. any(wanted(:, a_shear)))
       call self%lose_constraints(constraints, wanted, wanted_motion)
       call self%change_unknowns(model, wanted, wanted_motion, singular)
       if (singular) return
@@ -263,11 +269,8 @@ contains
                if (self%place(i, sort) > 0 .and. .not. wanted(i, sort)) call self%remove_unknown(sort, i, singular)
             end do
          end do
-         do sort = a_pressure, a_shear
-            do i = 1, size(wanted, 1)
-               if (singular) exit
-               if (self%place(i, sort) == 0 .and. wanted(i, sort)) call self%add_unknown(model, sort, i, singular)
-            end do
+         do part = 1, 2
+            if (.not. singular) call self%add_unknowns(model, part, wanted, singular)
          end do
          if (.not. singular) call self%change_motions(model, wanted_motion, .true., singular)
          if (.not. singular) return
@@ -286,36 +289,60 @@ contains
       do i = 1, 3
          if (singular) return
          if (adding .and. wanted_motion(i) .and. self%motion_place(i) == 0) then
-            call self%add_unknown(model, a_motion, i, singular)
+            call self%add_named(model, self%part_of(a_motion, i), [a_motion], [i], singular)
          else if (.not. adding .and. self%motion_place(i) > 0 .and. .not. wanted_motion(i)) then
             call self%remove_unknown(a_motion, i, singular)
          end if
       end do
    end subroutine change_motions
 
-   !> One more unknown of a part.
-   subroutine add_unknown(self, model, sort, number, singular)
+   !> The unknowns of nodes that a part lacks.
+   subroutine add_unknowns(self, model, p, wanted, singular)
       class(reduced_system_type), intent(inout) :: self
       type(contact_model_type), intent(in) :: model
-      integer, intent(in) :: sort, number
+      integer, intent(in) :: p
+      logical, intent(in) :: wanted(:, :)
       logical, intent(out) :: singular
-      real(wp), allocatable :: border(:), diagonal(:)
-      integer :: p
+      integer :: new_sort(2*size(wanted, 1)), new_of(2*size(wanted, 1)), i, number, sort
 
-      p = self%part_of(sort, number)
-      allocate (border(self%part(p)%unknowns), diagonal(1))
-      call entries_of(model, self%part(p)%sort(:self%part(p)%unknowns), self%part(p)%of(:self%part(p)%unknowns), sort, number, &
-                      border)
-      call entries_of(model, [sort], [number], sort, number, diagonal)
-      call self%part(p)%system%add_unknown(border, diagonal(1), singular)
-      if (singular) return
-      call enlist(self%part(p), sort, number)
-      if (sort == a_motion) then
-         self%motion_place(number) = self%part(p)%unknowns
-      else
-         self%place(number, sort) = self%part(p)%unknowns
-      end if
-   end subroutine add_unknown
+      singular = .false.
+      number = 0
+      do sort = a_pressure, a_shear
+         if (self%part_of(sort, 0) /= p) cycle
+         do i = 1, size(wanted, 1)
+            if (self%place(i, sort) > 0 .or. .not. wanted(i, sort)) cycle
+            number = number + 1
+            new_sort(number) = sort
+            new_of(number) = i
+         end do
+      end do
+      if (number > 0) call self%add_named(model, p, new_sort(:number), new_of(:number), singular)
+   end subroutine add_unknowns
+
+   !> More unknowns of a part: their sorts and nodes or motions.
+   subroutine add_named(self, model, p, new_sort, new_of, singular)
+      class(reduced_system_type), intent(inout) :: self
+      type(contact_model_type), intent(in) :: model
+      integer, intent(in) :: p, new_sort(:), new_of(:)
+      logical, intent(out) :: singular
+      real(wp), allocatable :: borders(:, :)
+      integer :: i, n
+
+      do i = 1, size(new_sort)
+         call enlist(self%part(p), new_sort(i), new_of(i))
+         if (new_sort(i) == a_motion) then
+            self%motion_place(new_of(i)) = self%part(p)%unknowns
+         else
+            self%place(new_of(i), new_sort(i)) = self%part(p)%unknowns
+         end if
+      end do
+      n = self%part(p)%unknowns
+      allocate (borders(n, size(new_sort)))
+      do i = 1, size(new_sort)
+         call entries_of(model, self%length, self%part(p)%sort(:n), self%part(p)%of(:n), new_sort(i), new_of(i), borders(:, i))
+      end do
+      call self%part(p)%system%add_unknowns(borders, singular)
+   end subroutine add_named
 
    !> One more name in the list of a part's unknowns.
    subroutine enlist(part, sort, number)
@@ -405,8 +432,8 @@ contains
          associate (n => self%part(p)%unknowns)
             allocate (matrix(n, n))
             do j = 1, n
-               call entries_of(model, self%part(p)%sort(:n), self%part(p)%of(:n), self%part(p)%sort(j), self%part(p)%of(j), &
-                               matrix(:, j))
+               call entries_of(model, self%length, self%part(p)%sort(:n), self%part(p)%of(:n), self%part(p)%sort(j), &
+                               self%part(p)%of(j), matrix(:, j))
             end do
             call self%part(p)%system%refresh(matrix, singular)
             deallocate (matrix)
@@ -419,8 +446,9 @@ contains
    end subroutine rebuild
 
    !> Entries of the rows `sort`, `of` in the column of one unknown, in units of the compliance's modulus and the mesh's length.
-   subroutine entries_of(model, sort, of, column_sort, column_of, entries)
+   subroutine entries_of(model, length, sort, of, column_sort, column_of, entries)
       type(contact_model_type), intent(in) :: model
+      real(wp), intent(in) :: length
       integer, intent(in) :: sort(:), of(:), column_sort, column_of
       real(wp), intent(out) :: entries(:)
       real(wp) :: unit, block_entries(size(sort), 1)
@@ -429,12 +457,12 @@ contains
       entries = 0.0_wp
       if (column_sort == a_motion) then
          do i = 1, size(sort)
-            if (sort(i) == a_pressure) entries(i) = -model%normal_arm(of(i), column_of)/arm_unit(model, column_of)
-            if (sort(i) == a_shear) entries(i) = -model%tangential_arm(of(i), column_of)/arm_unit(model, column_of)
+            if (sort(i) == a_pressure) entries(i) = -model%normal_arm(of(i), column_of)/arm_unit(length, column_of)
+            if (sort(i) == a_shear) entries(i) = -model%tangential_arm(of(i), column_of)/arm_unit(length, column_of)
          end do
          return
       end if
-      unit = model%compliance%modulus/model%length()*model%interval()/model%width(column_of)
+      unit = model%compliance%modulus/length*model%interval()/model%width(column_of)
       do row_sort = a_pressure, a_shear
          n = 0
          do i = 1, size(sort)
@@ -450,8 +478,8 @@ contains
       end do
       do i = 1, size(sort)
          if (sort(i) /= a_motion) cycle
-         if (column_sort == a_pressure) entries(i) = -model%normal_arm(column_of, of(i))/arm_unit(model, of(i))
-         if (column_sort == a_shear) entries(i) = -model%tangential_arm(column_of, of(i))/arm_unit(model, of(i))
+         if (column_sort == a_pressure) entries(i) = -model%normal_arm(column_of, of(i))/arm_unit(length, of(i))
+         if (column_sort == a_shear) entries(i) = -model%tangential_arm(column_of, of(i))/arm_unit(length, of(i))
       end do
    end subroutine entries_of
 
@@ -467,12 +495,12 @@ contains
    end function block_between
 
    !> Unit of the arms of a motion: none, or length for the rotation.
-   pure real(wp) function arm_unit(model, motion)
-      type(contact_model_type), intent(in) :: model
+   pure real(wp) function arm_unit(length, motion)
+      real(wp), intent(in) :: length
       integer, intent(in) :: motion
 
       arm_unit = 1.0_wp
-      if (motion == along_rotation) arm_unit = model%length()
+      if (motion == along_rotation) arm_unit = length
    end function arm_unit
 
    !> Constraints of the nodes that slip or creep, and of the motions that are held.
@@ -489,7 +517,7 @@ contains
          if (self%place(i, a_shear) == 0 .or. constraints%status(i) == node_stick) cycle
          partner = 0
          if (.not. self%apart) partner = self%place(i, a_pressure)
-         stiffness = constraints%row(i)%stiffness*model%length()/model%compliance%modulus*model%width(i)/model%interval()
+         stiffness = constraints%row(i)%stiffness*self%length/model%compliance%modulus*model%width(i)/model%interval()
          if (self%constraint_of(i) == 0) then
             call self%constrain(p, self%place(i, a_shear), partner, constraints%row(i)%slope, stiffness)
             self%constraint_of(i) = self%part(p)%system%constraints
@@ -556,13 +584,14 @@ contains
       type(contact_fields_type), intent(inout) :: fields
       logical, intent(out) :: singular
       integer, parameter :: most_passes = 6
-      real(wp), parameter :: fine = 2.0e-13_wp, fair = 1.0e-10_wp
-      real(wp) :: residual
+      real(wp), parameter :: fair = 1.0e-10_wp
+      real(wp) :: residual, fine
       integer :: i, pass
       type(load_type) :: load
       real(wp) :: value
 
       singular = .false.
+      fine = merge(5.0e-14_wp, 1.0e-14_wp, rates)
       do i = 1, 3
          if (self%motion_place(i) > 0) cycle
          load = load_of(constraints, i)
@@ -572,11 +601,15 @@ contains
          call set_motion(fields, i, value)
       end do
       if (.not. rates) call open_up(self, model, fields)
+      if (rates .and. (model%rotational .or. .not. model%upright)) then
+         fields%normal = -model%rigid_normal(fields)
+         fields%tangential = -model%rigid_tangential(fields)
+      end if
       do pass = 1, most_passes
-         call self%find_residual(model, constraints, rates, fields, residual)
-         if (residual <= fine .and. (pass > 1 .or. .not. rates)) exit
+         call self%find_residual(model, constraints, rates, pass == 1 .and. rates, fields, residual)
+         if (residual <= fine) exit
          if (pass > 3 .and. residual <= fair) exit
-         if (pass > 2 - merge(0, 1, rates)) self%refinements = self%refinements + 1
+         if (pass > 1 .or. .not. rates) self%refinements = self%refinements + 1
          call self%correct(model, constraints, rates, fields, singular)
          if (singular) return
       end do
@@ -641,20 +674,25 @@ contains
    end function motion_of
 
    !> What is missing in every row and constraint, in their units, as right sides for a correction; and the largest of them,
-   !> relative to the magnitudes of their sort.
-   subroutine find_residual(self, model, constraints, rates, fields, largest)
+   !> relative to the magnitudes of their sort. `at_rest`: all fields are zero yet.
+   subroutine find_residual(self, model, constraints, rates, at_rest, fields, largest)
       class(reduced_system_type), intent(inout) :: self
       type(contact_model_type), intent(in) :: model
       type(constraints_type), intent(in) :: constraints
-      logical, intent(in) :: rates
+      logical, intent(in) :: rates, at_rest
       type(contact_fields_type), intent(in) :: fields
       real(wp), intent(out) :: largest
-      real(wp) :: normal_scale, shear_scale, traction_scale, force, length, modulus, interval, missing, value
+      real(wp) :: normal_scale, shear_scale, traction_scale, force, shear_force, length, modulus, interval, missing, value
       type(load_type) :: load
       integer :: i, node, p
 
-      call find_scales(model, fields, normal_scale, shear_scale, traction_scale, force)
-      length = model%length()
+      normal_scale = 1.0_wp
+      shear_scale = 1.0_wp
+      traction_scale = 1.0_wp
+      force = 1.0_wp
+      shear_force = 1.0_wp
+      if (.not. at_rest) call find_scales(model, fields, normal_scale, shear_scale, traction_scale, force, shear_force)
+      length = self%length
       modulus = model%compliance%modulus
       interval = model%interval()
       largest = 0.0_wp
@@ -696,12 +734,12 @@ contains
                   load = load_of(constraints, node)
                   value = merge(load%rate, load%value, rates)
                   if (self%motion_constraint(node) > 0) then
-                     value = (value - motion_of(fields, node))*arm_unit(model, node)
+                     value = (value - motion_of(fields, node))*arm_unit(self%length, node)
                      largest = max(largest, abs(value)/max(normal_scale, shear_scale))
                      part%values(self%motion_constraint(node)) = value/length
                   else
-                     missing = (model%resultant(node, fields%pressure, fields%shear) - value)/arm_unit(model, node)
-                     largest = max(largest, abs(missing)/force)
+                     missing = (model%resultant(node, fields%pressure, fields%shear) - value)/arm_unit(self%length, node)
+                     largest = max(largest, abs(missing)/merge(shear_force, force, node == along_shift))
                      missing = missing/(interval*modulus)
                   end if
                end select
@@ -709,26 +747,32 @@ contains
             end do
          end associate
       end do
+      if (at_rest) largest = huge(1.0_wp)
    end subroutine find_residual
 
-   !> Magnitudes: of normal and of tangential displacements, of tractions, and of forces.
-   pure subroutine find_scales(model, fields, normal, tangential, traction, force)
+   !> Magnitudes: of normal and of tangential displacements, of tractions, of all forces and of tangential ones.
+   pure subroutine find_scales(model, fields, normal, tangential, traction, force, shear_force)
       type(contact_model_type), intent(in) :: model
       type(contact_fields_type), intent(in) :: fields
-      real(wp), intent(out) :: normal, tangential, traction, force
+      real(wp), intent(out) :: normal, tangential, traction, force, shear_force
       integer :: i
 
       normal = max(abs(fields%approach), tiny(1.0_wp))
       tangential = max(abs(fields%shift), tiny(1.0_wp))
       traction = tiny(1.0_wp)
       force = tiny(1.0_wp)
+      shear_force = 0.0_wp
       do i = 1, size(fields%pressure)
          normal = max(normal, abs(fields%normal(i)))
          tangential = max(tangential, abs(fields%tangential(i)))
          traction = max(traction, abs(fields%pressure(i)), abs(fields%shear(i)))
          force = force + model%width(i)*abs(fields%pressure(i))
+         shear_force = shear_force + model%width(i)*abs(fields%shear(i))
       end do
+      shear_force = max(shear_force, model%grip*force)
+      force = max(force, shear_force)
       tangential = max(tangential, model%grip*normal)
+      normal = max(normal, tangential)
    end subroutine find_scales
 
    !> What is missing to the shear traction of a slipping or creeping node.
@@ -761,7 +805,7 @@ contains
       singular = .false.
       do p = 1, 2
          if (self%part(p)%unknowns == 0) cycle
-         if (p == 2) call self%find_residual(model, constraints, rates, fields, residual)
+         if (p == 2) call self%find_residual(model, constraints, rates, .false., fields, residual)
          associate (part => self%part(p), n => self%part(p)%unknowns)
             call part%system%solve(part%right(:n), part%values(:part%system%constraints), part%solution(:n), singular)
          end associate
@@ -789,7 +833,7 @@ contains
          do i = 1, part%unknowns
             node = part%of(i)
             if (part%sort(i) == a_motion) then
-               call set_motion(fields, node, motion_of(fields, node) + part%solution(i)*model%length()/arm_unit(model, node))
+               call set_motion(fields, node, motion_of(fields, node) + part%solution(i)*self%length/arm_unit(self%length, node))
                cycle
             end if
             unit = stress/model%width(node)

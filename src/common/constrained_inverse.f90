@@ -28,7 +28,7 @@ module mfv_constrained_inverse
       logical, private :: stale = .false.
    contains
       procedure :: clear
-      procedure :: add_unknown
+      procedure :: add_unknowns
       procedure :: remove_unknown
       procedure :: constrain
       procedure :: release
@@ -88,18 +88,24 @@ contains
       call self%release_all()
    end subroutine clear
 
-   !> One more unknown, the last; see mfv_updated_inverse.
-   subroutine add_unknown(self, border, diagonal, singular)
+   !> More unknowns, the last ones; `borders`: see mfv_updated_inverse. `singular`: that cannot be done; what is left is of no
+   !> use then.
+   subroutine add_unknowns(self, borders, singular)
       class(constrained_inverse_type), intent(inout) :: self
-      real(wp), intent(in) :: border(:), diagonal
+      real(wp), intent(in) :: borders(:, :)
       logical, intent(out) :: singular
+      integer :: i
 
-      call self%inverse%add(border, diagonal, singular)
-      if (singular) return
-      call self%reserve(self%inverse%order, self%constraints)
-      self%columns(self%inverse%order, :self%constraints) = 0.0_wp
-      call self%follow_change(self%inverse%order)
-   end subroutine add_unknown
+      singular = .false.
+      call self%reserve(size(borders, 1), self%constraints)
+      call self%inverse%prepare(borders)
+      do i = 1, size(borders, 2)
+         call self%inverse%add_prepared(singular)
+         if (singular) return
+         self%columns(self%inverse%order, :self%constraints) = 0.0_wp
+         call self%follow_change(self%inverse%order)
+      end do
+   end subroutine add_unknowns
 
    !> Lose unknown `row`, which no constraint may name; the last one then takes its place.
    subroutine remove_unknown(self, row, singular)

@@ -72,12 +72,24 @@ contains
       real(wp), intent(out) :: by_x(:), by_y(:)
       complex(wp), allocatable :: work(:)
       complex(wp) :: here, there
+      integer, parameter :: most = 500
+      real(wp) :: factor, largest_x, largest_y
       integer :: k, n, length
 
       n = self%nodes
       length = self%length
       allocate (work(length))
-      work(:n) = cmplx(x, y, wp)
+      if (allocated(self%mirrored)) then
+         work(:n) = cmplx(x, y, wp)
+      else
+         ! Both of one size, so that the smaller one keeps its digits beside the larger one.
+         largest_x = maxval(abs(x))
+         largest_y = maxval(abs(y))
+         factor = 1.0_wp
+         if (largest_x > 0.0_wp .and. largest_y > 0.0_wp) &
+            factor = scale(1.0_wp, min(max(exponent(largest_x) - exponent(largest_y), -most), most))
+         work(:n) = cmplx(x, factor*y, wp)
+      end if
       work(n + 1:) = 0.0_wp
       call complex_transform(forward, work)
       if (allocated(self%mirrored)) then
@@ -94,6 +106,10 @@ contains
       call complex_transform(backward, work)
       by_x = real(work(:n), wp)
       by_y = aimag(work(:n))
+      if (allocated(self%mirrored)) return
+      by_y = by_y/factor
+      if (.not. largest_x > 0.0_wp) by_x = 0.0_wp
+      if (.not. largest_y > 0.0_wp) by_y = 0.0_wp
    end subroutine multiply
 
 end module mfv_toeplitz
