@@ -14,6 +14,7 @@ program mfv_run
    character(len=1), parameter :: line_feed = achar(10)
    character(*), parameter :: usage = &
       'usage: mfv_run CASE.nml          solve the case, write its result file, print a summary'//line_feed// &
+      '       mfv_run --estimate CASE.nml   the same, with error bars: the case is solved on coarser meshes too'//line_feed// &
       '       mfv_run --check CASE.nml  read and validate the case only'//line_feed// &
       '       mfv_run --keys            print every group and key of a case (Markdown)'//line_feed// &
       '       mfv_run --version'//line_feed// &
@@ -43,6 +44,10 @@ program mfv_run
    case ('--keys')
       call list_keys_as_markdown(text)
       write (output_unit, '(a)', advance='no') text
+   case ('--estimate')
+      call get_argument(2, argument)
+      call expect_arguments(2)
+      call run_case(argument, estimate=.true.)
    case ('--check')
       call get_argument(2, argument)
       call expect_arguments(2)

@@ -95,7 +95,75 @@ def test_help_version_keys_and_check(tmp_path):
     assert list(tmp_path.iterdir()) == []
 
 
-@pytest.mark.parametrize("arguments", [(), ("--chekc", "x.nml"), ("a.nml", "b.nml"), ("--check",)])
+MINDLIN = """&scene coupling='goodman', length_unit='mm', force_unit='N' /
+&body shape='half_plane', shear_modulus=1.0, poisson_ratio=0.3 /
+&body shape='disk', radius=0.25, rigid=.true. /
+&mesh nodes=61, half_width=0.0127, gap='parabolic' /
+&friction law='coulomb', mu=0.7 /
+&step normal_force=1.0e-3, friction=.false. /
+&step tangential_force={force} /
+&output file='{name}.h5'{more} /
+"""
+
+
+def test_error_estimate_in_summary_and_file(tmp_path):
+    by_key = case(tmp_path, MINDLIN.format(force=2.8e-4, name="key", more=", error_estimate=.true."), "key.nml")
+    by_option = case(tmp_path, MINDLIN.format(force=2.8e-4, name="option", more=""), "option.nml")
+    runs = [mfv_run(by_key, cwd=tmp_path), mfv_run("--estimate", by_option, cwd=tmp_path)]
+    for run in runs:
+        assert run.returncode == COMPLETE and run.stderr == ""
+        assert len(re.findall(r"^error estimate +(contact half-width|stick ratio|peak pressure|peak shear|dissipation) \S+"
+                              r"( mm| N| N/mm\^2)? \+- \S+ \(\S+ %\), order ", run.stdout, re.MULTILINE)) == 5, run.stdout
+        assert "from meshes with 43, 35, 31 nodes in place of 61" in run.stdout
+    with h5py.File(tmp_path / "key.h5") as result, h5py.File(tmp_path / "option.h5") as other:
+        estimate = result["error_estimate"]
+        names = ("contact_half_width", "stick_ratio", "peak_pressure", "peak_shear", "dissipation")
+        assert set(estimate) == {"nodes", "companion_nodes"} | {name + end for name in names
+                                                                for end in ("", "_error", "_order", "_companions")}
+        for name, dataset in estimate.items():
+            assert dataset.attrs["units"] and dataset.attrs["long_name"]
+            np.testing.assert_array_equal(dataset[()], other["error_estimate"][name][()])
+        assert estimate["stick_ratio_companions"].dims[0][0] == estimate["companion_nodes"]
+        assert estimate["contact_half_width_error"].attrs["units"] == "mm"
+        assert estimate["contact_half_width"][()] == result["summary/contact_half_width"][()]
+        assert abs(estimate["stick_ratio"][()] - 0.6**0.5) < 2 * estimate["stick_ratio_error"][()] < 0.2
+        assert result.attrs["error_estimate"] == "there"
+    shown = subprocess.run([sys.executable, "-m", "mfv", "info", "key.h5"], cwd=tmp_path, capture_output=True, text=True,
+                           env={**os.environ, "PYTHONPATH": str(ROOT / "python")})
+    assert "error estimate" in shown.stdout and "peak_shear" in shown.stdout, shown.stderr
+
+
+def test_no_error_estimate_of_what_ended_early(tmp_path):
+    path = case(tmp_path, MINDLIN.format(force=8e-4, name="early", more=", error_estimate=.true."))
+    run = mfv_run(path, cwd=tmp_path)
+    assert run.returncode == EARLY and "error estimate      none: the run ended early" in run.stdout
+    with h5py.File(tmp_path / "early.h5") as result:
+        assert "error_estimate" not in result
+        assert result.attrs["error_estimate"] == "none: the run ended early"
+
+
+def test_interrupted_error_estimate_keeps_the_result(tmp_path):
+    text = MINDLIN.format(force=2.8e-4, name="long", more=", history='none', states='steps'").replace("nodes=61", "nodes=41")
+    path = case(tmp_path, text.replace("&output", "&step tangential_force=-2.8e-4, cycles=400 /\n&output"))
+    started = time.time()
+    assert mfv_run(path, cwd=tmp_path).returncode == COMPLETE
+    alone = time.time() - started
+    (tmp_path / "long.h5").unlink()
+    process = subprocess.Popen([PROGRAM, "--estimate", str(path)], cwd=tmp_path, stdout=subprocess.PIPE,
+                               stderr=subprocess.PIPE, text=True)
+    time.sleep(1.15 * alone)
+    process.send_signal(signal.SIGINT)
+    output, errors = process.communicate(timeout=60)
+    with h5py.File(tmp_path / "long.h5") as result:
+        if process.returncode == COMPLETE:  # it was faster than this test
+            return
+        assert process.returncode == 130, errors
+        assert "summary" in result and "error_estimate" not in result
+        assert result.attrs["error_estimate"].endswith(("interrupted", "ended early"))
+        assert "error estimate      none: " in output
+
+
+@pytest.mark.parametrize("arguments", [(), ("--chekc", "x.nml"), ("a.nml", "b.nml"), ("--check",), ("--estimate",)])
 def test_wrong_arguments(arguments, tmp_path):
     run = mfv_run(*arguments, cwd=tmp_path)
     assert run.returncode == INPUT and "usage:" in run.stderr and run.stdout == ""
