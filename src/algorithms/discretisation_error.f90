@@ -16,7 +16,8 @@ module mfv_discretisation_error
    use mfv_strings, only: to_text
    implicit none
    private
-   public :: estimate_error, coarser_scene, quantities_of, interval_allowances, has_coarser_meshes
+   public :: estimate_error, coarser_scene, scene_on_mesh, fix_cycles, nearest_mesh, quantities_of, interval_allowances, &
+             has_coarser_meshes
 
    !> By how much the companions are coarser: spread, so that their edges lie in different places of an interval.
    real(wp), parameter :: coarsening(3) = [1.4_wp, 1.7_wp, 2.0_wp]
@@ -100,7 +101,7 @@ contains
                                to_text(simulation%contact%state%contact_nodes())
          else
             do i = 1, size(coarsening)
-               coarser = coarser_nodes(scene, scene%mesh%nodes/coarsening(i))
+               coarser = nearest_mesh(scene, scene%mesh%nodes/coarsening(i))
                if (coarser > 0 .and. coarser < nodes(size(nodes))) nodes = [nodes, coarser]
             end do
             if (size(nodes) < 3) estimate%message = 'no two coarser meshes fit the circle of a Fourier series'
@@ -111,7 +112,7 @@ contains
 
    !> The number of intervals nearest to `wanted`, as odd or even as the scene's, that fits its circles; 0 where there is none
    !> within a fifth.
-   pure integer function coarser_nodes(scene, wanted) result(nodes)
+   pure integer function nearest_mesh(scene, wanted) result(nodes)
       type(scene_type), intent(in) :: scene
       real(wp), intent(in) :: wanted
       real(wp), parameter :: reach = 0.2_wp
@@ -126,7 +127,7 @@ contains
          end do
       end do
       nodes = 0
-   end function coarser_nodes
+   end function nearest_mesh
 
    !> Whether a mesh of `nodes` intervals over a given half-width fits a body: a Fourier series needs a whole number on its
    !> circle.
@@ -187,24 +188,22 @@ contains
       call self%caller%notify(state, self%before*segments + segment, self%companions*segments, fraction, stop_wanted)
    end subroutine notify
 
-   !> The scene of a simulation on `nodes` intervals over the same surface. A mesh of a given half-width has another interval at
-   !> either end, so that wider intervals do not exceed it; a mesh that grows does so here too: what is beyond the contact
-   !> changes nothing. Cycles are as many as were run, steady or not; a coefficient of friction that is given one a node
-   !> is averaged over the wider intervals.
+   !> The scene of a simulation on `nodes` intervals, with as many cycles as were run, steady or not.
    function coarser_scene(simulation, nodes) result(scene)
       type(simulation_type), intent(in) :: simulation
       integer, intent(in) :: nodes
       type(scene_type) :: scene
-      integer :: i, spare
 
-      scene = simulation%contact%model%scene
-      spare = 0
-      if (scene%mesh%half_width > 0.0_wp) spare = 1
-      if (scene%arc_radius() > 0.0_wp .and. scene%mesh%half_width*(nodes + 2) > pi*scene%arc_radius()*nodes) spare = 0
-      scene%mesh%nodes = nodes + 2*spare
-      scene%mesh%half_width = scene%mesh%half_width*(nodes + 2*spare)/nodes
-      call average(scene%friction%static, nodes, spare)
-      call average(scene%friction%kinetic, nodes, spare)
+      scene = scene_on_mesh(simulation%contact%model%scene, nodes)
+      call fix_cycles(scene, simulation)
+   end function coarser_scene
+
+   !> Have a scene run as many cycles as a simulation of it did, steady or not.
+   subroutine fix_cycles(scene, simulation)
+      type(scene_type), intent(inout) :: scene
+      type(simulation_type), intent(in) :: simulation
+      integer :: i
+
       do i = 1, simulation%snapshot_count
          associate (snapshot => simulation%snapshots(i))
             if (.not. scene%steps(snapshot%step)%steady_tolerance > 0.0_wp) cycle
@@ -212,7 +211,26 @@ contains
          end associate
       end do
       scene%steps%steady_tolerance = 0.0_wp
-   end function coarser_scene
+   end subroutine fix_cycles
+
+   !> A scene on `nodes` intervals over the same surface. A mesh of a given half-width has another interval at either end, so
+   !> that wider intervals do not exceed it; a mesh that grows does so here too: what is beyond the contact changes nothing. A
+   !> coefficient of friction that is given one a node is averaged over the wider intervals.
+   function scene_on_mesh(original, nodes) result(scene)
+      type(scene_type), intent(in) :: original
+      integer, intent(in) :: nodes
+      type(scene_type) :: scene
+      integer :: spare
+
+      scene = original
+      spare = 0
+      if (scene%mesh%half_width > 0.0_wp) spare = 1
+      if (scene%arc_radius() > 0.0_wp .and. scene%mesh%half_width*(nodes + 2) > pi*scene%arc_radius()*nodes) spare = 0
+      scene%mesh%nodes = nodes + 2*spare
+      scene%mesh%half_width = scene%mesh%half_width*(nodes + 2*spare)/nodes
+      call average(scene%friction%static, nodes, spare)
+      call average(scene%friction%kinetic, nodes, spare)
+   end function scene_on_mesh
 
    !> Values given one a node, constant over each interval, made means over `nodes` intervals; `spare` more at either end
    !> have those of the ends.

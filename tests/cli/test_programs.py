@@ -163,6 +163,56 @@ def test_interrupted_error_estimate_keeps_the_result(tmp_path):
         assert "error estimate      none: " in output
 
 
+def test_advice_can_be_pasted_and_holds(tmp_path):
+    text = MINDLIN.format(force=2.8e-4, name="advised", more="").replace("&output", "&solver algorithm='mfv' /\n&output")
+    path = case(tmp_path, text)
+    run = mfv_run("--advise", "error=2e-2", path.name, cwd=tmp_path)
+    assert run.returncode == COMPLETE and run.stderr == ""
+    assert list(tmp_path.iterdir()) == [path]
+    for word in ("case.nml, wanted error 0.02", "pairs of coarse meshes", "error with 61", "nodes needed", "pressure", "shear",
+                 "half_width", "stick_ratio", "dissipation", "cost laws"):
+        assert word in run.stdout, run.stdout
+    groups = [line for line in run.stdout.splitlines() if not line.startswith("!")]
+    assert re.fullmatch(r"&mesh nodes=\d+, half_width=0.0127, gap='parabolic' /", groups[0])
+    assert re.fullmatch(r"&solver linear_solver='\w+'.*, algorithm='mfv' /", groups[1])
+    kept = [line for line in text.splitlines() if not line.startswith(("&mesh", "&solver"))]
+    advised = case(tmp_path, "\n".join([*kept, run.stdout]), "advised.nml")
+    assert mfv_run(advised.name, cwd=tmp_path).returncode == COMPLETE
+    with h5py.File(tmp_path / "advised.h5") as result:
+        state, closed, summary = result["state"], result["reference"], result["summary"]
+        for name in ("pressure", "shear"):
+            assert np.linalg.norm(state[name][:] - closed[name][:]) < 2e-2 * np.linalg.norm(closed[name][:])
+        assert abs(summary["contact_half_width"][()] / closed["contact_half_width"][()] - 1) < 2e-2
+        assert abs(summary["stick_ratio"][()] - 0.6**0.5) < 2e-2
+    fewer = mfv_run("--advise", "of=pressure,dissipation", "error=2e-2", path.name, cwd=tmp_path).stdout
+    assert "shear" not in fewer and "half_width  " not in fewer
+    nodes = [int(re.search(r"&mesh nodes=(\d+)", advice)[1]) for advice in (fewer, run.stdout)]
+    assert nodes[0] < nodes[1] < 200
+
+
+@pytest.mark.parametrize("arguments, message", [
+    (("error=abc",), "--advise error=abc: must be a number above 0 and below 1, such as 1e-2"),
+    (("error=",), "--advise error=: must be a number"),
+    (("error=0",), "--advise error=0: must be a number above 0"),
+    (("error=-1e-3",), "--advise error=-1e-3: must be a number above 0"),
+    (("error=1",), "--advise error=1: must be a number above 0 and below 1"),
+    (("error=nan",), "--advise error=nan: must be a number above 0"),
+    (("error=1e-2", "of=presure"), "--advise of=presure: 'presure' is none of pressure,shear,half_width,stick_ratio,dissipation"),
+    ((), "--advise needs the wanted error, such as error=1e-2"),
+    (("error=1e-2", "other.nml"), "--advise too many arguments: 'case.nml'"),
+])
+def test_wrong_wishes_for_advice(arguments, message, tmp_path):
+    path = case(tmp_path, MINDLIN.format(force=2.8e-4, name="advised", more=""))
+    run = mfv_run("--advise", *arguments, path.name, cwd=tmp_path)
+    assert run.returncode == INPUT and message in run.stderr and run.stdout == ""
+
+
+def test_no_advice_for_what_ends_early(tmp_path):
+    path = case(tmp_path, MINDLIN.format(force=8e-4, name="early", more=""))
+    run = mfv_run("--advise", "error=1e-2", path.name, cwd=tmp_path)
+    assert run.returncode == EARLY and "case.nml: no advice: with " in run.stderr and "gross sliding" in run.stderr
+
+
 @pytest.mark.parametrize("arguments", [(), ("--chekc", "x.nml"), ("a.nml", "b.nml"), ("--check",), ("--estimate",)])
 def test_wrong_arguments(arguments, tmp_path):
     run = mfv_run(*arguments, cwd=tmp_path)
