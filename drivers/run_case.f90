@@ -21,9 +21,9 @@ module mfv_run_case
 
 contains
 
-   !> Read the case in the file `path`, solve it, write its result and print the summary; the program then ends with the exit
-   !> code of the outcome. `algorithm`: in place of the case's own; `suffix` then comes to the name of the result file. `estimate`:
-   !> whether the discretisation error is estimated even where the case does not ask for it.
+   !> Read the case in the file `path`, solve it, write its result and print the summary; the program then ends with the
+   !> exit code of the outcome. `algorithm`: in place of the case's own; `suffix` then comes to the name of the result file.
+   !> `estimate`: whether the discretisation error is estimated even where the case does not ask for it.
    subroutine run_case(path, algorithm, suffix, estimate)
       character(*), intent(in) :: path
       integer, intent(in), optional :: algorithm

@@ -1,7 +1,7 @@
-!> How many nodes, and which linear solver, a scene needs for a wanted error. Pairs of coarse meshes of the scene itself, of m and
-!> 3 m intervals, whose nodes lie in the same places, tell the size c of the errors c/nodes^order of the tractions (l2, over
-!> the nodes) and of the dissipation; the width of the intervals that of half-width and stick ratio. What a solver costs comes from
-!> laws that were measured by bench/.
+!> How many nodes, and which linear solver, a scene needs for a wanted error. Pairs of coarse meshes of the scene itself, of
+!> m and 3 m intervals, whose nodes lie in the same places, tell the size c of the errors c/nodes^order of the tractions
+!> (l2, over the nodes) and of the dissipation; the width of the intervals that of half-width and stick ratio. What a solver
+!> costs comes from laws that were measured by bench/.
 module mfv_advice
    use mfv_discretisation_error
    use mfv_error_bar, only: quantity_count, quantity_half_width, quantity_stick_ratio
@@ -17,8 +17,8 @@ module mfv_advice
    public :: advice_type, advise, advice_names, advice_count, advice_pressure, advice_shear, advice_half_width, &
              advice_stick_ratio, advice_dissipation, cheapest_solver, seconds_of_solve
 
-   !> Quantities that can be wanted: the tractions in the l2 norm relative to their own; half-width and dissipation relative; the
-   !> stick ratio as it is, that is in parts of the contact.
+   !> Quantities that can be wanted: the tractions in the l2 norm relative to their own; half-width and dissipation
+   !> relative; the stick ratio as it is, that is in parts of the contact.
    integer, parameter :: advice_pressure = 1, advice_shear = 2, advice_half_width = 3, advice_stick_ratio = 4, &
                          advice_dissipation = 5, advice_count = 5
    character(*), parameter :: advice_names(advice_count) = [character(11) :: 'pressure', 'shear', 'half_width', 'stick_ratio', &
@@ -29,12 +29,14 @@ module mfv_advice
    real(wp), parameter :: safety(advice_count) = [2.0_wp, 2.0_wp, 1.4_wp, 1.4_wp, 2.0_wp]
    !> Nodes in contact that the coarse meshes of the pairs should have, about.
    integer, parameter :: pair_nodes(8) = [13, 15, 17, 19, 21, 23, 25, 27]
-   !> Nodes in contact that a first mesh must have, to tell how many nodes the pairs need; and that a mesh should have at least.
+   !> Nodes in contact that a first mesh must have, to tell how many nodes the pairs need; and that a mesh should have at
+   !> least.
    integer, parameter :: fewest_pilot_nodes = 8, fewest_nodes = 10
 
-   !> Seconds that one linear solve with m unknown tractions takes, with all that goes with it: dgesv coefficient*m^3, reduced
-   !> coefficient*m^2, fft coefficient*m*log2(m). Measured by bench/ (dgesv: examples/mindlin.nml, 87 to 259 nodes in contact, one
-   !> thread; reduced and fft: PROVISIONAL, until bench/ has measured them). Crossovers are where the laws meet.
+   !> Seconds that one linear solve with m unknown tractions takes, with all that goes with it: dgesv coefficient*m^3,
+   !> reduced coefficient*m^2, fft coefficient*m*log2(m). Measured by bench/ (dgesv: examples/mindlin.nml, 87 to 259 nodes
+   !> in contact, one thread; reduced and fft: PROVISIONAL, until bench/ has measured them). Crossovers are where the laws
+   !> meet.
    real(wp), parameter :: dgesv_seconds = 1.6e-10_wp, reduced_seconds = 2.0e-9_wp, fft_seconds = 1.6e-6_wp
    !> Relative residual that an iterative solver may leave, in parts of the wanted error; never below the default.
    real(wp), parameter :: tolerance_part = 1.0e-3_wp
@@ -49,8 +51,8 @@ module mfv_advice
       real(wp) :: wanted_error = 0.0_wp
       !> &mesh nodes that the wanted error takes, and nodes in contact then; and what the scene has itself.
       integer :: nodes = 0, contact_nodes = 0, present_nodes = 0
-      !> Whether the scene has a quantity that is wanted; the error that its law has with the scene's own nodes, and the nodes in
-      !> contact that the wanted error takes.
+      !> Whether the scene has a quantity that is wanted; the error that its law has with the scene's own nodes, and the
+      !> nodes in contact that the wanted error takes.
       logical :: known(advice_count) = .false.
       real(wp) :: present_error(advice_count) = 0.0_wp, needed_nodes(advice_count) = 0.0_wp
       !> Coarse meshes that were solved, &mesh nodes of the coarser one of each pair.
@@ -124,7 +126,7 @@ contains
          advice%message = "a body with shape='matrix' has its own nodes"
       else if (allocated(scene%friction%static%value) .and. .not. allocated(scene%friction%static%position)) then
          if (size(scene%friction%static%value) > 1) &
-            advice%message = 'the coefficient of friction has one value a node; put it into a mu_file for another number of nodes'
+            advice%message = 'the coefficient of friction has one value a node; a mu_file would do with any number of nodes'
       end if
       if (advice%message /= '') advice%status = MFV_INPUT_ERROR
    end subroutine refuse_fixed_meshes
@@ -250,8 +252,8 @@ contains
       law%pairs = law%pairs + 1
    end subroutine add_pair
 
-   !> Relative distance, l2, of coarse tractions from fine ones; `place`: the coarse nodes among the fine ones, outside of which
-   !> there is no traction.
+   !> Relative distance, l2, of coarse tractions from fine ones; `place`: the coarse nodes among the fine ones, outside of
+   !> which there is no traction.
    pure real(wp) function distance(coarse, fine, place)
       real(wp), intent(in) :: coarse(:), fine(:)
       integer, intent(in) :: place(:)

@@ -271,8 +271,8 @@ contains
       end associate
    end function quantities_of
 
-   !> What the intervals of a mesh leave open in each quantity, whatever other meshes say. An edge of the contact or of a stick zone
-   !> may be half an interval off, except where the contact ends because a body does. The peak of the shear
+   !> What the intervals of a mesh leave open in each quantity, whatever other meshes say. An edge of the contact or of a
+   !> stick zone may be half an interval off, except where the contact ends because a body does. The peak of the shear
    !> traction is somewhere between two nodes.
    function interval_allowances(simulation) result(allowances)
       type(simulation_type), intent(in) :: simulation
@@ -335,9 +335,10 @@ contains
       end do
    end function free_edges
 
-   !> How far the true peak of the size of the shear traction may be off that at a node. Where the peak is at the edge of a zone that
-   !> holds, the true one is somewhere between two nodes, and not above the friction limit at the one that holds; elsewhere it
-   !> may be off by what the peak differs from the nearer one of its neighbours. Arguments of shape (nodes), force/length^2.
+   !> How far the true peak of the size of the shear traction may be off that at a node. Where the peak is at the edge of a
+   !> zone that holds, the true one is somewhere between two nodes, and not above the friction limit at the one that holds;
+   !> elsewhere it may be off by what the peak differs from the nearer one of its neighbours. Arguments of shape (nodes),
+   !> force/length^2.
    pure real(wp) function room_at_peak(shear, limit, held) result(room)
       real(wp), intent(in) :: shear(:), limit(:)
       logical, intent(in) :: held(:)

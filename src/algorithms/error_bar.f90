@@ -1,7 +1,7 @@
-!> Error bars from meshes: how far a value is from its limit, told from values on coarser meshes (Richardson 1911; Roache 1994;
-!> least squares over several meshes as Eca and Hoekstra 2014). An edge of a contact or stick zone lies somewhere in an interval, so
-!> that errors have the shape of a saw over the number of intervals. So no single pair of meshes is believed: the bar is the
-!> mean square over all of them; and what the intervals leave open comes on top.
+!> Error bars from meshes: how far a value is from its limit, told from values on coarser meshes (Richardson 1911; Roache
+!> 1994; least squares over several meshes as Eca and Hoekstra 2014). An edge of a contact or stick zone lies somewhere in
+!> an interval, so that errors have the shape of a saw over the number of intervals. So no single pair of meshes is
+!> believed: the bar is the mean square over all of them; and what the intervals leave open comes on top.
 module mfv_error_bar
    use, intrinsic :: ieee_arithmetic, only: ieee_positive_inf, ieee_value
    use mfv_kinds, only: wp

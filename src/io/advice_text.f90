@@ -88,8 +88,8 @@ contains
       call add_line(text, case%source//', wanted error '//to_text(advice%wanted_error)//'. Based on '//to_text(last)// &
                     ' pairs of coarse meshes of this case,')
       call add_line(text, 'from '//to_text(advice%pair_nodes(1))//' and '//to_text(3*advice%pair_nodes(1))//' to '// &
-                    to_text(advice%pair_nodes(last))//' and '//to_text(3*advice%pair_nodes(last))//' nodes: error = c/nodes, '// &
-                    'of the dissipation c/nodes^2, with safety.')
+                    to_text(advice%pair_nodes(last))//' and '//to_text(3*advice%pair_nodes(last))// &
+                    ' nodes: error = c/nodes, of the dissipation c/nodes^2, with safety.')
       present = 'error with '//to_text(advice%present_nodes)
       call add_line(text, '               '//present//'nodes needed')
       do i = 1, advice_count
@@ -104,7 +104,7 @@ contains
       call add_line(text, 'Then about '//to_text(advice%contact_nodes)//' nodes in contact, '//to_text(advice%solves, 2)// &
                     ' linear solves, '//to_text(advice%seconds, 1)//' s by the cost laws of bench/.')
       if (advice%path_does_not_matter) &
-         call add_line(text, "No friction acts, so that the path does not matter: stepping='leap' in &solver goes straight there.")
+         call add_line(text, "No friction acts, and the path does not matter: stepping='leap' in &solver goes straight there.")
       call add_line(text, 'In place of &mesh and &solver of the case:')
    end subroutine add_reasons
 

@@ -116,8 +116,8 @@ contains
       call add_line(text, 'error estimate', 'from meshes with '//meshes//' nodes in place of '// &
                     to_text(simulation%estimate%nodes))
       if (case%scene%friction%name == 'static_kinetic') &
-         call add_line(text, 'error estimate', 'static and kinetic friction depends on every mesh: there is no limit that the '// &
-                       'bars could be from')
+         call add_line(text, 'error estimate', 'static and kinetic friction depends on every mesh: '// &
+                       'there is no limit that the bars could be from')
    end subroutine add_estimate
 
    !> The error in percent of the value, in brackets after a blank; padded with blanks.

@@ -1,5 +1,6 @@
-!> Random cases that have closed forms: Hertz, the flat punch and the cylinder pressed with friction (Spence, Goodman's coupling), Cattaneo
-!> and Mindlin with and without a cycle; meshes, coefficients of friction, Poisson's ratios, loads and units at random.
+!> Random cases that have closed forms: Hertz, the flat punch and the cylinder pressed with friction (Spence, Goodman's
+!> coupling), Cattaneo and Mindlin with and without a cycle; meshes, coefficients of friction, Poisson's ratios, loads and
+!> units at random.
 module test_closed_form_cases
    use mfv_body, only: new_disk
    use mfv_compliance, only: coupling_goodman
@@ -88,25 +89,31 @@ contains
    real(wp) function largest_spence_shear(force, half_width, mu, beta)
       real(wp), intent(in) :: force, half_width, mu, beta
       integer, parameter :: points = 4000
+      real(wp) :: x(0:points)
       integer :: i
 
-      largest_spence_shear = maxval(abs(spence_cylinder_shear([(half_width*i/points, i=0, points)], force, half_width, mu, beta)))
+      x = [(half_width*i/points, i=0, points)]
+      largest_spence_shear = maxval(abs(spence_cylinder_shear(x, force, half_width, mu, beta)))
    end function largest_spence_shear
 
-   !> Numbers between 0 and 1, the same everywhere: the minimal standard generator, started with the cube of the seed so that seeds
-   !> next to each other lead apart.
+   !> Numbers between 0 and 1, the same everywhere: the minimal standard generator, started with the cube of the seed so
+   !> that seeds next to each other lead apart.
    pure function random_numbers(seed, n) result(numbers)
       integer, intent(in) :: seed, n
       real(wp) :: numbers(n)
       integer, parameter :: long = selected_int_kind(18)
       integer(long), parameter :: multiplier = 48271_long, modulus = 2147483647_long
+      integer, parameter :: warm_up = 9
       integer(long) :: state
       integer :: i
 
       state = modulo(seed*modulo(int(seed, long)**2, modulus), modulus)
-      do i = -8, n
+      do i = 1, warm_up
          state = modulo(multiplier*state, modulus)
-         if (i >= 1) numbers(i) = real(state, wp)/real(modulus, wp)
+      end do
+      do i = 1, n
+         state = modulo(multiplier*state, modulus)
+         numbers(i) = real(state, wp)/real(modulus, wp)
       end do
    end function random_numbers
 
