@@ -1,6 +1,7 @@
 !> mfv_run CASE.nml: solve one case and write its result.
 program mfv_run
    use, intrinsic :: iso_fortran_env, only: output_unit
+   use mfv_advise_case, only: advise_case
    use mfv_case, only: case_type
    use mfv_case_keys, only: list_keys_as_markdown
    use mfv_case_reader, only: read_case_file
@@ -14,6 +15,11 @@ program mfv_run
    character(len=1), parameter :: line_feed = achar(10)
    character(*), parameter :: usage = &
       'usage: mfv_run CASE.nml          solve the case, write its result file, print a summary'//line_feed// &
+      '       mfv_run --estimate CASE.nml   the same, with error bars: the case is solved on coarser meshes too'//line_feed// &
+      '       mfv_run --advise error=1e-2 [of=pressure,stick_ratio,...] CASE.nml'//line_feed// &
+      '                                 how many nodes, and which solver, this error takes; of: pressure, shear,'// &
+      line_feed// &
+      '                                 half_width, stick_ratio, dissipation; all unless told'//line_feed// &
       '       mfv_run --check CASE.nml  read and validate the case only'//line_feed// &
       '       mfv_run --keys            print every group and key of a case (Markdown)'//line_feed// &
       '       mfv_run --version'//line_feed// &
@@ -43,6 +49,12 @@ program mfv_run
    case ('--keys')
       call list_keys_as_markdown(text)
       write (output_unit, '(a)', advance='no') text
+   case ('--estimate')
+      call get_argument(2, argument)
+      call expect_arguments(2)
+      call run_case(argument, estimate=.true.)
+   case ('--advise')
+      call advise_case(usage)
    case ('--check')
       call get_argument(2, argument)
       call expect_arguments(2)

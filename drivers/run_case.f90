@@ -4,7 +4,8 @@ module mfv_run_case
    use mfv_case, only: case_type
    use mfv_case_reader, only: read_case_file
    use mfv_clock, only: seconds_now
-   use mfv_error, only: error_type
+   use mfv_discretisation_error, only: estimate_error, has_coarser_meshes
+   use mfv_error, only: error_type, set_error
    use mfv_hdf5_writer, only: check_writable
    use mfv_kinds, only: wp
    use mfv_result_file, only: write_result
@@ -20,12 +21,14 @@ module mfv_run_case
 
 contains
 
-   !> Read the case in the file `path`, solve it, write its result and print the summary; the program then ends with the exit
-   !> code of the outcome. `algorithm`: in place of the case's own; `suffix` then comes to the name of the result file.
-   subroutine run_case(path, algorithm, suffix)
+   !> Read the case in the file `path`, solve it, write its result and print the summary; the program then ends with the
+   !> exit code of the outcome. `algorithm`: in place of the case's own; `suffix` then comes to the name of the result file.
+   !> `estimate`: whether the discretisation error is estimated even where the case does not ask for it.
+   subroutine run_case(path, algorithm, suffix, estimate)
       character(*), intent(in) :: path
       integer, intent(in), optional :: algorithm
       character(*), intent(in), optional :: suffix
+      logical, intent(in), optional :: estimate
       type(case_type) :: case
       type(simulation_type) :: simulation
       type(string_type), allocatable :: warnings(:)
@@ -38,6 +41,8 @@ contains
       if (allocated(error)) call fail(error)
       if (present(algorithm)) case%scene%method%algorithm = algorithm
       if (present(suffix)) case%result_path = with_suffix(case%result_path, suffix)
+      if (present(estimate)) call ask_for_estimate(case, estimate, error)
+      if (allocated(error)) call fail(error)
       call check_writable(case%result_path, error)
       if (allocated(error)) then
          error%message = path//": &output file='"//case%result_path//"': "//error%message
@@ -48,6 +53,10 @@ contains
       call catch_interrupts()
       call observer%start()
       call simulation%run(observer)
+      if (case%error_estimate) then
+         observer%work = 'coarser meshes: '
+         call estimate_error(simulation, observer)
+      end if
       call observer%clear()
       if (simulation%outcome /= MFV_COMPLETE) call case%explain(simulation)
 
@@ -58,8 +67,28 @@ contains
       write (output_unit, '(a)', advance='no') text
       write (output_unit, '(a)') 'result              '//case%result_path
       if (simulation%outcome /= MFV_COMPLETE) write (error_unit, '(a)') simulation%message
+      if (was_interrupted(simulation)) call end_program(status_exit_code(MFV_INTERRUPTED))
       call end_program(status_exit_code(simulation%outcome))
    end subroutine run_case
+
+   !> Have the discretisation error estimated. Error MFV_INPUT_ERROR for a case without coarser meshes.
+   subroutine ask_for_estimate(case, estimate, error)
+      type(case_type), intent(inout) :: case
+      logical, intent(in) :: estimate
+      type(error_type), allocatable, intent(out) :: error
+
+      case%error_estimate = case%error_estimate .or. estimate
+      if (case%error_estimate .and. .not. has_coarser_meshes(case%scene)) &
+         call set_error(error, MFV_INPUT_ERROR, case%source//": --estimate: a body with shape='matrix' has no coarser mesh")
+   end subroutine ask_for_estimate
+
+   !> Whether a run that was complete was ended while its error was estimated.
+   pure logical function was_interrupted(simulation)
+      type(simulation_type), intent(in) :: simulation
+
+      was_interrupted = .false.
+      if (allocated(simulation%estimate)) was_interrupted = simulation%estimate%status == MFV_INTERRUPTED
+   end function was_interrupted
 
    !> The name of a file with a suffix before its extension.
    pure function with_suffix(path, suffix) result(name)

@@ -18,6 +18,8 @@ module mfv_terminal
       logical :: visible = .false.
       logical :: shown = .false.
       real(wp) :: next_time = 0.0_wp
+      !> What is being done, before the rest; empty for the case itself.
+      character(len=20) :: work = ''
    contains
       procedure :: notify
       procedure :: start
@@ -74,7 +76,7 @@ contains
       if (seconds_now() < self%next_time) return
       self%next_time = seconds_now() + pause
       self%shown = .true.
-      write (error_unit, '(a)', advance='no') achar(13)//'  '// &
+      write (error_unit, '(a)', advance='no') achar(13)//'  '//self%work(:len_trim(self%work) + min(1, len_trim(self%work)))// &
          to_text(floor(100*(segment - 1 + fraction)/segments))//' %, part '//to_text(segment)//' of '// &
          to_text(segments)//', '//to_text(state%contact_nodes())//' nodes in contact, '// &
          to_text(state%stick_nodes())//' stuck     '
@@ -84,7 +86,7 @@ contains
    !> Wipe the progress off the terminal.
    subroutine clear(self)
       class(terminal_observer_type), intent(inout) :: self
-      integer, parameter :: width = 70
+      integer, parameter :: width = 90
 
       if (self%shown) write (error_unit, '(a)', advance='no') achar(13)//repeat(' ', width)//achar(13)
       self%shown = .false.

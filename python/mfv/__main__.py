@@ -100,6 +100,7 @@ def _description(result: Result) -> str:
         attributes,
         ["summary", *_lines(result.summary)],
         ["certificate", *_lines(result.certificate)],
+        *([["error estimate", *_bars(result.error_estimate)]] if result.error_estimate else []),
         ["closed form", *(f"  {line}" for line in sources)] if sources else ["closed form: none"],
         [f"{result.mesh.x.size} nodes, {kept(result)}"],
     ]
@@ -109,6 +110,16 @@ def _description(result: Result) -> str:
 def _lines(group: Group) -> list[str]:
     """The scalars of a group, one a line."""
     return [f"  {name:26}{group[name]:<14.6g}{_unit(group, name):16}{group.description(name)}" for name in group]
+
+
+def _bars(estimate: Group) -> list[str]:
+    """The quantities of an error estimate with their bars, one a line."""
+    names = [name for name in estimate if f"{name}_error" in estimate]
+    return [
+        f"  {name:26}{estimate[name]:<14.6g}+- {estimate[name + '_error']:<11.2g}{_unit(estimate, name):16}"
+        f"order {estimate[name + '_order']:.2g}"
+        for name in names
+    ]
 
 
 def _unit(group: Group, name: str) -> str:

@@ -15,7 +15,7 @@ Values = Any
 """What a quantity is: an array of float64 or int32, or one such number."""
 
 #: Groups that a result can be without; they are then empty.
-OPTIONAL_GROUPS = ("history", "reference")
+OPTIONAL_GROUPS = ("history", "reference", "error_estimate")
 
 #: Where mfv_stress puts its groups.
 STRESS = "stress/"
@@ -84,6 +84,7 @@ class Result:
     certificate: Group
     history: Group
     reference: Group
+    error_estimate: Group
     compliance: Group
     steps: list[Group]
     stresses: dict[str, Group]
@@ -181,7 +182,7 @@ def _groups(file: h5py.File) -> dict[str, dict[str, Field]]:
         for name, item in group.items():
             if isinstance(item, h5py.Group):
                 add(item)
-            elif path in ("mesh", "history") or path.startswith(STRESS) or not item.is_scale:
+            elif path in ("mesh", "history", "error_estimate") or path.startswith(STRESS) or not item.is_scale:
                 groups.setdefault(path, {})[name] = _field(item)
 
     add(file)

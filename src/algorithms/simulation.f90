@@ -6,6 +6,7 @@ module mfv_simulation
    use mfv_error, only: error_type
    use mfv_contact_path, only: contact_path_type, new_contact_path, segment_type
    use mfv_conventional, only: lead_conventionally
+   use mfv_error_bar, only: error_estimate_type
    use mfv_kinds, only: wp
    use mfv_leap, only: lead_by_leaps
    use mfv_node_status, only: event_none, event_step_end, event_stopped
@@ -48,6 +49,8 @@ module mfv_simulation
       !> What the loads control now.
       type(load_type) :: normal, tangential
       type(load_type) :: rotational = load_type(control_displacement)
+      !> The discretisation error of the present state, where it has been estimated (see mfv_discretisation_error).
+      type(error_estimate_type), allocatable :: estimate
    contains
       procedure :: run
       procedure :: advance
@@ -115,6 +118,7 @@ contains
       integer :: i, cycles
 
       if (self%outcome /= MFV_COMPLETE) return
+      if (allocated(self%estimate)) deallocate (self%estimate)
       self%taken = [self%taken, step]
       there(1) = target_of(self%normal, step%normal_control, step%normal_target)
       there(2) = target_of(self%tangential, step%tangential_control, step%tangential_target)

@@ -5,6 +5,7 @@ module mfv_c
    use mfv_case, only: case_type
    use mfv_case_reader, only: read_case_file, read_case_text
    use mfv_contact_state, only: contact_state_type
+   use mfv_discretisation_error, only: estimate_error
    use mfv_error, only: error_type
    use mfv_interior, only: interior_type, largest_type, stress_count
    use mfv_kinds, only: wp
@@ -169,6 +170,7 @@ contains
       if (self%simulation%outcome == MFV_COMPLETE) then
          call forget(self)
          call self%simulation%run()
+         if (self%case%error_estimate) call estimate_error(self%simulation)
          if (self%simulation%outcome /= MFV_COMPLETE) call self%case%explain(self%simulation)
       end if
       self%message = self%simulation%message

@@ -5,6 +5,7 @@ module mfv_case_reader
    use mfv_case, only: case_type
    use mfv_circle, only: kernel_exact, kernel_fourier
    use mfv_case_keys
+   use mfv_discretisation_error, only: has_coarser_meshes
    use mfv_error, only: error_type, set_error
    use mfv_friction
    use mfv_compliance, only: coupling_full, coupling_goodman, coupling_none
@@ -90,6 +91,9 @@ contains
       if (reader%text_value('output', 1, 'history') == 'none') case%keep_history = history_none
       case%keep_reversals = reader%text_value('output', 1, 'states') == 'reversals'
       case%error_estimate = reader%logical_value('output', 1, 'error_estimate')
+      if (case%error_estimate .and. .not. has_coarser_meshes(case%scene)) &
+         call reader%complain('output', 1, 'error_estimate', "must be .false. with shape='matrix', which has no coarser mesh", &
+                              error)
    end subroutine read_case_text
 
    !> Every group known, and those that must be alone alone.

@@ -9,6 +9,7 @@ module mfv_result_fields
    use mfv_closed_form, only: closed_form_of, closed_form_type
    use mfv_compliance, only: block_up, block_ut, block_wp, block_wt
    use mfv_contact_state, only: contact_state_type
+   use mfv_error_bar
    use mfv_kinds, only: wp
    use mfv_node_status, only: event_names, in_contact, node_status_names
    use mfv_simulation, only: history_none, simulation_type
@@ -18,11 +19,12 @@ module mfv_result_fields
    use mfv_version, only: library_version
    implicit none
    private
-   public :: field_type, result_groups, group_fields, field_named, step_group, along_nodes, along_records, along_nothing
+   public :: field_type, result_groups, group_fields, field_named, step_group, along_nodes, along_records, &
+             along_companions, along_nothing
    public :: result_attributes
 
    !> What the values of a field run along.
-   integer, parameter :: along_nothing = 0, along_nodes = 1, along_records = 2
+   integer, parameter :: along_nothing = 0, along_nodes = 1, along_records = 2, along_companions = 3
 
    !> One named quantity: real `values` or whole numbers `whole`, the other not allocated.
    type :: field_type
@@ -62,6 +64,7 @@ contains
       groups = list_of_words('mesh scene compliance state summary certificate')
       if (simulation%keep_history /= history_none) call add_text(groups, 'history')
       call add_text(groups, 'reference')
+      if (has_estimate(simulation)) call add_text(groups, 'error_estimate')
       do i = 1, simulation%snapshot_count
          call add_text(groups, step_group(i))
       end do
@@ -110,6 +113,8 @@ contains
          call add_certificate(fields, simulation)
       case ('reference')
          call add_reference(fields, simulation, units)
+      case ('error_estimate')
+         if (has_estimate(simulation)) call add_estimate(fields, simulation%estimate, units)
       case ('history')
          if (simulation%keep_history /= history_none) call add_history(fields, simulation, units)
       case default
@@ -120,6 +125,14 @@ contains
          if (group == step_group(number)) call add_step(fields, simulation, number, units)
       end select
    end subroutine group_fields
+
+   !> Whether there are error bars.
+   pure logical function has_estimate(simulation)
+      type(simulation_type), intent(in) :: simulation
+
+      has_estimate = .false.
+      if (allocated(simulation%estimate)) has_estimate = simulation%estimate%message == ''
+   end function has_estimate
 
    !> Place of the field with a name, 0 for none.
    pure integer function field_named(fields, name)
@@ -166,6 +179,8 @@ contains
       call add('stepping', word(steppings, case%scene%method%stepping))
       call add('lower_body', trim(body_name(case%scene%lower)))
       call add('upper_body', trim(body_name(case%scene%upper)))
+      if (allocated(simulation%estimate)) call add('error_estimate', trim(merge('there', 'none ', has_estimate(simulation)))// &
+                                                   separated(simulation%estimate%message))
 
    contains
 
@@ -176,6 +191,14 @@ contains
          call add_text(texts, text)
       end subroutine add
    end subroutine result_attributes
+
+   !> A text after a colon; nothing where there is none.
+   pure function separated(text) result(tail)
+      character(*), intent(in) :: text
+      character(len=merge(len(text) + 2, 0, text /= '')) :: tail
+
+      tail = ': '//text
+   end function separated
 
    !> Shape of a body, in words; padded with blanks.
    pure function body_name(body) result(name)
@@ -445,6 +468,39 @@ contains
       if (allocated(form%shift) .and. simulation%keep_history /= history_none) &
          call add_real(fields, 'shift', form%shift, along_records, units%length, form%shear_source)
    end subroutine add_reference
+
+   !> Error bars: of each quantity its value, error, order, and its values on the coarser meshes.
+   subroutine add_estimate(fields, estimate, units)
+      type(field_type), allocatable, intent(inout) :: fields(:)
+      type(error_estimate_type), intent(in) :: estimate
+      type(units_type), intent(in) :: units
+
+      call add_scalar_whole(fields, 'nodes', estimate%nodes, 'intervals of the mesh, as &mesh nodes counts them')
+      call add_whole(fields, 'companion_nodes', estimate%companion_nodes, along_companions, 'intervals of the coarser meshes')
+      associate (bar => estimate%bar)
+         call add_bar(fields, bar(quantity_half_width), 'contact_half_width', units%length, &
+                      'half the length of all intervals in contact')
+         call add_bar(fields, bar(quantity_stick_ratio), 'stick_ratio', '1', 'stuck nodes over nodes in contact')
+         call add_bar(fields, bar(quantity_peak_pressure), 'peak_pressure', units%traction, 'largest pressure')
+         call add_bar(fields, bar(quantity_peak_shear), 'peak_shear', units%traction, 'largest size of the shear traction')
+         call add_bar(fields, bar(quantity_dissipation), 'dissipation', units%energy, dissipation_meaning)
+      end associate
+   end subroutine add_estimate
+
+   !> One quantity of the error estimate, where the scene has it.
+   subroutine add_bar(fields, bar, name, unit, meaning)
+      type(field_type), allocatable, intent(inout) :: fields(:)
+      type(error_bar_type), intent(in) :: bar
+      character(*), intent(in) :: name, unit, meaning
+
+      if (.not. bar%known) return
+      call add_scalar(fields, name, bar%value, unit, meaning)
+      call add_scalar(fields, name//'_error', bar%error, unit, 'estimated discretisation error: '//meaning// &
+                      '; infinite where there is no limit')
+      call add_scalar(fields, name//'_order', bar%order, '1', 'observed order of convergence, from 1 to 2 (negative: there '// &
+                      'is no limit): '//meaning)
+      call add_real(fields, name//'_companions', bar%companions, along_companions, unit, 'on the coarser meshes: '//meaning)
+   end subroutine add_bar
 
    subroutine add_history(fields, simulation, units)
       type(field_type), allocatable, intent(inout) :: fields(:)

@@ -1,7 +1,9 @@
 !> The summary of a result, for a terminal.
 module mfv_summary
+   use, intrinsic :: ieee_arithmetic, only: ieee_is_finite
    use mfv_case, only: case_type
    use mfv_contact_model, only: contact_model_type, new_contact_model
+   use mfv_error_bar
    use mfv_kinds, only: wp
    use mfv_result_fields, only: field_named, field_type, group_fields
    use mfv_simulation, only: simulation_type
@@ -45,6 +47,7 @@ contains
                        ' linear solves, '//to_text(seconds, 3)//' s')
          call add_compliance(text, model)
          call add_line(text, 'certificate', 'largest relative residual '//amount(fields, 'largest_residual'))
+         if (allocated(simulation%estimate)) call add_estimate(text, case, simulation)
          do i = 1, size(warnings)
             call add_line(text, 'warning', warnings(i)%text)
          end do
@@ -75,6 +78,57 @@ contains
       end do
       call add_line(text, 'compliance', words//', '//to_text(model%assembly_seconds, 2)//' s')
    end subroutine add_compliance
+
+   !> Values with their error bars, one a line, or why there are none.
+   subroutine add_estimate(text, case, simulation)
+      character(:), allocatable, intent(inout) :: text
+      type(case_type), intent(in) :: case
+      type(simulation_type), intent(in) :: simulation
+      character(*), parameter :: names(quantity_count) = [character(18) :: 'contact_half_width', 'stick_ratio', &
+                                                          'peak_pressure', 'peak_shear', 'dissipation']
+      character(*), parameter :: words(quantity_count) = [character(18) :: 'contact half-width', 'stick ratio', &
+                                                          'peak pressure', 'peak shear', 'dissipation']
+      type(field_type), allocatable :: fields(:)
+      character(:), allocatable :: meshes, value
+      integer :: i
+
+      if (simulation%estimate%message /= '') then
+         call add_line(text, 'error estimate', 'none: '//simulation%estimate%message)
+         return
+      end if
+      call group_fields(case, simulation, 'error_estimate', fields)
+      do i = 1, quantity_count
+         associate (bar => simulation%estimate%bar(i))
+            if (.not. bar%known) cycle
+            call find_amount(fields, trim(names(i)), value)
+            if (ieee_is_finite(bar%error)) then
+               call add_line(text, 'error estimate', trim(words(i))//' '//value//' +- '//to_text(bar%error, 2)// &
+                             trim(percentage(bar))//', order '//to_text(bar%order, 2))
+            else
+               call add_line(text, 'error estimate', trim(words(i))//' '//value//' grows with every finer mesh, as nodes^'// &
+                             to_text(-bar%order, 2)//': it has no limit')
+            end if
+         end associate
+      end do
+      meshes = to_text(simulation%estimate%companion_nodes(1))
+      do i = 2, size(simulation%estimate%companion_nodes)
+         meshes = meshes//', '//to_text(simulation%estimate%companion_nodes(i))
+      end do
+      call add_line(text, 'error estimate', 'from meshes with '//meshes//' nodes in place of '// &
+                    to_text(simulation%estimate%nodes))
+      if (case%scene%friction%name == 'static_kinetic') &
+         call add_line(text, 'error estimate', 'static and kinetic friction depends on every mesh: '// &
+                       'there is no limit that the bars could be from')
+   end subroutine add_estimate
+
+   !> The error in percent of the value, in brackets after a blank; padded with blanks.
+   pure function percentage(bar) result(text)
+      type(error_bar_type), intent(in) :: bar
+      character(len=24) :: text
+
+      text = ''
+      if (abs(bar%value) > 0.0_wp) text = ' ('//to_text(100.0_wp*bar%error/abs(bar%value), 2)//' %)'
+   end function percentage
 
    !> What a valid case asks for.
    subroutine summarize_check(case, text)

@@ -95,7 +95,125 @@ def test_help_version_keys_and_check(tmp_path):
     assert list(tmp_path.iterdir()) == []
 
 
-@pytest.mark.parametrize("arguments", [(), ("--chekc", "x.nml"), ("a.nml", "b.nml"), ("--check",)])
+MINDLIN = """&scene coupling='goodman', length_unit='mm', force_unit='N' /
+&body shape='half_plane', shear_modulus=1.0, poisson_ratio=0.3 /
+&body shape='disk', radius=0.25, rigid=.true. /
+&mesh nodes=61, half_width=0.0127, gap='parabolic' /
+&friction law='coulomb', mu=0.7 /
+&step normal_force=1.0e-3, friction=.false. /
+&step tangential_force={force} /
+&output file='{name}.h5'{more} /
+"""
+
+
+def test_error_estimate_in_summary_and_file(tmp_path):
+    by_key = case(tmp_path, MINDLIN.format(force=2.8e-4, name="key", more=", error_estimate=.true."), "key.nml")
+    by_option = case(tmp_path, MINDLIN.format(force=2.8e-4, name="option", more=""), "option.nml")
+    runs = [mfv_run(by_key, cwd=tmp_path), mfv_run("--estimate", by_option, cwd=tmp_path)]
+    for run in runs:
+        assert run.returncode == COMPLETE and run.stderr == ""
+        assert len(re.findall(r"^error estimate +(contact half-width|stick ratio|peak pressure|peak shear|dissipation) \S+"
+                              r"( mm| N| N/mm\^2)? \+- \S+ \(\S+ %\), order ", run.stdout, re.MULTILINE)) == 5, run.stdout
+        assert "from meshes with 43, 35, 31 nodes in place of 61" in run.stdout
+    with h5py.File(tmp_path / "key.h5") as result, h5py.File(tmp_path / "option.h5") as other:
+        estimate = result["error_estimate"]
+        names = ("contact_half_width", "stick_ratio", "peak_pressure", "peak_shear", "dissipation")
+        assert set(estimate) == {"nodes", "companion_nodes"} | {name + end for name in names
+                                                                for end in ("", "_error", "_order", "_companions")}
+        for name, dataset in estimate.items():
+            assert dataset.attrs["units"] and dataset.attrs["long_name"]
+            np.testing.assert_array_equal(dataset[()], other["error_estimate"][name][()])
+        assert estimate["stick_ratio_companions"].dims[0][0] == estimate["companion_nodes"]
+        assert estimate["contact_half_width_error"].attrs["units"] == "mm"
+        assert estimate["contact_half_width"][()] == result["summary/contact_half_width"][()]
+        assert abs(estimate["stick_ratio"][()] - 0.6**0.5) < 2 * estimate["stick_ratio_error"][()] < 0.2
+        assert result.attrs["error_estimate"] == "there"
+    shown = subprocess.run([sys.executable, "-m", "mfv", "info", "key.h5"], cwd=tmp_path, capture_output=True, text=True,
+                           env={**os.environ, "PYTHONPATH": str(ROOT / "python")})
+    assert "error estimate" in shown.stdout and "peak_shear" in shown.stdout, shown.stderr
+
+
+def test_no_error_estimate_of_what_ended_early(tmp_path):
+    path = case(tmp_path, MINDLIN.format(force=8e-4, name="early", more=", error_estimate=.true."))
+    run = mfv_run(path, cwd=tmp_path)
+    assert run.returncode == EARLY and "error estimate      none: the run ended early" in run.stdout
+    with h5py.File(tmp_path / "early.h5") as result:
+        assert "error_estimate" not in result
+        assert result.attrs["error_estimate"] == "none: the run ended early"
+
+
+def test_interrupted_error_estimate_keeps_the_result(tmp_path):
+    text = MINDLIN.format(force=2.8e-4, name="long", more=", history='none', states='steps'").replace("nodes=61", "nodes=41")
+    path = case(tmp_path, text.replace("&output", "&step tangential_force=-2.8e-4, cycles=400 /\n&output"))
+    started = time.time()
+    assert mfv_run(path, cwd=tmp_path).returncode == COMPLETE
+    alone = time.time() - started
+    (tmp_path / "long.h5").unlink()
+    process = subprocess.Popen([PROGRAM, "--estimate", str(path)], cwd=tmp_path, stdout=subprocess.PIPE,
+                               stderr=subprocess.PIPE, text=True)
+    time.sleep(1.15 * alone)
+    process.send_signal(signal.SIGINT)
+    output, errors = process.communicate(timeout=60)
+    with h5py.File(tmp_path / "long.h5") as result:
+        if process.returncode == COMPLETE:  # it was faster than this test
+            return
+        assert process.returncode == 130, errors
+        assert "summary" in result and "error_estimate" not in result
+        assert result.attrs["error_estimate"].endswith(("interrupted", "ended early"))
+        assert "error estimate      none: " in output
+
+
+def test_advice_can_be_pasted_and_holds(tmp_path):
+    text = MINDLIN.format(force=2.8e-4, name="advised", more="").replace("&output", "&solver algorithm='mfv' /\n&output")
+    path = case(tmp_path, text)
+    run = mfv_run("--advise", "error=2e-2", path.name, cwd=tmp_path)
+    assert run.returncode == COMPLETE and run.stderr == ""
+    assert list(tmp_path.iterdir()) == [path]
+    for word in ("case.nml, wanted error 0.02", "pairs of coarse meshes", "error with 61", "nodes needed", "pressure", "shear",
+                 "half_width", "stick_ratio", "dissipation", "cost laws"):
+        assert word in run.stdout, run.stdout
+    groups = [line for line in run.stdout.splitlines() if not line.startswith("!")]
+    assert re.fullmatch(r"&mesh nodes=\d+, half_width=0.0127, gap='parabolic' /", groups[0])
+    assert re.fullmatch(r"&solver linear_solver='\w+'.*, algorithm='mfv' /", groups[1])
+    kept = [line for line in text.splitlines() if not line.startswith(("&mesh", "&solver"))]
+    advised = case(tmp_path, "\n".join([*kept, run.stdout]), "advised.nml")
+    assert mfv_run(advised.name, cwd=tmp_path).returncode == COMPLETE
+    with h5py.File(tmp_path / "advised.h5") as result:
+        state, closed, summary = result["state"], result["reference"], result["summary"]
+        for name in ("pressure", "shear"):
+            assert np.linalg.norm(state[name][:] - closed[name][:]) < 2e-2 * np.linalg.norm(closed[name][:])
+        assert abs(summary["contact_half_width"][()] / closed["contact_half_width"][()] - 1) < 2e-2
+        assert abs(summary["stick_ratio"][()] - 0.6**0.5) < 2e-2
+    fewer = mfv_run("--advise", "of=pressure,dissipation", "error=2e-2", path.name, cwd=tmp_path).stdout
+    assert "shear" not in fewer and "half_width  " not in fewer
+    nodes = [int(re.search(r"&mesh nodes=(\d+)", advice)[1]) for advice in (fewer, run.stdout)]
+    assert nodes[0] < nodes[1] < 200
+
+
+@pytest.mark.parametrize("arguments, message", [
+    (("error=abc",), "--advise error=abc: must be a number above 0 and below 1, such as 1e-2"),
+    (("error=",), "--advise error=: must be a number"),
+    (("error=0",), "--advise error=0: must be a number above 0"),
+    (("error=-1e-3",), "--advise error=-1e-3: must be a number above 0"),
+    (("error=1",), "--advise error=1: must be a number above 0 and below 1"),
+    (("error=nan",), "--advise error=nan: must be a number above 0"),
+    (("error=1e-2", "of=presure"), "--advise of=presure: 'presure' is none of pressure,shear,half_width,stick_ratio,dissipation"),
+    ((), "--advise needs the wanted error, such as error=1e-2"),
+    (("error=1e-2", "other.nml"), "--advise too many arguments: 'case.nml'"),
+])
+def test_wrong_wishes_for_advice(arguments, message, tmp_path):
+    path = case(tmp_path, MINDLIN.format(force=2.8e-4, name="advised", more=""))
+    run = mfv_run("--advise", *arguments, path.name, cwd=tmp_path)
+    assert run.returncode == INPUT and message in run.stderr and run.stdout == ""
+
+
+def test_no_advice_for_what_ends_early(tmp_path):
+    path = case(tmp_path, MINDLIN.format(force=8e-4, name="early", more=""))
+    run = mfv_run("--advise", "error=1e-2", path.name, cwd=tmp_path)
+    assert run.returncode == EARLY and "case.nml: no advice: with " in run.stderr and "gross sliding" in run.stderr
+
+
+@pytest.mark.parametrize("arguments", [(), ("--chekc", "x.nml"), ("a.nml", "b.nml"), ("--check",), ("--estimate",)])
 def test_wrong_arguments(arguments, tmp_path):
     run = mfv_run(*arguments, cwd=tmp_path)
     assert run.returncode == INPUT and "usage:" in run.stderr and run.stdout == ""

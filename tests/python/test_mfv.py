@@ -676,6 +676,37 @@ def test_a_half_plane_as_a_matrix(tmp_path: Path) -> None:
     assert "all normal components first" in result.attributes["warnings"]
 
 
+def test_error_bars_in_the_process_and_in_the_file(tmp_path: Path) -> None:
+    result = mfv.run(text=SHEARED + "&output error_estimate=.true. /\n", check=True)
+    estimate = result.error_estimate
+    assert list(estimate.companion_nodes) == [43, 35, 31] and estimate.nodes == 61
+    assert estimate.stick_ratio == result.summary.stick_ratio and 0 < estimate.stick_ratio_error < 0.1
+    assert estimate.unit("peak_shear_error") == "force/length^2"
+    assert result.attributes["error_estimate"] == "there"
+    assert not mfv.run(text=SHEARED).error_estimate
+    with mfv.Case.from_text(SHEARED + "&output error_estimate=.true. /\n") as case:
+        case.run()
+        assert case["error_estimate/dissipation_error"] > 0.0
+        case.write(tmp_path / "case.h5")
+        case.advance(tangential_force=1.0e-4)  # the bars were those of the state before
+        assert "error_estimate/dissipation_error" not in case.fields()
+    read = mfv.read(tmp_path / "case.h5").error_estimate
+    assert set(read) == set(estimate)
+    np.testing.assert_array_equal(read.peak_shear_companions, estimate.peak_shear_companions)
+    assert "error estimate" in command_line._description(result)
+
+
+def test_a_matrix_has_no_error_bars(tmp_path: Path) -> None:
+    x, compliance = half_plane_matrix(41)
+    text = matrix_file(tmp_path / "body.h5", x=x, compliance=compliance)
+    with pytest.raises(errors.InputError, match="&output error_estimate=.true.: must be .false. with shape='matrix'"):
+        mfv.run(text=text + "&output error_estimate=.true. /\n")
+    (tmp_path / "case.nml").write_text(text)
+    program = os.environ.get("MFV_RUN", str(PROJECT / "build/release/bin/mfv_run"))
+    run = subprocess.run([program, "--estimate", "case.nml"], cwd=tmp_path, capture_output=True, text=True, timeout=60)
+    assert run.returncode == 2 and "case.nml: --estimate: a body with shape='matrix' has no coarser mesh" in run.stderr
+
+
 def test_bad_matrices_are_refused(tmp_path: Path) -> None:
     x, compliance = half_plane_matrix(5)
     lopsided, infinite, negative, backwards = (compliance.copy() for _ in range(4))

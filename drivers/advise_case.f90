@@ -1,0 +1,79 @@
+!> What mfv_run --advise does.
+module mfv_advise_case
+   use, intrinsic :: iso_fortran_env, only: output_unit
+   use mfv_advice, only: advice_count, advice_type, advise
+   use mfv_advice_text, only: read_wanted_error, read_wanted_quantities, write_advice
+   use mfv_case, only: case_type
+   use mfv_case_reader, only: read_case_file
+   use mfv_error, only: error_type, set_error
+   use mfv_kinds, only: wp
+   use mfv_status, only: MFV_COMPLETE
+   use mfv_terminal
+   implicit none
+   private
+   public :: advise_case
+
+contains
+
+   !> Read the arguments after --advise, the wanted error and the case among them, and print what the case needs. The program
+   !> ends with an exit code where that cannot be told. `usage`: how the program is used, for messages.
+   subroutine advise_case(usage)
+      character(*), intent(in) :: usage
+      type(case_type) :: case
+      type(advice_type) :: advice
+      type(error_type), allocatable :: error
+      type(terminal_observer_type) :: observer
+      character(:), allocatable :: path, text
+      real(wp) :: wanted_error
+      logical :: wanted(advice_count)
+
+      call read_arguments(usage, path, wanted_error, wanted)
+      call read_case_file(path, case, error)
+      if (allocated(error)) call fail(error)
+      call catch_interrupts()
+      call observer%start()
+      observer%work = 'coarse meshes: '
+      call advise(case%scene, wanted_error, wanted, advice, observer)
+      call observer%clear()
+      if (advice%status /= MFV_COMPLETE) then
+         call set_error(error, advice%status, path//': no advice: '//advice%message)
+         call fail(error)
+      end if
+      call write_advice(case, advice, text)
+      write (output_unit, '(a)', advance='no') text
+   end subroutine advise_case
+
+   !> error=..., of=... and the case, in any order.
+   subroutine read_arguments(usage, path, wanted_error, wanted)
+      character(*), intent(in) :: usage
+      character(:), allocatable, intent(out) :: path
+      real(wp), intent(out) :: wanted_error
+      logical, intent(out) :: wanted(:)
+      character(:), allocatable :: argument, why
+      logical :: has_error
+      integer :: i
+
+      path = ''
+      wanted_error = 0.0_wp
+      wanted = .true.
+      has_error = .false.
+      do i = 2, command_argument_count()
+         call get_argument(i, argument)
+         why = ''
+         if (index(argument, 'error=') == 1) then
+            has_error = .true.
+            call read_wanted_error(argument(len('error=') + 1:), wanted_error, why)
+         else if (index(argument, 'of=') == 1) then
+            call read_wanted_quantities(argument(len('of=') + 1:), wanted, why)
+         else if (path == '') then
+            path = argument
+         else
+            why = "too many arguments: '"//argument//"'"
+         end if
+         if (why /= '') call refuse('mfv_run', usage, '--advise '//why)
+      end do
+      if (.not. has_error) call refuse('mfv_run', usage, '--advise needs the wanted error, such as error=1e-2')
+      if (path == '') call refuse('mfv_run', usage, 'a case file is missing')
+   end subroutine read_arguments
+
+end module mfv_advise_case

@@ -1,0 +1,362 @@
+!> The discretisation error of a result: its scene is solved again on coarser meshes, the companions, and half-width, stick
+!> ratio, peak tractions and dissipation get error bars (mfv_error_bar).
+module mfv_discretisation_error
+   use mfv_body, only: body_type, shape_matrix
+   use mfv_circle, only: kernel_fourier
+   use mfv_contact_model, only: contact_model_type
+   use mfv_contact_state, only: contact_state_type
+   use mfv_error_bar
+   use mfv_friction, only: friction_coefficient_type
+   use mfv_kinds, only: pi, wp
+   use mfv_node_status, only: holds, in_contact
+   use mfv_observer, only: observer_type
+   use mfv_scene, only: scene_type
+   use mfv_simulation, only: history_none, new_simulation, simulation_type
+   use mfv_status, only: MFV_COMPLETE, MFV_INPUT_ERROR, status_outcome
+   use mfv_strings, only: to_text
+   implicit none
+   private
+   public :: estimate_error, coarser_scene, scene_on_mesh, fix_cycles, nearest_mesh, quantities_of, interval_allowances, &
+             has_coarser_meshes
+
+   !> By how much the companions are coarser: spread, so that their edges lie in different places of an interval.
+   real(wp), parameter :: coarsening(3) = [1.4_wp, 1.7_wp, 2.0_wp]
+   !> Nodes in contact that the coarsest companion should have at least.
+   integer, parameter :: fewest_contact_nodes = 5
+
+   !> Passes on to the caller's observer what happens in a companion: as a part of the work on all of them.
+   type, extends(observer_type) :: companion_observer_type
+      class(observer_type), pointer :: caller => null()
+      !> Companions before this one, and of all.
+      integer :: before = 0, companions = 1
+   contains
+      procedure :: notify
+   end type companion_observer_type
+
+contains
+
+   !> Whether a scene can be solved on coarser meshes: a user's matrix has its own nodes.
+   pure logical function has_coarser_meshes(scene)
+      type(scene_type), intent(in) :: scene
+
+      has_coarser_meshes = scene%lower%shape /= shape_matrix
+   end function has_coarser_meshes
+
+   !> Estimate the discretisation error of a simulation that has been run, into simulation%estimate. `observer` watches the
+   !> companions, and can stop them. Where there can be no estimate its message says why.
+   subroutine estimate_error(simulation, observer)
+      type(simulation_type), intent(inout) :: simulation
+      class(observer_type), intent(inout), target, optional :: observer
+      type(error_estimate_type) :: estimate
+      real(wp), allocatable :: values(:, :), allowances(:, :)
+      integer, allocatable :: nodes(:)
+      integer :: quantity
+
+      estimate%nodes = simulation%contact%model%scene%mesh%nodes
+      estimate%message = ''
+      allocate (estimate%companion_nodes(0))
+      call choose_companions(simulation, nodes, estimate)
+      if (estimate%message == '') call solve_companions(simulation, nodes, values, allowances, estimate, observer)
+      if (estimate%message == '') then
+         estimate%companion_nodes = nodes(2:)
+         do quantity = 1, quantity_count
+            if (.not. is_there(simulation%contact%model, quantity, values(quantity, :))) cycle
+            estimate%bar(quantity) = new_error_bar(nodes, values(quantity, :), allowances(quantity, :), &
+                                                   any(quantity == [quantity_half_width, quantity_stick_ratio]))
+         end do
+      end if
+      simulation%estimate = estimate
+   end subroutine estimate_error
+
+   !> Whether a quantity is modelled and is not zero on all meshes.
+   pure logical function is_there(model, quantity, values)
+      type(contact_model_type), intent(in) :: model
+      integer, intent(in) :: quantity
+      real(wp), intent(in) :: values(:)
+
+      is_there = model%tangential .or. any(quantity == [quantity_half_width, quantity_peak_pressure])
+      if (quantity == quantity_stick_ratio) return
+      is_there = is_there .and. any(abs(values) > 0.0_wp)
+   end function is_there
+
+   !> Numbers of intervals: the mesh's own, then those of the companions that differ; or, in the estimate, why there are none.
+   subroutine choose_companions(simulation, nodes, estimate)
+      type(simulation_type), intent(in) :: simulation
+      integer, allocatable, intent(out) :: nodes(:)
+      type(error_estimate_type), intent(inout) :: estimate
+      integer :: i, coarser
+
+      estimate%status = MFV_INPUT_ERROR
+      nodes = [estimate%nodes]
+      associate (scene => simulation%contact%model%scene)
+         if (simulation%outcome /= MFV_COMPLETE) then
+            estimate%status = simulation%outcome
+            estimate%message = 'the run ended early'
+         else if (.not. has_coarser_meshes(scene)) then
+            estimate%message = "a body with shape='matrix' has no coarser mesh"
+         else if (size(simulation%taken) /= size(scene%steps)) then
+            estimate%message = 'steps were taken that the case does not have'
+         else if (simulation%contact%state%contact_nodes() < 2*fewest_contact_nodes) then
+            estimate%message = to_text(2*fewest_contact_nodes)//' nodes in contact are needed, there are '// &
+                               to_text(simulation%contact%state%contact_nodes())
+         else
+            do i = 1, size(coarsening)
+               coarser = nearest_mesh(scene, scene%mesh%nodes/coarsening(i))
+               if (coarser > 0 .and. coarser < nodes(size(nodes))) nodes = [nodes, coarser]
+            end do
+            if (size(nodes) < 3) estimate%message = 'no two coarser meshes fit the circle of a Fourier series'
+         end if
+      end associate
+      if (estimate%message == '') estimate%status = MFV_COMPLETE
+   end subroutine choose_companions
+
+   !> The number of intervals nearest to `wanted`, as odd or even as the scene's, that fits its circles; 0 where there is none
+   !> within a fifth.
+   pure integer function nearest_mesh(scene, wanted) result(nodes)
+      type(scene_type), intent(in) :: scene
+      real(wp), intent(in) :: wanted
+      real(wp), parameter :: reach = 0.2_wp
+      integer :: nearest, i, side, parity
+
+      parity = modulo(scene%mesh%nodes, 2)
+      nearest = 2*nint(0.5_wp*(wanted - parity)) + parity
+      do i = 0, max(1, floor(0.5_wp*reach*wanted))
+         do side = -1, 1, 2
+            nodes = nearest + 2*side*i
+            if (nodes > 0 .and. fits(scene, scene%lower, nodes) .and. fits(scene, scene%upper, nodes)) return
+         end do
+      end do
+      nodes = 0
+   end function nearest_mesh
+
+   !> Whether a mesh of `nodes` intervals over a given half-width fits a body: a Fourier series needs a whole number on its
+   !> circle.
+   pure logical function fits(scene, body, nodes)
+      type(scene_type), intent(in) :: scene
+      type(body_type), intent(in) :: body
+      integer, intent(in) :: nodes
+      real(wp), parameter :: whole = 1.0e-9_wp
+      real(wp) :: intervals
+
+      fits = .true.
+      if (body%rigid .or. .not. body%circular() .or. body%kernel /= kernel_fourier) return
+      if (.not. scene%mesh%half_width > 0.0_wp) return
+      intervals = pi*body%radius*nodes/scene%mesh%half_width
+      fits = abs(intervals - anint(intervals)) <= whole*intervals
+   end function fits
+
+   !> Solve the companions. `values`, `allowances`: of every quantity on every mesh, shape (quantity_count, size(nodes)).
+   subroutine solve_companions(simulation, nodes, values, allowances, estimate, observer)
+      type(simulation_type), intent(in) :: simulation
+      integer, intent(in) :: nodes(:)
+      real(wp), allocatable, intent(out) :: values(:, :), allowances(:, :)
+      type(error_estimate_type), intent(inout) :: estimate
+      class(observer_type), intent(inout), target, optional :: observer
+      type(companion_observer_type) :: watch
+      type(simulation_type) :: companion
+      integer :: i
+
+      allocate (values(quantity_count, size(nodes)), allowances(quantity_count, size(nodes)))
+      values(:, 1) = quantities_of(simulation)
+      allowances(:, 1) = interval_allowances(simulation)
+      if (present(observer)) watch%caller => observer
+      watch%companions = size(nodes) - 1
+      do i = 2, size(nodes)
+         watch%before = i - 2
+         companion = new_simulation(coarser_scene(simulation, nodes(i)), history_none, .false.)
+         call companion%run(watch)
+         if (companion%outcome /= MFV_COMPLETE) then
+            estimate%status = companion%outcome
+            estimate%message = 'with '//to_text(nodes(i))//' nodes: '//status_outcome(companion%outcome)
+            return
+         end if
+         values(:, i) = quantities_of(companion)
+         allowances(:, i) = interval_allowances(companion)
+      end do
+   end subroutine solve_companions
+
+   !> See mfv_observer: the straight parts of all companions are counted together.
+   subroutine notify(self, state, segment, segments, fraction, stop_wanted)
+      class(companion_observer_type), intent(inout) :: self
+      type(contact_state_type), intent(in) :: state
+      integer, intent(in) :: segment, segments
+      real(wp), intent(in) :: fraction
+      logical, intent(out) :: stop_wanted
+
+      stop_wanted = .false.
+      if (.not. associated(self%caller)) return
+      call self%caller%notify(state, self%before*segments + segment, self%companions*segments, fraction, stop_wanted)
+   end subroutine notify
+
+   !> The scene of a simulation on `nodes` intervals, with as many cycles as were run, steady or not.
+   function coarser_scene(simulation, nodes) result(scene)
+      type(simulation_type), intent(in) :: simulation
+      integer, intent(in) :: nodes
+      type(scene_type) :: scene
+
+      scene = scene_on_mesh(simulation%contact%model%scene, nodes)
+      call fix_cycles(scene, simulation)
+   end function coarser_scene
+
+   !> Have a scene run as many cycles as a simulation of it did, steady or not.
+   subroutine fix_cycles(scene, simulation)
+      type(scene_type), intent(inout) :: scene
+      type(simulation_type), intent(in) :: simulation
+      integer :: i
+
+      do i = 1, simulation%snapshot_count
+         associate (snapshot => simulation%snapshots(i))
+            if (.not. scene%steps(snapshot%step)%steady_tolerance > 0.0_wp) cycle
+            scene%steps(snapshot%step)%cycles = snapshot%reversal/2
+         end associate
+      end do
+      scene%steps%steady_tolerance = 0.0_wp
+   end subroutine fix_cycles
+
+   !> A scene on `nodes` intervals over the same surface. A mesh of a given half-width has another interval at either end, so
+   !> that wider intervals do not exceed it; a mesh that grows does so here too: what is beyond the contact changes nothing. A
+   !> coefficient of friction that is given one a node is averaged over the wider intervals.
+   function scene_on_mesh(original, nodes) result(scene)
+      type(scene_type), intent(in) :: original
+      integer, intent(in) :: nodes
+      type(scene_type) :: scene
+      integer :: spare
+
+      scene = original
+      spare = 0
+      if (scene%mesh%half_width > 0.0_wp) spare = 1
+      if (scene%arc_radius() > 0.0_wp .and. scene%mesh%half_width*(nodes + 2) > pi*scene%arc_radius()*nodes) spare = 0
+      scene%mesh%nodes = nodes + 2*spare
+      scene%mesh%half_width = scene%mesh%half_width*(nodes + 2*spare)/nodes
+      call average(scene%friction%static, nodes, spare)
+      call average(scene%friction%kinetic, nodes, spare)
+   end function scene_on_mesh
+
+   !> Values given one a node, constant over each interval, made means over `nodes` intervals; `spare` more at either end
+   !> have those of the ends.
+   pure subroutine average(coefficient, nodes, spare)
+      type(friction_coefficient_type), intent(inout) :: coefficient
+      integer, intent(in) :: nodes, spare
+      real(wp) :: means(1 - spare:nodes + spare), from, to
+      integer :: i, j, n
+
+      if (.not. allocated(coefficient%value) .or. allocated(coefficient%position)) return
+      n = size(coefficient%value)
+      if (n == 1) return
+      means = 0.0_wp
+      do i = 1, nodes
+         from = real(n, wp)*(i - 1)/nodes
+         to = real(n, wp)*i/nodes
+         do j = floor(from) + 1, min(ceiling(to), n)
+            means(i) = means(i) + coefficient%value(j)*(min(to, real(j, wp)) - max(from, j - 1.0_wp))/(to - from)
+         end do
+      end do
+      means(:0) = means(1)
+      means(nodes + 1:) = means(nodes)
+      coefficient%value = means
+   end subroutine average
+
+   !> Half-width (length), stick ratio, peak pressure, peak shear traction (force/length^2) and dissipation (force) of the
+   !> present state.
+   function quantities_of(simulation) result(values)
+      type(simulation_type), intent(in) :: simulation
+      real(wp) :: values(quantity_count)
+
+      associate (state => simulation%contact%state, model => simulation%contact%model)
+         values(quantity_half_width) = 0.5_wp*sum(model%width, mask=in_contact(state%status))
+         values(quantity_stick_ratio) = real(state%stick_nodes(), wp)/max(state%contact_nodes(), 1)
+         values(quantity_peak_pressure) = maxval(state%fields%pressure)
+         values(quantity_peak_shear) = maxval(abs(state%fields%shear))
+         values(quantity_dissipation) = state%dissipation
+      end associate
+   end function quantities_of
+
+   !> What the intervals of a mesh leave open in each quantity, whatever other meshes say. An edge of the contact or of a
+   !> stick zone may be half an interval off, except where the contact ends because a body does. The peak of the shear
+   !> traction is somewhere between two nodes.
+   function interval_allowances(simulation) result(allowances)
+      type(simulation_type), intent(in) :: simulation
+      real(wp) :: allowances(quantity_count)
+      real(wp) :: contact, stick, length
+
+      associate (state => simulation%contact%state, model => simulation%contact%model)
+         contact = open_length(free_edges(model, in_contact(state%status)), model%interval())
+         stick = open_length(max(edges(holds(state%status)), 2), model%interval())
+         length = max(sum(model%width, mask=in_contact(state%status)), model%interval())
+         allowances = 0.0_wp
+         allowances(quantity_half_width) = 0.5_wp*contact
+         allowances(quantity_stick_ratio) = norm2([stick, contact*state%stick_nodes()/max(state%contact_nodes(), 1)])/length
+         allowances(quantity_peak_shear) = room_at_peak(abs(state%fields%shear), &
+                                                        model%static_friction*state%fields%pressure, holds(state%status))
+      end associate
+   end function interval_allowances
+
+   !> By how much the length of a zone may be off that has `edges` edges, each half an interval off: those of one patch
+   !> together, patches as they come.
+   pure real(wp) function open_length(edges, interval)
+      integer, intent(in) :: edges
+      real(wp), intent(in) :: interval
+
+      open_length = interval*sqrt(0.5_wp*edges)
+   end function open_length
+
+   !> Edges of the zones where `inside` is true.
+   pure integer function edges(inside)
+      logical, intent(in) :: inside(:)
+      logical :: padded(0:size(inside) + 1)
+      integer :: n
+
+      n = size(inside)
+      padded = .false.
+      padded(1:n) = inside
+      edges = count(padded(:n) .neqv. padded(1:))
+   end function edges
+
+   !> Edges of the contact less those where the surface of a body ends between two intervals: these are exact.
+   pure integer function free_edges(model, contact)
+      type(contact_model_type), intent(in) :: model
+      logical, intent(in) :: contact(:)
+      real(wp), parameter :: near = 1.0e-6_wp
+      real(wp) :: half, inner, outer
+      integer :: i, side, n
+
+      n = size(contact)
+      half = 0.5_wp*model%interval()
+      inner = half*(1.0_wp - near)
+      outer = half*(1.0_wp + near)
+      free_edges = edges(contact)
+      do i = 1, n
+         if (.not. contact(i)) cycle
+         do side = -1, 1, 2
+            if (contact(min(max(i + side, 1), n)) .and. i + side >= 1 .and. i + side <= n) cycle
+            if (model%scene%touchable(model%arc(i) + side*inner) .and. &
+                .not. model%scene%touchable(model%arc(i) + side*outer)) free_edges = free_edges - 1
+         end do
+      end do
+   end function free_edges
+
+   !> How far the true peak of the size of the shear traction may be off that at a node. Where the peak is at the edge of a
+   !> zone that holds, the true one is somewhere between two nodes, and not above the friction limit at the one that holds;
+   !> elsewhere it may be off by what the peak differs from the nearer one of its neighbours. Arguments of shape (nodes),
+   !> force/length^2.
+   pure real(wp) function room_at_peak(shear, limit, held) result(room)
+      real(wp), intent(in) :: shear(:), limit(:)
+      logical, intent(in) :: held(:)
+      integer :: peak, neighbour, side
+
+      peak = maxloc(shear, dim=1)
+      room = shear(peak)
+      do side = -1, 1, 2
+         neighbour = peak + side
+         if (neighbour < 1 .or. neighbour > size(shear)) cycle
+         room = min(room, shear(peak) - shear(neighbour))
+      end do
+      do side = -1, 1, 2
+         neighbour = peak + side
+         if (neighbour < 1 .or. neighbour > size(shear)) cycle
+         if (held(peak) .eqv. held(neighbour)) cycle
+         room = max(room, merge(limit(peak), limit(neighbour), held(peak)) - shear(peak))
+      end do
+   end function room_at_peak
+
+end module mfv_discretisation_error

@@ -1,0 +1,179 @@
+!> Advice as text: why, as comments, and the groups to put into the case in place of its own.
+module mfv_advice_text
+   use mfv_advice
+   use mfv_case, only: case_type
+   use mfv_error, only: error_type
+   use mfv_kinds, only: wp
+   use mfv_namelist, only: entry_type, group_type, parse_namelists
+   use mfv_scene, only: solver_dgesv, solver_fft, solver_reduced
+   use mfv_strings, only: list_of_words, quoted, string_type, to_text
+   implicit none
+   private
+   public :: write_advice, read_wanted_error, read_wanted_quantities
+
+   character(len=1), parameter :: line_feed = achar(10)
+
+contains
+
+   !> The error that a text wants, a number above 0 and below 1; `why` says what is wrong with it, empty where nothing is.
+   subroutine read_wanted_error(text, wanted_error, why)
+      character(*), intent(in) :: text
+      real(wp), intent(out) :: wanted_error
+      character(:), allocatable, intent(out) :: why
+      integer :: code
+
+      wanted_error = 0.0_wp
+      code = 1
+      if (verify(text, '0123456789.+-eEdD') == 0 .and. scan(text, '0123456789') > 0) read (text, *, iostat=code) wanted_error
+      if (code == 0) code = merge(0, 1, wanted_error > 0.0_wp .and. wanted_error < 1.0_wp)
+      why = ''
+      if (code /= 0) why = 'error='//text//': must be a number above 0 and below 1, such as 1e-2'
+   end subroutine read_wanted_error
+
+   !> The quantities that a text names, separated by commas, shape (advice_count); `why` as above.
+   subroutine read_wanted_quantities(text, wanted, why)
+      character(*), intent(in) :: text
+      logical, intent(out) :: wanted(:)
+      character(:), allocatable, intent(out) :: why
+      character(len=len(text)) :: words
+      character(:), allocatable :: all_names
+      type(string_type), allocatable :: names(:)
+      integer :: i, j
+
+      words = text
+      do i = 1, len(text)
+         if (text(i:i) == ',') words(i:i) = ' '
+      end do
+      names = list_of_words(words)
+      all_names = trim(advice_names(1))
+      do i = 2, advice_count
+         all_names = all_names//','//trim(advice_names(i))
+      end do
+      why = ''
+      wanted = .false.
+      do i = 1, size(names)
+         do j = 1, advice_count
+            if (names(i)%text == advice_names(j)) wanted(j) = .true.
+         end do
+         if (.not. any(names(i)%text == advice_names)) why = 'of='//text//': '//quoted(names(i)%text)//' is none of '//all_names
+      end do
+      if (size(names) == 0) why = 'of='//text//': must be one or more of '//all_names
+   end subroutine read_wanted_quantities
+
+   !> Advice for a case.
+   subroutine write_advice(case, advice, text)
+      type(case_type), intent(in) :: case
+      type(advice_type), intent(in) :: advice
+      character(:), allocatable, intent(out) :: text
+      type(group_type), allocatable :: groups(:)
+      type(error_type), allocatable :: error
+
+      text = ''
+      call add_reasons(case, advice, text)
+      call parse_namelists(case%text, case%source, groups, error)
+      call add_group(text, groups, 'mesh', 'nodes', 'nodes='//to_text(advice%nodes))
+      call add_solver(case, advice, groups, text)
+   end subroutine write_advice
+
+   !> What the advice is based on.
+   subroutine add_reasons(case, advice, text)
+      type(case_type), intent(in) :: case
+      type(advice_type), intent(in) :: advice
+      character(:), allocatable, intent(inout) :: text
+      character(len=14) :: name
+      character(len=24) :: present, needed
+      integer :: i, last
+
+      last = size(advice%pair_nodes)
+      call add_line(text, case%source//', wanted error '//to_text(advice%wanted_error)//'. Based on '//to_text(last)// &
+                    ' pairs of coarse meshes of this case,')
+      call add_line(text, 'from '//to_text(advice%pair_nodes(1))//' and '//to_text(3*advice%pair_nodes(1))//' to '// &
+                    to_text(advice%pair_nodes(last))//' and '//to_text(3*advice%pair_nodes(last))// &
+                    ' nodes: error = c/nodes, of the dissipation c/nodes^2, with safety.')
+      present = 'error with '//to_text(advice%present_nodes)
+      call add_line(text, '               '//present//'nodes needed')
+      do i = 1, advice_count
+         if (.not. advice%known(i)) cycle
+         name = advice_names(i)
+         present = to_text(advice%present_error(i), 2)
+         needed = to_text(ceiling(advice%needed_nodes(i)*advice%nodes/max(advice%contact_nodes, 1)))
+         call add_line(text, ' '//name//present//trim(needed))
+      end do
+      if (case%scene%friction%name == 'static_kinetic') &
+         call add_line(text, 'Static and kinetic friction depends on every mesh: there is no limit to be near to.')
+      call add_line(text, 'Then about '//to_text(advice%contact_nodes)//' nodes in contact, '//to_text(advice%solves, 2)// &
+                    ' linear solves, '//to_text(advice%seconds, 1)//' s by the cost laws of bench/.')
+      if (advice%path_does_not_matter) &
+         call add_line(text, "No friction acts, and the path does not matter: stepping='leap' in &solver goes straight there.")
+      call add_line(text, 'In place of &mesh and &solver of the case:')
+   end subroutine add_reasons
+
+   !> The group &solver: the solver, its tolerance where it has one, and that of friction laws that are not linear.
+   subroutine add_solver(case, advice, groups, text)
+      type(case_type), intent(in) :: case
+      type(advice_type), intent(in) :: advice
+      type(group_type), intent(in) :: groups(:)
+      character(:), allocatable, intent(inout) :: text
+      character(:), allocatable :: keys, values
+
+      keys = 'linear_solver linear_tolerance'
+      select case (advice%linear_solver)
+      case (solver_dgesv)
+         values = "linear_solver='dgesv'"
+      case (solver_reduced)
+         values = "linear_solver='reduced'"
+      case (solver_fft)
+         values = "linear_solver='fft', linear_tolerance="//to_text(advice%linear_tolerance, 2)
+      case default
+         values = "linear_solver='auto'"
+      end select
+      if (case%scene%friction%name == 'dahl' .or. case%scene%friction%name == 'weakening') then
+         keys = keys//' friction_tolerance'
+         values = values//', friction_tolerance='//to_text(advice%friction_tolerance, 2)
+      end if
+      call add_group(text, groups, 'solver', keys, values)
+   end subroutine add_solver
+
+   !> Append a group: what it has in the case, but for some `keys`, separated by blanks, and `values` in place of them.
+   subroutine add_group(text, groups, name, keys, values)
+      character(:), allocatable, intent(inout) :: text
+      type(group_type), intent(in) :: groups(:)
+      character(*), intent(in) :: name, keys, values
+      integer :: i, j
+
+      text = text//'&'//name//' '//values
+      do i = 1, size(groups)
+         if (groups(i)%name /= name) cycle
+         do j = 1, size(groups(i)%entries)
+            if (index(' '//keys//' ', ' '//groups(i)%entries(j)%key//' ') == 0) call add_entry(text, groups(i)%entries(j))
+         end do
+      end do
+      text = text//' /'//line_feed
+   end subroutine add_group
+
+   !> Append a key with its value as written.
+   subroutine add_entry(text, entry)
+      character(:), allocatable, intent(inout) :: text
+      type(entry_type), intent(in) :: entry
+      integer :: i
+
+      text = text//', '//entry%key//'='
+      do i = 1, size(entry%values)
+         if (i > 1) text = text//', '
+         if (entry%is_quoted(i)) then
+            text = text//quoted(entry%values(i)%text)
+         else
+            text = text//entry%values(i)%text
+         end if
+      end do
+   end subroutine add_entry
+
+   !> Append a comment.
+   subroutine add_line(text, words)
+      character(:), allocatable, intent(inout) :: text
+      character(*), intent(in) :: words
+
+      text = text//'! '//words//line_feed
+   end subroutine add_line
+
+end module mfv_advice_text

@@ -1,0 +1,120 @@
+!> Random cases that have closed forms: Hertz, the flat punch and the cylinder pressed with friction (Spence, Goodman's
+!> coupling), Cattaneo and Mindlin with and without a cycle; meshes, coefficients of friction, Poisson's ratios, loads and
+!> units at random.
+module test_closed_form_cases
+   use mfv_body, only: new_disk
+   use mfv_compliance, only: coupling_goodman
+   use mfv_error_bar
+   use mfv_kinds, only: pi, wp
+   use mfv_material, only: new_material, plane_strain
+   use mfv_reference_hertz
+   use mfv_reference_mindlin
+   use mfv_reference_spence
+   use mfv_scene, only: scene_type
+   use test_scenes
+   implicit none
+   private
+   public :: random_case, kinds, kind_hertz, kind_punch, kind_cycle, kind_mindlin
+
+   !> A case is of the kind modulo(its number, kinds): one of these, or a cylinder pressed with friction.
+   integer, parameter :: kinds = 6, kind_hertz = 0, kind_punch = 1, kind_cycle = 2, kind_mindlin = 3
+
+contains
+
+   !> Case `i` of set `number`, and what its quantities really are; -1: no closed form.
+   subroutine random_case(number, i, scene, truth)
+      integer, intent(in) :: number, i
+      type(scene_type), intent(out) :: scene
+      real(wp), intent(out) :: truth(quantity_count)
+      real(wp) :: u(8), mu, force, length, modulus, half_width, shear_force, normal_force
+
+      u = random_numbers(100000*number + 100*i, size(u))
+      mu = 0.1_wp + 0.9_wp*u(1)
+      length = 10.0_wp**(6.0_wp*u(2) - 3.0_wp)
+      modulus = 10.0_wp**(12.0_wp*u(3) - 6.0_wp)
+      select case (modulo(i, kinds))
+      case (kind_hertz)
+         scene = cylinder(intervals(30, 150), 1.0_wp)
+      case (kind_punch)
+         scene = flat_punch(intervals(20, 90), length*radius, mu, coupling_goodman)
+      case (kind_cycle)
+         scene = cylinder(intervals(24, 70), 1.0_wp, mu, coupling_goodman)
+      case default
+         scene = cylinder(intervals(24, 100), 1.0_wp, mu, coupling_goodman)
+      end select
+      scene%lower%material = new_material(modulus, 0.48_wp*u(5), plane_strain)
+      scene%lower%datum = length*radius
+      normal_force = 1.0e-3_wp*modulus*length*(0.3_wp + 0.7_wp*u(6))
+      shear_force = mu*normal_force*(0.05_wp + 0.9_wp*u(7))
+      half_width = length*radius
+      truth = -1.0_wp
+      if (modulo(i, kinds) /= kind_punch) then
+         scene%upper = new_disk(length*radius)
+         half_width = hertz_half_width(normal_force, length*radius, scene%modulus())
+         scene%mesh%half_width = half_width*(1.1_wp + 0.3_wp*u(8))
+         truth(quantity_peak_pressure) = 2.0_wp*normal_force/(pi*half_width)
+      end if
+      if (modulo(i, kinds) /= kind_punch) truth(quantity_half_width) = half_width
+      force = normal_force
+      select case (modulo(i, kinds))
+      case (kind_hertz)
+         call press(scene, force, .false.)
+      case (kind_punch)
+         call press(scene, force, .true.)
+         truth(quantity_stick_ratio) = spence_stick_ratio(mu, scene%dundurs_beta())
+      case (kind_cycle, kind_mindlin)
+         call press(scene, force, .false.)
+         call shear(scene, shear_force)
+         if (modulo(i, kinds) == kind_cycle) call shear(scene, -shear_force, cycles=1)
+         truth(quantity_stick_ratio) = mindlin_stick_ratio(shear_force, force, mu)
+         truth(quantity_peak_shear) = mu*truth(quantity_peak_pressure)*sqrt(shear_force/(mu*force))
+         truth(quantity_dissipation) = mindlin_dissipation(shear_force, force, half_width, length*radius, mu) &
+                                       *merge(1.25_wp, 0.25_wp, modulo(i, kinds) == kind_cycle)
+      case default
+         call press(scene, force, .true.)
+         truth(quantity_stick_ratio) = spence_stick_ratio(mu, scene%dundurs_beta())
+         truth(quantity_peak_shear) = largest_spence_shear(force, half_width, mu, scene%dundurs_beta())
+      end select
+
+   contains
+
+      !> Between `fewest` and `most`, the more seldom the more.
+      integer function intervals(fewest, most)
+         integer, intent(in) :: fewest, most
+
+         intervals = nint(fewest*(real(most, wp)/fewest)**u(4))
+      end function intervals
+   end subroutine random_case
+
+   real(wp) function largest_spence_shear(force, half_width, mu, beta)
+      real(wp), intent(in) :: force, half_width, mu, beta
+      integer, parameter :: points = 4000
+      real(wp) :: x(0:points)
+      integer :: i
+
+      x = [(half_width*i/points, i=0, points)]
+      largest_spence_shear = maxval(abs(spence_cylinder_shear(x, force, half_width, mu, beta)))
+   end function largest_spence_shear
+
+   !> Numbers between 0 and 1, the same everywhere: the minimal standard generator, started with the cube of the seed so
+   !> that seeds next to each other lead apart.
+   pure function random_numbers(seed, n) result(numbers)
+      integer, intent(in) :: seed, n
+      real(wp) :: numbers(n)
+      integer, parameter :: long = selected_int_kind(18)
+      integer(long), parameter :: multiplier = 48271_long, modulus = 2147483647_long
+      integer, parameter :: warm_up = 9
+      integer(long) :: state
+      integer :: i
+
+      state = modulo(seed*modulo(int(seed, long)**2, modulus), modulus)
+      do i = 1, warm_up
+         state = modulo(multiplier*state, modulus)
+      end do
+      do i = 1, n
+         state = modulo(multiplier*state, modulus)
+         numbers(i) = real(state, wp)/real(modulus, wp)
+      end do
+   end function random_numbers
+
+end module test_closed_form_cases
