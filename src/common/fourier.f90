@@ -16,6 +16,8 @@ module mfv_fourier
    integer, parameter :: to_values = 1, to_coefficients = 2
    !> Directions of complex_transform: exp(-2 pi i j k/N) and exp(2 pi i j k/N).
    integer, parameter :: forward = 3, backward = 4
+   !> The same from one array to another.
+   integer, parameter :: forward_apart = 5, backward_apart = 6
    integer, parameter :: most_plans = 256
    !> The boundary, bytes, at which an array is aligned.
    integer(c_intptr_t), parameter :: boundary = 16
@@ -40,18 +42,18 @@ module mfv_fourier
    integer(c_long), target :: mutex(16) = 0
 
    interface
-      !> FFTW's procedures for transforms in place: fftw3.f03 has two arrays, which in Fortran must not be the same.
-      function plan_in_place(n, in, out, sign, flags) bind(C, name='fftw_plan_dft_1d') result(plan)
+      !> FFTW's procedures by address: fftw3.f03 has two complex arrays, which in Fortran must not be the same.
+      function plan_by_address(n, in, out, sign, flags) bind(C, name='fftw_plan_dft_1d') result(plan)
          import :: c_int, c_ptr
          integer(c_int), value :: n, sign, flags
          type(c_ptr), value :: in, out
          type(c_ptr) :: plan
-      end function plan_in_place
+      end function plan_by_address
 
-      subroutine execute_in_place(plan, in, out) bind(C, name='fftw_execute_dft')
+      subroutine execute_by_address(plan, in, out) bind(C, name='fftw_execute_dft')
          import :: c_ptr
          type(c_ptr), value :: plan, in, out
-      end subroutine execute_in_place
+      end subroutine execute_by_address
 
       function pthread_mutex_lock(mutex) bind(C, name='pthread_mutex_lock') result(code)
          import :: c_int, c_ptr
@@ -112,7 +114,7 @@ contains
       logical :: kept
 
       call get_plan(size(values), direction, plan, kept, is_aligned(c_loc(values)))
-      call execute_in_place(plan, c_loc(values), c_loc(values))
+      call execute_by_address(plan, c_loc(values), c_loc(values))
       if (.not. kept) call throw_away(plan)
    end subroutine complex_transform
 
@@ -120,26 +122,27 @@ contains
    !> N/2 + 1. By a complex transform of half the length (even values real, odd ones imaginary), whose plan is made in a tenth of
    !> the time that FFTW takes over one for real values.
    subroutine real_transform(values, spectrum)
-      real(wp), intent(in) :: values(:)
+      real(wp), intent(in), contiguous, target :: values(:)
       complex(wp), intent(out), contiguous, target :: spectrum(:)
       complex(wp), pointer, contiguous :: turns(:)
-      complex(wp) :: even, odd
+      real(wp) :: even(2), odd(2), sums(2), differences(2)
       logical :: kept
-      integer :: k, half
+      integer :: k, l, half
 
       half = size(values)/2
-      do k = 1, half
-         spectrum(k) = cmplx(values(2*k - 1), values(2*k), wp)
-      end do
-      call complex_transform(forward, spectrum(:half))
+      call transform_apart(forward_apart, half, c_loc(values), c_loc(spectrum))
       call get_turns(half, turns, kept)
       spectrum(half + 1) = real(spectrum(1), wp) - aimag(spectrum(1))
       spectrum(1) = real(spectrum(1), wp) + aimag(spectrum(1))
-      do k = 1, half/2
-         even = 0.5_wp*(spectrum(k + 1) + conjg(spectrum(half - k + 1)))
-         odd = 0.5_wp*(spectrum(k + 1) - conjg(spectrum(half - k + 1)))*turns(k)
-         spectrum(k + 1) = even + odd
-         spectrum(half - k + 1) = conjg(even - odd)
+      do k = 2, half/2 + 1
+         l = half - k + 2
+         sums = 0.5_wp*[real(spectrum(k), wp) + real(spectrum(l), wp), aimag(spectrum(k)) + aimag(spectrum(l))]
+         differences = 0.5_wp*[real(spectrum(k), wp) - real(spectrum(l), wp), aimag(spectrum(k)) - aimag(spectrum(l))]
+         even = [sums(1), differences(2)]
+         odd(1) = differences(1)*real(turns(k - 1), wp) - sums(2)*aimag(turns(k - 1))
+         odd(2) = differences(1)*aimag(turns(k - 1)) + sums(2)*real(turns(k - 1), wp)
+         spectrum(k) = cmplx(even(1) + odd(1), even(2) + odd(2), wp)
+         spectrum(l) = cmplx(even(1) - odd(1), odd(2) - even(2), wp)
       end do
       if (.not. kept) deallocate (turns)
    end subroutine real_transform
@@ -148,31 +151,42 @@ contains
    !> used as work space.
    subroutine back_transform(spectrum, values)
       complex(wp), intent(inout), contiguous, target :: spectrum(:)
-      real(wp), intent(out) :: values(:)
+      real(wp), intent(out), contiguous, target :: values(:)
       complex(wp), pointer, contiguous :: turns(:)
-      complex(wp) :: even, odd
-      real(wp) :: first, last
+      real(wp) :: even(2), odd(2), sums(2), differences(2), first, last
       logical :: kept
-      integer :: k, half
+      integer :: k, l, half
 
       half = size(values)/2
       call get_turns(half, turns, kept)
       first = real(spectrum(1), wp)
       last = real(spectrum(half + 1), wp)
       spectrum(1) = cmplx(first + last, first - last, wp)
-      do k = 1, half/2
-         even = spectrum(k + 1) + conjg(spectrum(half - k + 1))
-         odd = (spectrum(k + 1) - conjg(spectrum(half - k + 1)))*conjg(turns(k))
-         spectrum(k + 1) = even + odd
-         spectrum(half - k + 1) = conjg(even - odd)
+      do k = 2, half/2 + 1
+         l = half - k + 2
+         sums = [real(spectrum(k), wp) + real(spectrum(l), wp), aimag(spectrum(k)) + aimag(spectrum(l))]
+         differences = [real(spectrum(k), wp) - real(spectrum(l), wp), aimag(spectrum(k)) - aimag(spectrum(l))]
+         even = [sums(1), differences(2)]
+         odd(1) = differences(1)*real(turns(k - 1), wp) + sums(2)*aimag(turns(k - 1))
+         odd(2) = sums(2)*real(turns(k - 1), wp) - differences(1)*aimag(turns(k - 1))
+         spectrum(k) = cmplx(even(1) + odd(1), even(2) + odd(2), wp)
+         spectrum(l) = cmplx(even(1) - odd(1), odd(2) - even(2), wp)
       end do
-      call complex_transform(backward, spectrum(:half))
-      do k = 1, half
-         values(2*k - 1) = real(spectrum(k), wp)
-         values(2*k) = aimag(spectrum(k))
-      end do
+      call transform_apart(backward_apart, half, c_loc(spectrum), c_loc(values))
       if (.not. kept) deallocate (turns)
    end subroutine back_transform
+
+   !> A transform of `size` complex values from one place to another.
+   subroutine transform_apart(direction, size, from, to)
+      integer, intent(in) :: direction, size
+      type(c_ptr), intent(in) :: from, to
+      type(c_ptr) :: plan
+      logical :: kept
+
+      call get_plan(size, direction, plan, kept, is_aligned(from) .and. is_aligned(to))
+      call execute_by_address(plan, from, to)
+      if (.not. kept) call throw_away(plan)
+   end subroutine transform_apart
 
    !> Whether an address is on a boundary that vector instructions want.
    logical function is_aligned(address)
@@ -181,11 +195,11 @@ contains
       is_aligned = modulo(transfer(address, boundary), boundary) == 0
    end function is_aligned
 
-   !> The smallest length, not less than `at_least` nor than 16, that is 1, 3, 5, 9 or 15 times a power of 2: transforms of many
-   !> lengths then need few plans.
+   !> The smallest length, not less than `at_least` nor than 16, that is 1, 5 or 15 times a power of 2: transforms of many
+   !> lengths then need few plans, and FFTW is slower at 3 and 9 times a power than at the next longer one.
    pure integer function fast_length(at_least)
       integer, intent(in) :: at_least
-      integer, parameter :: odd(5) = [1, 3, 5, 9, 15]
+      integer, parameter :: odd(3) = [1, 5, 15]
       integer :: i, length
 
       fast_length = huge(1)
@@ -287,15 +301,21 @@ contains
       integer, intent(in) :: size, direction
       logical, intent(in) :: aligned
       type(c_ptr) :: plan
-      complex(wp), allocatable, target :: coefficients(:)
+      complex(wp), allocatable, target :: coefficients(:), others(:)
       real(wp), allocatable :: values(:)
       integer(c_int) :: flags
 
       flags = FFTW_ESTIMATE
       if (.not. aligned) flags = ior(FFTW_ESTIMATE, FFTW_UNALIGNED)
+      if (direction == forward_apart .or. direction == backward_apart) then
+         allocate (coefficients(size), others(size))
+         plan = plan_by_address(int(size, c_int), c_loc(coefficients), c_loc(others), &
+                              merge(FFTW_FORWARD, FFTW_BACKWARD, direction == forward_apart), flags)
+         return
+      end if
       if (direction == forward .or. direction == backward) then
          allocate (coefficients(size))
-         plan = plan_in_place(int(size, c_int), c_loc(coefficients), c_loc(coefficients), &
+         plan = plan_by_address(int(size, c_int), c_loc(coefficients), c_loc(coefficients), &
                               merge(FFTW_FORWARD, FFTW_BACKWARD, direction == forward), flags)
          return
       end if
