@@ -19,7 +19,7 @@ module mfv_reduced_system
    use mfv_augmented_system, only: augmented_system_type
    use mfv_compliance, only: block_up, block_ut, block_wp, block_wt
    use mfv_constrained_inverse, only: constrained_inverse_type
-   use mfv_contact_fields, only: contact_fields_type, new_contact_fields
+   use mfv_contact_fields, only: contact_fields_type
    use mfv_contact_model, only: along_approach, along_rotation, along_shift, contact_model_type
    use mfv_contact_system
    use mfv_kinds, only: wp
@@ -98,7 +98,7 @@ contains
       type(contact_model_type), intent(in) :: model
       type(constraints_type), intent(in) :: constraints
       type(contact_fields_type), intent(in) :: start
-      type(response_type), intent(out) :: response
+      type(response_type), intent(inout) :: response
       logical, intent(out) :: singular
 
       self%solves = self%solves + 1
@@ -128,10 +128,10 @@ contains
       call self%follow(model, constraints, anew, singular)
       if (.not. singular) singular = self%undetermined(model, constraints)
       if (singular) return
-      response%state = start
+      call response%state%take(start)
       call self%refine(model, constraints, .false., response%state, singular)
       if (singular) return
-      response%rate = new_contact_fields(size(constraints%status))
+      call response%rate%clear(size(constraints%status))
       call self%refine(model, constraints, .true., response%rate, singular)
    end subroutine respond
 
@@ -827,7 +827,7 @@ contains
          force = force + model%width(i)*abs(fields%pressure(i))
          shear_force = shear_force + model%width(i)*abs(fields%shear(i))
       end do
-      shear_force = max(shear_force, model%grip*force)
+      shear_force = max(shear_force, model%grip*force, tiny(1.0_wp))
       force = max(force, shear_force)
       tangential = max(tangential, model%grip*normal)
       normal = max(normal, tangential)
