@@ -4,7 +4,7 @@
 !> their sort so far, so that units do not matter; the largest over all increments is kept.
 module mfv_certificate
    use, intrinsic :: ieee_arithmetic, only: ieee_is_finite
-   use mfv_compliance, only: block_up, block_ut, block_wp, block_wt, coupling_goodman
+   use mfv_compliance, only: block_up, coupling_goodman
    use mfv_contact_fields, only: contact_fields_type
    use mfv_contact_model, only: along_approach, along_rotation, along_shift, contact_model_type
    use mfv_contact_state, only: contact_state_type
@@ -50,6 +50,8 @@ module mfv_certificate
       !> Number of the increment with the largest residual, by kind; and increments so far.
       integer :: worst_increment(residual_count) = 0
       integer :: increments = 0
+      !> How many of them were leaps: on their way nothing was checked.
+      integer :: leaps = 0
       !> Largest magnitudes so far.
       real(wp), private :: traction = 0.0_wp, normal = 0.0_wp, tangential = 0.0_wp, normal_force = 0.0_wp, &
                            tangential_force = 0.0_wp, moment = 0.0_wp, energy = 0.0_wp
@@ -92,8 +94,8 @@ contains
    end function new_certificate
 
    !> Find out what can be claimed. No energy balance under Goodman's coupling with friction, whose compliance is not
-   !> symmetric; nothing tangential where friction has not acted yet; of the conventional algorithm's load steps nothing but
-   !> their ends.
+   !> symmetric; nothing tangential where friction has not acted yet; of the conventional algorithm's load steps, and of leaps,
+   !> nothing but their ends.
    subroutine claim(self, model)
       class(certificate_type), intent(inout) :: self
       type(contact_model_type), intent(in) :: model
@@ -102,6 +104,7 @@ contains
       self%claimed(energy_balance) = self%claimed(continuity) .and. (.not. model%tangential .or. &
                                      model%scene%coupling /= coupling_goodman .or. &
                                      .not. model%compliance%has_block(block_up))
+      if (self%leaps > 0 .and. self%leaps == self%increments) self%claimed([continuity, energy_balance]) = .false.
       self%claimed(moment_balance) = model%rotational
       self%claimed([elasticity_tangential, tangential_force_balance, stick_slip, slip_traction, friction_limit, &
                     slip_direction]) = model%tangential
@@ -128,17 +131,24 @@ contains
       force_scale = self%normal_force
    end function force_scale
 
-   !> Check the increment from `before` to `after`, with the statuses of `after` on the way.
-   subroutine check_increment(self, model, before, after)
+   !> Check the increment from `before` to `after`, with the statuses of `after` on the way. `leap`: nobody knows the way, the
+   !> end is checked; the energy is balanced from there on.
+   subroutine check_increment(self, model, before, after, leap)
       class(certificate_type), intent(inout) :: self
       type(contact_model_type), intent(in) :: model
       type(contact_state_type), intent(in) :: before, after
+      logical, intent(in), optional :: leap
+      logical :: leaps
 
+      leaps = .false.
+      if (present(leap)) leaps = leap
       self%increments = self%increments + 1
+      if (leaps) self%leaps = self%leaps + 1
       call check_equilibrium(self, model, after%fields)
       call check_normal_contact(self, model, after)
-      if (self%claimed(slip_traction)) call check_friction(self, model, before, after)
-      call check_energy(self, model, before%fields, after)
+      if (self%claimed(slip_traction)) call check_friction(self, model, before, after, leaps)
+      call check_energy(self, model, before%fields, after, leaps)
+      if (self%leaps > 0) call self%claim(model)
    end subroutine check_increment
 
    !> Note a jump of the tractions at an unchanged load.
@@ -157,25 +167,41 @@ contains
       class(certificate_type), intent(inout) :: self
       type(contact_model_type), intent(in) :: model
       type(contact_fields_type), intent(in) :: fields
-      real(wp), dimension(size(fields%pressure)) :: by_pressure, by_shear, rigid
-      real(wp) :: grip
+      real(wp), dimension(size(fields%pressure)) :: normal_by_pressure, normal_by_shear, tangential_by_pressure, &
+                                                    tangential_by_shear, rigid_normal, rigid_tangential
+      real(wp) :: pressure_force, shear_force, normal_rest, tangential_rest
+      integer :: i
 
-      grip = model%grip
-      self%traction = max(self%traction, maxval(abs(fields%pressure)), maxval(abs(fields%shear)))
-      self%normal_force = max(self%normal_force, abs(fields%normal_force), model%force(abs(fields%pressure)))
-      self%tangential_force = max(self%tangential_force, grip*self%normal_force, &
-                                  model%force(abs(fields%shear)), abs(fields%tangential_force))
-      call displacement_parts(block_wp, block_wt)
-      self%normal = max(self%normal, maxval(abs(by_pressure)), maxval(abs(by_shear)))
-      rigid = model%rigid_normal(fields)
-      call self%note(elasticity_normal, maxval(abs(fields%normal + rigid - by_pressure - by_shear)), &
-                     max(self%normal, maxval(abs(rigid))))
-      call displacement_parts(block_up, block_ut)
-      self%tangential = max(self%tangential, grip*self%normal, maxval(abs(by_pressure)), maxval(abs(by_shear)), &
-                            abs(fields%shift))
-      rigid = model%rigid_tangential(fields)
-      self%tangential = max(self%tangential, maxval(abs(rigid)))
-      call self%note(elasticity_tangential, maxval(abs(fields%tangential + rigid - by_pressure - by_shear)), self%tangential)
+      ! By pressure and by shear apart: their sizes are the scale, however much they cancel.
+      call model%compliance%parts(fields%pressure, fields%shear, normal_by_pressure, normal_by_shear, tangential_by_pressure, &
+                                  tangential_by_shear)
+      rigid_normal = 0.0_wp
+      rigid_tangential = 0.0_wp
+      if (model%rotational .or. .not. model%upright) then
+         rigid_normal = model%rigid_normal(fields)
+         rigid_tangential = model%rigid_tangential(fields)
+      end if
+      pressure_force = 0.0_wp
+      shear_force = 0.0_wp
+      normal_rest = 0.0_wp
+      tangential_rest = 0.0_wp
+      do i = 1, size(fields%pressure)
+         self%traction = max(self%traction, abs(fields%pressure(i)), abs(fields%shear(i)))
+         self%normal = max(self%normal, abs(normal_by_pressure(i)), abs(normal_by_shear(i)))
+         self%tangential = max(self%tangential, abs(tangential_by_pressure(i)), abs(tangential_by_shear(i)), &
+                               abs(rigid_tangential(i)))
+         pressure_force = pressure_force + model%width(i)*abs(fields%pressure(i))
+         shear_force = shear_force + model%width(i)*abs(fields%shear(i))
+         normal_rest = largest_or_nan(normal_rest, fields%normal(i) + rigid_normal(i) - normal_by_pressure(i) &
+                                      - normal_by_shear(i))
+         tangential_rest = largest_or_nan(tangential_rest, fields%tangential(i) + rigid_tangential(i) &
+                                          - tangential_by_pressure(i) - tangential_by_shear(i))
+      end do
+      self%tangential = max(self%tangential, model%grip*self%normal, abs(fields%shift))
+      self%normal_force = max(self%normal_force, abs(fields%normal_force), pressure_force)
+      self%tangential_force = max(self%tangential_force, model%grip*self%normal_force, shear_force, abs(fields%tangential_force))
+      call self%note(elasticity_normal, normal_rest, max(self%normal, maxval(abs(rigid_normal))))
+      call self%note(elasticity_tangential, tangential_rest, self%tangential)
       call self%note(normal_force_balance, abs(fields%normal_force - model%resultant(along_approach, fields%pressure, &
                                                                                      fields%shear)), &
                      self%normal_force)
@@ -188,116 +214,147 @@ contains
                         + model%force(abs(model%tangential_arm(:, along_rotation)*fields%shear)))
       call self%note(moment_balance, abs(fields%moment - model%resultant(along_rotation, fields%pressure, fields%shear)), &
                      self%moment)
-
-   contains
-
-      !> Displacements by pressure and by shear apart: their sizes are the scale, however much they cancel.
-      subroutine displacement_parts(pressure_block, shear_block)
-         integer, intent(in) :: pressure_block, shear_block
-
-         by_pressure = 0.0_wp
-         by_shear = 0.0_wp
-         call model%compliance%product(pressure_block, fields%pressure, by_pressure)
-         call model%compliance%product(shear_block, fields%shear, by_shear)
-      end subroutine displacement_parts
    end subroutine check_equilibrium
+
+   !> The larger of a size so far and the size of a number; not a number where that is none.
+   elemental real(wp) function largest_or_nan(so_far, number)
+      real(wp), intent(in) :: so_far, number
+
+      largest_or_nan = so_far
+      if (.not. abs(number) <= so_far) largest_or_nan = abs(number)
+   end function largest_or_nan
 
    !> Equalities and inequalities of gap and pressure.
    subroutine check_normal_contact(self, model, state)
       class(certificate_type), intent(inout) :: self
       type(contact_model_type), intent(in) :: model
       type(contact_state_type), intent(in) :: state
-      real(wp) :: gap(size(state%status))
-      logical :: contact(size(state%status))
-      real(wp) :: scale
+      real(wp) :: gap, closed_gap, open_gap, open_traction_size, negative_pressure, scale
+      integer :: i
 
-      contact = in_contact(state%status)
-      gap = model%gap(state%fields)
+      closed_gap = 0.0_wp
+      open_gap = 0.0_wp
+      open_traction_size = 0.0_wp
+      negative_pressure = 0.0_wp
+      do i = 1, size(state%status)
+         gap = model%initial_gap(i) - state%fields%approach + state%fields%normal(i)
+         if (state%status(i) /= node_open) then
+            closed_gap = largest_or_nan(closed_gap, gap)
+            negative_pressure = max(negative_pressure, -state%fields%pressure(i))
+         else
+            if (model%can_touch(i)) open_gap = max(open_gap, -gap)
+            open_traction_size = max(open_traction_size, abs(state%fields%pressure(i)) + abs(state%fields%shear(i)))
+         end if
+      end do
       scale = self%normal
       if (.not. scale > 0.0_wp) scale = max(maxval(abs(model%initial_gap)), abs(state%fields%approach))
-      call self%note(contact_gap, largest_of(abs(gap), contact), scale)
-      call self%note(gap_sign, largest_of(-gap, model%can_touch .and. .not. contact), scale)
-      call self%note(open_traction, largest_of(abs(state%fields%pressure) + abs(state%fields%shear),.not. contact), &
-                     self%traction)
-      call self%note(pressure_sign, largest_of(-state%fields%pressure, contact), self%traction)
+      call self%note(contact_gap, closed_gap, scale)
+      call self%note(gap_sign, open_gap, scale)
+      call self%note(open_traction, open_traction_size, self%traction)
+      call self%note(pressure_sign, negative_pressure, self%traction)
    end subroutine check_normal_contact
 
-   !> Equalities and inequalities of slip and shear traction.
-   subroutine check_friction(self, model, before, after)
+   !> Equalities and inequalities of slip and shear traction. Over a leap, slip counts from what the leap says: of nodes that
+   !> touch on the way from then.
+   subroutine check_friction(self, model, before, after, leap)
       class(certificate_type), intent(inout) :: self
       type(contact_model_type), intent(in) :: model
       type(contact_state_type), intent(in) :: before, after
-      real(wp), dimension(size(after%status)) :: limit, defect, shear, slipped, direction, growth
+      logical, intent(in) :: leap
+      real(wp) :: sliding, law_defect, beyond_limit, wrong_way, slipped, limit
+      integer :: i, status
 
-      limit = model%static_friction*after%fields%pressure
-      where (after%status == node_frictionless) limit = 0.0_wp
-      shear = after%fields%shear
-      slipped = after%fields%slip() - before%fields%slip()
-      direction = slip_sign(after%status)
-      growth = model%static_friction*(after%fields%pressure - before%fields%pressure)*model%scene%friction%law%full_part
-      call law_defects(model, before, after, defect)
-      call self%note(stick_slip, largest_of(abs(slipped), after%status == node_stick), self%tangential)
-      call self%note(slip_traction, largest_of(abs(defect), slips(after%status) .or. creeps(after%status) .or. &
-                                               after%status == node_frictionless), self%traction)
-      call self%note(friction_limit, largest_of(abs(shear) - limit, in_contact(after%status)), self%traction)
-      if (model%scene%friction%law%sticks) then
-         call self%note(slip_direction, largest_of(-direction*slipped, slips(after%status)), self%tangential)
-      else
-         call self%note(slip_direction, largest_of(-model%scene%friction%law%yields(direction*slipped, growth), &
-                                                   slips(after%status)), self%traction)
-      end if
-   end subroutine check_friction
-
-   !> By how much the tractions of slipping nodes fail the friction law, and those of creeping nodes the law's increment from
-   !> state to state and what a motion against their direction does to it; where friction is off, the shear traction.
-   !> Shape (nodes), force/length^2.
-   subroutine law_defects(model, before, after, defect)
-      type(contact_model_type), intent(in) :: model
-      type(contact_state_type), intent(in) :: before, after
-      real(wp), intent(out) :: defect(:)
-      type(friction_point_type), dimension(size(defect)) :: here, there
-      type(friction_row_type) :: row
-      integer :: i
-      logical :: explicit
-
-      explicit = model%scene%method%integration == integration_explicit .and. &
-                 model%scene%method%algorithm == algorithm_mfv
-      here = before%friction_points(before%fields, model%static_friction, model%kinetic_friction)
-      there = after%friction_points(after%fields, model%static_friction, model%kinetic_friction)
-      defect = after%fields%shear
-      do i = 1, size(defect)
-         if (slips(after%status(i))) then
-            defect(i) = there(i)%shear + slip_sign(after%status(i))*model%scene%friction%law%strength(there(i))
-         else if (creeps(after%status(i))) then
-            row = model%scene%friction%law%row(after%status(i), here(i), there(i))
-            if (explicit) row = model%scene%friction%law%row(after%status(i), here(i), here(i))
-            defect(i) = abs(there(i)%shear - row%slope*there(i)%pressure - row%stiffness*there(i)%slip - row%offset) &
-                        + max(model%scene%friction%law%turning(here(i)), model%scene%friction%law%turning(there(i))) &
-                        *max(-motion_sign(after%status(i))*(there(i)%slip - here(i)%slip), 0.0_wp)
+      sliding = 0.0_wp
+      law_defect = 0.0_wp
+      beyond_limit = 0.0_wp
+      wrong_way = 0.0_wp
+      do i = 1, size(after%status)
+         status = after%status(i)
+         if (status == node_open) cycle
+         limit = model%static_friction(i)*after%fields%pressure(i)
+         if (status == node_frictionless) limit = 0.0_wp
+         beyond_limit = max(beyond_limit, abs(after%fields%shear(i)) - limit)
+         slipped = after%fields%tangential(i) - after%fields%shift - (before%fields%tangential(i) - before%fields%shift)
+         if (leap .and. .not. before%fields%pressure(i) > 0.0_wp) &
+            slipped = after%fields%tangential(i) - after%fields%shift - before%stuck_slip(i)
+         if (status == node_stick) then
+            sliding = largest_or_nan(sliding, slipped)
+         else if (status == node_frictionless) then
+            law_defect = largest_or_nan(law_defect, after%fields%shear(i))
+         else
+            law_defect = largest_or_nan(law_defect, defect_of_law(model, before, after, i))
+            if (.not. slips(status)) cycle
+            if (model%scene%friction%law%sticks) then
+               wrong_way = max(wrong_way, -slip_sign(status)*slipped)
+            else
+               wrong_way = max(wrong_way, -model%scene%friction%law%yields( &
+                               slip_sign(status)*slipped, &
+                               model%static_friction(i)*(after%fields%pressure(i) - before%fields%pressure(i)) &
+                               *model%scene%friction%law%full_part))
+            end if
          end if
       end do
-   end subroutine law_defects
+      call self%note(stick_slip, sliding, self%tangential)
+      call self%note(slip_traction, law_defect, self%traction)
+      call self%note(friction_limit, beyond_limit, self%traction)
+      call self%note(slip_direction, wrong_way, merge(self%tangential, self%traction, model%scene%friction%law%sticks))
+   end subroutine check_friction
 
-   !> Work of the loads = stored + dissipated energy; between events everything is linear, so the trapezoid is exact.
-   subroutine check_energy(self, model, before, after)
+   !> By how much the traction of slipping node `i` fails the friction law, and that of a creeping node the law's increment from
+   !> state to state and what a motion against its direction does to it; force/length^2.
+   real(wp) function defect_of_law(model, before, after, i) result(defect)
+      type(contact_model_type), intent(in) :: model
+      type(contact_state_type), intent(in) :: before, after
+      integer, intent(in) :: i
+      type(friction_point_type) :: here, there
+      type(friction_row_type) :: row
+
+      there = after%friction_point(after%fields, i, model%static_friction(i), model%kinetic_friction(i))
+      if (slips(after%status(i))) then
+         defect = there%shear + slip_sign(after%status(i))*model%scene%friction%law%strength(there)
+         return
+      end if
+      here = before%friction_point(before%fields, i, model%static_friction(i), model%kinetic_friction(i))
+      if (model%scene%method%integration == integration_explicit .and. model%scene%method%algorithm == algorithm_mfv) then
+         row = model%scene%friction%law%row(after%status(i), here, here)
+      else
+         row = model%scene%friction%law%row(after%status(i), here, there)
+      end if
+      defect = abs(there%shear - row%slope*there%pressure - row%stiffness*there%slip - row%offset) &
+               + max(model%scene%friction%law%turning(here), model%scene%friction%law%turning(there)) &
+               *max(-motion_sign(after%status(i))*(there%slip - here%slip), 0.0_wp)
+   end function defect_of_law
+
+   !> Work of the loads = stored + dissipated energy; between events everything is linear, so the trapezoid is exact. Over a leap
+   !> the work is not known: it counts as what is stored and dissipated, and nothing is noted.
+   subroutine check_energy(self, model, before, after, leap)
       class(certificate_type), intent(inout) :: self
       type(contact_model_type), intent(in) :: model
       type(contact_fields_type), intent(in) :: before
       type(contact_state_type), intent(in) :: after
+      logical, intent(in) :: leap
       real(wp) :: stored
+      integer :: i
 
       associate (now => after%fields)
          self%work = self%work + 0.5_wp*(before%normal_force + now%normal_force)*(now%approach - before%approach) &
                      + 0.5_wp*(before%tangential_force + now%tangential_force)*(now%shift - before%shift) &
                      + 0.5_wp*(before%moment + now%moment)*(now%rotation - before%rotation)
-         stored = 0.5_wp*(model%force(now%pressure*now%normal) + model%force(now%shear*now%tangential) &
-                          + now%approach*(model%resultant(along_approach, now%pressure, now%shear) &
-                                          - model%force(now%pressure)) &
-                          + now%shift*(model%resultant(along_shift, now%pressure, now%shear) - model%force(now%shear)) &
-                          + now%rotation*model%resultant(along_rotation, now%pressure, now%shear))
+         stored = 0.0_wp
+         do i = 1, size(now%pressure)
+            stored = stored + model%width(i)*(now%pressure(i)*now%normal(i) + now%shear(i)*now%tangential(i))
+         end do
+         stored = 0.5_wp*stored
+         if (model%rotational .or. .not. model%upright) &
+            stored = stored + 0.5_wp*(now%approach*(model%resultant(along_approach, now%pressure, now%shear) &
+                                                    - model%force(now%pressure)) &
+                                      + now%shift*(model%resultant(along_shift, now%pressure, now%shear) &
+                                                   - model%force(now%shear)) &
+                                      + now%rotation*model%resultant(along_rotation, now%pressure, now%shear))
       end associate
+      if (leap) self%work = stored + after%dissipation
       self%energy = max(self%energy, abs(self%work), abs(stored))
-      call self%note(energy_balance, abs(self%work - stored - after%dissipation), self%energy)
+      if (.not. leap) call self%note(energy_balance, abs(self%work - stored - after%dissipation), self%energy)
    end subroutine check_energy
 
    !> Keep a residual when it is the largest of its kind; `scale` is its magnitude of reference.
@@ -315,13 +372,5 @@ contains
       end if
       self%worst_increment(kind) = self%increments
    end subroutine note
-
-   !> Largest of the masked values, zero when there is none or none is positive.
-   pure real(wp) function largest_of(values, mask)
-      real(wp), intent(in) :: values(:)
-      logical, intent(in) :: mask(:)
-
-      largest_of = max(maxval(values, mask=mask), 0.0_wp)
-   end function largest_of
 
 end module mfv_certificate

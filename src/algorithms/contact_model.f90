@@ -33,6 +33,8 @@ module mfv_contact_model
       !> By how much a unit of approach, shift and rotation of the upper body lessens the gap, and carries its surface along
       !> the lower one to the right; shape (nodes, 3), of approach and shift without unit, of rotation lengths.
       real(wp), allocatable :: normal_arm(:, :), tangential_arm(:, :)
+      !> Whether approach does nothing but lessen gaps and shift nothing but slide: normals are vertical.
+      logical :: upright = .true.
       !> Static and kinetic coefficient of friction at the nodes, shape (nodes), and the part of the normal tractions that
       !> shear can have: the largest coefficient, but no more than 1.
       real(wp), allocatable :: static_friction(:), kinetic_friction(:)
@@ -65,6 +67,15 @@ module mfv_contact_model
       procedure, private :: build_compliance
       procedure, private :: place_nodes
    end type contact_model_type
+
+   interface
+      pure function ddot(n, x, incx, y, incy) result(product)
+         import :: wp
+         integer, intent(in) :: n, incx, incy
+         real(wp), intent(in) :: x(*), y(*)
+         real(wp) :: product
+      end function ddot
+   end interface
 
    !> Contact estimates leave this much room to the end of a chosen mesh.
    real(wp), parameter :: room = 1.2_wp
@@ -190,6 +201,7 @@ contains
       real(wp), intent(out) :: normal(:), tangential(:)
 
       call self%compliance%displacements(fields%pressure, fields%shear, normal, tangential)
+      if (self%upright .and. .not. self%rotational) return
       normal = normal - self%rigid_normal(fields)
       tangential = tangential - self%rigid_tangential(fields)
    end subroutine relative_displacements
@@ -228,7 +240,7 @@ contains
       class(contact_model_type), intent(in) :: self
       real(wp), intent(in) :: traction(:)
 
-      force = dot_product(self%width, traction)
+      force = ddot(size(traction), self%width, 1, traction, 1)
    end function force
 
    !> What the tractions amount to on the lower body: normal force down (`along_approach`), tangential force to the right
@@ -238,7 +250,13 @@ contains
       integer, intent(in) :: along
       real(wp), intent(in) :: pressure(:), shear(:)
 
-      resultant = self%force(self%normal_arm(:, along)*pressure) + self%force(self%tangential_arm(:, along)*shear)
+      if (self%upright .and. along == along_approach) then
+         resultant = self%force(pressure)
+      else if (self%upright .and. along == along_shift) then
+         resultant = self%force(shear)
+      else
+         resultant = self%force(self%normal_arm(:, along)*pressure) + self%force(self%tangential_arm(:, along)*shear)
+      end if
    end function resultant
 
    !> Whether the contact statuses (true: in contact) reach an end of the mesh beyond which both bodies go on.
@@ -314,6 +332,7 @@ contains
       allocate (self%normal_arm(n, 3), self%tangential_arm(n, 3), source=0.0_wp)
       self%normal_arm(:, along_approach) = 1.0_wp
       self%tangential_arm(:, along_shift) = 1.0_wp
+      self%upright = .not. self%scene%mesh%radial
       if (self%scene%mesh%radial) then
          call place_radial_arms(self)
          return

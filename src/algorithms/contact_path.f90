@@ -27,6 +27,8 @@ module mfv_contact_path
       logical :: friction = .true.
       !> Number of this segment, how many there are, and the step that it belongs to: for records and progress.
       integer :: number = 1, segments = 1, step = 1
+      !> Where this one begins and ends in parts of the whole that it belongs to, for progress.
+      real(wp) :: from = 0.0_wp, to = 1.0_wp
    end type segment_type
 
    type :: contact_path_type
@@ -48,7 +50,9 @@ module mfv_contact_path
       procedure :: settle_loads
       procedure :: loads_at
       procedure :: dropping
-      procedure :: points
+      procedure :: point
+      procedure :: has_corners
+      procedure, private :: has_memory
       procedure :: find_corners
       procedure :: snap
       procedure :: set_rows
@@ -57,7 +61,7 @@ module mfv_contact_path
       procedure :: take_increment
       procedure :: keep_settled
       procedure :: keep_on_mesh
-      procedure, private :: widen
+      procedure :: widen
       procedure :: no_continuation
       procedure :: end_here
       procedure, private :: begin_tangential
@@ -162,7 +166,7 @@ contains
       type(segment_type), intent(in) :: segment
       real(wp), intent(in) :: done
       type(moment_type), intent(inout) :: moment
-      type(constraints_type), intent(out) :: constraints
+      type(constraints_type), intent(inout) :: constraints
       logical, intent(out) :: settled
       type(error_type), allocatable, intent(out) :: error
       type(load_type) :: load
@@ -239,19 +243,20 @@ contains
       integer, intent(in) :: along
       logical, intent(inout) :: settled
       type(error_type), allocatable, intent(out) :: error
-      real(wp), parameter :: balanced = 1.0e-9_wp, nothing = 1.0e-12_wp
+      real(wp), parameter :: balanced = 1.0e-9_wp, nothing = 1.0e-12_wp, noises = 10.0_wp
       type(constraints_type) :: trial
       type(response_type) :: response
-      real(wp) :: wanted, missing, scale, arm, negligible
+      real(wp) :: wanted, missing, scale, arm, negligible, none
       logical :: pressed
       logical :: yielding(size(self%state%status)), singular
 
       wanted = load%rate
+      none = max(nothing, noises*self%system%noise)
       load = load_type(control_displacement, merge(self%state%fields%shift, self%state%fields%rotation, along == along_shift), &
                        0.0_wp)
       arm = merge(1.0_wp, self%model%length(), along == along_shift)
-      negligible = nothing*self%certificate%force_scale()*arm
-      pressed = self%state%fields%normal_force > nothing*self%certificate%force_scale()
+      negligible = none*self%certificate%force_scale()*arm
+      pressed = self%state%fields%normal_force > none*self%certificate%force_scale()
       if (.not. any(slips(self%state%status))) then
          if (abs(wanted) > max(balanced*self%state%fields%normal_force*arm, negligible)) &
             call self%end_here(merge(MFV_GROSS_SLIDING, MFV_SEPARATED, pressed), &
@@ -274,7 +279,7 @@ contains
       if (.not. singular) then
          missing = wanted - self%model%resultant(along, response%rate%pressure, response%rate%shear)
          scale = max(scale, self%model%force(abs(response%rate%shear*self%model%tangential_arm(:, along))))
-         if (abs(missing) <= max(balanced*scale, negligible)) return
+         if (abs(missing) <= max(balanced*scale, noises*self%system%noise*scale, negligible)) return
       end if
       yielding = slips(self%state%status)
       if (.not. singular) yielding = yielding .and. &
@@ -326,50 +331,69 @@ contains
    pure logical function dropping(self)
       class(contact_path_type), intent(in) :: self
 
-      dropping = any(self%state%excess > 0.0_wp)
+      dropping = self%has_memory()
+      if (dropping) dropping = any(self%state%excess > 0.0_wp)
    end function dropping
 
-   !> What the friction law knows of the nodes where the fields are `fields`, shape (nodes).
-   pure function points(self, fields) result(all_points)
+   !> What the friction law knows of node `node` where the fields are `fields`.
+   pure function point(self, node, fields)
       class(contact_path_type), intent(in) :: self
+      integer, intent(in) :: node
       type(contact_fields_type), intent(in) :: fields
-      type(friction_point_type) :: all_points(size(self%state%status))
+      type(friction_point_type) :: point
 
-      all_points = self%state%friction_points(fields, self%model%static_friction, self%model%kinetic_friction)
-   end function points
+      point = self%state%friction_point(fields, node, self%model%static_friction(node), self%model%kinetic_friction(node))
+   end function point
+
+   !> Whether friction may have corners of its own now.
+   pure logical function has_corners(self)
+      class(contact_path_type), intent(in) :: self
+
+      has_corners = self%model%scene%friction%acts()
+      if (has_corners) has_corners = .not. self%model%scene%friction%law%sticks .or. self%has_memory()
+   end function has_corners
+
+   !> Whether the law remembers how far a node has slipped, or from where its traction falls.
+   pure logical function has_memory(self)
+      class(contact_path_type), intent(in) :: self
+
+      has_memory = .false.
+      if (allocated(self%model%scene%friction%law)) &
+         has_memory = self%model%scene%friction%law%drops .or. &
+                      self%model%scene%friction%law%weakening_distance < huge(1.0_wp)
+   end function has_memory
 
    !> Where friction has corners of its own, in an increment that is expected to lead to the fields `after`.
    subroutine find_corners(self, after, corners)
       class(contact_path_type), intent(in) :: self
       type(contact_fields_type), intent(in) :: after
       type(corners_type), intent(out) :: corners
-      type(friction_point_type), dimension(size(self%state%status)) :: points, there
+      type(friction_point_type) :: here
       real(wp) :: excess, by_pressure, by_slip
       integer :: i, n
 
-      n = size(points)
+      if (.not. self%has_corners()) return
+      n = size(self%state%status)
       allocate (corners%room(n), source=huge(1.0_wp))
       allocate (corners%turning(n), corners%surplus_rate(n), corners%by_pressure(n), corners%by_slip(n), &
                 corners%head_by_pressure(n), source=0.0_wp)
       allocate (corners%surplus(n), corners%headroom(n), source=-1.0_wp)
-      if (.not. self%model%scene%friction%acts()) return
       associate (law => self%model%scene%friction%law)
-         if (law%sticks .and. .not. law%weakening_distance < huge(1.0_wp) .and. .not. self%dropping()) return
-         points = self%points(self%state%fields)
-         there = self%points(after)
          do i = 1, n
-            if (creeps(self%state%status(i))) corners%turning(i) = max(law%turning(points(i)), law%turning(there(i)))
+            here = self%point(i, self%state%fields)
+            if (creeps(self%state%status(i))) &
+               corners%turning(i) = max(law%turning(here), law%turning(self%point(i, after)))
             if (.not. slips(self%state%status(i))) cycle
-            corners%room(i) = law%room(points(i))
-            if (.not. points(i)%excess > 0.0_wp) cycle
-            corners%surplus_rate(i) = -points(i)%excess
+            corners%room(i) = law%room(here)
+            if (.not. here%excess > 0.0_wp) cycle
+            corners%surplus_rate(i) = -here%excess
             if (.not. self%state%capped(i)) then
-               corners%head_by_pressure(i) = points(i)%static - points(i)%kinetic
-               corners%headroom(i) = max(corners%head_by_pressure(i)*points(i)%pressure - points(i)%excess, 0.0_wp)
+               corners%head_by_pressure(i) = here%static - here%kinetic
+               corners%headroom(i) = max(corners%head_by_pressure(i)*here%pressure - here%excess, 0.0_wp)
             end if
             if (.not. law%weakening_distance < huge(1.0_wp)) cycle
-            call law%lawful_excess(points(i), excess, by_pressure, by_slip)
-            corners%surplus(i) = max(points(i)%excess - excess, 0.0_wp)
+            call law%lawful_excess(here, excess, by_pressure, by_slip)
+            corners%surplus(i) = max(here%excess - excess, 0.0_wp)
             if (self%state%capped(i)) corners%surplus_rate(i) = 0.0_wp
             corners%by_pressure(i) = -by_pressure
             corners%by_slip(i) = -by_slip
@@ -383,23 +407,25 @@ contains
       class(contact_path_type), intent(inout) :: self
       logical, intent(out) :: snapped
       real(wp), parameter :: at_limit = 1.0e-9_wp
-      type(friction_point_type) :: points(size(self%state%status))
-      logical :: mask(size(points))
-      integer :: status(size(points)), i
+      type(friction_point_type) :: here
+      logical :: mask(size(self%state%status))
+      integer :: status(size(self%state%status)), i
 
       snapped = .false.
       if (.not. self%model%scene%friction%acts()) return
       associate (law => self%model%scene%friction%law)
          if (.not. law%weakening_distance < huge(1.0_wp)) return
-         points = self%points(self%state%fields)
-         mask = in_contact(self%state%status) .and. points%pressure > 0.0_wp .and. .not. points%excess > 0.0_wp .and. &
-                (abs(points%shear) >= points%static*points%pressure*(1.0_wp - at_limit) .or. &
-                 (slips(self%state%status) .and. points%slipped < law%weakening_distance))
+         do i = 1, size(mask)
+            here = self%point(i, self%state%fields)
+            mask(i) = in_contact(self%state%status(i)) .and. here%pressure > 0.0_wp .and. .not. here%excess > 0.0_wp .and. &
+                      (abs(here%shear) >= here%static*here%pressure*(1.0_wp - at_limit) .or. &
+                       (slips(self%state%status(i)) .and. here%slipped < law%weakening_distance))
+            status(i) = merge(node_slip_left, node_slip_right, here%shear > 0.0_wp)
+         end do
          snapped = any(mask)
-         status = merge(node_slip_left, node_slip_right, points%shear > 0.0_wp)
          call self%set_status(mask, status)
          do i = 1, size(mask)
-            if (mask(i)) self%state%excess(i) = law%first_excess(points(i))
+            if (mask(i)) self%state%excess(i) = law%first_excess(self%point(i, self%state%fields))
          end do
       end associate
    end subroutine snap
@@ -413,27 +439,30 @@ contains
       logical, intent(in) :: drop
       type(contact_fields_type), intent(in), optional :: after
       logical, intent(in), optional :: straight
-      type(friction_point_type), dimension(size(self%state%status)) :: here, there
+      type(friction_point_type) :: here, there
       integer :: i, n
 
       n = size(self%state%status)
       constraints%status = self%state%status
       constraints%stuck_slip = self%state%stuck_slip
-      constraints%row = [(friction_row_type(), i=1, n)]
-      constraints%offset_rate = [(0.0_wp, i=1, n)]
+      if (allocated(constraints%row)) then
+         if (size(constraints%row) /= n) deallocate (constraints%row, constraints%offset_rate)
+      end if
+      if (.not. allocated(constraints%row)) allocate (constraints%row(n), constraints%offset_rate(n))
+      constraints%offset_rate = 0.0_wp
       if (.not. self%model%tangential) return
-      here = self%points(self%state%fields)
-      there = here
-      if (present(after)) there = self%points(after)
       do i = 1, n
          if (.not. slips(self%state%status(i)) .and. .not. creeps(self%state%status(i))) cycle
+         here = self%point(i, self%state%fields)
+         there = here
+         if (present(after)) there = self%point(i, after)
          if (present(straight)) then
-            constraints%row(i) = self%model%scene%friction%law%secant(self%state%status(i), here(i), there(i))
+            constraints%row(i) = self%model%scene%friction%law%secant(self%state%status(i), here, there)
          else
-            constraints%row(i) = self%model%scene%friction%law%row(self%state%status(i), here(i), there(i))
+            constraints%row(i) = self%model%scene%friction%law%row(self%state%status(i), here, there)
          end if
          if (self%state%capped(i)) then
-            constraints%row(i) = friction_row_type(slope=-slip_sign(self%state%status(i))*here(i)%static)
+            constraints%row(i) = friction_row_type(slope=-slip_sign(self%state%status(i))*here%static)
          else if (drop) then
             constraints%offset_rate(i) = slip_sign(self%state%status(i))*self%state%excess(i)
          end if
@@ -445,12 +474,10 @@ contains
       class(contact_path_type), intent(inout) :: self
       logical, intent(in) :: mask(:)
       integer, intent(in) :: status(:)
-      type(friction_point_type) :: points(size(mask))
       logical :: begins
       integer :: i
 
-      if (self%model%scene%friction%acts()) then
-         points = self%points(self%state%fields)
+      if (self%has_memory()) then
          do i = 1, size(mask)
             if (.not. mask(i)) cycle
             begins = slips(status(i)) .and. status(i) /= self%state%status(i)
@@ -460,7 +487,7 @@ contains
                self%state%capped(i) = .false.
             end if
             if (begins .and. self%model%scene%friction%law%drops) &
-               self%state%excess(i) = self%model%scene%friction%law%first_excess(points(i))
+               self%state%excess(i) = self%model%scene%friction%law%first_excess(self%point(i, self%state%fields))
          end do
       end if
       call self%state%set_status(mask, status)
@@ -475,30 +502,37 @@ contains
 
       status = node_stick
       if (.not. allocated(self%model%scene%friction%law)) return
+      if (self%model%scene%friction%law%sticks) return
       do i = 1, size(status)
          status(i) = self%model%scene%friction%law%holding_status(merge(-1, 1, slip_rate(i) < 0.0_wp))
       end do
    end function holding
 
    !> Go to the fields `after`: memories, dissipation, directions and the certificate go along. `slip_rate`: rates of slip on
-   !> the way, any unit, shape (nodes); `dropped`: part of the excess tractions that has been let go.
-   subroutine take_increment(self, after, slip_rate, dropped)
+   !> the way, any unit, shape (nodes); `dropped`: part of the excess tractions that has been let go. `dissipated`: of a leap,
+   !> whose way is not known, what friction dissipates (energy per unit thickness); else everything is linear on the way.
+   subroutine take_increment(self, after, slip_rate, dropped, dissipated)
       class(contact_path_type), intent(inout) :: self
       type(contact_fields_type), intent(in) :: after
       real(wp), intent(in) :: slip_rate(:), dropped
+      real(wp), intent(in), optional :: dissipated
       real(wp), parameter :: moving = 1.0e-9_wp
       type(contact_state_type) :: before
 
       before = self%state
       call remember_slip(self, after, dropped)
       self%state%fields = after
-      self%state%dissipation = self%state%dissipation &
-                               - 0.5_wp*self%model%force((before%fields%shear + after%shear) &
-                                                         *(after%slip() - before%fields%slip()))
+      if (present(dissipated)) then
+         self%state%dissipation = self%state%dissipation + dissipated
+      else
+         self%state%dissipation = self%state%dissipation &
+                                  - 0.5_wp*self%model%force((before%fields%shear + after%shear) &
+                                                            *(after%slip() - before%fields%slip()))
+      end if
       self%state%slip_direction = 0
       where (abs(slip_rate) > moving*maxval(abs(slip_rate))) &
          self%state%slip_direction = nint(sign(1.0_wp, slip_rate))
-      call self%certificate%check_increment(self%model, before, self%state)
+      call self%certificate%check_increment(self%model, before, self%state, present(dissipated))
    end subroutine take_increment
 
    !> What the friction law remembers after an increment to the fields `after`.
@@ -506,18 +540,16 @@ contains
       class(contact_path_type), intent(inout) :: self
       type(contact_fields_type), intent(in) :: after
       real(wp), intent(in) :: dropped
-      type(friction_point_type), dimension(size(self%state%status)) :: here, there
       integer :: i
 
-      if (.not. self%model%scene%friction%acts()) return
-      here = self%points(self%state%fields)
-      there = self%points(after)
-      do i = 1, size(here)
+      if (.not. self%has_memory()) return
+      do i = 1, size(self%state%status)
          if (slips(self%state%status(i))) &
-            self%state%slipped(i) = self%model%scene%friction%law%slipped_after(here(i), there(i))
+            self%state%slipped(i) = self%model%scene%friction%law%slipped_after(self%point(i, self%state%fields), &
+                                                                                self%point(i, after))
       end do
       where (self%state%capped)
-         self%state%excess = (there%static - there%kinetic)*max(there%pressure, 0.0_wp)
+         self%state%excess = (self%model%static_friction - self%model%kinetic_friction)*max(after%pressure, 0.0_wp)
       elsewhere
          self%state%excess = self%state%excess*(1.0_wp - dropped)
       end where

@@ -25,7 +25,7 @@ module mfv_contact_state
       real(wp) :: dissipation = 0.0_wp
    contains
       procedure :: set_status
-      procedure :: friction_points
+      procedure :: friction_point
       procedure :: widen
       procedure :: contact_nodes
       procedure :: stick_nodes
@@ -52,26 +52,28 @@ contains
       logical, intent(in) :: mask(:)
       integer, intent(in) :: status(:)
 
-      where (mask .and. status == node_stick .and. self%status /= node_stick) self%stuck_slip = self%fields%slip()
-      where (mask) self%status = status
+      integer :: i
+
+      do i = 1, size(mask)
+         if (.not. mask(i)) cycle
+         if (status(i) == node_stick .and. self%status(i) /= node_stick) &
+            self%stuck_slip(i) = self%fields%tangential(i) - self%fields%shift
+         self%status(i) = status(i)
+      end do
    end subroutine set_status
 
-   !> What a friction law knows of the nodes where the fields are `fields` and the coefficients of friction `static` and
-   !> `kinetic`, shape (nodes).
-   pure function friction_points(self, fields, static, kinetic) result(points)
+   !> What a friction law knows of node `node` where the fields are `fields` and the coefficients of friction `static` and
+   !> `kinetic`.
+   pure function friction_point(self, fields, node, static, kinetic) result(point)
       class(contact_state_type), intent(in) :: self
       type(contact_fields_type), intent(in) :: fields
-      real(wp), intent(in) :: static(:), kinetic(:)
-      type(friction_point_type) :: points(size(static))
+      integer, intent(in) :: node
+      real(wp), intent(in) :: static, kinetic
+      type(friction_point_type) :: point
 
-      points%static = static
-      points%kinetic = kinetic
-      points%pressure = fields%pressure
-      points%shear = fields%shear
-      points%slip = fields%slip()
-      points%slipped = self%slipped
-      points%excess = self%excess
-   end function friction_points
+      point = friction_point_type(static, kinetic, fields%pressure(node), fields%shear(node), &
+                                  fields%tangential(node) - fields%shift, self%slipped(node), self%excess(node))
+   end function friction_point
 
    !> Add `extra` open nodes at either end; the caller fills in their displacements.
    pure subroutine widen(self, extra)

@@ -1,6 +1,7 @@
 !> What a linear solver offers to the Method of First Violation: with the status of every node and the two controlled
 !> loads given, the state and its rates per unit of load.
 module mfv_contact_system
+   use, intrinsic :: iso_fortran_env, only: int64
    use mfv_contact_fields, only: contact_fields_type
    use mfv_contact_model, only: contact_model_type
    use mfv_friction_law, only: friction_row_type
@@ -41,6 +42,10 @@ module mfv_contact_system
    type, abstract :: contact_system_type
       !> Linear solves so far.
       integer :: solves = 0
+      !> Of solvers that iterate: iterations, and products with the compliance, so far.
+      integer(int64) :: iterations = 0, products = 0
+      !> Tractions, motions and their rates are known to this part of the largest, what is below is noise; 0: to round-off.
+      real(wp) :: noise = 0.0_wp
    contains
       procedure(solve_interface), deferred :: solve
    end type contact_system_type

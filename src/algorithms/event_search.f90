@@ -11,7 +11,7 @@ module mfv_event_search
    private
    public :: violations_type, corners_type, find_violations, status_after
 
-   !> Where friction has corners of its own, shape (nodes) each.
+   !> Where friction has corners of its own, shape (nodes) each; not allocated: nowhere.
    type :: corners_type
       !> How far slipping nodes can slip until their friction has a corner, length; huge: no corner.
       real(wp), allocatable :: room(:)
@@ -48,9 +48,8 @@ contains
       type(contact_fields_type), intent(in) :: state, rate
       real(wp), intent(in) :: round_off
       type(violations_type) :: violations
-      real(wp) :: traction_scale, motion_scale, mu, full
-      logical :: soft_limit, sticks
-      real(wp), dimension(size(status)) :: gap, gap_rate, slip_rate
+      real(wp) :: traction_scale, motion_scale, mu, full, gap_rate, slip_rate, noise
+      logical :: soft_limit, sticks, has_corners
       real(wp), parameter :: secant_noise = 100.0_wp
       integer :: i, n
 
@@ -67,53 +66,64 @@ contains
          soft_limit = model%scene%friction%law%soft_limit .and. model%scene%method%integration == integration_explicit
          sticks = model%scene%friction%law%sticks
       end if
-      gap = model%gap(state)
-      gap_rate = rate%normal - rate%approach
-      slip_rate = rate%slip()
-      traction_scale = max(maxval(abs(rate%pressure)), maxval(abs(rate%shear)))
-      motion_scale = max(maxval(abs(rate%normal)), maxval(abs(rate%tangential)), maxval(abs(gap_rate)), &
-                         abs(rate%shift))
+      has_corners = allocated(corners%room)
+      call find_scales(rate, traction_scale, motion_scale)
+      noise = round_off*traction_scale
       do i = 1, n
+         slip_rate = rate%tangential(i) - rate%shift
          select case (status(i))
          case (node_open)
-            if (model%can_touch(i)) call consider(event_close, gap(i), gap_rate(i), motion_scale)
+            gap_rate = rate%normal(i) - rate%approach
+            if (gap_rate < 0.0_wp .and. model%can_touch(i)) &
+               call consider(event_close, model%initial_gap(i) - state%approach + state%normal(i), gap_rate, motion_scale)
             cycle
          case (node_stick, node_creep_right, node_creep_left)
             mu = full*model%static_friction(i)
-            if (.not. (soft_limit .and. .not. state%pressure(i) > 0.0_wp .and. &
-                       rate%pressure(i) > round_off*traction_scale)) then
-               call consider(event_slip_right, mu*state%pressure(i) + state%shear(i), &
-                             mu*rate%pressure(i) + rate%shear(i), max(mu, 1.0_wp)*traction_scale)
-               call consider(event_slip_left, mu*state%pressure(i) - state%shear(i), &
-                             mu*rate%pressure(i) - rate%shear(i), max(mu, 1.0_wp)*traction_scale)
+            if (mu*rate%pressure(i) - abs(rate%shear(i)) < 0.0_wp) then
+               if (.not. (soft_limit .and. .not. state%pressure(i) > 0.0_wp .and. rate%pressure(i) > noise)) then
+                  call consider(event_slip_right, mu*state%pressure(i) + state%shear(i), &
+                                mu*rate%pressure(i) + rate%shear(i), max(mu, 1.0_wp)*traction_scale)
+                  call consider(event_slip_left, mu*state%pressure(i) - state%shear(i), &
+                                mu*rate%pressure(i) - rate%shear(i), max(mu, 1.0_wp)*traction_scale)
+               end if
             end if
             ! What a wrong direction does to the traction counts; and the secants' own noise is larger than round-off.
-            if (corners%turning(i) > 0.0_wp) &
-               call consider(event_reverse, 0.0_wp, motion_sign(status(i))*corners%turning(i)*slip_rate(i), &
-                             secant_noise*traction_scale)
+            if (has_corners) then
+               if (corners%turning(i) > 0.0_wp) &
+                  call consider(event_reverse, 0.0_wp, motion_sign(status(i))*corners%turning(i)*slip_rate, &
+                                secant_noise*traction_scale)
+            end if
          case (node_slip_right, node_slip_left)
             if (sticks) then
-               call consider(event_stick, 0.0_wp, slip_sign(status(i))*slip_rate(i), motion_scale)
+               if (merge(slip_rate, -slip_rate, status(i) == node_slip_right) < 0.0_wp) &
+                  call consider(event_stick, 0.0_wp, -abs(slip_rate), motion_scale)
             else
                call consider(event_stick, 0.0_wp, &
-                             model%scene%friction%law%yields(slip_sign(status(i))*slip_rate(i), &
+                             model%scene%friction%law%yields(slip_sign(status(i))*slip_rate, &
                                                              full*model%static_friction(i)*rate%pressure(i)), &
                              secant_noise*traction_scale)
             end if
-            if (corners%room(i) < huge(1.0_wp)) &
-               call consider(event_weakened, corners%room(i), -slip_sign(status(i))*slip_rate(i), motion_scale)
-            if (corners%headroom(i) >= 0.0_wp) &
-               call consider(event_capped, corners%headroom(i), corners%head_by_pressure(i)*rate%pressure(i) &
-                             - corners%surplus_rate(i), traction_scale)
-            if (corners%surplus(i) >= 0.0_wp) &
-               call consider(event_caught, corners%surplus(i), corners%surplus_rate(i) &
-                             + corners%by_pressure(i)*rate%pressure(i) &
-                             + corners%by_slip(i)*slip_sign(status(i))*slip_rate(i), traction_scale)
+            if (has_corners) call consider_corners(i)
          end select
-         call consider(event_open, state%pressure(i), rate%pressure(i), traction_scale)
+         if (rate%pressure(i) < 0.0_wp) call consider(event_open, state%pressure(i), rate%pressure(i), traction_scale)
       end do
 
    contains
+
+      !> Corners of the friction of slipping node `i`.
+      subroutine consider_corners(i)
+         integer, intent(in) :: i
+
+         if (corners%room(i) < huge(1.0_wp)) &
+            call consider(event_weakened, corners%room(i), -slip_sign(status(i))*slip_rate, motion_scale)
+         if (corners%headroom(i) >= 0.0_wp) &
+            call consider(event_capped, corners%headroom(i), corners%head_by_pressure(i)*rate%pressure(i) &
+                          - corners%surplus_rate(i), traction_scale)
+         if (corners%surplus(i) >= 0.0_wp) &
+            call consider(event_caught, corners%surplus(i), corners%surplus_rate(i) &
+                          + corners%by_pressure(i)*rate%pressure(i) &
+                          + corners%by_slip(i)*slip_sign(status(i))*slip_rate, traction_scale)
+      end subroutine consider_corners
 
       !> Note that `slack`, which must stay >= 0 and changes at `slack_rate`, ends earlier than what was found so far.
       subroutine consider(kind, slack, slack_rate, scale)
@@ -130,6 +140,20 @@ contains
          violations%speed(i) = -slack_rate/scale
       end subroutine consider
    end function find_violations
+
+   !> The largest rates of tractions and of motions.
+   pure subroutine find_scales(rate, traction_scale, motion_scale)
+      type(contact_fields_type), intent(in) :: rate
+      real(wp), intent(out) :: traction_scale, motion_scale
+      integer :: i
+
+      traction_scale = 0.0_wp
+      motion_scale = abs(rate%shift)
+      do i = 1, size(rate%pressure)
+         traction_scale = max(traction_scale, abs(rate%pressure(i)), abs(rate%shear(i)))
+         motion_scale = max(motion_scale, abs(rate%normal(i)), abs(rate%tangential(i)), abs(rate%normal(i) - rate%approach))
+      end do
+   end subroutine find_scales
 
    !> Status of a node with this `status` after an event. `friction`: whether friction acts; `direction`: sign of the slip rate
    !> that a closing node had while open, 0 for none: it goes on slipping that way or, with none, holds (dissertation 2.3.3).

@@ -44,6 +44,8 @@ module mfv_first_violation
    real(wp), parameter :: failed_certificate = 1.0e-6_wp
    !> A jump of the tractions beyond this, in parts of the largest, is no continuation.
    real(wp), parameter :: largest_jump = 1.0e-6_wp
+   !> Neither is less than so many times the linear solver's noise.
+   real(wp), parameter :: noises = 1.0e3_wp
 
 contains
 
@@ -96,23 +98,24 @@ contains
             call path%no_continuation('the equations of friction have no solution nearby', error)
             return
          end if
-         if (increment%step > no_step) then
+         if (increment%step > no_step_of(path)) then
             call path%keep_settled(segment, moment)
-            last = .not. drop .and. increment%step*(1.0_wp + tie) + no_step >= 1.0_wp - done
+            last = .not. drop .and. increment%step*(1.0_wp + tie_of(path)) + no_step_of(path) >= 1.0_wp - done
             if (last) increment%step = 1.0_wp - done
-            if (drop .and. increment%step*(1.0_wp + tie) + no_step >= 1.0_wp) increment%step = 1.0_wp
+            if (drop .and. increment%step*(1.0_wp + tie_of(path)) + no_step_of(path) >= 1.0_wp) increment%step = 1.0_wp
             call advance(path, increment, drop, error)
             if (allocated(error)) return
             if (.not. drop) done = done + increment%step
             if (present(observer)) then
-               call observer%notify(path%state, segment%number, segment%segments, done, stop_wanted)
+               call observer%notify(path%state, segment%number, segment%segments, &
+                                    segment%from + (segment%to - segment%from)*done, stop_wanted)
                if (stop_wanted) call path%end_here(MFV_INTERRUPTED, 'stopped on request', error)
                if (allocated(error)) return
             end if
             if (last) return
             moment = moment_type()
             standing = 0
-            if (.not. drop) creeping = merge(creeping + 1, 0, increment%step < tie)
+            if (.not. drop) creeping = merge(creeping + 1, 0, increment%step < tie_of(path))
             since = since + 1
             if (done > milestone + worth_telling) then
                milestone = done
@@ -143,7 +146,8 @@ contains
          scale = max(path%certificate%traction_scale(), &
                      maxval(abs(response%rate%pressure)), maxval(abs(response%rate%shear)))
          if (max(maxval(abs(response%state%pressure - before%pressure)), &
-                 maxval(abs(response%state%shear - before%shear))) > largest_jump*scale) then
+                 maxval(abs(response%state%shear - before%shear))) &
+             > max(largest_jump, allowed(path), noises*path%system%noise)*scale) then
             call path%no_continuation('the tractions would have to jump', error)
             return
          end if
@@ -151,10 +155,18 @@ contains
       end associate
       call path%take_increment(increment%response%state%plus(increment%step, increment%response%rate), &
                                increment%response%rate%slip(), merge(increment%step, 0.0_wp, drop))
-      if (path%certificate%largest() > failed_certificate) &
+      if (path%certificate%largest() > max(failed_certificate, allowed(path), noises*path%system%noise)) &
          call path%no_continuation('the equations are no longer satisfied (certificate '// &
                                    to_text(path%certificate%largest())//')', error)
    end subroutine advance
+
+   !> By how much inequalities may be broken where events close to each other are taken together: rates near an edge are large.
+   pure real(wp) function allowed(path)
+      class(contact_path_type), intent(in) :: path
+      real(wp), parameter :: magnification = 100.0_wp
+
+      allowed = magnification*path%model%scene%method%event_tolerance
+   end function allowed
 
    !> Change the statuses of the nodes whose inequalities break first, together.
    !> Errors MFV_NO_CONTINUATION: every way out has been tried at this load; MFV_MESH_EXCEEDED.
@@ -201,7 +213,7 @@ contains
       call remember(moment, path%state%status)
 
       associate (violations => increment%violations)
-         changing = violations%step <= minval(violations%step)*(1.0_wp + tie) + no_step
+         changing = violations%step <= increment%reach
          if (moment%one_at_a_time) then
             fastest = maxloc(violations%speed, dim=1, mask=changing)
             changing = .false.
@@ -247,8 +259,9 @@ contains
 
       snapped = .false.
       if (moment%snapped .or. .not. any(increment%violations%kind == event_stick)) return
+      if (.not. path%has_corners()) return
       call path%find_corners(path%state%fields, corners)
-      if (.not. any(increment%violations%kind == event_stick .and. increment%violations%step <= no_step .and. &
+      if (.not. any(increment%violations%kind == event_stick .and. increment%violations%step <= no_step_of(path) .and. &
                     corners%room < huge(1.0_wp))) return
       call path%snap(snapped)
       if (snapped) moment = moment_type(snapped=.true., event=moment%event, node=moment%node, count=moment%count)

@@ -16,10 +16,10 @@ module mfv_increment
    use mfv_event_search, only: corners_type, find_violations, violations_type
    use mfv_kinds, only: wp
    use mfv_node_status
-   use mfv_scene, only: integration_explicit, stepping_nominal
+   use mfv_scene, only: integration_explicit, stepping_event, stepping_nominal
    implicit none
    private
-   public :: increment_type, find_increment, no_step, tie
+   public :: increment_type, find_increment, no_step_of, tie_of
 
    !> Steps below this part of the segment are none; steps this much longer than the first, in parts of it, are equal.
    real(wp), parameter :: no_step = 1.0e-13_wp, tie = 1.0e-10_wp
@@ -29,12 +29,28 @@ module mfv_increment
       type(violations_type) :: violations
       !> Length in parts of the segment (of the drop); and whether a violation ends it.
       real(wp) :: step = 0.0_wp
+      !> Violations up to this step happen together at its end.
+      real(wp) :: reach = 0.0_wp
       logical :: ends_in_event = .false.
       !> The linear system has no solution, or the corrector does not converge; the increment is then of no use.
       logical :: singular = .false., diverges = .false.
    end type increment_type
 
 contains
+
+   !> Steps longer than the first by less than this part of it are equal to it.
+   pure real(wp) function tie_of(path)
+      class(contact_path_type), intent(in) :: path
+
+      tie_of = max(tie, path%system%noise)
+   end function tie_of
+
+   !> Steps below this part of the segment are none.
+   pure real(wp) function no_step_of(path)
+      class(contact_path_type), intent(in) :: path
+
+      no_step_of = max(no_step, path%system%noise)
+   end function no_step_of
 
    !> `constraints`: as contact_path_type%settle_loads leaves them. `left`: what is left of the segment (of the drop: 1).
    !> `drop`: whether excess tractions are let go at a fixed load. `round_off`: rates below this part of the largest are none.
@@ -52,6 +68,7 @@ contains
                                 increment%singular)
          if (increment%singular) return
          call search(path, round_off, left, increment)
+         if (grouping(path)) call take_together(path, left, increment)
          if (bends(path)) call follow_friction(path, constraints, left, drop, round_off, increment)
       end if
    end subroutine find_increment
@@ -65,7 +82,8 @@ contains
       if (.not. path%model%tangential) return
       if (path%model%scene%friction%law%is_linear) return
       call path%find_corners(path%state%fields, corners)
-      bends = any(creeps(path%state%status)) .or. any(corners%room < huge(1.0_wp))
+      bends = any(creeps(path%state%status))
+      if (allocated(corners%room)) bends = bends .or. any(corners%room < huge(1.0_wp))
    end function bends
 
    !> Violations by the rates, and the step to the first of them but no further than `longest`.
@@ -76,13 +94,48 @@ contains
       type(corners_type) :: corners
       real(wp) :: first
 
-      call path%find_corners(path%state%fields%plus(longest, increment%response%rate), corners)
-      increment%violations = find_violations(path%model, path%state%status, corners, path%state%fields, &
-                                             increment%response%rate, round_off)
+      if (path%has_corners()) call path%find_corners(path%state%fields%plus(longest, increment%response%rate), corners)
+      if (grouping(path)) then
+         ! Inequalities that were broken hold again in the state that the new statuses make.
+         increment%violations = find_violations(path%model, path%state%status, corners, increment%response%state, &
+                                                increment%response%rate, max(round_off, path%system%noise))
+      else
+         increment%violations = find_violations(path%model, path%state%status, corners, path%state%fields, &
+                                                increment%response%rate, max(round_off, path%system%noise))
+      end if
       first = minval(increment%violations%step)
       increment%step = min(first, longest)
-      increment%ends_in_event = first*(1.0_wp - tie) - no_step <= longest
+      increment%reach = first*(1.0_wp + tie_of(path)) + no_step_of(path)
+      increment%ends_in_event = first*(1.0_wp - tie_of(path)) - no_step_of(path) <= longest
    end subroutine search
+
+   !> Whether events close to each other are taken together: asked for, and friction is Coulomb's or none.
+   pure logical function grouping(path)
+      class(contact_path_type), intent(in) :: path
+
+      grouping = path%model%scene%method%event_tolerance > 0.0_wp .and. path%model%scene%method%stepping == stepping_event
+      if (.not. (grouping .and. path%model%scene%friction%acts())) return
+      grouping = path%model%scene%friction%law%is_linear .and. .not. path%model%scene%friction%law%drops
+   end function grouping
+
+   !> Violations that follow the first one within `event_tolerance`, in parts of what is then done of the segment, happen together
+   !> with the last of them. Until then inequalities are broken, by what the rates do over that part of the load; measured, this
+   !> errs less than to change the nodes too early. (What is violated already at the start has no time.)
+   !> `left`: what is left of the segment.
+   subroutine take_together(path, left, increment)
+      class(contact_path_type), intent(in) :: path
+      real(wp), intent(in) :: left
+      type(increment_type), intent(inout) :: increment
+      real(wp) :: furthest, window
+
+      if (increment%step <= no_step_of(path) .or. .not. increment%ends_in_event) return
+      window = path%model%scene%method%event_tolerance*(1.0_wp - left + increment%step)
+      furthest = min(increment%step + window, left)
+      furthest = maxval(increment%violations%step, mask=increment%violations%step <= furthest)
+      if (.not. furthest > increment%step) return
+      increment%step = furthest
+      increment%reach = max(increment%reach, furthest)
+   end subroutine take_together
 
    !> Lead friction that is not linear over an increment with a controlled error, or explicitly.
    subroutine follow_friction(path, constraints, left, drop, round_off, increment)
@@ -107,7 +160,7 @@ contains
       end if
       ! Of a node that has just touched, tangents know nothing: its part of the limit comes out of the increment itself.
       touched = any(creeps(path%state%status) .and. .not. path%state%fields%pressure > 0.0_wp)
-      if (increment%step <= no_step .and. .not. touched) return
+      if (increment%step <= no_step_of(path) .and. .not. touched) return
       if (.not. path%trial > 0.0_wp) path%trial = first_trial
       tolerance = path%model%scene%method%friction_tolerance
       predicted = increment
@@ -128,7 +181,7 @@ contains
          length = length*max(change, least_shrink)
       end do
       increment%diverges = .not. accepted
-      if (increment%step <= no_step) return
+      if (increment%step <= no_step_of(path)) return
       ! An increment that an event cut short says nothing against longer ones.
       length = max(length, increment%step)*max(change, least_shrink)
       path%trial = max(length, merge(path%trial, 10*shortest, attempt == 1))
@@ -144,13 +197,15 @@ contains
       type(increment_type), intent(inout) :: increment
       logical, intent(out) :: agrees
       integer, parameter :: most_passes = 12
-      real(wp), parameter :: same_step = 1.0e-9_wp
+      real(wp), parameter :: same_step = 1.0e-9_wp, noises = 10.0_wp
+      real(wp) :: same
       type(constraints_type) :: secants
       type(contact_fields_type) :: after
       real(wp) :: step
       integer :: pass
 
       step = length
+      same = max(same_step, noises*path%system%noise)
       secants = constraints
       after = path%state%fields%plus(step, increment%response%rate)
       call guess_touching(path, after)
@@ -161,7 +216,7 @@ contains
          call path%system%solve(path%model, secants, path%state%fields, increment%response, increment%singular)
          if (increment%singular) return
          call search(path, round_off, step, increment)
-         if (abs(increment%step - step) <= same_step*step + no_step .or. increment%step <= no_step) return
+         if (abs(increment%step - step) <= same*step + no_step_of(path) .or. increment%step <= no_step_of(path)) return
          step = increment%step
          after = path%state%fields%plus(step, increment%response%rate)
       end do
@@ -192,7 +247,7 @@ contains
          call path%system%solve(path%model, lines, path%state%fields, response, singular)
          if (singular) return
          after = response%state%plus(step, response%rate)
-         converges = difference(path, before, after, 0.0_wp) <= close_enough
+         converges = difference(path, before, after, 0.0_wp) <= max(close_enough, path%system%noise)
          if (converges) return
       end do
    end subroutine find_end
@@ -234,13 +289,14 @@ contains
       if (increment%singular) return
       call search(path, round_off, trial, increment)
       ! A slip rate is constant between events: bisection finds that a wrong direction is wrong from the start.
-      do while (increment%step <= no_step .and. any(increment%violations%kind == event_stick) .and. trial > shortest*length)
+      do while (increment%step <= no_step_of(path) .and. any(increment%violations%kind == event_stick) .and. &
+                trial > shortest*length)
          trial = 0.5_wp*trial
          call solve_trial(path, constraints, trial, increment)
          if (increment%singular) return
          call search(path, round_off, trial, increment)
       end do
-      if (increment%step <= no_step .or. .not. increment%ends_in_event) return
+      if (increment%step <= no_step_of(path) .or. .not. increment%ends_in_event) return
       if (increment%step < trial) call solve_trial(path, constraints, increment%step, increment)
    end subroutine nominal_increment
 

@@ -3,6 +3,8 @@ module mfv_linear_solvers
    use mfv_augmented_system, only: augmented_system_type
    use mfv_contact_model, only: contact_model_type
    use mfv_contact_system, only: contact_system_type
+   use mfv_krylov_system, only: krylov_system_type
+   use mfv_reduced_system, only: reduced_system_type
    use mfv_scene
    implicit none
    private
@@ -16,6 +18,10 @@ contains
       class(contact_system_type), allocatable, intent(out) :: system
 
       select case (model%scene%method%linear_solver)
+      case (solver_fft)
+         allocate (krylov_system_type :: system)
+      case (solver_auto, solver_reduced)
+         allocate (reduced_system_type :: system)
       case default
          allocate (augmented_system_type :: system)
       end select

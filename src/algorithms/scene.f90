@@ -59,7 +59,7 @@ module mfv_scene
       integer :: linear_solver = solver_auto
       !> Relative residual to which an iterative linear solver goes.
       real(wp) :: linear_tolerance = 1.0e-11_wp
-      !> Events closer to each other than this part of a straight part of the load history are taken together.
+      !> Events closer to each other than this part of what is done of a straight part of the load history are taken together.
       real(wp) :: event_tolerance = 0.0_wp
       !> By how much a leap and its two halves may differ, in parts of the largest traction.
       real(wp) :: leap_tolerance = 1.0e-3_wp

@@ -7,12 +7,13 @@ module mfv_simulation
    use mfv_contact_path, only: contact_path_type, new_contact_path, segment_type
    use mfv_conventional, only: lead_conventionally
    use mfv_error_bar, only: error_estimate_type
-   use mfv_first_violation, only: lead_by_violations
    use mfv_kinds, only: wp
+   use mfv_leap, only: lead_by_leaps
    use mfv_node_status, only: event_none, event_step_end, event_stopped
    use mfv_observer, only: observer_type
    use mfv_scene
    use mfv_status, only: MFV_COMPLETE
+   use mfv_straight, only: lead_straight
    use mfv_strings, only: to_text
    implicit none
    private
@@ -206,8 +207,10 @@ contains
       if (present(segments)) segment%segments = segments
       if (self%contact%model%scene%method%algorithm == algorithm_conventional) then
          call lead_conventionally(self%contact, segment, observer, error)
+      else if (self%contact%model%scene%method%stepping == stepping_leap) then
+         call lead_by_leaps(self%contact, segment, observer, error)
       else
-         call lead_by_violations(self%contact, segment, observer, error)
+         call lead_straight(self%contact, segment, observer, error)
       end if
       self%normal = load_type(targets(1)%control, targets(1)%value)
       self%tangential = load_type(targets(2)%control, targets(2)%value)

@@ -1,4 +1,4 @@
-!> Real Fourier sums through FFTW.
+!> Fourier sums and transforms through FFTW.
 !>
 !> FFTW's planner is not safe in several threads, its execution is. Plans are therefore made under a mutex and kept: they
 !> are constant once made, belong to a size and to no data, and serve all objects and threads. This cache is the only
@@ -8,15 +8,21 @@ module mfv_fourier
    use mfv_kinds, only: wp
    implicit none
    private
-   public :: fourier_sum, fourier_coefficients, plans_kept
+   public :: fourier_sum, fourier_coefficients, complex_transform, real_transform, back_transform, transform_length, fast_length, &
+             forward, backward, plans_kept
 
    include 'fftw3.f03'
 
    integer, parameter :: to_values = 1, to_coefficients = 2
-   integer, parameter :: most_plans = 64
+   !> Directions of complex_transform: exp(-2 pi i j k/N) and exp(2 pi i j k/N).
+   integer, parameter :: forward = 3, backward = 4
+   integer, parameter :: most_plans = 256
+   !> The boundary, bytes, at which an array is aligned.
+   integer(c_intptr_t), parameter :: boundary = 16
 
    type :: plan_type
       integer :: size = 0, direction = 0
+      logical :: aligned = .false.
       type(c_ptr) :: plan = c_null_ptr
    end type plan_type
 
@@ -27,6 +33,19 @@ module mfv_fourier
    integer(c_long), target :: mutex(16) = 0
 
    interface
+      !> FFTW's procedures for transforms in place: fftw3.f03 has two arrays, which in Fortran must not be the same.
+      function plan_in_place(n, in, out, sign, flags) bind(C, name='fftw_plan_dft_1d') result(plan)
+         import :: c_int, c_ptr
+         integer(c_int), value :: n, sign, flags
+         type(c_ptr), value :: in, out
+         type(c_ptr) :: plan
+      end function plan_in_place
+
+      subroutine execute_in_place(plan, in, out) bind(C, name='fftw_execute_dft')
+         import :: c_ptr
+         type(c_ptr), value :: plan, in, out
+      end subroutine execute_in_place
+
       function pthread_mutex_lock(mutex) bind(C, name='pthread_mutex_lock') result(code)
          import :: c_int, c_ptr
          type(c_ptr), value :: mutex
@@ -55,7 +74,7 @@ contains
       n = size(values)
       ! FFTW adds the mirror image of every coefficient but the first and, for even N, the last.
       coefficients(2:(n + 1)/2) = 0.5_wp*coefficients(2:(n + 1)/2)
-      call get_plan(n, to_values, plan, kept)
+      call get_plan(n, to_values, plan, kept, .false.)
       call fftw_execute_dft_c2r(plan, coefficients, values)
       if (.not. kept) call throw_away(plan)
    end subroutine fourier_sum
@@ -70,12 +89,94 @@ contains
       integer :: n
 
       n = size(values)
-      call get_plan(n, to_coefficients, plan, kept)
+      call get_plan(n, to_coefficients, plan, kept, .false.)
       call fftw_execute_dft_r2c(plan, values, coefficients)
       if (.not. kept) call throw_away(plan)
       coefficients = coefficients/n
       coefficients(2:(n + 1)/2) = 2.0_wp*coefficients(2:(n + 1)/2)
    end subroutine fourier_coefficients
+
+   !> `values(k+1)` becomes the sum over j = 0 to N-1 of values(j+1) exp(-/+ 2 pi i j k/N), N = size(values); `direction`:
+   !> forward (-) or backward (+). There and back multiplies by N.
+   subroutine complex_transform(direction, values)
+      integer, intent(in) :: direction
+      complex(wp), intent(inout), contiguous, target :: values(:)
+      type(c_ptr) :: plan
+      logical :: kept
+
+      call get_plan(size(values), direction, plan, kept, is_aligned(c_loc(values)))
+      call execute_in_place(plan, c_loc(values), c_loc(values))
+      if (.not. kept) call throw_away(plan)
+   end subroutine complex_transform
+
+   !> `spectrum(m+1)` = sum over k of values(k+1) exp(-2 pi i m k/N), m = 0 to N/2; N = size(values), size(spectrum) = N/2 + 1.
+   !> `values` is used as work space.
+   subroutine real_transform(values, spectrum)
+      real(wp), intent(inout), contiguous, target :: values(:)
+      complex(wp), intent(out), contiguous, target :: spectrum(:)
+      type(c_ptr) :: plan
+      logical :: kept
+
+      call get_plan(size(values), to_coefficients, plan, kept, is_aligned(c_loc(values)) .and. is_aligned(c_loc(spectrum)))
+      call fftw_execute_dft_r2c(plan, values, spectrum)
+      if (.not. kept) call throw_away(plan)
+   end subroutine real_transform
+
+   !> N times the values of which `spectrum` is the real_transform; N = size(values), size(spectrum) = N/2 + 1. `spectrum` is used
+   !> as work space.
+   subroutine back_transform(spectrum, values)
+      complex(wp), intent(inout), contiguous, target :: spectrum(:)
+      real(wp), intent(out), contiguous, target :: values(:)
+      type(c_ptr) :: plan
+      logical :: kept
+
+      call get_plan(size(values), to_values, plan, kept, is_aligned(c_loc(values)) .and. is_aligned(c_loc(spectrum)))
+      call fftw_execute_dft_c2r(plan, spectrum, values)
+      if (.not. kept) call throw_away(plan)
+   end subroutine back_transform
+
+   !> Whether an address is on a boundary that vector instructions want.
+   logical function is_aligned(address)
+      type(c_ptr), intent(in) :: address
+
+      is_aligned = modulo(transfer(address, boundary), boundary) == 0
+   end function is_aligned
+
+   !> The smallest length, not less than `at_least` nor than 16, that is 1, 3, 5, 9 or 15 times a power of 2: transforms of many
+   !> lengths then need few plans.
+   pure integer function fast_length(at_least)
+      integer, intent(in) :: at_least
+      integer, parameter :: odd(5) = [1, 3, 5, 9, 15]
+      integer :: i, length
+
+      fast_length = huge(1)
+      do i = 1, size(odd)
+         length = 2*odd(i)
+         do while (length < max(at_least, 16))
+            length = 2*length
+         end do
+         fast_length = min(fast_length, length)
+      end do
+   end function fast_length
+
+   !> The smallest length of a transform, not less than `at_least`, that has no prime factors but 2, 3 and 5.
+   pure integer function transform_length(at_least) result(length)
+      integer, intent(in) :: at_least
+      integer :: left, i
+      integer, parameter :: factors(3) = [2, 3, 5]
+
+      length = max(at_least, 1)
+      do
+         left = length
+         do i = 1, size(factors)
+            do while (modulo(left, factors(i)) == 0)
+               left = left/factors(i)
+            end do
+         end do
+         if (left == 1) return
+         length = length + 1
+      end do
+   end function transform_length
 
    !> Number of plans in the cache.
    integer function plans_kept()
@@ -86,11 +187,13 @@ contains
       code = pthread_mutex_unlock(c_loc(mutex))
    end function plans_kept
 
-   !> A plan for a size and a direction. `kept`: whether it stays in the cache.
-   subroutine get_plan(size, direction, plan, kept)
+   !> A plan for a size and a direction. `kept`: whether it stays in the cache. `aligned`: whether its arrays begin on a
+   !> boundary of 16 bytes.
+   subroutine get_plan(size, direction, plan, kept, aligned)
       integer, intent(in) :: size, direction
       type(c_ptr), intent(out) :: plan
       logical, intent(out) :: kept
+      logical, intent(in) :: aligned
       integer(c_int) :: code
       integer :: i
 
@@ -98,27 +201,37 @@ contains
       plan = c_null_ptr
       kept = .true.
       do i = 1, plan_count
-         if (plans(i)%size == size .and. plans(i)%direction == direction) plan = plans(i)%plan
+         if (plans(i)%size == size .and. plans(i)%direction == direction .and. (plans(i)%aligned .eqv. aligned)) &
+            plan = plans(i)%plan
       end do
       if (.not. c_associated(plan)) then
-         plan = new_plan(size, direction)
+         plan = new_plan(size, direction, aligned)
          kept = plan_count < most_plans
          if (kept) then
             plan_count = plan_count + 1
-            plans(plan_count) = plan_type(size, direction, plan)
+            plans(plan_count) = plan_type(size, direction, aligned, plan)
          end if
       end if
       code = pthread_mutex_unlock(c_loc(mutex))
    end subroutine get_plan
 
-   !> A plan that fits arrays of any alignment and measures nothing.
-   function new_plan(size, direction) result(plan)
+   !> A plan that measures nothing.
+   function new_plan(size, direction, aligned) result(plan)
       integer, intent(in) :: size, direction
+      logical, intent(in) :: aligned
       type(c_ptr) :: plan
-      complex(wp), allocatable :: coefficients(:)
+      complex(wp), allocatable, target :: coefficients(:)
       real(wp), allocatable :: values(:)
-      integer(c_int), parameter :: flags = ior(FFTW_ESTIMATE, FFTW_UNALIGNED)
+      integer(c_int) :: flags
 
+      flags = FFTW_ESTIMATE
+      if (.not. aligned) flags = ior(FFTW_ESTIMATE, FFTW_UNALIGNED)
+      if (direction == forward .or. direction == backward) then
+         allocate (coefficients(size))
+         plan = plan_in_place(int(size, c_int), c_loc(coefficients), c_loc(coefficients), &
+                              merge(FFTW_FORWARD, FFTW_BACKWARD, direction == forward), flags)
+         return
+      end if
       allocate (coefficients(size/2 + 1), values(size))
       if (direction == to_values) then
          plan = fftw_plan_dft_c2r_1d(int(size, c_int), coefficients, values, flags)

@@ -26,7 +26,7 @@ module mfv_body_pair
    contains
       procedure :: resize
       procedure :: entries
-      procedure :: product => summed_product
+      procedure :: parts
       procedure :: deforms
       procedure :: part_displacements
    end type body_pair_type
@@ -120,17 +120,30 @@ contains
    end subroutine entries
 
    !> See mfv_compliance.
-   subroutine summed_product(self, block, traction, displacement)
+   subroutine parts(self, pressure, shear, normal_by_pressure, normal_by_shear, tangential_by_pressure, tangential_by_shear)
       class(body_pair_type), intent(in) :: self
-      integer, intent(in) :: block
-      real(wp), intent(in) :: traction(:)
-      real(wp), intent(inout) :: displacement(:)
+      real(wp), intent(in) :: pressure(:), shear(:)
+      real(wp), intent(out) :: normal_by_pressure(:), normal_by_shear(:), tangential_by_pressure(:), tangential_by_shear(:)
+      real(wp), dimension(size(pressure), 4) :: upper
+      integer :: first
 
-      if (.not. self%has_block(block)) return
-      if (self%deforms(part_lower)) call self%part(part_lower)%compliance%product(block, traction, displacement)
-      if (self%deforms(part_upper)) &
-         call self%part(part_upper)%compliance%product(block, upper_sign(block)*traction, displacement)
-   end subroutine summed_product
+      first = merge(part_lower, part_upper, self%deforms(part_lower))
+      call self%part(first)%compliance%parts(pressure, shear, normal_by_pressure, normal_by_shear, tangential_by_pressure, &
+                                             tangential_by_shear)
+      if (first == part_lower .and. self%deforms(part_upper)) then
+         call self%part(part_upper)%compliance%parts(pressure, shear, upper(:, block_wp), upper(:, block_wt), &
+                                                     upper(:, block_up), upper(:, block_ut))
+         normal_by_pressure = normal_by_pressure + upper_sign(block_wp)*upper(:, block_wp)
+         normal_by_shear = normal_by_shear + upper_sign(block_wt)*upper(:, block_wt)
+         tangential_by_pressure = tangential_by_pressure + upper_sign(block_up)*upper(:, block_up)
+         tangential_by_shear = tangential_by_shear + upper_sign(block_ut)*upper(:, block_ut)
+      else if (first == part_upper) then
+         normal_by_shear = upper_sign(block_wt)*normal_by_shear
+         tangential_by_pressure = upper_sign(block_up)*tangential_by_pressure
+      end if
+      if (.not. self%has_block(block_wt)) normal_by_shear = 0.0_wp
+      if (.not. self%has_block(block_up)) tangential_by_pressure = 0.0_wp
+   end subroutine parts
 
    !> Surface displacements of one body, into it and to the right, length, under the tractions on the lower body; zero
    !> for a rigid one. Shapes (nodes).

@@ -17,6 +17,7 @@ module mfv_circle
    use mfv_compliance
    use mfv_kinds, only: pi, wp
    use mfv_material, only: material_type
+   use mfv_toeplitz, only: toeplitz_type, new_toeplitz
    implicit none
    private
    public :: circle_type, new_circle, kernel_exact, kernel_fourier, default_harmonics, circle_intervals
@@ -40,12 +41,14 @@ module mfv_circle
       logical :: radial = .false.
       !> cos and sin of the angle from the radius to the normal, and from the normal to the vertical, at the nodes.
       real(wp), allocatable :: cosine(:), sine(:), lean_cosine(:), lean_sine(:)
+      !> Products with the kernels.
+      type(toeplitz_type) :: operator
       !> Rigid translation by a unit traction on an interval, in w by pressure and in u by shear.
       real(wp) :: normal_translation = 0.0_wp, tangential_translation = 0.0_wp
    contains
       procedure :: resize
       procedure :: entries
-      procedure :: product => rotated_product
+      procedure :: parts
       procedure :: signature
    end type circle_type
 
@@ -116,6 +119,7 @@ contains
       else
          self%kernels = exact_kernels(self%body, self%material%kolosov, self%interval/self%radius, nodes)
       end if
+      self%operator = new_toeplitz(self%kernels%radial, self%kernels%cross, self%kernels%tangential)
       if (allocated(self%cosine)) deallocate (self%cosine, self%sine, self%lean_cosine, self%lean_sine)
       allocate (self%cosine(nodes), self%lean_cosine(nodes), source=1.0_wp)
       allocate (self%sine(nodes), self%lean_sine(nodes), source=0.0_wp)
@@ -208,48 +212,46 @@ contains
 
    !> See mfv_compliance: tractions are turned to polar components, multiplied by the Toeplitz kernels, and displacements
    !> turned back.
-   subroutine rotated_product(self, block, traction, displacement)
+   subroutine parts(self, pressure, shear, normal_by_pressure, normal_by_shear, tangential_by_pressure, tangential_by_shear)
       class(circle_type), intent(in) :: self
-      integer, intent(in) :: block
-      real(wp), intent(in) :: traction(:)
-      real(wp), intent(inout) :: displacement(:)
-      real(wp), dimension(self%nodes) :: radial_displacement, circumferential
-      real(wp) :: radial, shear, scale, translation(2)
-      logical :: normal_row, normal_column
-      integer :: j, n
+      real(wp), intent(in) :: pressure(:), shear(:)
+      real(wp), intent(out) :: normal_by_pressure(:), normal_by_shear(:), tangential_by_pressure(:), tangential_by_shear(:)
 
-      if (.not. self%has_block(block)) return
-      n = self%nodes
-      normal_row = block == block_wp .or. block == block_wt
-      normal_column = block == block_wp .or. block == block_up
+      tangential_by_pressure = 0.0_wp
+      normal_by_shear = 0.0_wp
+      tangential_by_shear = 0.0_wp
+      call multiply(self, .true., pressure, normal_by_pressure, tangential_by_pressure)
+      if (self%has_block(block_ut)) call multiply(self, .false., shear, normal_by_shear, tangential_by_shear)
+      if (.not. self%has_block(block_wt)) normal_by_shear = 0.0_wp
+      if (.not. self%has_block(block_up)) tangential_by_pressure = 0.0_wp
+   end subroutine parts
+
+   !> w and u by a normal (`by_pressure`) or a shear traction, shapes (nodes).
+   subroutine multiply(self, by_pressure, traction, normal, tangential)
+      class(circle_type), intent(in) :: self
+      logical, intent(in) :: by_pressure
+      real(wp), intent(in) :: traction(:)
+      real(wp), intent(out) :: normal(:), tangential(:)
+      real(wp), dimension(size(traction)) :: radial, shear, outward, around
+      real(wp) :: scale, translation(2)
+
       scale = self%radius/self%material%shear_modulus
-      radial_displacement = 0.0_wp
-      circumferential = 0.0_wp
-      do j = 1, n
-         if (.not. abs(traction(j)) > 0.0_wp) cycle
-         call polar_traction(self, normal_column, j, radial, shear)
-         radial = radial*traction(j)
-         shear = shear*traction(j)
-         associate (k => self%kernels)
-            radial_displacement(:j - 1) = radial_displacement(:j - 1) + radial*k%radial(j - 1:1:-1) &
-                                          + shear*k%cross(j - 1:1:-1)
-            circumferential(:j - 1) = circumferential(:j - 1) - radial*k%cross(j - 1:1:-1) &
-                                      + shear*k%tangential(j - 1:1:-1)
-            radial_displacement(j:) = radial_displacement(j:) + radial*k%radial(0:n - j) - shear*k%cross(0:n - j)
-            circumferential(j:) = circumferential(j:) + radial*k%cross(0:n - j) + shear*k%tangential(0:n - j)
-         end associate
-      end do
-      displacement = displacement + scale*cartesian(self%side, normal_row, radial_displacement, circumferential, &
-                                                    self%cosine, self%sine)
-      translation = 0.0_wp
-      do j = 1, n
-         translation = translation + traction(j)*components(self, normal_column, j)
-      end do
-      translation = [self%normal_translation, self%tangential_translation]*translation
-      do j = 1, n
-         displacement(j) = displacement(j) + dot_product(components(self, normal_row, j), translation)
-      end do
-   end subroutine rotated_product
+      associate (c => self%cosine, s => self%sine, lean_c => self%lean_cosine, lean_s => self%lean_sine, side => self%side)
+         if (by_pressure) then
+            radial = -c*traction
+            shear = s*traction
+            translation = [dot_product(lean_c, traction), -side*dot_product(lean_s, traction)]
+         else
+            radial = side*s*traction
+            shear = side*c*traction
+            translation = [side*dot_product(lean_s, traction), dot_product(lean_c, traction)]
+         end if
+         translation = [self%normal_translation, self%tangential_translation]*translation
+         call self%operator%multiply(radial, outward, shear, around)
+         normal = scale*side*(around*s - outward*c) + lean_c*translation(1) - side*lean_s*translation(2)
+         tangential = scale*(outward*s + around*c) + side*lean_s*translation(1) + lean_c*translation(2)
+      end associate
+   end subroutine multiply
 
    !> See mfv_compliance.
    pure function signature(self)

@@ -16,6 +16,7 @@ module mfv_half_plane
    use mfv_compliance
    use mfv_kinds, only: pi, wp
    use mfv_material, only: material_type
+   use mfv_toeplitz, only: toeplitz_type, new_toeplitz
    implicit none
    private
    public :: half_plane_type, new_half_plane, log_kernel, step_kernel
@@ -28,10 +29,12 @@ module mfv_half_plane
       !> C_wp = C_ut by distance, and C_wt = -C_up by distance (odd).
       real(wp), allocatable :: direct(:)
       real(wp) :: cross = 0.0_wp
+      !> Products with the first.
+      type(toeplitz_type) :: operator
    contains
       procedure :: resize
       procedure :: entries
-      procedure :: product => toeplitz_product
+      procedure :: parts
       procedure :: signature
    end type half_plane_type
 
@@ -68,6 +71,7 @@ contains
       self%nodes = nodes
       self%direct = [(factor*(2.0_wp*log(self%datum/half) + 2.0_wp - log_kernel(2.0_wp*distance)), &
                       distance=0, nodes - 1)]
+      self%operator = new_toeplitz(self%direct)
       self%block_values = nodes
    end subroutine resize
 
@@ -100,46 +104,39 @@ contains
    end subroutine entries
 
    !> See mfv_compliance; the cross blocks, constant on either side of the diagonal, need only running sums.
-   subroutine toeplitz_product(self, block, traction, displacement)
+   subroutine parts(self, pressure, shear, normal_by_pressure, normal_by_shear, tangential_by_pressure, tangential_by_shear)
       class(half_plane_type), intent(in) :: self
-      integer, intent(in) :: block
-      real(wp), intent(in) :: traction(:)
-      real(wp), intent(inout) :: displacement(:)
-      integer :: j, n
+      real(wp), intent(in) :: pressure(:), shear(:)
+      real(wp), intent(out) :: normal_by_pressure(:), normal_by_shear(:), tangential_by_pressure(:), tangential_by_shear(:)
 
-      if (.not. self%has_block(block)) return
-      n = self%nodes
-      select case (block)
-      case (block_wp, block_ut)
-         do j = 1, n
-            if (.not. abs(traction(j)) > 0.0_wp) cycle
-            displacement(:j) = displacement(:j) + traction(j)*self%direct(j:1:-1)
-            displacement(j + 1:) = displacement(j + 1:) + traction(j)*self%direct(2:n - j + 1)
-         end do
-      case (block_wt)
-         call add_cross(self%cross)
-      case (block_up)
-         call add_cross(-self%cross)
-      end select
+      normal_by_shear = 0.0_wp
+      tangential_by_pressure = 0.0_wp
+      tangential_by_shear = 0.0_wp
+      call self%operator%multiply(pressure, normal_by_pressure, shear, tangential_by_shear)
+      if (self%has_block(block_wt)) call multiply_steps(self%cross, shear, normal_by_shear)
+      if (self%has_block(block_up)) call multiply_steps(-self%cross, pressure, tangential_by_pressure)
+      if (.not. self%has_block(block_ut)) tangential_by_shear = 0.0_wp
+   end subroutine parts
 
-   contains
+   !> displacement(i) = cross (sum of tractions left of i - sum right of i).
+   pure subroutine multiply_steps(cross, traction, displacement)
+      real(wp), intent(in) :: cross, traction(:)
+      real(wp), intent(out) :: displacement(:)
+      real(wp) :: left, right
+      integer :: i, n
 
-      !> displacement(i) += cross (sum of tractions left of i - sum right of i).
-      subroutine add_cross(cross)
-         real(wp), intent(in) :: cross
-         real(wp) :: left, right
-         integer :: i
-
-         left = 0.0_wp
-         right = 0.0_wp
-         do i = 1, n
-            displacement(i) = displacement(i) + cross*left
-            left = left + traction(i)
-            displacement(n + 1 - i) = displacement(n + 1 - i) - cross*right
-            right = right + traction(n + 1 - i)
-         end do
-      end subroutine add_cross
-   end subroutine toeplitz_product
+      n = size(traction)
+      left = 0.0_wp
+      do i = 1, n
+         displacement(i) = cross*left
+         left = left + traction(i)
+      end do
+      right = 0.0_wp
+      do i = n, 1, -1
+         displacement(i) = displacement(i) - cross*right
+         right = right + traction(i)
+      end do
+   end subroutine multiply_steps
 
    !> (r+1) ln|r+1| - (r-1) ln|r-1|, the normal displacement by a box traction, to a relative error near epsilon for
    !> every r >= 0 (r = |x|/h): near 0 and far away, where the two terms cancel, by their series.

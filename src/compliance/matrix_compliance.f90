@@ -21,7 +21,7 @@ module mfv_matrix_compliance
    contains
       procedure :: resize
       procedure :: entries
-      procedure :: product => full_product
+      procedure :: parts
    end type matrix_compliance_type
 
    interface
@@ -165,13 +165,26 @@ contains
    end subroutine entries
 
    !> See mfv_compliance.
-   subroutine full_product(self, block, traction, displacement)
+   subroutine parts(self, pressure, shear, normal_by_pressure, normal_by_shear, tangential_by_pressure, tangential_by_shear)
+      class(matrix_compliance_type), intent(in) :: self
+      real(wp), intent(in) :: pressure(:), shear(:)
+      real(wp), intent(out) :: normal_by_pressure(:), normal_by_shear(:), tangential_by_pressure(:), tangential_by_shear(:)
+
+      call multiply(self, block_wp, pressure, normal_by_pressure)
+      call multiply(self, block_wt, shear, normal_by_shear)
+      call multiply(self, block_up, pressure, tangential_by_pressure)
+      call multiply(self, block_ut, shear, tangential_by_shear)
+   end subroutine parts
+
+   !> A block times a traction, shapes (nodes); only what is loaded is looked at.
+   subroutine multiply(self, block, traction, displacement)
       class(matrix_compliance_type), intent(in) :: self
       integer, intent(in) :: block
       real(wp), intent(in) :: traction(:)
-      real(wp), intent(inout) :: displacement(:)
+      real(wp), intent(out) :: displacement(:)
       integer :: before(2), j, n
 
+      displacement = 0.0_wp
       if (.not. self%has_block(block)) return
       before = origin(self, block)
       n = self%nodes
@@ -179,6 +192,6 @@ contains
          if (.not. abs(traction(j)) > 0.0_wp) cycle
          displacement = displacement + traction(j)*self%matrix(before(1) + 1:before(1) + n, before(2) + j)
       end do
-   end subroutine full_product
+   end subroutine multiply
 
 end module mfv_matrix_compliance

@@ -162,8 +162,9 @@ contains
                           'straight part of the load history at once, halved where halves lead elsewhere (coulomb)')
       call add_part_key(keys, 'leap_tolerance', '1e-3', "stepping='leap': by how much a leap and its two halves may differ, "// &
                         'part of the largest traction')
-      call add_real_key(keys, 'solver', 'event_tolerance', '', 'mfv: events closer to each other than this part of a straight '// &
-                        'part of the load history are taken together: fewer solves, less accuracy', lower=0.0_wp, upper=0.1_wp)
+      call add_real_key(keys, 'solver', 'event_tolerance', '', 'mfv: events closer to each other than this part of what is '// &
+                        'done of a straight part of the load history are taken together: fewer solves, less accuracy '// &
+                        '(coulomb)', lower=0.0_wp, upper=0.1_wp)
       keys(size(keys))%default = '0'
       call add_part_key(keys, 'load_step', '0.05', 'nominal load step, part of each straight part of the load history: for '// &
                         "algorithm='conventional', stepping='nominal', integration='explicit'")

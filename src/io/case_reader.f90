@@ -769,6 +769,15 @@ contains
             call reader%complain('solver', 1, 'stepping', "'leap' needs law='coulomb' or 'none', not '"//law//"'", error)
          end if
       end if
+      if (reader%real_value('solver', 1, 'event_tolerance') > 0.0_wp) then
+         if (reader%text_value('solver', 1, 'algorithm') == 'conventional' .or. &
+             reader%text_value('solver', 1, 'stepping') /= 'event') then
+            call reader%complain('solver', 1, 'event_tolerance', "means nothing without algorithm='mfv' and stepping='event'", &
+                                 error)
+         else if (law /= 'coulomb' .and. law /= 'none') then
+            call reader%complain('solver', 1, 'event_tolerance', "needs law='coulomb' or 'none', not '"//law//"'", error)
+         end if
+      end if
       if (reader%text_value('solver', 1, 'integration') == 'explicit' .and. law /= 'dahl') &
          call reader%complain('solver', 1, 'integration', "means nothing without law='dahl'", error)
    end subroutine check_method

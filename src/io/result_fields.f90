@@ -428,6 +428,8 @@ contains
       call add_loads(fields, simulation, state, units)
       call add_scalar_whole(fields, 'steps_done', simulation%steps_done, 'steps reached')
       call add_scalar_whole(fields, 'events', simulation%contact%events, 'loads at which nodes changed their status')
+      call add_scalar_whole(fields, 'leaps', simulation%contact%certificate%leaps, &
+                            'parts of the load history led at once, without looking for events')
       call add_scalar_whole(fields, 'linear_solves', simulation%contact%system%solves, linear_solves_meaning)
       call add_scalar(fields, 'largest_residual', simulation%contact%certificate%largest(), '1', &
                       'largest relative residual of the certificate')

@@ -42,7 +42,8 @@ contains
          end if
          if (model%rotational) &
             call add_line(text, 'moment', amount(fields, 'moment')//', rotation '//amount(fields, 'rotation'))
-         call add_line(text, 'work', amount(fields, 'events')//' events, '//amount(fields, 'linear_solves')// &
+         call add_line(text, 'work', amount(fields, 'events')//' events, '//amount(fields, 'leaps')//' leaps, '// &
+                       amount(fields, 'linear_solves')// &
                        ' linear solves, '//to_text(seconds, 3)//' s')
          call add_compliance(text, model)
          call add_line(text, 'certificate', 'largest relative residual '//amount(fields, 'largest_residual'))

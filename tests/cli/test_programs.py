@@ -170,7 +170,7 @@ def test_advice_can_be_pasted_and_holds(tmp_path):
     assert run.returncode == COMPLETE and run.stderr == ""
     assert list(tmp_path.iterdir()) == [path]
     for word in ("case.nml, wanted error 0.02", "pairs of coarse meshes", "error with 61", "nodes needed", "pressure", "shear",
-                 "half_width", "stick_ratio", "dissipation", "cost laws"):
+                 "half_width", "stick_ratio", "dissipation", "laws of cost"):
         assert word in run.stdout, run.stdout
     groups = [line for line in run.stdout.splitlines() if not line.startswith("!")]
     assert re.fullmatch(r"&mesh nodes=\d+, half_width=0.0127, gap='parabolic' /", groups[0])

@@ -1,0 +1,295 @@
+!> The statuses at one load without the way there: all nodes that violate an inequality of dissertation Table 2.1 change
+!> together, solve again, until none does (the primal-dual active set method: Hintermueller, Ito and Kunisch, SIAM J. Optim.
+!> 13, 2003). Without friction the end is the state that every way leads to. With Coulomb friction stuck nodes hold at the slip
+!> that they have at the start (nodes that touch on the way: at about the slip that they had then), and the end is what one step
+!> of an integrator leads to.
+!>
+!> Where a zone is a little too large, its traction (less the friction limit) has K/sqrt(t) + A sqrt(t) at the distance t from
+!> its edge, and moving the edge by s changes K by A s/2, whatever the other edges do. So the edge belongs at twice the distance
+!> at which the sign changes; and where the zone is too small, at two thirds of the distance up to which the surfaces overlap.
+!> With this an edge converges quadratically: the number of solves hardly depends on the number of nodes. Changing just the
+!> violating nodes halves the distance only.
+module mfv_active_set
+   use mfv_contact_fields, only: contact_fields_type
+   use mfv_contact_model, only: along_approach
+   use mfv_contact_path, only: contact_path_type, segment_type
+   use mfv_contact_system
+   use mfv_kinds, only: pi, wp
+   use mfv_node_status
+   use mfv_scene, only: control_displacement, control_force
+   implicit none
+   private
+   public :: settle_at, first_guess
+
+   !> Violations below this part of the largest magnitude of their sort are round-off.
+   real(wp), parameter :: round_off = 1.0e-11_wp
+   !> Linear solves at one load.
+   integer, parameter :: most_solves = 60
+
+contains
+
+   !> Statuses and fields at the part `done` of the segment, from the statuses of `path` as a first guess and its fields as the
+   !> start. `settled`: whether they were found; `path` then has the statuses, and as stuck_slip of every node the slip from which
+   !> its slip on the way counts; its fields are still those of the start.
+   !> Not found: the system is singular, the statuses come again, nothing is in contact that carries a prescribed force, or
+   !> every node slips; the statuses of `path` are then of no use.
+   subroutine settle_at(path, segment, done, fields, settled)
+      class(contact_path_type), intent(inout) :: path
+      type(segment_type), intent(in) :: segment
+      real(wp), intent(in) :: done
+      type(contact_fields_type), intent(out) :: fields
+      logical, intent(out) :: settled
+      type(constraints_type) :: constraints
+      type(response_type) :: response
+      integer, dimension(size(path%state%status)) :: wanted
+      integer :: tried(size(path%state%status), most_solves)
+      real(wp) :: hold(size(path%state%status))
+      logical :: possible, singular, by_edges
+      integer :: solve, first
+
+      settled = .false.
+      by_edges = .true.
+      first = 1
+      fields = path%state%fields
+      hold = fields%slip()
+      where (path%state%status == node_stick) hold = path%state%stuck_slip
+      path%state%stuck_slip = hold
+      do solve = 1, most_solves
+         tried(:, solve) = path%state%status
+         call constrain(path, segment, done, constraints, possible)
+         if (.not. possible) return
+         call path%system%solve(path%model, constraints, fields, response, singular)
+         if (singular) return
+         fields = response%state
+         call find_wanted(path, segment, fields, wanted)
+         settled = all(wanted == path%state%status)
+         if (settled) return
+         if (by_edges) call move_edges(path%state%status, wanted)
+         call find_touching(path, fields, wanted, hold)
+         call path%set_status(wanted /= path%state%status, wanted)
+         path%state%stuck_slip = hold
+         if (.not. came_before(tried(:, first:solve), wanted)) cycle
+         if (.not. by_edges) return
+         by_edges = .false.
+         first = solve + 1
+      end do
+   end subroutine settle_at
+
+   !> Nodes that a first contact may have, where there is none yet: those that the undeformed surfaces would share at an
+   !> approach of P/(pi m), m the contact modulus (for a parabola exactly those that it has under the force P).
+   !> `part`: part of the segment.
+   subroutine first_guess(path, segment, part, contact)
+      class(contact_path_type), intent(in) :: path
+      type(segment_type), intent(in) :: segment
+      real(wp), intent(in) :: part
+      logical, intent(out) :: contact(:)
+      real(wp), parameter :: deformed = 0.25_wp
+      real(wp), dimension(size(contact)) :: gap, normal, tangential
+      type(contact_fields_type) :: fields
+      real(wp) :: level
+
+      fields = path%state%fields
+      if (path%model%rotational .and. segment%rotational%control == control_displacement) then
+         fields%rotation = segment%rotational%value + part*segment%rotational%rate
+         call path%model%relative_displacements(fields, normal, tangential)
+         fields%normal = normal
+      end if
+      gap = path%model%gap(fields)
+      level = segment%normal%value + part*segment%normal%rate
+      if (segment%normal%control == control_force) then
+         level = level/(pi*path%model%compliance%modulus)
+      else
+         level = deformed*(level - fields%approach - path%model%nearest_approach(gap))
+      end if
+      level = max(level, 0.0_wp) + path%model%nearest_approach(gap) + 8*epsilon(1.0_wp)*maxval(abs(gap))
+      contact = path%model%can_touch .and. gap <= level*path%model%normal_arm(:, along_approach)
+   end subroutine first_guess
+
+   !> The constraints at the part `done` of the segment, without rates. `possible`: false where a prescribed force (moment) has
+   !> nothing to carry it, or every node slips under a prescribed tangential force.
+   subroutine constrain(path, segment, done, constraints, possible)
+      class(contact_path_type), intent(in) :: path
+      type(segment_type), intent(in) :: segment
+      real(wp), intent(in) :: done
+      type(constraints_type), intent(out) :: constraints
+      logical, intent(out) :: possible
+      real(wp), parameter :: no_force = 1.0e-12_wp
+      real(wp) :: scale
+
+      call path%loads_at(segment, done, constraints)
+      constraints%normal%rate = 0.0_wp
+      constraints%tangential%rate = 0.0_wp
+      constraints%rotational%rate = 0.0_wp
+      call path%set_rows(constraints, .false.)
+      possible = any(in_contact(path%state%status)) .or. constraints%normal%control == control_displacement
+      if (path%model%rotational .and. constraints%rotational%control == control_force) &
+         possible = possible .and. .not. path%model%scene%mesh%radial .and. path%state%contact_nodes() > 1
+      if (any(holds(path%state%status)) .or. constraints%tangential%control == control_displacement) return
+      scale = max(path%certificate%force_scale(), abs(constraints%normal%value))
+      possible = possible .and. .not. any(slips(path%state%status)) .and. &
+                 max(abs(constraints%tangential%value), abs(segment%tangential%rate)) <= no_force*scale
+      constraints%tangential = load_type(control_displacement, path%state%fields%shift, 0.0_wp)
+   end subroutine constrain
+
+   !> The statuses that the nodes want with the `fields`: where an inequality breaks, the other status.
+   subroutine find_wanted(path, segment, fields, wanted)
+      class(contact_path_type), intent(in) :: path
+      type(segment_type), intent(in) :: segment
+      type(contact_fields_type), intent(in) :: fields
+      integer, intent(out) :: wanted(:)
+      real(wp), dimension(size(wanted)) :: gap, slipped
+      real(wp) :: traction, motion
+      integer :: i, closed
+
+      traction = round_off*max(maxval(abs(fields%pressure)), maxval(abs(fields%shear)), path%certificate%traction_scale())
+      motion = round_off*max(maxval(abs(fields%normal)), maxval(abs(fields%tangential)), abs(fields%approach), &
+                             abs(fields%shift))
+      gap = path%model%gap(fields)
+      slipped = 0.0_wp
+      if (path%model%tangential) slipped = fields%slip() - path%state%stuck_slip
+      closed = node_frictionless
+      if (segment%friction .and. path%model%tangential) closed = node_stick
+      wanted = path%state%status
+      do i = 1, size(wanted)
+         if (.not. in_contact(wanted(i))) then
+            if (path%model%can_touch(i) .and. gap(i) < -motion) wanted(i) = closed
+         else if (fields%pressure(i) < -traction) then
+            wanted(i) = node_open
+         else if (wanted(i) == node_stick) then
+            if (abs(fields%shear(i)) > path%model%static_friction(i)*fields%pressure(i) + traction) &
+               wanted(i) = merge(node_slip_left, node_slip_right, fields%shear(i) > 0.0_wp)
+         else if (slip_sign(wanted(i))*slipped(i) < -motion) then
+            wanted(i) = node_stick
+         end if
+      end do
+      if (closed == node_stick) call go_with_neighbours(path%state%status, wanted)
+   end subroutine find_wanted
+
+   !> The slip at which nodes hold that close on the way: that of the moment at which they touch, were gap and slip to change
+   !> evenly from the start to the `fields`, in which the nodes are still open.
+   subroutine find_touching(path, fields, wanted, hold)
+      class(contact_path_type), intent(in) :: path
+      type(contact_fields_type), intent(in) :: fields
+      integer, intent(in) :: wanted(:)
+      real(wp), intent(inout) :: hold(:)
+      real(wp), dimension(size(wanted)) :: before, after, slip
+
+      if (.not. path%model%tangential) return
+      before = max(path%model%gap(path%state%fields), 0.0_wp)
+      after = path%model%gap(fields)
+      slip = path%state%fields%slip()
+      where (in_contact(wanted) .and. .not. in_contact(path%state%status) .and. after < 0.0_wp) &
+         hold = slip + before/(before - after)*(fields%slip() - slip)
+   end subroutine find_touching
+
+   !> Nodes that close at an edge of the contact do as the edge does.
+   pure subroutine go_with_neighbours(status, wanted)
+      integer, intent(in) :: status(:)
+      integer, intent(inout) :: wanted(:)
+      integer :: i, n
+
+      n = size(status)
+      do i = 2, n
+         if (closes(i) .and. in_contact(wanted(i - 1))) wanted(i) = wanted(i - 1)
+      end do
+      do i = n - 1, 1, -1
+         if (closes(i) .and. in_contact(status(i + 1))) wanted(i) = wanted(i + 1)
+         if (closes(i) .and. closes(i + 1) .and. wanted(i) == node_stick) wanted(i) = wanted(i + 1)
+      end do
+
+   contains
+
+      pure logical function closes(node)
+         integer, intent(in) :: node
+
+         closes = .not. in_contact(status(node)) .and. in_contact(wanted(node))
+      end function closes
+   end subroutine go_with_neighbours
+
+   !> Where the nodes that change lie at one edge of their zone, move the edge to where it belongs (see above).
+   subroutine move_edges(status, wanted)
+      integer, intent(in) :: status(:)
+      integer, intent(inout) :: wanted(:)
+      integer :: original(size(wanted)), first, last, n
+      logical :: left, right
+
+      n = size(status)
+      original = wanted
+      first = 1
+      do while (first <= n)
+         last = first
+         if (original(first) /= status(first)) then
+            do while (last < n)
+               if (status(last + 1) /= status(first) .or. original(last + 1) /= original(first)) exit
+               last = last + 1
+            end do
+            left = .true.
+            right = .true.
+            if (first > 1) left = status(first - 1) /= status(first)
+            if (last < n) right = status(last + 1) /= status(first)
+            if (grows(status(first), original(first))) then
+               if (first == 1) left = .false.
+               if (last == n) right = .false.
+               call stay_behind(first, last, left, right)
+            else
+               call go_further(first, last, left, right)
+            end if
+         end if
+         first = last + 1
+      end do
+
+   contains
+
+      !> Whether the change makes a zone of contact or of stick larger.
+      pure logical function grows(from, to)
+         integer, intent(in) :: from, to
+
+         grows = from == node_open .or. to == node_stick
+      end function grows
+
+      !> The zone that the nodes first to last leave ends further in; but half of what is left of it stays.
+      subroutine go_further(first, last, left, right)
+         integer, intent(in) :: first, last
+         logical, intent(in) :: left, right
+         integer :: step, node, further, room
+
+         if (left .eqv. right) return
+         step = merge(1, -1, left)
+         node = merge(last, first, left)
+         room = 0
+         do
+            if (node + (room + 1)*step < 1 .or. node + (room + 1)*step > n) exit
+            if (status(node + (room + 1)*step) /= status(node) .or. &
+                original(node + (room + 1)*step) /= status(node)) exit
+            room = room + 1
+         end do
+         do further = 1, min(last - first, room/2)
+            wanted(node + further*step) = original(node)
+         end do
+      end subroutine go_further
+
+      !> The zone that the nodes first to last are to join gets the nearer two thirds of them.
+      subroutine stay_behind(first, last, left, right)
+         integer, intent(in) :: first, last
+         logical, intent(in) :: left, right
+         integer :: joining
+
+         if (left .eqv. right) return
+         joining = (2*(last - first + 1) + 1)/3
+         if (left) wanted(first + joining:last) = status(first + joining:last)
+         if (right) wanted(first:last - joining) = status(first:last - joining)
+      end subroutine stay_behind
+   end subroutine move_edges
+
+   pure logical function came_before(tried, status)
+      integer, intent(in) :: tried(:, :), status(:)
+      integer :: i
+
+      came_before = .false.
+      do i = size(tried, 2), 1, -1
+         came_before = all(tried(:, i) == status)
+         if (came_before) return
+      end do
+   end function came_before
+
+end module mfv_active_set

@@ -1,0 +1,224 @@
+!> Approximate inverses of the diagonal blocks C_wp and C_ut on the nodes of a contact, each in O(n log n).
+!>
+!> Every elastic body's surface answers tractions nearby like a half-plane, by the logarithm of the distance. On nodes without
+!> gaps that is a Toeplitz matrix, and its inverse is known exactly (mfv_toeplitz_inverse): of a half-plane nothing is left to
+!> iterate on but the coupling of pressure and shear, whose strength does not depend on the mesh. Where a set of nodes has gaps,
+!> the inverse on all nodes between its ends is restricted to it.
+!>
+!> Nodes that bristles hold (softness c > 0, mfv_krylov_system) need 1/(C_ut + c): their rows are interpolated between inverses
+!> for a few values of c, circulant ones. Those of nodes whose friction falls with slip (c < 0) are taken by themselves: where the
+!> bodies can unload as fast as friction falls, |c| is the larger part of C_ut + c.
+module mfv_krylov_preconditioner
+   use mfv_compliance, only: block_wp, compliance_type
+   use mfv_fourier, only: back_transform, fast_length, real_transform
+   use mfv_half_plane, only: log_kernel
+   use mfv_kinds, only: wp
+   use mfv_toeplitz_inverse, only: toeplitz_inverse_type
+   implicit none
+   private
+   public :: krylov_preconditioner_type
+
+   !> Inverse on a set of nodes.
+   type :: block_type
+      type(toeplitz_inverse_type) :: inverse
+      !> The nodes, and the one before the first.
+      integer, allocatable :: nodes(:)
+      integer :: before = 0
+   end type block_type
+
+   type :: krylov_preconditioner_type
+      private
+      !> Entries by distance, length^3/force in the system's units.
+      real(wp), allocatable :: kernel(:)
+      type(block_type) :: contact, held
+      !> Softness of the held nodes, shape (held), where there is any; weights of the levels, shape (held, 0 to levels), and the
+      !> inverses there, shape (length/2 + 1, levels).
+      logical :: soft = .false.
+      real(wp), allocatable :: softness(:), weight(:, :), symbol(:, :)
+      !> Work space.
+      real(wp), allocatable :: work(:)
+   contains
+      procedure :: prepare
+      procedure :: set_contact
+      procedure :: set_held
+      procedure :: apply_contact
+      procedure :: apply_held
+      procedure :: smallest
+   end type krylov_preconditioner_type
+
+contains
+
+   !> Know a compliance, whose number of nodes can have changed. `unit`: of the blocks' entries, length^3/force.
+   subroutine prepare(self, compliance, unit)
+      class(krylov_preconditioner_type), intent(inout) :: self
+      class(compliance_type), intent(in) :: compliance
+      real(wp), intent(in) :: unit
+      integer :: distance, middle, n
+      real(wp) :: near(1, 2), factor, least
+
+      if (allocated(self%kernel)) then
+         if (2*compliance%nodes <= size(self%kernel)) return
+      end if
+      n = compliance%nodes
+      middle = (n + 1)/2
+      near = 0.0_wp
+      call compliance%entries(block_wp, [middle], [middle], near(:, 1:1))
+      call compliance%entries(block_wp, [middle], [min(middle + 1, n)], near(:, 2:2))
+      factor = (near(1, 1) - near(1, 2))/log_kernel(2.0_wp)
+      if (.not. factor > 0.0_wp) factor = near(1, 1)/log_kernel(2.0_wp)
+      ! Positive definite on surfaces shorter than four times the distance at which a force leaves no displacement.
+      least = factor*(2.0_wp*log(16.0_wp*n) + 2.0_wp)
+      self%kernel = [(max(near(1, 1), least) - factor*log_kernel(2.0_wp*distance), distance=0, 4*n)]/unit
+      self%contact = block_type()
+      self%held = block_type()
+   end subroutine prepare
+
+   !> About the smallest eigenvalue of the blocks, in the system's units.
+   pure real(wp) function smallest(self)
+      class(krylov_preconditioner_type), intent(in) :: self
+
+      smallest = 0.5_wp*(self%kernel(1) - self%kernel(2))
+   end function smallest
+
+   !> The nodes in contact, ascending.
+   subroutine set_contact(self, nodes)
+      class(krylov_preconditioner_type), intent(inout) :: self
+      integer, intent(in) :: nodes(:)
+
+      call set_nodes(self, self%contact, nodes)
+   end subroutine set_contact
+
+   !> The nodes whose shear is unknown, ascending, and their softness, shape (held).
+   subroutine set_held(self, nodes, softness)
+      class(krylov_preconditioner_type), intent(inout) :: self
+      integer, intent(in) :: nodes(:)
+      real(wp), intent(in) :: softness(:)
+      integer :: now, wanted
+
+      if (size(nodes) > 0) then
+         now = self%held%inverse%current_order()
+         wanted = nodes(size(nodes)) - nodes(1) + 1
+         if (abs(self%contact%inverse%current_order() - wanted) < abs(now - wanted)) &
+            call self%held%inverse%copy_order(self%contact%inverse)
+      end if
+      call set_nodes(self, self%held, nodes)
+      self%soft = any(abs(softness) > 0.0_wp)
+      if (self%soft) call set_levels(self, softness)
+   end subroutine set_held
+
+   subroutine set_nodes(self, block, nodes)
+      type(krylov_preconditioner_type), intent(inout) :: self
+      type(block_type), intent(inout) :: block
+      integer, intent(in) :: nodes(:)
+
+      block%nodes = nodes
+      if (size(nodes) == 0) return
+      block%before = nodes(1) - 1
+      call block%inverse%set_order(self%kernel, nodes(size(nodes)) - block%before)
+   end subroutine set_nodes
+
+   !> Levels of softness, a constant ratio apart, from where it does not matter to where nothing else does; and the weights with
+   !> which the nodes lie between them.
+   subroutine set_levels(self, softness)
+      type(krylov_preconditioner_type), intent(inout) :: self
+      real(wp), intent(in) :: softness(:)
+      real(wp), parameter :: ratio = 6.0_wp, margin = 10.0_wp
+      real(wp), allocatable :: values(:)
+      complex(wp), allocatable :: spectrum(:)
+      real(wp) :: first, place
+      integer :: i, level, levels, length
+
+      self%softness = softness
+      length = fast_length(2*self%held%inverse%current_order())
+      allocate (values(length), spectrum(length/2 + 1))
+      values(:length/2 + 1) = self%kernel(:length/2 + 1)
+      values(length/2 + 2:) = self%kernel(length/2:2:-1)
+      call real_transform(values, spectrum)
+      first = self%smallest()/margin
+      levels = 1 + ceiling(log(margin*maxval(abs(real(spectrum, wp)))/first)/log(ratio))
+      if (allocated(self%weight)) deallocate (self%weight, self%symbol)
+      allocate (self%weight(size(softness), 0:levels), source=0.0_wp)
+      allocate (self%symbol(length/2 + 1, levels))
+      do level = 1, levels
+         self%symbol(:, level) = 1.0_wp/(length*(max(real(spectrum, wp), self%smallest()) + first*ratio**(level - 1)))
+      end do
+      do i = 1, size(softness)
+         place = 0.0_wp
+         if (softness(i) > first/ratio) place = 1.0_wp + log(softness(i)/first)/log(ratio)
+         level = min(int(place), levels)
+         if (place >= levels .or. softness(i) < 0.0_wp) cycle
+         self%weight(i, level) = 1.0_wp - (place - level)
+         self%weight(i, level + 1) = place - level
+      end do
+   end subroutine set_levels
+
+   !> Tractions of the nodes in contact by displacements, shape (contact), both in `values`.
+   subroutine apply_contact(self, values)
+      class(krylov_preconditioner_type), intent(inout) :: self
+      real(wp), intent(inout) :: values(:)
+
+      call apply_block(self, self%contact, values)
+   end subroutine apply_contact
+
+   !> The same of the held nodes, shape (held).
+   subroutine apply_held(self, values)
+      class(krylov_preconditioner_type), intent(inout) :: self
+      real(wp), intent(inout) :: values(:)
+      real(wp), allocatable :: right(:)
+
+      if (.not. self%soft) then
+         call apply_block(self, self%held, values)
+         return
+      end if
+      right = values
+      ! What is by itself has no part in the others' displacements.
+      where (sum(self%weight, dim=2) <= 0.0_wp) values = 0.0_wp
+      right = merge(right/merge(self%softness, 1.0_wp, abs(self%softness) > 0.0_wp), values, &
+                    sum(self%weight, dim=2) <= 0.0_wp)
+      call add_levels(self, values)
+      where (sum(self%weight, dim=2) <= 0.0_wp) values = right
+   end subroutine apply_held
+
+   !> The inverses of all levels, each weighed.
+   subroutine add_levels(self, values)
+      type(krylov_preconditioner_type), intent(inout) :: self
+      real(wp), intent(inout) :: values(:)
+      complex(wp) :: spectrum(size(self%symbol, 1)), product(size(self%symbol, 1))
+      real(wp) :: work(2*(size(self%symbol, 1) - 1))
+      integer :: level
+
+      work = 0.0_wp
+      work(self%held%nodes - self%held%before) = values
+      call real_transform(work, spectrum)
+      if (any(self%weight(:, 0) > 0.0_wp)) call apply_block(self, self%held, values)
+      values = self%weight(:, 0)*values
+      do level = 1, size(self%symbol, 2)
+         if (.not. any(self%weight(:, level) > 0.0_wp)) cycle
+         product = self%symbol(:, level)*spectrum
+         call back_transform(product, work)
+         values = values + self%weight(:, level)*work(self%held%nodes - self%held%before)
+      end do
+   end subroutine add_levels
+
+   subroutine apply_block(self, block, values)
+      type(krylov_preconditioner_type), intent(inout) :: self
+      type(block_type), intent(inout) :: block
+      real(wp), intent(inout) :: values(:)
+      integer :: order
+
+      order = block%inverse%current_order()
+      if (size(values) == order) then
+         call block%inverse%apply(values)
+         return
+      end if
+      if (allocated(self%work)) then
+         if (size(self%work) < order) deallocate (self%work)
+      end if
+      if (.not. allocated(self%work)) allocate (self%work(order + order/4 + 8))
+      self%work(:order) = 0.0_wp
+      self%work(block%nodes - block%before) = values
+      call block%inverse%apply(self%work(:order))
+      values = self%work(block%nodes - block%before)
+   end subroutine apply_block
+
+end module mfv_krylov_preconditioner

@@ -1,0 +1,642 @@
+!> State and rates without any matrix, in memory O(n): products with the compliance through FFTW, and Krylov's iteration.
+!>
+!> Unknowns are the pressures of the nodes in contact, the shear tractions of the held nodes and the rigid motions of the upper
+!> body that no load prescribes. Held nodes are the stuck ones and those whose line of friction depends on slip; the others slip,
+!> and their shear tau = slope*p + offset is put into the rows of elasticity. Rows, with the arms a of the motions y:
+!>
+!>     C_wp p + C_wt tau - a_w y              = -g0              nodes in contact
+!>     C_up p + C_ut tau - a_u y              = s0               stuck nodes
+!>     C_up p + C_ut tau - a_u y + c (tau - slope p) = c offset  tau = slope*p + stiffness*s + offset, softness c = -1/stiffness
+!>     resultants of p and tau                = P, Q, M          free motions
+!>
+!> The preconditioner is block triangular: pressures by the inverse of C_wp (mfv_krylov_preconditioner), then shear tractions by
+!> that of C_ut with what these pressures do taken off; the free motions follow from a Schur complement of at most three rows.
+!> GMRES works on the preconditioned rows: its residual is then the error of the unknowns themselves, up to the coupling, and
+!> `linear_tolerance` is the error of tractions and motions in parts of all of them (2-norms). Measured, iterations do not
+!> depend on the number of nodes (docs/performance.md).
+module mfv_krylov_system
+   use, intrinsic :: ieee_arithmetic, only: ieee_is_finite
+   use mfv_compliance, only: block_up
+   use mfv_contact_fields, only: contact_fields_type, new_contact_fields
+   use mfv_contact_model, only: along_approach, along_rotation, along_shift, contact_model_type
+   use mfv_contact_system
+   use mfv_gmres, only: gmres_type
+   use mfv_kinds, only: wp
+   use mfv_krylov_preconditioner, only: krylov_preconditioner_type
+   use mfv_node_status
+   use mfv_scene, only: control_force
+   implicit none
+   private
+   public :: krylov_system_type
+
+   !> What the constraints prescribe, of the state or of the rates, in the system's units.
+   type :: right_side_type
+      !> The right-hand sides of all rows, shape (unknowns).
+      real(wp), allocatable :: rows(:)
+      !> Offsets of the slip lines, shape (nodes).
+      real(wp), allocatable :: offset(:)
+      !> Motions that are prescribed, and zero for the free ones.
+      real(wp) :: motion(3) = 0.0_wp
+   end type right_side_type
+
+   type, extends(contact_system_type) :: krylov_system_type
+      private
+      type(krylov_preconditioner_type) :: preconditioner
+      type(gmres_type) :: gmres
+      !> Units of traction and length.
+      real(wp) :: stress = 1.0_wp, length = 0.0_wp
+      !> Arms of the three motions and widths of the nodes in these units, shapes (nodes, 3), (nodes).
+      real(wp), allocatable :: normal_arm(:, :), tangential_arm(:, :), width(:)
+      !> Nodes in contact, held nodes, and free motions, ascending.
+      integer, allocatable :: contact(:), held(:), free(:)
+      !> Slopes of slipping nodes, zero for others, shape (nodes).
+      real(wp), allocatable :: slope(:)
+      !> Softness and slope of the held nodes, shape (held).
+      real(wp), allocatable :: softness(:), held_slope(:)
+      !> Whether pressures act on the rows of held nodes.
+      logical :: coupled = .false.
+      !> Preconditioned columns of the free motions, shape (contact + held, free), and the Schur complement, shape (free, free).
+      real(wp), allocatable :: columns(:, :), schur(:, :)
+      !> Tractions and displacements last multiplied, shape (nodes); and those of the last residual: pressure, shear, normal,
+      !> tangential, shape (nodes, 4).
+      real(wp), allocatable :: pressure(:), shear(:), normal(:), tangential(:), found(:, :)
+      !> The rates found last, shape (nodes), and their motions.
+      real(wp), allocatable :: last_pressure(:), last_shear(:)
+      !> First and last node in contact and held then; zero where there were gaps.
+      integer :: last_contact(2) = 0, last_held(2) = 0
+      real(wp) :: last_motion(3) = 0.0_wp
+   contains
+      procedure :: solve
+   end type krylov_system_type
+
+   !> The iteration is begun anew so often.
+   integer, parameter :: most_passes = 20
+   !> Noise in parts of the tolerance: the 2-norm says little of a single node.
+   real(wp), parameter :: margin = 4.0_wp
+
+contains
+
+   !> See mfv_contact_system.
+   subroutine solve(self, model, constraints, start, response, singular)
+      class(krylov_system_type), intent(inout) :: self
+      type(contact_model_type), intent(in) :: model
+      type(constraints_type), intent(in) :: constraints
+      type(contact_fields_type), intent(in) :: start
+      type(response_type), intent(out) :: response
+      logical, intent(out) :: singular
+      type(right_side_type) :: right
+      real(wp), allocatable :: unknowns(:)
+
+      self%solves = self%solves + 1
+      self%noise = max(self%noise, margin*model%scene%method%linear_tolerance)
+      call meet_mesh(self, model)
+      call choose_unknowns(self, model, constraints)
+      call prepare_preconditioner(self, model, singular)
+      if (singular) return
+
+      right = right_of_state(self, model, constraints)
+      unknowns = packed(self, start%pressure/self%stress, start%shear/self%stress, &
+                        [start%approach/self%length, start%shift/self%length, start%rotation])
+      call iterate(self, model, right, unknowns, singular)
+      if (singular) return
+      response%state = fields_of(self, model, right, unknowns)
+      call meet_loads(self, model, constraints, response%state, .false.)
+
+      right = right_of_rates(self, model, constraints)
+      unknowns = guess_of_rates(self)
+      call iterate(self, model, right, unknowns, singular)
+      if (singular) return
+      response%rate = fields_of(self, model, right, unknowns)
+      call meet_loads(self, model, constraints, response%rate, .true.)
+      self%last_pressure = self%found(:, 1)
+      self%last_shear = self%found(:, 2)
+      self%last_contact = ends_of(self%contact)
+      self%last_held = ends_of(self%held)
+      self%last_motion = motion_of(self, right, unknowns)
+   end subroutine solve
+
+   !> Units, arms and work space of the mesh as it is now; the last rates go along with a mesh that has grown.
+   subroutine meet_mesh(self, model)
+      class(krylov_system_type), intent(inout) :: self
+      type(contact_model_type), intent(in) :: model
+      integer :: n
+
+      n = model%nodes()
+      if (.not. self%length > 0.0_wp) then
+         self%length = model%length()
+         self%stress = model%compliance%modulus
+      end if
+      call self%preconditioner%prepare(model%compliance, self%length/self%stress)
+      if (allocated(self%pressure)) then
+         if (size(self%pressure) == n) return
+         deallocate (self%pressure, self%shear, self%normal, self%tangential, self%found)
+      end if
+      allocate (self%pressure(n), self%shear(n), self%normal(n), self%tangential(n), self%found(n, 4), source=0.0_wp)
+      self%normal_arm = model%normal_arm
+      self%tangential_arm = model%tangential_arm
+      self%normal_arm(:, along_rotation) = self%normal_arm(:, along_rotation)/self%length
+      self%tangential_arm(:, along_rotation) = self%tangential_arm(:, along_rotation)/self%length
+      self%width = model%width/self%length
+      if (allocated(self%last_pressure)) then
+         where (self%last_contact > 0) self%last_contact = self%last_contact + (n - size(self%last_pressure))/2
+         where (self%last_held > 0) self%last_held = self%last_held + (n - size(self%last_pressure))/2
+      end if
+      call widen(self%last_pressure, n)
+      call widen(self%last_shear, n)
+   end subroutine meet_mesh
+
+   !> The values on a mesh of `n` nodes that has grown by equally many at either end.
+   subroutine widen(values, n)
+      real(wp), allocatable, intent(inout) :: values(:)
+      integer, intent(in) :: n
+      real(wp), allocatable :: wider(:)
+      integer :: extra
+
+      allocate (wider(n), source=0.0_wp)
+      if (allocated(values)) then
+         extra = (n - size(values))/2
+         if (extra >= 0) wider(extra + 1:extra + size(values)) = values
+      end if
+      call move_alloc(wider, values)
+   end subroutine widen
+
+   !> Which nodes and motions have unknowns, and the lines of friction.
+   subroutine choose_unknowns(self, model, constraints)
+      class(krylov_system_type), intent(inout) :: self
+      type(contact_model_type), intent(in) :: model
+      type(constraints_type), intent(in) :: constraints
+      real(wp), parameter :: no_stiffness = 1.0e-14_wp
+      logical, dimension(size(constraints%status)) :: is_held, follows
+      real(wp), dimension(size(constraints%status)) :: stiffness
+      logical :: free(3)
+      integer :: i, n
+
+      n = size(constraints%status)
+      follows = slips(constraints%status) .or. creeps(constraints%status)
+      stiffness = 0.0_wp
+      where (follows) stiffness = constraints%row%stiffness*(self%length/self%stress)
+      where (abs(stiffness) <= no_stiffness) stiffness = 0.0_wp
+      is_held = constraints%status == node_stick .or. abs(stiffness) > 0.0_wp
+      self%contact = pack([(i, i=1, n)], in_contact(constraints%status))
+      self%held = pack([(i, i=1, n)], is_held)
+      self%slope = merge(constraints%row%slope, 0.0_wp, follows .and. .not. is_held)
+      self%held_slope = merge(constraints%row(self%held)%slope, 0.0_wp, follows(self%held))
+      self%softness = 0.0_wp*self%held_slope
+      where (follows(self%held)) self%softness = -1.0_wp/stiffness(self%held)
+      self%coupled = model%compliance%has_block(block_up) .or. any(abs(self%slope) > 0.0_wp) .or. &
+                     any(abs(self%held_slope) > 0.0_wp)
+      self%coupled = self%coupled .and. size(self%held) > 0
+
+      free(along_approach) = constraints%normal%control == control_force
+      free(along_shift) = constraints%tangential%control == control_force .and. (any(is_held) .or. any(follows))
+      free(along_rotation) = constraints%rotational%control == control_force .and. model%rotational
+      self%free = pack([along_approach, along_shift, along_rotation], free)
+   end subroutine choose_unknowns
+
+   !> The preconditioner for these unknowns. `singular`: the free motions are not determined.
+   subroutine prepare_preconditioner(self, model, singular)
+      class(krylov_system_type), intent(inout) :: self
+      type(contact_model_type), intent(in) :: model
+      logical, intent(out) :: singular
+      real(wp), parameter :: no_pivot = 1.0e-13_wp
+      real(wp) :: scaled(size(self%free), size(self%free))
+      integer :: i, j, m
+
+      call self%preconditioner%set_contact(self%contact)
+      call self%preconditioner%set_held(self%held, self%softness)
+      m = size(self%contact)
+      if (allocated(self%columns)) deallocate (self%columns, self%schur)
+      allocate (self%columns(m + size(self%held), size(self%free)), self%schur(size(self%free), size(self%free)))
+      do j = 1, size(self%free)
+         self%columns(:m, j) = -self%normal_arm(self%contact, self%free(j))
+         self%columns(m + 1:, j) = -self%tangential_arm(self%held, self%free(j))
+         call precondition_tractions(self, model, self%columns(:, j))
+         call spread_tractions(self, self%columns(:, j))
+         do i = 1, size(self%free)
+            self%schur(i, j) = resultant(self, self%free(i))
+         end do
+      end do
+      singular = .false.
+      do j = 1, size(self%free)
+         do i = 1, size(self%free)
+            singular = singular .or. .not. abs(self%schur(i, i)*self%schur(j, j)) > 0.0_wp
+            if (.not. singular) scaled(i, j) = self%schur(i, j)/sqrt(abs(self%schur(i, i)*self%schur(j, j)))
+         end do
+      end do
+      if (.not. singular) singular = smallest_pivot(scaled) < no_pivot
+   end subroutine prepare_preconditioner
+
+   !> The smallest pivot of a small matrix, used as work space, in complete elimination.
+   pure real(wp) function smallest_pivot(matrix) result(smallest)
+      real(wp), intent(in) :: matrix(:, :)
+      real(wp) :: left(size(matrix, 1), size(matrix, 2))
+      integer :: i, k, place(2)
+
+      left = matrix
+      smallest = huge(1.0_wp)
+      do k = 1, size(left, 1)
+         place = maxloc(abs(left))
+         smallest = min(smallest, abs(left(place(1), place(2))))
+         if (.not. smallest > 0.0_wp) return
+         do i = 1, size(left, 1)
+            if (i /= place(1)) left(i, :) = left(i, :) - left(i, place(2))/left(place(1), place(2))*left(place(1), :)
+         end do
+         left(place(1), :) = 0.0_wp
+         left(:, place(2)) = 0.0_wp
+      end do
+   end function smallest_pivot
+
+   !> What the constraints prescribe for the state.
+   function right_of_state(self, model, constraints) result(right)
+      class(krylov_system_type), intent(in) :: self
+      type(contact_model_type), intent(in) :: model
+      type(constraints_type), intent(in) :: constraints
+      type(right_side_type) :: right
+      integer :: m
+
+      m = size(self%contact)
+      call set_loads(self, model, constraints, [constraints%normal%value, constraints%tangential%value, &
+                                                constraints%rotational%value], constraints%row%offset, right)
+      right%rows(:m) = -model%initial_gap(self%contact)/self%length
+      where (constraints%status(self%held) == node_stick) &
+         right%rows(m + 1:m + size(self%held)) = constraints%stuck_slip(self%held)/self%length
+   end function right_of_state
+
+   !> What they prescribe for the rates.
+   function right_of_rates(self, model, constraints) result(right)
+      class(krylov_system_type), intent(in) :: self
+      type(contact_model_type), intent(in) :: model
+      type(constraints_type), intent(in) :: constraints
+      type(right_side_type) :: right
+      integer :: m
+
+      m = size(self%contact)
+      call set_loads(self, model, constraints, [constraints%normal%rate, constraints%tangential%rate, &
+                                                constraints%rotational%rate], constraints%offset_rate, right)
+      if (allocated(constraints%gap_rate)) right%rows(:m) = constraints%gap_rate(self%contact)/self%length
+      if (.not. allocated(constraints%slip_rate)) return
+      where (constraints%status(self%held) == node_stick) &
+         right%rows(m + 1:m + size(self%held)) = constraints%slip_rate(self%held)/self%length
+   end function right_of_rates
+
+   !> Loads (`values` of the normal, tangential and rotational one) and offsets; the other rows are zero.
+   subroutine set_loads(self, model, constraints, values, offset, right)
+      class(krylov_system_type), intent(in) :: self
+      type(contact_model_type), intent(in) :: model
+      type(constraints_type), intent(in) :: constraints
+      real(wp), intent(in) :: values(3), offset(:)
+      type(right_side_type), intent(out) :: right
+      real(wp) :: force_unit(3), motion_unit(3)
+      logical :: follows(size(offset))
+      integer :: m
+
+      m = size(self%contact)
+      force_unit = self%stress*self%length*[1.0_wp, 1.0_wp, self%length]
+      motion_unit = [self%length, self%length, 1.0_wp]
+      allocate (right%rows(m + size(self%held) + size(self%free)), source=0.0_wp)
+      right%rows(m + size(self%held) + 1:) = values(self%free)/force_unit(self%free)
+      right%motion = values/motion_unit
+      right%motion(self%free) = 0.0_wp
+      if (.not. model%rotational) right%motion(along_rotation) = 0.0_wp
+      follows = slips(constraints%status) .or. creeps(constraints%status)
+      right%offset = merge(offset, 0.0_wp, follows)/self%stress
+      right%rows(m + 1:m + size(self%held)) = self%softness*right%offset(self%held)
+      right%offset(self%held) = 0.0_wp
+   end subroutine set_loads
+
+   !> The unknowns out of fields, shape (nodes), and motions.
+   function packed(self, pressure, shear, motion) result(unknowns)
+      class(krylov_system_type), intent(in) :: self
+      real(wp), intent(in) :: pressure(:), shear(:), motion(3)
+      real(wp), allocatable :: unknowns(:)
+
+      unknowns = [pressure(self%contact), shear(self%held), motion(self%free)]
+   end function packed
+
+   !> The rates found last as a guess: on nodes without gaps stretched to where these are now, so that what is singular at the
+   !> ends stays there; else node by node.
+   function guess_of_rates(self) result(unknowns)
+      class(krylov_system_type), intent(in) :: self
+      real(wp), allocatable :: unknowns(:)
+      real(wp), dimension(size(self%last_pressure)) :: pressure, shear
+
+      pressure = self%last_pressure
+      shear = self%last_shear
+      call stretch(self%last_contact, ends_of(self%contact), pressure)
+      call stretch(self%last_held, ends_of(self%held), shear)
+      unknowns = packed(self, pressure, shear, self%last_motion)
+   end function guess_of_rates
+
+   !> First and last of nodes without gaps; zero where there are gaps, or none.
+   pure function ends_of(nodes) result(ends)
+      integer, intent(in) :: nodes(:)
+      integer :: ends(2)
+
+      ends = 0
+      if (size(nodes) == 0) return
+      if (nodes(size(nodes)) - nodes(1) == size(nodes) - 1) ends = [nodes(1), nodes(size(nodes))]
+   end function ends_of
+
+   !> Values between the nodes `old(1)` and `old(2)` on those between `new(1)` and `new(2)`, by linear interpolation.
+   pure subroutine stretch(old, new, values)
+      integer, intent(in) :: old(2), new(2)
+      real(wp), intent(inout) :: values(:)
+      real(wp) :: before(size(values)), place, ratio
+      integer :: i, left
+
+      if (all(old == new) .or. any([old, new] == 0) .or. old(2) == old(1) .or. new(2) == new(1)) return
+      before = values
+      ratio = real(old(2) - old(1), wp)/(new(2) - new(1))
+      do i = new(1), new(2)
+         place = old(1) + ratio*(i - new(1))
+         left = min(int(place), old(2) - 1)
+         values(i) = before(left) + (place - left)*(before(left + 1) - before(left))
+      end do
+   end subroutine stretch
+
+   !> All three motions.
+   pure function motion_of(self, right, unknowns) result(motion)
+      class(krylov_system_type), intent(in) :: self
+      type(right_side_type), intent(in) :: right
+      real(wp), intent(in) :: unknowns(:)
+      real(wp) :: motion(3)
+
+      motion = right%motion
+      motion(self%free) = unknowns(size(self%contact) + size(self%held) + 1:)
+   end function motion_of
+
+   !> Improve `unknowns` until they are right. `fails`: they do not become so. `found` is then theirs.
+   subroutine iterate(self, model, right, unknowns, fails)
+      class(krylov_system_type), intent(inout) :: self
+      type(contact_model_type), intent(in) :: model
+      type(right_side_type), intent(in) :: right
+      real(wp), intent(inout) :: unknowns(:)
+      logical, intent(out) :: fails
+      real(wp), parameter :: worth_keeping = 0.5_wp, progress = 0.5_wp, good_enough = 1.0e-9_wp
+      real(wp) :: rows(size(unknowns)), reached, before, scale, target
+      integer :: pass
+      logical :: done
+
+      fails = .false.
+      done = .false.
+      scale = 0.0_wp
+      before = huge(1.0_wp)
+      target = 0.0_wp
+      do pass = 1, most_passes
+         call find_residual(self, model, right, unknowns, rows)
+         if (done) return
+         call precondition(self, model, rows)
+         reached = norm2(rows)
+         fails = .not. ieee_is_finite(reached)
+         if (fails) return
+         if (pass == 1 .and. reached > worth_keeping*norm2(unknowns)) then
+            ! Nothing is nearer than that guess.
+            if (any(abs(unknowns) > 0.0_wp)) then
+               unknowns = 0.0_wp
+               call find_residual(self, model, right, unknowns, rows)
+               call precondition(self, model, rows)
+               reached = norm2(rows)
+            end if
+         end if
+         scale = max(scale, reached, norm2(unknowns))
+         target = max(model%scene%method%linear_tolerance*scale, round_off(self, right))
+         ! What is right but for the noise stays.
+         if (reached <= merge(margin, 1.0_wp, pass == 1)*target) return
+         if (reached > progress*before) exit
+         before = reached
+         call improve(self, model, rows, target, unknowns, done)
+      end do
+      fails = reached > max(good_enough*scale, 1.0e2_wp*target)
+   end subroutine iterate
+
+   !> What round-off in the displacements makes of the unknowns (2-norm).
+   real(wp) function round_off(self, right)
+      class(krylov_system_type), intent(in) :: self
+      type(right_side_type), intent(in) :: right
+      real(wp) :: largest
+
+      largest = maxval(abs(right%motion))
+      if (size(self%contact) > 0) largest = max(largest, maxval(abs(self%found(self%contact, 3))), &
+                                                maxval(abs(right%rows(:size(self%contact)))))
+      if (size(self%held) > 0) largest = max(largest, maxval(abs(self%found(self%held, 4))))
+      round_off = epsilon(1.0_wp)*largest/self%preconditioner%smallest()*sqrt(real(size(right%rows), wp))
+   end function round_off
+
+   !> One cycle of GMRES on the preconditioned residual `rows`; `done`: it has come to the target.
+   subroutine improve(self, model, rows, target, unknowns, done)
+      class(krylov_system_type), intent(inout) :: self
+      type(contact_model_type), intent(in) :: model
+      real(wp), intent(inout) :: rows(:)
+      real(wp), intent(in) :: target
+      real(wp), intent(inout) :: unknowns(:)
+      logical, intent(out) :: done
+      real(wp) :: vector(size(rows))
+
+      call self%gmres%start(rows)
+      do while (self%gmres%residual() > target .and. .not. self%gmres%is_full())
+         call self%gmres%direction(vector)
+         call multiply(self, model, vector, rows)
+         call precondition(self, model, rows)
+         call self%gmres%extend(rows)
+         self%iterations = self%iterations + 1
+      end do
+      call self%gmres%add_solution(unknowns)
+      done = self%gmres%residual() <= target
+   end subroutine improve
+
+   !> Right-hand side less what the unknowns make, which is kept in `found`.
+   subroutine find_residual(self, model, right, unknowns, rows)
+      class(krylov_system_type), intent(inout) :: self
+      type(contact_model_type), intent(in) :: model
+      type(right_side_type), intent(in) :: right
+      real(wp), intent(in) :: unknowns(:)
+      real(wp), intent(out) :: rows(:)
+
+      call spread_tractions(self, unknowns)
+      self%shear = self%shear + right%offset
+      call displace(self, model)
+      self%found(:, 1) = self%pressure
+      self%found(:, 2) = self%shear
+      self%found(:, 3) = self%normal
+      self%found(:, 4) = self%tangential
+      call collect_rows(self, motion_of(self, right, unknowns), rows)
+      rows = right%rows - rows
+   end subroutine find_residual
+
+   !> The rows of a change of the unknowns.
+   subroutine multiply(self, model, unknowns, rows)
+      class(krylov_system_type), intent(inout) :: self
+      type(contact_model_type), intent(in) :: model
+      real(wp), intent(in) :: unknowns(:)
+      real(wp), intent(out) :: rows(:)
+      real(wp) :: motion(3)
+
+      motion = 0.0_wp
+      motion(self%free) = unknowns(size(self%contact) + size(self%held) + 1:)
+      call spread_tractions(self, unknowns)
+      call displace(self, model)
+      call collect_rows(self, motion, rows)
+   end subroutine multiply
+
+   !> Tractions of all nodes from the unknowns; of the slip lines without offset.
+   subroutine spread_tractions(self, unknowns)
+      class(krylov_system_type), intent(inout) :: self
+      real(wp), intent(in) :: unknowns(:)
+      integer :: m
+
+      m = size(self%contact)
+      self%pressure = 0.0_wp
+      self%pressure(self%contact) = unknowns(:m)
+      self%shear = self%slope*self%pressure
+      self%shear(self%held) = unknowns(m + 1:m + size(self%held))
+   end subroutine spread_tractions
+
+   !> Displacements by the tractions.
+   subroutine displace(self, model)
+      class(krylov_system_type), intent(inout) :: self
+      type(contact_model_type), intent(in) :: model
+      real(wp) :: unit
+
+      call model%compliance%displacements(self%pressure, self%shear, self%normal, self%tangential)
+      unit = self%stress/self%length
+      self%normal = unit*self%normal
+      self%tangential = unit*self%tangential
+      self%products = self%products + 1
+   end subroutine displace
+
+   !> Left-hand sides of all rows with the tractions and displacements of now.
+   subroutine collect_rows(self, motion, rows)
+      class(krylov_system_type), intent(in) :: self
+      real(wp), intent(in) :: motion(3)
+      real(wp), intent(out) :: rows(:)
+      integer :: i, m, s
+
+      m = size(self%contact)
+      s = size(self%held)
+      rows(:m) = self%normal(self%contact) - matmul(self%normal_arm(self%contact, :), motion)
+      rows(m + 1:m + s) = self%tangential(self%held) - matmul(self%tangential_arm(self%held, :), motion) &
+                          + self%softness*(self%shear(self%held) - self%held_slope*self%pressure(self%held))
+      do i = 1, size(self%free)
+         rows(m + s + i) = resultant(self, self%free(i))
+      end do
+   end subroutine collect_rows
+
+   !> Resultant of the tractions of now, as mfv_contact_model has it.
+   pure real(wp) function resultant(self, along)
+      class(krylov_system_type), intent(in) :: self
+      integer, intent(in) :: along
+
+      resultant = sum(self%width*(self%normal_arm(:, along)*self%pressure + self%tangential_arm(:, along)*self%shear))
+   end function resultant
+
+   !> Unknowns, approximately, by the rows: the free motions so that the resultants are right.
+   subroutine precondition(self, model, rows)
+      class(krylov_system_type), intent(inout) :: self
+      type(contact_model_type), intent(in) :: model
+      real(wp), intent(inout) :: rows(:)
+      real(wp) :: motion(size(self%free))
+      integer :: i, n
+
+      n = size(self%contact) + size(self%held)
+      call precondition_tractions(self, model, rows(:n))
+      if (size(self%free) == 0) return
+      call spread_tractions(self, rows)
+      do i = 1, size(self%free)
+         motion(i) = resultant(self, self%free(i)) - rows(n + i)
+      end do
+      motion = solution(self%schur, motion)
+      rows(:n) = rows(:n) - matmul(self%columns, motion)
+      rows(n + 1:) = motion
+   end subroutine precondition
+
+   !> Tractions, approximately, by the displacements in `rows`, shape (contact + held), with no motion.
+   subroutine precondition_tractions(self, model, rows)
+      class(krylov_system_type), intent(inout) :: self
+      type(contact_model_type), intent(in) :: model
+      real(wp), intent(inout) :: rows(:)
+      integer :: m
+
+      m = size(self%contact)
+      if (m == 0) return
+      call self%preconditioner%apply_contact(rows(:m))
+      if (size(self%held) == 0) return
+      if (self%coupled .and. any(abs(rows(:m)) > 0.0_wp)) then
+         self%pressure = 0.0_wp
+         self%pressure(self%contact) = rows(:m)
+         self%shear = self%slope*self%pressure
+         call displace(self, model)
+         rows(m + 1:) = rows(m + 1:) - self%tangential(self%held) &
+                        + self%softness*self%held_slope*self%pressure(self%held)
+      end if
+      call self%preconditioner%apply_held(rows(m + 1:))
+   end subroutine precondition_tractions
+
+   !> Solution of a small system, by elimination with pivots.
+   pure function solution(matrix, right) result(x)
+      real(wp), intent(in) :: matrix(:, :), right(:)
+      real(wp) :: x(size(right)), left(size(right), size(right) + 1), row(size(right) + 1)
+      integer :: i, k, pivot
+
+      left(:, :size(right)) = matrix
+      left(:, size(right) + 1) = right
+      do k = 1, size(right)
+         pivot = k - 1 + maxloc(abs(left(k:, k)), dim=1)
+         row = left(pivot, :)
+         left(pivot, :) = left(k, :)
+         left(k, :) = row/row(k)
+         do i = 1, size(right)
+            if (i /= k) left(i, :) = left(i, :) - left(i, k)*left(k, :)
+         end do
+      end do
+      x = left(:, size(right) + 1)
+   end function solution
+
+   !> Fields of the tractions and displacements in `found` and the motions.
+   function fields_of(self, model, right, unknowns) result(fields)
+      class(krylov_system_type), intent(in) :: self
+      type(contact_model_type), intent(in) :: model
+      type(right_side_type), intent(in) :: right
+      real(wp), intent(in) :: unknowns(:)
+      type(contact_fields_type) :: fields
+      real(wp) :: motion(3)
+
+      fields = new_contact_fields(size(self%pressure))
+      motion = motion_of(self, right, unknowns)
+      fields%approach = self%length*motion(along_approach)
+      fields%shift = self%length*motion(along_shift)
+      fields%rotation = motion(along_rotation)
+      fields%pressure = self%stress*self%found(:, 1)
+      fields%shear = self%stress*self%found(:, 2)
+      fields%normal = self%length*self%found(:, 3) - model%rigid_normal(fields)
+      fields%tangential = self%length*self%found(:, 4) - model%rigid_tangential(fields)
+   end function fields_of
+
+   !> Forces: those that are prescribed, and the resultants of the others. Prescribed motions to the last digit.
+   subroutine meet_loads(self, model, constraints, fields, rates)
+      class(krylov_system_type), intent(in) :: self
+      type(contact_model_type), intent(in) :: model
+      type(constraints_type), intent(in) :: constraints
+      type(contact_fields_type), intent(inout) :: fields
+      logical, intent(in) :: rates
+
+      call meet(constraints%normal, along_approach, fields%normal_force, fields%approach)
+      call meet(constraints%tangential, along_shift, fields%tangential_force, fields%shift)
+      if (model%rotational) call meet(constraints%rotational, along_rotation, fields%moment, fields%rotation)
+
+   contains
+
+      subroutine meet(load, along, force, motion)
+         type(load_type), intent(in) :: load
+         integer, intent(in) :: along
+         real(wp), intent(inout) :: force, motion
+
+         if (any(self%free == along)) then
+            force = merge(load%rate, load%value, rates)
+         else
+            motion = merge(load%rate, load%value, rates)
+            force = model%resultant(along, fields%pressure, fields%shear)
+         end if
+      end subroutine meet
+   end subroutine meet_loads
+
+end module mfv_krylov_system

@@ -1,0 +1,284 @@
+!> Leaps: a part of the load history at once, as an integrator would take it.
+!>
+!> A leap holds stuck nodes at the slip that they have at its start, and asks at its end alone that every equality and inequality
+!> of dissertation Table 2.1 holds, slip counted from start to end (mfv_active_set). Two leaps of half the length go the same way
+!> again; where they end with the same tractions, to a part `leap_tolerance` of the largest, they are taken, else the leap is
+!> shortened. Where every node slips in one direction only, and holds before and after at one place, no way matters and one leap
+!> is exact (Mindlin: constant pressure, growing shear). Where it matters, a node that touches on the way holds at the slip that
+!> it had at the start, a node that slips and sticks again on the way is taken never to have slipped: errors of the first power of
+!> the length, which the tolerance bounds leap by leap, not in sum.
+!>
+!> What leaps cannot settle, however short, goes by events (mfv_first_violation) for as long: so gross sliding, separation and the
+!> like end as they do there. Of leaps the certificate checks the ends.
+module mfv_leap
+   use mfv_compliance, only: block_up, block_wt
+   use mfv_contact_fields, only: contact_fields_type
+   use mfv_contact_model, only: contact_model_type
+   use mfv_contact_path
+   use mfv_contact_state, only: contact_state_type
+   use mfv_error, only: error_type
+   use mfv_first_violation, only: lead_by_violations
+   use mfv_kinds, only: wp
+   use mfv_node_status
+   use mfv_observer, only: observer_type
+   use mfv_scene, only: control_force
+   use mfv_status, only: MFV_INTERRUPTED
+   use mfv_straight, only: before_separation, carries_nothing_yet, grow_mesh, lead_straight, part_of, settle_on_mesh
+   implicit none
+   private
+   public :: lead_by_leaps
+
+   !> The shortest leap, in parts of a segment; and by how much the next may be longer or shorter than this one.
+   real(wp), parameter :: shortest = 1.0e-4_wp, most_growth = 8.0_wp, least_shrink = 0.125_wp, most_shrink = 0.5_wp, &
+                          safety = 0.7_wp
+
+   !> A leap and its two halves, or the leap alone where it is exact.
+   type :: leap_type
+      !> State before each part, with the statuses on the way through it; and fields after it; parts.
+      type(contact_state_type) :: state(2)
+      type(contact_fields_type) :: after(2)
+      !> What friction dissipates in each part, energy per unit thickness.
+      real(wp) :: dissipated(2) = 0.0_wp
+      integer :: parts = 0
+      !> Whether the statuses were found, or at least the mesh was too short for them.
+      logical :: settled = .false., exceeded = .false.
+      !> Largest difference of the tractions at the end between the leap and its halves, and the largest of them, force/length^2;
+      !> the same of what friction dissipates.
+      real(wp) :: difference = 0.0_wp, traction = 0.0_wp, work_difference = 0.0_wp, work = 0.0_wp
+   end type leap_type
+
+contains
+
+   !> Lead the loads along one segment by leaps. `observer` is told of every leap.
+   !> Errors, each leaving the last admissible state in place: those of mfv_first_violation.
+   subroutine lead_by_leaps(path, segment, observer, error)
+      class(contact_path_type), intent(inout) :: path
+      type(segment_type), intent(in) :: segment
+      class(observer_type), intent(inout), optional :: observer
+      type(error_type), allocatable, intent(out) :: error
+      type(leap_type) :: leap
+      real(wp) :: done, goal, length, by_events, traction, work, error_ratio
+      logical :: grown, accepted
+
+      if (.not. (segment%friction .and. path%model%scene%friction%acts())) then
+         call lead_straight(path, segment, observer, error)
+         return
+      end if
+      call path%start_segment(segment, error)
+      if (allocated(error)) return
+      goal = before_separation(segment)
+      if (carries_nothing_yet(path, segment)) goal = 0.0_wp
+      done = 0.0_wp
+      length = goal
+      by_events = shortest
+      traction = path%certificate%traction_scale()
+      work = path%state%dissipation
+      do while (done < goal)
+         if (length >= (1.0_wp - shortest)*(goal - done)) length = goal - done
+         call try_leap(path, segment, done, length, leap)
+         traction = max(traction, leap%traction)
+         work = max(work, path%state%dissipation + leap%work)
+         if (leap%exceeded) then
+            call grow_mesh(path, grown)
+            if (grown) cycle
+         end if
+         error_ratio = ratio(leap, path%model%scene%method%leap_tolerance, traction, work)
+         accepted = leap%settled .and. error_ratio <= 1.0_wp
+         if (accepted) then
+            call take(path, leap)
+            done = merge(goal, done + length, length >= goal - done)
+            by_events = shortest
+            call tell(path, part_of(segment, 0.0_wp, done), observer, error)
+         else if (length <= shortest) then
+            length = min(by_events, goal - done)
+            call lead_by_violations(path, part_of(segment, done, done + length), observer, error)
+            done = merge(goal, done + length, length >= goal - done)
+            by_events = 2.0_wp*by_events
+         end if
+         if (allocated(error)) return
+         length = max(length*change(leap%settled, accepted, error_ratio), shortest)
+      end do
+      if (goal < 1.0_wp) call lead_by_violations(path, part_of(segment, goal, 1.0_wp), observer, error)
+   end subroutine lead_by_leaps
+
+   !> By how much a leap errs, in parts of what it may: tractions of the largest so far, dissipation of that so far.
+   pure real(wp) function ratio(leap, tolerance, traction, work)
+      type(leap_type), intent(in) :: leap
+      real(wp), intent(in) :: tolerance, traction, work
+
+      ratio = 0.0_wp
+      if (traction > 0.0_wp) ratio = leap%difference/(tolerance*traction)
+      if (work > 0.0_wp) ratio = max(ratio, leap%work_difference/(tolerance*work))
+   end function ratio
+
+   !> By which factor the next leap is longer than this one, as for an integrator of first order.
+   pure real(wp) function change(settled, accepted, error_ratio)
+      logical, intent(in) :: settled, accepted
+      real(wp), intent(in) :: error_ratio
+
+      change = merge(most_growth, most_shrink, settled)
+      if (settled .and. error_ratio > 0.0_wp) change = safety/sqrt(error_ratio)
+      if (accepted) then
+         change = min(max(change, 1.0_wp), most_growth)
+      else
+         change = max(min(change, most_shrink), least_shrink)
+      end if
+   end function change
+
+   !> Tell the observer of where `done` ends. Error MFV_INTERRUPTED.
+   subroutine tell(path, done, observer, error)
+      class(contact_path_type), intent(inout) :: path
+      type(segment_type), intent(in) :: done
+      class(observer_type), intent(inout), optional :: observer
+      type(error_type), allocatable, intent(out) :: error
+      logical :: stop_wanted
+
+      if (.not. present(observer)) return
+      call observer%notify(path%state, done%number, done%segments, done%to, stop_wanted)
+      if (stop_wanted) call path%end_here(MFV_INTERRUPTED, 'stopped on request', error)
+   end subroutine tell
+
+   !> Leap from the part `done` of the segment as far as `length`, at once and in halves. `path` stays as it is.
+   subroutine try_leap(path, segment, done, length, leap)
+      class(contact_path_type), intent(inout) :: path
+      type(segment_type), intent(in) :: segment
+      real(wp), intent(in) :: done, length
+      type(leap_type), intent(out) :: leap
+      type(contact_state_type) :: start
+      type(contact_fields_type) :: whole
+      integer :: status(size(path%state%status))
+
+      start = path%state
+      call guess_slip(path, segment, done + length)
+      call settle_on_mesh(path, segment, done + length, whole, leap%settled, leap%exceeded)
+      status = path%state%status
+      if (leap%settled) then
+         leap%traction = max(maxval(abs(whole%pressure)), maxval(abs(whole%shear)))
+         leap%work = dissipation(path%model, path%state, whole)
+         if (moves_nothing(path, segment, whole)) then
+            leap%parts = 1
+            leap%state(1) = path%state
+            leap%after(1) = whole
+            leap%dissipated(1) = leap%work
+         else
+            path%state = start
+            call halve(path, segment, done, length, status, leap)
+            if (leap%settled) then
+               leap%difference = max(maxval(abs(leap%after(2)%pressure - whole%pressure)), &
+                                     maxval(abs(leap%after(2)%shear - whole%shear)))
+               leap%work_difference = abs(sum(leap%dissipated) - leap%work)
+            end if
+         end if
+      end if
+      path%state = start
+   end subroutine try_leap
+
+   !> The two halves of a leap that ended with the statuses `status`, shape (nodes).
+   subroutine halve(path, segment, done, length, status, leap)
+      class(contact_path_type), intent(inout) :: path
+      type(segment_type), intent(in) :: segment
+      real(wp), intent(in) :: done, length
+      integer, intent(in) :: status(:)
+      type(leap_type), intent(inout) :: leap
+      real(wp), parameter :: half = 0.5_wp
+
+      leap%parts = 2
+      call guess_slip(path, segment, done + half*length)
+      call settle_on_mesh(path, segment, done + half*length, leap%after(1), leap%settled, leap%exceeded)
+      if (.not. leap%settled) return
+      leap%state(1) = path%state
+      leap%dissipated(1) = dissipation(path%model, path%state, leap%after(1))
+      path%state%fields = leap%after(1)
+      call path%set_status(in_contact(path%state%status), status)
+      call settle_on_mesh(path, segment, done + length, leap%after(2), leap%settled, leap%exceeded)
+      leap%state(2) = path%state
+      if (leap%settled) leap%dissipated(2) = dissipation(path%model, path%state, leap%after(2))
+   end subroutine halve
+
+   !> A first guess of who slips at the part `part` of the segment: where the tangential load changes, nodes slip with it. Where
+   !> the normal load does not change, nor the pressures with it, and the tangential force does, as many as slip in Mindlin's contact of cylinders: the edge of
+   !> the stick zone is there where the pressure is sqrt(Q/(mu P)) of the largest; after a reversal with half the change in place
+   !> of Q.
+   subroutine guess_slip(path, segment, part)
+      class(contact_path_type), intent(inout) :: path
+      type(segment_type), intent(in) :: segment
+      real(wp), intent(in) :: part
+      integer, dimension(size(path%state%status)) :: status
+      real(wp) :: force, grip
+      logical :: reverses
+
+      if (.not. abs(segment%tangential%rate) > 0.0_wp) return
+      status = merge(node_slip_left, node_slip_right, segment%tangential%rate > 0.0_wp)
+      reverses = any(slips(path%state%status) .and. path%state%status /= status)
+      associate (fields => path%state%fields, load => segment%tangential)
+         grip = path%model%force(path%model%static_friction*fields%pressure)
+         if (load%control /= control_force .or. abs(segment%normal%rate) > 0.0_wp .or. .not. grip > 0.0_wp .or. &
+             path%model%compliance%has_block(block_wt)) then
+            call path%set_status(slips(path%state%status), status)
+            return
+         end if
+         force = load%value + part*load%rate
+         if (reverses) force = 0.5_wp*(force - fields%tangential_force)
+         force = max(sign(1.0_wp, load%rate)*force, 0.0_wp)
+         where (fields%pressure > sqrt(force/grip)*maxval(fields%pressure)) status = node_stick
+      end associate
+      call path%set_status(in_contact(path%state%status), status)
+   end subroutine guess_slip
+
+   !> Whether pressing without coupling, tangential load or shear is all that a leap to the fields `after` does: no way matters.
+   logical function moves_nothing(path, segment, after)
+      class(contact_path_type), intent(in) :: path
+      type(segment_type), intent(in) :: segment
+      type(contact_fields_type), intent(in) :: after
+      real(wp), parameter :: nothing = 1.0e-14_wp
+
+      associate (compliance => path%model%compliance, model => path%model)
+         moves_nothing = .not. (compliance%has_block(block_up) .or. compliance%has_block(block_wt) .or. &
+                                model%rotational .or. model%scene%mesh%radial)
+      end associate
+      if (.not. moves_nothing) return
+      moves_nothing = .not. abs(segment%tangential%rate) > 0.0_wp .and. .not. any(slips(path%state%status)) .and. &
+                      max(maxval(abs(path%state%fields%shear)), maxval(abs(after%shear))) &
+                      <= nothing*max(path%certificate%traction_scale(), maxval(abs(after%pressure)))
+   end function moves_nothing
+
+   !> Go where the leap led.
+   subroutine take(path, leap)
+      class(contact_path_type), intent(inout) :: path
+      type(leap_type), intent(in) :: leap
+      integer :: i
+
+      do i = 1, leap%parts
+         path%state%status = leap%state(i)%status
+         path%state%stuck_slip = leap%state(i)%stuck_slip
+         call path%take_increment(leap%after(i), leap%after(i)%slip() - path%state%fields%slip(), 0.0_wp, &
+                                  dissipated=leap%dissipated(i))
+      end do
+   end subroutine take
+
+   !> What friction dissipates on the way from `before`, which has the statuses on the way, to the fields `after`, energy per unit
+   !> thickness. Nodes that slip already at the start do so with tractions from those then to those after: the trapezoid. Others
+   !> begin to slip on the way, half way on the average; and nodes that part do so half way on the average. With constant
+   !> pressures this is exact, else of second order in the length of the leap.
+   pure real(wp) function dissipation(model, before, after)
+      type(contact_model_type), intent(in) :: model
+      type(contact_state_type), intent(in) :: before
+      type(contact_fields_type), intent(in) :: after
+      real(wp), parameter :: at_limit = 1.0e-9_wp
+      real(wp), dimension(size(before%status)) :: work, slipped, limit
+
+      slipped = after%slip() - before%stuck_slip
+      limit = model%static_friction*before%fields%pressure
+      where (slips(before%status) .and. -before%fields%shear*slip_sign(before%status) >= limit*(1.0_wp - at_limit))
+         work = -0.5_wp*(before%fields%shear + after%shear)*slipped
+      elsewhere (slips(before%status))
+         work = (0.75_wp*abs(after%shear) + 0.25_wp*limit)*abs(slipped)
+      elsewhere (.not. in_contact(before%status))
+         work = max(-0.25_wp*before%fields%shear*slipped, 0.0_wp)
+      elsewhere
+         work = 0.0_wp
+      end where
+      dissipation = model%force(work)
+   end function dissipation
+
+end module mfv_leap

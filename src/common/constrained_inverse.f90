@@ -1,0 +1,389 @@
+!> A symmetric linear system with constraints that come and go.
+!>
+!> The system A x = b + sum over c of lambda(c) e(slot(c)) has an unknown on the right side of the rows `slot`, and as many
+!> constraints more,
+!>
+!>     x(slot) - slope x(partner) - stiffness lambda = value.
+!>
+!> With the inverse T of A (mfv_updated_inverse) and its columns Q = T e(slot), the unknowns lambda come from the small system
+!> S = Q(slot, :) - slope Q(partner, :) - stiffness, whose inverse is kept and updated too: a constraint costs a column of T and
+!> as many operations as S has entries, and when all of them go nothing is left to do.
+module mfv_constrained_inverse
+   use mfv_kinds, only: wp
+   use mfv_updated_inverse, only: updated_inverse_type
+   implicit none
+   private
+   public :: constrained_inverse_type
+
+   type :: constrained_inverse_type
+      type(updated_inverse_type) :: inverse
+      !> Number of constraints; slot and partner (0: none) of each, slope and stiffness. Shapes (capacity); the first
+      !> `constraints` entries are in use.
+      integer :: constraints = 0
+      integer, allocatable :: slot(:), partner(:)
+      real(wp), allocatable :: slope(:), stiffness(:)
+      !> Columns of the inverse, shape (rows, constraints), and the inverse of S, shape (constraints, constraints); leading
+      !> parts. `stale`: the latter must be computed anew.
+      real(wp), allocatable, private :: columns(:, :), small(:, :)
+      logical, private :: stale = .false.
+   contains
+      procedure :: clear
+      procedure :: add_unknowns
+      procedure :: remove_unknown
+      procedure :: constrain
+      procedure :: release
+      procedure :: release_all
+      procedure :: postpone
+      procedure :: change_constraint
+      procedure :: refresh
+      procedure :: solve
+      procedure, private :: reserve
+      procedure, private :: follow_change
+      procedure, private :: functional
+      procedure, private :: border_small
+      procedure, private :: rebuild_small
+   end type constrained_inverse_type
+
+   interface
+      subroutine dgemv(trans, m, n, alpha, a, lda, x, incx, beta, y, incy)
+         import :: wp
+         character, intent(in) :: trans
+         integer, intent(in) :: m, n, lda, incx, incy
+         real(wp), intent(in) :: alpha, beta, a(lda, *), x(*)
+         real(wp), intent(inout) :: y(*)
+      end subroutine dgemv
+
+      subroutine dger(m, n, alpha, x, incx, y, incy, a, lda)
+         import :: wp
+         integer, intent(in) :: m, n, incx, incy, lda
+         real(wp), intent(in) :: alpha, x(*), y(*)
+         real(wp), intent(inout) :: a(lda, *)
+      end subroutine dger
+
+      subroutine dgetrf(m, n, a, lda, ipiv, info)
+         import :: wp
+         integer, intent(in) :: m, n, lda
+         real(wp), intent(inout) :: a(lda, *)
+         integer, intent(out) :: ipiv(*), info
+      end subroutine dgetrf
+
+      subroutine dgetri(n, a, lda, ipiv, work, lwork, info)
+         import :: wp
+         integer, intent(in) :: n, lda, lwork, ipiv(*)
+         real(wp), intent(inout) :: a(lda, *), work(*)
+         integer, intent(out) :: info
+      end subroutine dgetri
+   end interface
+
+   !> Pivots below this part of what they are made of are none.
+   real(wp), parameter :: no_pivot = 1.0e-12_wp
+
+contains
+
+   !> No unknowns, no constraints.
+   subroutine clear(self)
+      class(constrained_inverse_type), intent(inout) :: self
+
+      call self%inverse%clear()
+      call self%release_all()
+   end subroutine clear
+
+   !> More unknowns, the last ones; `borders`: see mfv_updated_inverse. `singular`: that cannot be done; what is left is of no
+   !> use then.
+   subroutine add_unknowns(self, borders, singular)
+      class(constrained_inverse_type), intent(inout) :: self
+      real(wp), intent(in) :: borders(:, :)
+      logical, intent(out) :: singular
+      integer :: i
+
+      singular = .false.
+      call self%reserve(size(borders, 1), self%constraints)
+      call self%inverse%prepare(borders)
+      do i = 1, size(borders, 2)
+         call self%inverse%add_prepared(singular)
+         if (singular) return
+         self%columns(self%inverse%order, :self%constraints) = 0.0_wp
+         call self%follow_change(self%inverse%order)
+      end do
+   end subroutine add_unknowns
+
+   !> Lose unknown `row`, which no constraint may name; the last one then takes its place.
+   subroutine remove_unknown(self, row, singular)
+      class(constrained_inverse_type), intent(inout) :: self
+      integer, intent(in) :: row
+      logical, intent(out) :: singular
+      integer :: last
+
+      last = self%inverse%order
+      call self%inverse%remove(row, singular)
+      if (singular) return
+      call self%follow_change(last)
+      associate (k => self%constraints)
+         if (k == 0) return
+         self%columns(row, :k) = self%columns(last, :k)
+         where (self%slot(:k) == last) self%slot(:k) = row
+         where (self%partner(:k) == last) self%partner(:k) = row
+      end associate
+   end subroutine remove_unknown
+
+   !> The last change of the inverse, of `rows` rows, in the columns and in S.
+   subroutine follow_change(self, rows)
+      class(constrained_inverse_type), intent(inout) :: self
+      integer, intent(in) :: rows
+      real(wp), dimension(self%constraints) :: along, across, by_along, by_across
+      real(wp) :: pivot
+      integer :: k
+
+      k = self%constraints
+      if (k == 0) return
+      associate (change => self%inverse%change, weight => self%inverse%change_weight)
+         across = change(self%slot(:k))
+         call dger(rows, k, weight, change, 1, across, 1, self%columns, size(self%columns, 1))
+         if (self%stale) return
+         along = self%functional(change)
+         call dgemv('N', k, k, 1.0_wp, self%small, size(self%small, 1), along, 1, 0.0_wp, by_along, 1)
+         call dgemv('T', k, k, 1.0_wp, self%small, size(self%small, 1), across, 1, 0.0_wp, by_across, 1)
+         pivot = 1.0_wp + weight*dot_product(across, by_along)
+         self%stale = abs(pivot) < no_pivot*max(1.0_wp, abs(pivot - 1.0_wp))
+         if (self%stale) return
+         call dger(k, k, -weight/pivot, by_along, 1, by_across, 1, self%small, size(self%small, 1))
+      end associate
+   end subroutine follow_change
+
+   !> x(slot) - slope x(partner) of every constraint.
+   pure function functional(self, x) result(values)
+      class(constrained_inverse_type), intent(in) :: self
+      real(wp), intent(in) :: x(:)
+      real(wp) :: values(self%constraints)
+      integer :: c
+
+      do c = 1, self%constraints
+         values(c) = x(self%slot(c))
+         if (self%partner(c) > 0) values(c) = values(c) - self%slope(c)*x(self%partner(c))
+      end do
+   end function functional
+
+   !> One more constraint, the last.
+   subroutine constrain(self, slot, partner, slope, stiffness)
+      class(constrained_inverse_type), intent(inout) :: self
+      integer, intent(in) :: slot, partner
+      real(wp), intent(in) :: slope, stiffness
+      real(wp), dimension(self%constraints) :: row, column
+      integer :: c, k, n
+
+      n = self%inverse%order
+      k = self%constraints
+      call self%reserve(n, k + 1)
+      self%slot(k + 1) = slot
+      self%partner(k + 1) = partner
+      self%slope(k + 1) = slope
+      self%stiffness(k + 1) = stiffness
+      call self%inverse%column(slot, self%columns(:n, k + 1))
+      if (.not. self%stale) then
+         do c = 1, k
+            row(c) = self%columns(slot, c)
+            if (partner > 0) row(c) = row(c) - slope*self%columns(partner, c)
+         end do
+         column = self%functional(self%columns(:n, k + 1))
+      end if
+      self%constraints = k + 1
+      if (self%stale) return
+      call self%border_small(row, column)
+   end subroutine constrain
+
+   !> S has a new last row and column.
+   subroutine border_small(self, row, column)
+      class(constrained_inverse_type), intent(inout) :: self
+      real(wp), intent(in) :: row(:), column(:)
+      real(wp), dimension(size(row)) :: by_column, by_row
+      real(wp) :: diagonal, pivot, values(size(row) + 1)
+      integer :: k, capacity
+
+      k = size(row)
+      capacity = size(self%small, 1)
+      values = self%functional(self%columns(:self%inverse%order, k + 1))
+      diagonal = values(k + 1) - self%stiffness(k + 1)
+      by_column = 0.0_wp
+      by_row = 0.0_wp
+      if (k > 0) then
+         call dgemv('N', k, k, 1.0_wp, self%small, capacity, column, 1, 0.0_wp, by_column, 1)
+         call dgemv('T', k, k, 1.0_wp, self%small, capacity, row, 1, 0.0_wp, by_row, 1)
+      end if
+      pivot = diagonal - dot_product(row, by_column)
+      self%stale = abs(pivot) <= no_pivot*max(abs(diagonal), abs(diagonal - pivot))
+      if (self%stale) return
+      if (k > 0) call dger(k, k, 1.0_wp/pivot, by_column, 1, by_row, 1, self%small, capacity)
+      self%small(:k, k + 1) = -by_column/pivot
+      self%small(k + 1, :k) = -by_row/pivot
+      self%small(k + 1, k + 1) = 1.0_wp/pivot
+   end subroutine border_small
+
+   !> Lose constraint `number`; the last one then takes its place.
+   subroutine release(self, number)
+      class(constrained_inverse_type), intent(inout) :: self
+      integer, intent(in) :: number
+      real(wp), dimension(self%constraints) :: column, row
+      real(wp) :: pivot
+      integer :: k, n
+
+      k = self%constraints
+      n = self%inverse%order
+      if (.not. self%stale) then
+         pivot = self%small(number, number)
+         self%stale = abs(pivot) <= no_pivot*maxval(abs(self%small(:k, number)))
+         if (.not. self%stale) then
+            column = self%small(:k, number)
+            row = self%small(number, :k)
+            call dger(k, k, -1.0_wp/pivot, column, 1, row, 1, self%small, size(self%small, 1))
+            self%small(:k, number) = self%small(:k, k)
+            self%small(number, :k) = self%small(k, :k)
+         end if
+      end if
+      self%slot(number) = self%slot(k)
+      self%partner(number) = self%partner(k)
+      self%slope(number) = self%slope(k)
+      self%stiffness(number) = self%stiffness(k)
+      self%columns(:n, number) = self%columns(:n, k)
+      self%constraints = k - 1
+      if (k == 1) self%stale = .false.
+   end subroutine release
+
+   !> Lose all constraints.
+   subroutine release_all(self)
+      class(constrained_inverse_type), intent(inout) :: self
+
+      self%constraints = 0
+      self%stale = .false.
+   end subroutine release_all
+
+   !> Many constraints are about to go: their small system is computed anew when it is needed.
+   subroutine postpone(self)
+      class(constrained_inverse_type), intent(inout) :: self
+
+      self%stale = self%constraints > 0
+   end subroutine postpone
+
+   !> Other coefficients for constraint `number`.
+   subroutine change_constraint(self, number, slope, stiffness)
+      class(constrained_inverse_type), intent(inout) :: self
+      integer, intent(in) :: number
+      real(wp), intent(in) :: slope, stiffness
+
+      self%slope(number) = slope
+      self%stiffness(number) = stiffness
+      self%stale = .true.
+   end subroutine change_constraint
+
+   !> Everything but the matrix anew: columns and S from the inverse of `matrix`, shape (unknowns, unknowns). `singular`: it has
+   !> none.
+   subroutine refresh(self, matrix, singular)
+      class(constrained_inverse_type), intent(inout) :: self
+      real(wp), intent(in) :: matrix(:, :)
+      logical, intent(out) :: singular
+      integer :: c
+
+      call self%inverse%rebuild(matrix, singular)
+      if (singular) return
+      call self%reserve(self%inverse%order, self%constraints)
+      do c = 1, self%constraints
+         call self%inverse%column(self%slot(c), self%columns(:self%inverse%order, c))
+      end do
+      self%stale = self%constraints > 0
+   end subroutine refresh
+
+   !> x for the right side `right`, shape (unknowns), and the constraints' values, shape (constraints). `singular`: the
+   !> constraints do not determine it.
+   subroutine solve(self, right, values, x, singular)
+      class(constrained_inverse_type), intent(inout) :: self
+      real(wp), intent(in) :: right(:), values(:)
+      real(wp), intent(out) :: x(:)
+      logical, intent(out) :: singular
+      real(wp), dimension(self%constraints) :: missing, lambda
+      integer :: k, n
+
+      singular = .false.
+      n = self%inverse%order
+      k = self%constraints
+      call self%inverse%multiply(right, x)
+      if (k == 0) return
+      if (self%stale) call self%rebuild_small(singular)
+      if (singular) return
+      missing = values - self%functional(x)
+      call dgemv('N', k, k, 1.0_wp, self%small, size(self%small, 1), missing, 1, 0.0_wp, lambda, 1)
+      call dgemv('N', n, k, 1.0_wp, self%columns, size(self%columns, 1), lambda, 1, 1.0_wp, x, 1)
+   end subroutine solve
+
+   !> The inverse of S from the columns.
+   subroutine rebuild_small(self, singular)
+      class(constrained_inverse_type), intent(inout) :: self
+      logical, intent(out) :: singular
+      integer, parameter :: block = 32
+      integer :: pivots(self%constraints), c, d, info, k
+      real(wp) :: work(block*self%constraints)
+
+      k = self%constraints
+      do c = 1, k
+         do d = 1, k
+            self%small(d, c) = self%columns(self%slot(d), c)
+            if (self%partner(d) > 0) self%small(d, c) = self%small(d, c) - self%slope(d)*self%columns(self%partner(d), c)
+         end do
+         self%small(c, c) = self%small(c, c) - self%stiffness(c)
+      end do
+      call dgetrf(k, k, self%small, size(self%small, 1), pivots, info)
+      if (info == 0) call dgetri(k, self%small, size(self%small, 1), pivots, work, size(work), info)
+      singular = info /= 0
+      self%stale = singular
+   end subroutine rebuild_small
+
+   !> Room for `rows` unknowns and `constraints` constraints.
+   subroutine reserve(self, rows, constraints)
+      class(constrained_inverse_type), intent(inout) :: self
+      integer, intent(in) :: rows, constraints
+      integer, parameter :: least = 32
+      real(wp), allocatable :: columns(:, :), small(:, :), real_values(:)
+      integer, allocatable :: whole(:)
+      integer :: capacity(2), wanted(2), k, n
+
+      capacity = 0
+      if (allocated(self%columns)) capacity = shape(self%columns)
+      wanted = [rows, constraints]
+      if (all(wanted <= capacity)) return
+      where (wanted > capacity) capacity = max(wanted + wanted/4, least)
+      k = self%constraints
+      n = 0
+      if (allocated(self%columns)) n = min(self%inverse%order, size(self%columns, 1))
+      allocate (columns(capacity(1), capacity(2)), small(capacity(2), capacity(2)))
+      if (k > 0) then
+         columns(:n, :k) = self%columns(:n, :k)
+         small(:k, :k) = self%small(:k, :k)
+      end if
+      call move_alloc(columns, self%columns)
+      call move_alloc(small, self%small)
+      if (allocated(self%slot)) then
+         if (size(self%slot) >= capacity(2)) return
+      end if
+      call lengthen(self%slot)
+      call lengthen(self%partner)
+      call lengthen_real(self%slope)
+      call lengthen_real(self%stiffness)
+
+   contains
+
+      subroutine lengthen(values)
+         integer, allocatable, intent(inout) :: values(:)
+
+         allocate (whole(capacity(2)), source=0)
+         if (k > 0) whole(:k) = values(:k)
+         call move_alloc(whole, values)
+      end subroutine lengthen
+
+      subroutine lengthen_real(values)
+         real(wp), allocatable, intent(inout) :: values(:)
+
+         allocate (real_values(capacity(2)), source=0.0_wp)
+         if (k > 0) real_values(:k) = values(:k)
+         call move_alloc(real_values, values)
+      end subroutine lengthen_real
+   end subroutine reserve
+
+end module mfv_constrained_inverse

@@ -1,0 +1,193 @@
+!> The inverse of a symmetric positive definite Toeplitz matrix T(i, j) = t(|i - j|) of changing order, in memory O(n).
+!>
+!> By Gohberg and Semencul (1972) the inverse is made of one vector: with the monic predictor a, T a = (E, 0, ..., 0), a(1) = 1,
+!>
+!>     T^-1 = [ L(a) L(a)^T - L(b) L(b)^T ]/E,    b = (0, a(m), ..., a(2)),
+!>
+!> L(a): the lower triangular Toeplitz matrix with the first column a. A product with it takes six real transforms of twice the
+!> order. Levinson's recursion takes the predictor from one order to the next in O(m), up and down (Golub and Van Loan, Matrix
+!> Computations, 4th edition, section 4.7): a contact that changes by a node at a time never pays for more.
+module mfv_toeplitz_inverse
+   use mfv_fourier, only: back_transform, fast_length, real_transform
+   use mfv_kinds, only: wp
+   implicit none
+   private
+   public :: toeplitz_inverse_type
+
+   type :: toeplitz_inverse_type
+      private
+      integer :: order = 0
+      !> The predictor a, shape (at least order), and E.
+      real(wp), allocatable :: predictor(:)
+      real(wp) :: error = 1.0_wp
+      !> Length of the transforms; 0: the spectra of a and b, shape (length/2 + 1), do not belong to the predictor now.
+      integer :: length = 0
+      complex(wp), allocatable :: forward(:), backward(:)
+      !> Work space, shapes (length) and (length/2 + 1).
+      real(wp), allocatable :: values(:), others(:)
+      complex(wp), allocatable :: spectrum(:), product(:)
+   contains
+      procedure :: set_order
+      procedure :: apply
+      procedure :: copy_order
+      procedure :: current_order
+   end type toeplitz_inverse_type
+
+contains
+
+   !> Orders up to `order` of the matrix with the entries `kernel`(distance + 1), shape (at least order). The kernel must be that
+   !> of the calls before, or the order 0 in between.
+   subroutine set_order(self, kernel, order)
+      class(toeplitz_inverse_type), intent(inout) :: self
+      real(wp), intent(in) :: kernel(:)
+      integer, intent(in) :: order
+
+      if (order == self%order) return
+      self%length = 0
+      call make_room(self, order)
+      ! From far above it is no longer to begin anew.
+      if (order < self%order/2) self%order = 0
+      if (self%order == 0 .and. order > 0) then
+         self%order = 1
+         self%predictor(1) = 1.0_wp
+         self%error = kernel(1)
+      end if
+      do while (self%order < order)
+         call step_up(self, kernel)
+      end do
+      do while (self%order > order .and. self%order > 0)
+         call step_down(self)
+      end do
+   end subroutine set_order
+
+   !> Take over the order of another inverse with the same kernel.
+   subroutine copy_order(self, other)
+      class(toeplitz_inverse_type), intent(inout) :: self
+      class(toeplitz_inverse_type), intent(in) :: other
+
+      call make_room(self, other%order)
+      self%predictor(:other%order) = other%predictor(:other%order)
+      self%order = other%order
+      self%error = other%error
+      self%length = 0
+   end subroutine copy_order
+
+   pure integer function current_order(self)
+      class(toeplitz_inverse_type), intent(in) :: self
+
+      current_order = self%order
+   end function current_order
+
+   !> Room for a predictor of `order`, and some to grow; what is known stays.
+   subroutine make_room(self, order)
+      class(toeplitz_inverse_type), intent(inout) :: self
+      integer, intent(in) :: order
+      real(wp), allocatable :: wider(:)
+
+      if (allocated(self%predictor)) then
+         if (size(self%predictor) >= order) return
+      end if
+      allocate (wider(order + order/4 + 8), source=0.0_wp)
+      if (self%order > 0) wider(:self%order) = self%predictor(:self%order)
+      call move_alloc(wider, self%predictor)
+   end subroutine make_room
+
+   !> From the order m to m + 1.
+   subroutine step_up(self, kernel)
+      class(toeplitz_inverse_type), intent(inout) :: self
+      real(wp), intent(in) :: kernel(:)
+      real(wp) :: reflection, low, high
+      integer :: i, m
+
+      m = self%order
+      reflection = 0.0_wp
+      do i = 1, m
+         reflection = reflection - kernel(m + 2 - i)*self%predictor(i)
+      end do
+      reflection = reflection/self%error
+      associate (a => self%predictor)
+         a(m + 1) = 0.0_wp
+         do i = 1, (m + 1)/2
+            low = a(i)
+            high = a(m + 2 - i)
+            a(i) = low + reflection*high
+            a(m + 2 - i) = high + reflection*low
+         end do
+         if (modulo(m, 2) == 0) a(m/2 + 1) = (1.0_wp + reflection)*a(m/2 + 1)
+      end associate
+      self%error = self%error*(1.0_wp - reflection)*(1.0_wp + reflection)
+      self%order = m + 1
+   end subroutine step_up
+
+   !> From the order m to m - 1: the same backwards.
+   subroutine step_down(self)
+      class(toeplitz_inverse_type), intent(inout) :: self
+      real(wp) :: reflection, factor, low, high
+      integer :: i, m
+
+      m = self%order
+      reflection = self%predictor(m)
+      factor = 1.0_wp/((1.0_wp - reflection)*(1.0_wp + reflection))
+      if (m == 1) factor = 1.0_wp
+      associate (a => self%predictor)
+         do i = 1, m/2
+            low = a(i)
+            high = a(m + 1 - i)
+            a(i) = factor*(low - reflection*high)
+            a(m + 1 - i) = factor*(high - reflection*low)
+         end do
+         if (modulo(m, 2) == 1) a(m/2 + 1) = a(m/2 + 1)/(1.0_wp + reflection)
+      end associate
+      self%error = self%error*factor
+      self%order = m - 1
+   end subroutine step_down
+
+   !> Multiply `vector`, shape (order), by the inverse.
+   subroutine apply(self, vector)
+      class(toeplitz_inverse_type), intent(inout) :: self
+      real(wp), intent(inout) :: vector(:)
+      integer :: m
+
+      m = self%order
+      if (m == 0) return
+      if (self%length == 0) call make_spectra(self)
+      self%values(:m) = vector(:m)
+      self%values(m + 1:) = 0.0_wp
+      call real_transform(self%values, self%spectrum)
+      self%product = conjg(self%forward)*self%spectrum
+      call back_transform(self%product, self%values)
+      self%product = conjg(self%backward)*self%spectrum
+      call back_transform(self%product, self%others)
+      self%values(m + 1:) = 0.0_wp
+      self%others(m + 1:) = 0.0_wp
+      call real_transform(self%values, self%spectrum)
+      call real_transform(self%others, self%product)
+      self%product = self%forward*self%spectrum - self%backward*self%product
+      call back_transform(self%product, self%values)
+      vector(:m) = self%values(:m)/(self%error*real(self%length, wp)**2)
+   end subroutine apply
+
+   !> Spectra of a and b.
+   subroutine make_spectra(self)
+      class(toeplitz_inverse_type), intent(inout) :: self
+      integer :: length, m
+
+      m = self%order
+      length = fast_length(2*m)
+      if (allocated(self%values)) then
+         if (size(self%values) /= length) deallocate (self%values, self%others, self%spectrum, self%product, self%forward, &
+                                                      self%backward)
+      end if
+      if (.not. allocated(self%values)) &
+         allocate (self%values(length), self%others(length), self%spectrum(length/2 + 1), self%product(length/2 + 1), &
+                   self%forward(length/2 + 1), self%backward(length/2 + 1))
+      self%length = length
+      self%values = 0.0_wp
+      self%values(:m) = self%predictor(:m)
+      call real_transform(self%values, self%forward)
+      self%values = 0.0_wp
+      self%values(2:m) = self%predictor(m:2:-1)
+      call real_transform(self%values, self%backward)
+   end subroutine make_spectra
+
+end module mfv_toeplitz_inverse

@@ -1,0 +1,292 @@
+!> The inverse of a symmetric matrix that gains and loses rows (with their columns), at the cost of a few vectors a change.
+!>
+!> With a column b and a diagonal d, the inverse T of the matrix becomes (bordering; Golub and Van Loan, Matrix
+!> Computations, section 2.1.4; Higham, Accuracy and Stability of Numerical Algorithms, section 14.2)
+!>
+!>     [ T  0 ]   1 [ y ]
+!>     [ 0  0 ] + - [-1 ] [ y' -1 ],    y = T b,  s = d - b' y,
+!>                s
+!>
+!> and losing row j it becomes T - q q'/q(j), q its column j. Both add a product of a vector with itself. Such products are
+!> kept apart until there are `most_pending` of them, and then added together, as fast as matrices are multiplied.
+module mfv_updated_inverse
+   use mfv_kinds, only: wp
+   implicit none
+   private
+   public :: updated_inverse_type
+
+   integer, parameter :: most_pending = 32
+
+   type :: updated_inverse_type
+      !> Rows now.
+      integer :: order = 0
+      !> How often the inverse was computed anew.
+      integer :: rebuilds = 0
+      !> The inverse but for the pending products: base + sum of weight(k) vector(:, k) vector(:, k)'; leading parts of
+      !> shapes (capacity, capacity), (capacity, most_pending), (most_pending).
+      real(wp), allocatable, private :: base(:, :), vector(:, :), weight(:), weighed(:, :)
+      integer, private :: pending = 0
+      !> Rows that are to come: their entries, shape (rows there and to come, number), products of the inverse with them, and
+      !> the changes that they made so far; how many have come.
+      real(wp), allocatable, private :: borders(:, :), products(:, :), changes(:, :), weights(:)
+      integer, private :: prepared = 0
+      !> The last change: its vector and weight; the leading `order` values (before rows moved) are in use.
+      real(wp), allocatable :: change(:)
+      real(wp) :: change_weight = 0.0_wp
+   contains
+      procedure :: clear
+      procedure :: prepare
+      procedure :: add_prepared
+      procedure :: remove
+      procedure :: column
+      procedure :: multiply
+      procedure :: rebuild
+      procedure, private :: reserve
+      procedure, private :: append
+   end type updated_inverse_type
+
+   interface
+      subroutine dgemm(transa, transb, m, n, k, alpha, a, lda, b, ldb, beta, c, ldc)
+         import :: wp
+         character, intent(in) :: transa, transb
+         integer, intent(in) :: m, n, k, lda, ldb, ldc
+         real(wp), intent(in) :: alpha, beta, a(lda, *), b(ldb, *)
+         real(wp), intent(inout) :: c(ldc, *)
+      end subroutine dgemm
+
+      subroutine dgemv(trans, m, n, alpha, a, lda, x, incx, beta, y, incy)
+         import :: wp
+         character, intent(in) :: trans
+         integer, intent(in) :: m, n, lda, incx, incy
+         real(wp), intent(in) :: alpha, beta, a(lda, *), x(*)
+         real(wp), intent(inout) :: y(*)
+      end subroutine dgemv
+
+      subroutine dgetrf(m, n, a, lda, ipiv, info)
+         import :: wp
+         integer, intent(in) :: m, n, lda
+         real(wp), intent(inout) :: a(lda, *)
+         integer, intent(out) :: ipiv(*), info
+      end subroutine dgetrf
+
+      subroutine dgetri(n, a, lda, ipiv, work, lwork, info)
+         import :: wp
+         integer, intent(in) :: n, lda, lwork, ipiv(*)
+         real(wp), intent(inout) :: a(lda, *), work(*)
+         integer, intent(out) :: info
+      end subroutine dgetri
+   end interface
+
+contains
+
+   !> Back to no rows at all; the storage stays.
+   subroutine clear(self)
+      class(updated_inverse_type), intent(inout) :: self
+
+      self%order = 0
+      self%pending = 0
+   end subroutine clear
+
+   !> Get ready for `number` more rows: products with all of them at once cost little more than with one. `borders`: their
+   !> entries in the rows there are and in themselves, shape (order + number, number). To be followed by `number` calls of
+   !> add_prepared, and no other change in between.
+   subroutine prepare(self, borders)
+      class(updated_inverse_type), intent(inout) :: self
+      real(wp), intent(in) :: borders(:, :)
+      real(wp) :: along(self%pending)
+      integer, parameter :: panel = 32
+      integer :: c, first, k, n, number, rows, total
+
+      n = self%order
+      k = self%pending
+      total = size(borders, 1)
+      number = size(borders, 2)
+      call self%reserve(total)
+      self%prepared = 0
+      self%borders = borders
+      if (allocated(self%products)) deallocate (self%products, self%changes, self%weights)
+      allocate (self%products(total, number), self%changes(total, number), source=0.0_wp)
+      allocate (self%weights(number))
+      if (n == 0) return
+      rows = size(self%base, 1)
+      ! In panels of columns that stay in the cache: faster than one narrow product of matrices.
+      do first = 1, n, panel
+         do c = 1, number
+            call dgemv('N', n, min(panel, n - first + 1), 1.0_wp, self%base(1, first), rows, self%borders(first, c), 1, 1.0_wp, &
+                       self%products(1, c), 1)
+         end do
+      end do
+      if (k == 0) return
+      do c = 1, number
+         call dgemv('T', n, k, 1.0_wp, self%vector, rows, self%borders(1, c), 1, 0.0_wp, along, 1)
+         along = self%weight(:k)*along
+         call dgemv('N', n, k, 1.0_wp, self%vector, rows, along, 1, 1.0_wp, self%products(1, c), 1)
+      end do
+   end subroutine prepare
+
+   !> Add the next of the prepared rows, as the last. `singular`: the larger matrix has no inverse; it is then left as it was.
+   subroutine add_prepared(self, singular)
+      class(updated_inverse_type), intent(inout) :: self
+      logical, intent(out) :: singular
+      real(wp), parameter :: nothing = 1.0e-14_wp
+      real(wp) :: pivot
+      integer :: c, d, n
+
+      n = self%order
+      c = self%prepared + 1
+      associate (product => self%products(:n, c), border => self%borders(:n, c))
+         do d = 1, c - 1
+            product = product + self%weights(d)*dot_product(self%changes(:n, d), border)*self%changes(:n, d)
+         end do
+         pivot = self%borders(n + 1, c) - dot_product(border, product)
+         singular = abs(pivot) <= nothing*max(abs(self%borders(n + 1, c)), abs(self%borders(n + 1, c) - pivot))
+         if (singular) return
+         self%change(:n) = product
+      end associate
+      self%change(n + 1) = -1.0_wp
+      self%changes(:n + 1, c) = self%change(:n + 1)
+      self%weights(c) = 1.0_wp/pivot
+      self%prepared = c
+      self%base(:n + 1, n + 1) = 0.0_wp
+      self%base(n + 1, :n) = 0.0_wp
+      self%vector(n + 1, :self%pending) = 0.0_wp
+      self%order = n + 1
+      call self%append(1.0_wp/pivot)
+   end subroutine add_prepared
+
+   !> Lose row `row`; the last row then takes its place. `singular`: the smaller matrix has no inverse.
+   subroutine remove(self, row, singular)
+      class(updated_inverse_type), intent(inout) :: self
+      integer, intent(in) :: row
+      logical, intent(out) :: singular
+      real(wp), parameter :: nothing = 1.0e-15_wp
+      integer :: n
+
+      n = self%order
+      call self%column(row, self%change(:n))
+      singular = abs(self%change(row)) <= nothing*maxval(abs(self%change(:n)))
+      if (singular) return
+      call self%append(-1.0_wp/self%change(row))
+      if (row < n) then
+         self%base(:n, row) = self%base(:n, n)
+         self%base(row, :n) = self%base(n, :n)
+         self%vector(row, :self%pending) = self%vector(n, :self%pending)
+      end if
+      self%order = n - 1
+   end subroutine remove
+
+   !> Column `number` of the inverse, shape (order).
+   subroutine column(self, number, values)
+      class(updated_inverse_type), intent(in) :: self
+      integer, intent(in) :: number
+      real(wp), intent(out) :: values(:)
+      integer :: n
+
+      n = self%order
+      values = self%base(:n, number)
+      if (self%pending == 0) return
+      associate (factors => self%weight(:self%pending)*self%vector(number, :self%pending))
+         call dgemv('N', n, self%pending, 1.0_wp, self%vector, size(self%vector, 1), factors, 1, 1.0_wp, values, 1)
+      end associate
+   end subroutine column
+
+   !> The inverse times `right`, shapes (order). A right side with only a few entries costs only their columns.
+   subroutine multiply(self, right, product)
+      class(updated_inverse_type), intent(in) :: self
+      real(wp), intent(in) :: right(:)
+      real(wp), intent(out) :: product(:)
+      integer, parameter :: few = 6
+      real(wp) :: along(most_pending)
+      integer :: j, n, filled
+
+      n = self%order
+      product = 0.0_wp
+      if (n == 0) return
+      filled = count(abs(right) > 0.0_wp)
+      if (filled <= few) then
+         do j = 1, n
+            if (abs(right(j)) > 0.0_wp) product = product + right(j)*self%base(:n, j)
+         end do
+      else
+         call dgemv('N', n, n, 1.0_wp, self%base, size(self%base, 1), right, 1, 0.0_wp, product, 1)
+      end if
+      if (self%pending == 0) return
+      associate (rows => size(self%vector, 1), k => self%pending)
+         call dgemv('T', n, k, 1.0_wp, self%vector, rows, right, 1, 0.0_wp, along, 1)
+         along(:k) = self%weight(:k)*along(:k)
+         call dgemv('N', n, k, 1.0_wp, self%vector, rows, along, 1, 1.0_wp, product, 1)
+      end associate
+   end subroutine multiply
+
+   !> The inverse of `matrix`, shape (n, n), from nothing. `singular`: it has none.
+   subroutine rebuild(self, matrix, singular)
+      class(updated_inverse_type), intent(inout) :: self
+      real(wp), intent(in) :: matrix(:, :)
+      logical, intent(out) :: singular
+      integer, allocatable :: pivots(:)
+      real(wp), allocatable :: work(:)
+      integer, parameter :: block = 64
+      integer :: info, n
+
+      n = size(matrix, 1)
+      call self%clear()
+      call self%reserve(max(n, 1))
+      self%rebuilds = self%rebuilds + 1
+      singular = .false.
+      if (n == 0) return
+      allocate (pivots(n), work(block*max(n, 1)))
+      self%base(:n, :n) = matrix
+      call dgetrf(n, n, self%base, size(self%base, 1), pivots, info)
+      if (info == 0) call dgetri(n, self%base, size(self%base, 1), pivots, work, size(work), info)
+      singular = info /= 0
+      if (singular) return
+      self%base(:n, :n) = 0.5_wp*(self%base(:n, :n) + transpose(self%base(:n, :n)))
+      self%order = n
+   end subroutine rebuild
+
+   !> Room for `rows` rows.
+   subroutine reserve(self, rows)
+      class(updated_inverse_type), intent(inout) :: self
+      integer, intent(in) :: rows
+      integer, parameter :: least = 32
+      real(wp), allocatable :: wider(:, :), longer(:, :)
+      integer :: capacity, n
+
+      capacity = 0
+      if (allocated(self%base)) capacity = size(self%base, 1)
+      if (rows <= capacity) return
+      n = self%order
+      capacity = max(rows + rows/4, least)
+      allocate (wider(capacity, capacity), longer(capacity, most_pending))
+      if (n > 0) then
+         wider(:n, :n) = self%base(:n, :n)
+         longer(:n, :self%pending) = self%vector(:n, :self%pending)
+      end if
+      call move_alloc(wider, self%base)
+      call move_alloc(longer, self%vector)
+      if (allocated(self%change)) deallocate (self%change, self%weighed)
+      allocate (self%change(capacity), self%weighed(capacity, most_pending))
+      if (.not. allocated(self%weight)) allocate (self%weight(most_pending))
+   end subroutine reserve
+
+   !> Keep the product of `change` with itself pending; add up all pending ones when there are many.
+   subroutine append(self, weight)
+      class(updated_inverse_type), intent(inout) :: self
+      real(wp), intent(in) :: weight
+      integer :: k, n, rows
+
+      n = self%order
+      self%change_weight = weight
+      self%pending = self%pending + 1
+      self%weight(self%pending) = weight
+      self%vector(:n, self%pending) = self%change(:n)
+      if (self%pending < most_pending) return
+      do k = 1, most_pending
+         self%weighed(:n, k) = self%weight(k)*self%vector(:n, k)
+      end do
+      rows = size(self%base, 1)
+      call dgemm('N', 'T', n, n, most_pending, 1.0_wp, self%weighed, rows, self%vector, rows, 1.0_wp, self%base, rows)
+      self%pending = 0
+   end subroutine append
+
+end module mfv_updated_inverse

@@ -1,0 +1,115 @@
+!> Products with symmetric Toeplitz matrices, entries by distance, through FFTW: of the order of n log n operations. The
+!> matrix is part of a circulant one, which Fourier's transform diagonalises (Golub and Van Loan, Matrix Computations,
+!> section 4.8).
+!>
+!> Two real vectors x and y go through one complex transform, as z = x + i y. With the transform Z and its mirror image
+!> Z*(k) = conj(Z(N-k)), that of x is (Z + Z*)/2 and that of y (Z - Z*)/(2 i), so that
+!>
+!>     X = A x - B y,    Y = B x + C y     (A, C even, B odd in the distance)
+!>
+!> is the inverse transform of [(A^ + C^)/2 - B^] Z + (A^ - C^)/2 Z*, X its real and Y its imaginary part, with the real
+!> numbers A^, C^ (cosine sums) and B^ (sine sum).
+module mfv_toeplitz
+   use mfv_fourier, only: backward, complex_transform, forward, transform_length
+   use mfv_kinds, only: wp
+   implicit none
+   private
+   public :: toeplitz_type, new_toeplitz
+
+   type :: toeplitz_type
+      private
+      !> Vectors of `nodes` values, transforms of `length`.
+      integer :: nodes = 0, length = 0
+      !> What the transform and its mirror image are multiplied by, divided by the length; the second is left out where it
+      !> is zero. Shape (length).
+      real(wp), allocatable :: straight(:), mirrored(:)
+   contains
+      procedure :: multiply
+   end type toeplitz_type
+
+contains
+
+   !> From the entries by distance 0, 1, ..., n-1, shape (n): the even A and, where present, the odd B (its sign that of row
+   !> less column) and the even C; left out, B is zero and C is A.
+   function new_toeplitz(even, odd, other) result(self)
+      real(wp), intent(in) :: even(:)
+      real(wp), intent(in), optional :: odd(:), other(:)
+      type(toeplitz_type) :: self
+      complex(wp), allocatable :: work(:)
+      integer :: n
+
+      n = size(even)
+      self%nodes = n
+      self%length = transform_length(2*n - 1)
+      allocate (work(self%length))
+      work = 0.0_wp
+      work(:n) = even
+      work(self%length:self%length - n + 2:-1) = even(2:)
+      if (present(other)) then
+         work(:n) = work(:n) + cmplx(0.0_wp, other, wp)
+         work(self%length:self%length - n + 2:-1) = work(self%length:self%length - n + 2:-1) + cmplx(0.0_wp, other(2:), wp)
+      end if
+      call complex_transform(forward, work)
+      if (present(other)) then
+         self%straight = 0.5_wp*(real(work, wp) + aimag(work))/self%length
+         self%mirrored = 0.5_wp*(real(work, wp) - aimag(work))/self%length
+      else
+         self%straight = real(work, wp)/self%length
+      end if
+      if (.not. present(odd)) return
+      work = 0.0_wp
+      work(2:n) = odd(2:)
+      work(self%length:self%length - n + 2:-1) = -odd(2:)
+      call complex_transform(forward, work)
+      ! The transform of an odd sequence is i times B^.
+      self%straight = self%straight - aimag(work)/self%length
+   end function new_toeplitz
+
+   !> X and Y of x and y, all of shape (nodes).
+   subroutine multiply(self, x, by_x, y, by_y)
+      class(toeplitz_type), intent(in) :: self
+      real(wp), intent(in) :: x(:), y(:)
+      real(wp), intent(out) :: by_x(:), by_y(:)
+      complex(wp), allocatable :: work(:)
+      complex(wp) :: here, there
+      integer, parameter :: most = 500
+      real(wp) :: factor, largest_x, largest_y
+      integer :: k, n, length
+
+      n = self%nodes
+      length = self%length
+      allocate (work(length))
+      if (allocated(self%mirrored)) then
+         work(:n) = cmplx(x, y, wp)
+      else
+         ! Both of one size, so that the smaller one keeps its digits beside the larger one.
+         largest_x = maxval(abs(x))
+         largest_y = maxval(abs(y))
+         factor = 1.0_wp
+         if (largest_x > 0.0_wp .and. largest_y > 0.0_wp) &
+            factor = scale(1.0_wp, min(max(exponent(largest_x) - exponent(largest_y), -most), most))
+         work(:n) = cmplx(x, factor*y, wp)
+      end if
+      work(n + 1:) = 0.0_wp
+      call complex_transform(forward, work)
+      if (allocated(self%mirrored)) then
+         work(1) = self%straight(1)*work(1) + self%mirrored(1)*conjg(work(1))
+         do k = 2, length/2 + 1
+            here = work(k)
+            there = work(length + 2 - k)
+            work(length + 2 - k) = self%straight(length + 2 - k)*there + self%mirrored(length + 2 - k)*conjg(here)
+            work(k) = self%straight(k)*here + self%mirrored(k)*conjg(there)
+         end do
+      else
+         work = self%straight*work
+      end if
+      call complex_transform(backward, work)
+      by_x = real(work(:n), wp)
+      by_y = aimag(work(:n))
+      if (allocated(self%mirrored)) return
+      by_y = by_y/factor
+      if (.not. largest_x > 0.0_wp) by_x = 0.0_wp
+      if (.not. largest_y > 0.0_wp) by_y = 0.0_wp
+   end subroutine multiply
+
+end module mfv_toeplitz
