@@ -29,10 +29,10 @@ module mfv_active_set
 contains
 
    !> Statuses and fields at the part `done` of the segment, from the statuses of `path` as a first guess and its fields as the
-   !> start. `settled`: whether they were found; `path` then has the statuses, and as stuck_slip of every node the slip from which
-   !> its slip on the way counts; its fields are still those of the start.
-   !> Not found: the system is singular, the statuses come again, nothing is in contact that carries a prescribed force, or
-   !> every node slips; the statuses of `path` are then of no use.
+   !> start. `settled`: whether they were found; `path` then has the statuses, and as stuck_slip of every node the slip from
+   !> which its slip on the way counts; its fields are still those of the start. Not found: the system is singular, the
+   !> statuses come again, nothing is in contact that carries a prescribed force, or every node slips; the statuses of `path`
+   !> are then of no use.
    subroutine settle_at(path, segment, done, fields, settled)
       class(contact_path_type), intent(inout) :: path
       type(segment_type), intent(in) :: segment
@@ -138,11 +138,12 @@ contains
       type(contact_fields_type), intent(in) :: fields
       integer, intent(out) :: wanted(:)
       real(wp), dimension(size(wanted)) :: gap, slipped
-      real(wp) :: traction, motion
+      real(wp) :: traction, motion, noise
       integer :: i, closed
 
-      traction = round_off*max(maxval(abs(fields%pressure)), maxval(abs(fields%shear)), path%certificate%traction_scale())
-      motion = round_off*max(maxval(abs(fields%normal)), maxval(abs(fields%tangential)), abs(fields%approach), &
+      noise = max(round_off, path%system%noise)
+      traction = noise*max(maxval(abs(fields%pressure)), maxval(abs(fields%shear)), path%certificate%traction_scale())
+      motion = noise*max(maxval(abs(fields%normal)), maxval(abs(fields%tangential)), abs(fields%approach), &
                              abs(fields%shift))
       gap = path%model%gap(fields)
       slipped = 0.0_wp

@@ -325,8 +325,8 @@ contains
                *max(-motion_sign(after%status(i))*(there%slip - here%slip), 0.0_wp)
    end function defect_of_law
 
-   !> Work of the loads = stored + dissipated energy; between events everything is linear, so the trapezoid is exact. Over a leap
-   !> the work is not known: it counts as what is stored and dissipated, and nothing is noted.
+   !> Work of the loads = stored + dissipated energy; between events everything is linear, so the trapezoid is exact. Over a
+   !> leap the work is not known: it counts as what is stored and dissipated, and nothing is noted.
    subroutine check_energy(self, model, before, after, leap)
       class(certificate_type), intent(inout) :: self
       type(contact_model_type), intent(in) :: model

@@ -27,7 +27,7 @@ module mfv_first_violation
    use mfv_strings, only: to_text
    implicit none
    private
-   public :: lead_by_violations
+   public :: lead_by_violations, failed_certificate, noises
 
    !> So many steps in a row below the tie are no progress.
    integer, parameter :: most_tiny_steps = 200

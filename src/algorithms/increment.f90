@@ -45,11 +45,12 @@ contains
       tie_of = max(tie, path%system%noise)
    end function tie_of
 
-   !> Steps below this part of the segment are none.
+   !> Steps below this part of the segment are none: noise of the state that makes small steps, but no more than the tie, for the
+   !> first events of a fine mesh are close to each other.
    pure real(wp) function no_step_of(path)
       class(contact_path_type), intent(in) :: path
 
-      no_step_of = max(no_step, path%system%noise)
+      no_step_of = max(no_step, min(path%system%noise, tie))
    end function no_step_of
 
    !> `constraints`: as contact_path_type%settle_loads leaves them. `left`: what is left of the segment (of the drop: 1).
@@ -118,10 +119,10 @@ contains
       grouping = path%model%scene%friction%law%is_linear .and. .not. path%model%scene%friction%law%drops
    end function grouping
 
-   !> Violations that follow the first one within `event_tolerance`, in parts of what is then done of the segment, happen together
-   !> with the last of them. Until then inequalities are broken, by what the rates do over that part of the load; measured, this
-   !> errs less than to change the nodes too early. (What is violated already at the start has no time.)
-   !> `left`: what is left of the segment.
+   !> Violations that follow the first one within `event_tolerance`, in parts of what is then done of the segment, happen
+   !> together with the last of them. Until then inequalities are broken, by what the rates do over that part of the load;
+   !> measured, this errs less than to change the nodes too early. (What is violated already at the start has no time.) `left`:
+   !> what is left of the segment.
    subroutine take_together(path, left, increment)
       class(contact_path_type), intent(in) :: path
       real(wp), intent(in) :: left

@@ -12,8 +12,8 @@
 !> The preconditioner is block triangular: pressures by the inverse of C_wp (mfv_krylov_preconditioner), then shear tractions by
 !> that of C_ut with what these pressures do taken off; the free motions follow from a Schur complement of at most three rows.
 !> GMRES works on the preconditioned rows: its residual is then the error of the unknowns themselves, up to the coupling, and
-!> `linear_tolerance` is the error of tractions and motions in parts of all of them (2-norms). Measured, iterations do not
-!> depend on the number of nodes (docs/performance.md).
+!> `linear_tolerance` is the error of tractions and motions in parts of all of them (2-norms). On nodes without gaps iterations
+!> do not depend on their number: a dozen for nu = 0.3 and mu = 0.5, three dozen for nu = 0 and mu = 3.
 module mfv_krylov_system
    use, intrinsic :: ieee_arithmetic, only: ieee_is_finite
    use mfv_compliance, only: block_up
@@ -372,7 +372,7 @@ contains
       type(right_side_type), intent(in) :: right
       real(wp), intent(inout) :: unknowns(:)
       logical, intent(out) :: fails
-      real(wp), parameter :: worth_keeping = 0.5_wp, progress = 0.5_wp, good_enough = 1.0e-9_wp
+      real(wp), parameter :: worth_keeping = 0.5_wp, progress = 0.5_wp, near_enough = 2.0_wp, good_enough = 1.0e-9_wp
       real(wp) :: rows(size(unknowns)), reached, before, scale, target
       integer :: pass
       logical :: done
@@ -401,7 +401,7 @@ contains
          scale = max(scale, reached, norm2(unknowns))
          target = max(model%scene%method%linear_tolerance*scale, round_off(self, right))
          ! What is right but for the noise stays.
-         if (reached <= merge(margin, 1.0_wp, pass == 1)*target) return
+         if (reached <= merge(near_enough, 1.0_wp, pass == 1)*target) return
          if (reached > progress*before) exit
          before = reached
          call improve(self, model, rows, target, unknowns, done)
@@ -509,13 +509,26 @@ contains
       class(krylov_system_type), intent(in) :: self
       real(wp), intent(in) :: motion(3)
       real(wp), intent(out) :: rows(:)
-      integer :: i, m, s
+      integer :: i, j, m, s
 
       m = size(self%contact)
       s = size(self%held)
-      rows(:m) = self%normal(self%contact) - matmul(self%normal_arm(self%contact, :), motion)
-      rows(m + 1:m + s) = self%tangential(self%held) - matmul(self%tangential_arm(self%held, :), motion) &
-                          + self%softness*(self%shear(self%held) - self%held_slope*self%pressure(self%held))
+      do i = 1, m
+         rows(i) = self%normal(self%contact(i))
+      end do
+      do i = 1, s
+         j = self%held(i)
+         rows(m + i) = self%tangential(j) + self%softness(i)*(self%shear(j) - self%held_slope(i)*self%pressure(j))
+      end do
+      do j = 1, size(motion)
+         if (.not. abs(motion(j)) > 0.0_wp) cycle
+         do i = 1, m
+            rows(i) = rows(i) - self%normal_arm(self%contact(i), j)*motion(j)
+         end do
+         do i = 1, s
+            rows(m + i) = rows(m + i) - self%tangential_arm(self%held(i), j)*motion(j)
+         end do
+      end do
       do i = 1, size(self%free)
          rows(m + s + i) = resultant(self, self%free(i))
       end do
@@ -525,8 +538,14 @@ contains
    pure real(wp) function resultant(self, along)
       class(krylov_system_type), intent(in) :: self
       integer, intent(in) :: along
+      integer :: i, j
 
-      resultant = sum(self%width*(self%normal_arm(:, along)*self%pressure + self%tangential_arm(:, along)*self%shear))
+      resultant = 0.0_wp
+      do i = 1, size(self%contact)
+         j = self%contact(i)
+         resultant = resultant + self%width(j)*(self%normal_arm(j, along)*self%pressure(j) &
+                                                + self%tangential_arm(j, along)*self%shear(j))
+      end do
    end function resultant
 
    !> Unknowns, approximately, by the rows: the free motions so that the resultants are right.

@@ -1,15 +1,15 @@
 !> Leaps: a part of the load history at once, as an integrator would take it.
 !>
-!> A leap holds stuck nodes at the slip that they have at its start, and asks at its end alone that every equality and inequality
-!> of dissertation Table 2.1 holds, slip counted from start to end (mfv_active_set). Two leaps of half the length go the same way
-!> again; where they end with the same tractions, to a part `leap_tolerance` of the largest, they are taken, else the leap is
-!> shortened. Where every node slips in one direction only, and holds before and after at one place, no way matters and one leap
-!> is exact (Mindlin: constant pressure, growing shear). Where it matters, a node that touches on the way holds at the slip that
-!> it had at the start, a node that slips and sticks again on the way is taken never to have slipped: errors of the first power of
-!> the length, which the tolerance bounds leap by leap, not in sum.
+!> A leap holds stuck nodes at the slip that they have at its start, and asks at its end alone that every equality and
+!> inequality of dissertation Table 2.1 holds, slip counted from start to end (mfv_active_set). Two leaps of half the length go
+!> the same way again; where they end with the same tractions, and have dissipated the same, to a part `leap_tolerance` of the
+!> largest, they are taken, else the leap is shortened. Where nodes slip one way only under constant pressures, no way matters
+!> and one leap is exact (Mindlin). Where it matters, a node that touches on the way holds at about the slip that it then had,
+!> and a node that slips and sticks again on the way is taken never to have slipped: errors that fall with the length, which
+!> the tolerance bounds leap by leap, not in sum.
 !>
-!> What leaps cannot settle, however short, goes by events (mfv_first_violation) for as long: so gross sliding, separation and the
-!> like end as they do there. Of leaps the certificate checks the ends.
+!> What leaps cannot settle, however short, goes by events (mfv_first_violation) for as long: so gross sliding, separation and
+!> the like end as they do there. Of leaps the certificate checks the ends.
 module mfv_leap
    use mfv_compliance, only: block_up, block_wt
    use mfv_contact_fields, only: contact_fields_type
@@ -22,8 +22,7 @@ module mfv_leap
    use mfv_node_status
    use mfv_observer, only: observer_type
    use mfv_scene, only: control_force
-   use mfv_status, only: MFV_INTERRUPTED
-   use mfv_straight, only: before_separation, carries_nothing_yet, grow_mesh, lead_straight, part_of, settle_on_mesh
+   use mfv_straight, only: before_separation, carries_nothing_yet, close_leap, grow_mesh, lead_straight, part_of, settle_on_mesh
    implicit none
    private
    public :: lead_by_leaps
@@ -42,8 +41,8 @@ module mfv_leap
       integer :: parts = 0
       !> Whether the statuses were found, or at least the mesh was too short for them.
       logical :: settled = .false., exceeded = .false.
-      !> Largest difference of the tractions at the end between the leap and its halves, and the largest of them, force/length^2;
-      !> the same of what friction dissipates.
+      !> Largest difference of the tractions at the end between the leap and its halves, and the largest of them,
+      !> force/length^2; the same of what friction dissipates.
       real(wp) :: difference = 0.0_wp, traction = 0.0_wp, work_difference = 0.0_wp, work = 0.0_wp
    end type leap_type
 
@@ -88,7 +87,7 @@ contains
             call take(path, leap)
             done = merge(goal, done + length, length >= goal - done)
             by_events = shortest
-            call tell(path, part_of(segment, 0.0_wp, done), observer, error)
+            call close_leap(path, segment, done, observer, error)
          else if (length <= shortest) then
             length = min(by_events, goal - done)
             call lead_by_violations(path, part_of(segment, done, done + length), observer, error)
@@ -125,19 +124,6 @@ contains
       end if
    end function change
 
-   !> Tell the observer of where `done` ends. Error MFV_INTERRUPTED.
-   subroutine tell(path, done, observer, error)
-      class(contact_path_type), intent(inout) :: path
-      type(segment_type), intent(in) :: done
-      class(observer_type), intent(inout), optional :: observer
-      type(error_type), allocatable, intent(out) :: error
-      logical :: stop_wanted
-
-      if (.not. present(observer)) return
-      call observer%notify(path%state, done%number, done%segments, done%to, stop_wanted)
-      if (stop_wanted) call path%end_here(MFV_INTERRUPTED, 'stopped on request', error)
-   end subroutine tell
-
    !> Leap from the part `done` of the segment as far as `length`, at once and in halves. `path` stays as it is.
    subroutine try_leap(path, segment, done, length, leap)
       class(contact_path_type), intent(inout) :: path
@@ -154,7 +140,7 @@ contains
       status = path%state%status
       if (leap%settled) then
          leap%traction = max(maxval(abs(whole%pressure)), maxval(abs(whole%shear)))
-         leap%work = dissipation(path%model, path%state, whole)
+         leap%work = dissipation(path%model, path%state, whole, path%system%noise)
          if (moves_nothing(path, segment, whole)) then
             leap%parts = 1
             leap%state(1) = path%state
@@ -187,18 +173,19 @@ contains
       call settle_on_mesh(path, segment, done + half*length, leap%after(1), leap%settled, leap%exceeded)
       if (.not. leap%settled) return
       leap%state(1) = path%state
-      leap%dissipated(1) = dissipation(path%model, path%state, leap%after(1))
+      leap%dissipated(1) = dissipation(path%model, path%state, leap%after(1), path%system%noise)
       path%state%fields = leap%after(1)
       call path%set_status(in_contact(path%state%status), status)
       call settle_on_mesh(path, segment, done + length, leap%after(2), leap%settled, leap%exceeded)
       leap%state(2) = path%state
-      if (leap%settled) leap%dissipated(2) = dissipation(path%model, path%state, leap%after(2))
+      if (leap%settled) leap%dissipated(2) = dissipation(path%model, path%state, leap%after(2), &
+                                                              path%system%noise)
    end subroutine halve
 
-   !> A first guess of who slips at the part `part` of the segment: where the tangential load changes, nodes slip with it. Where
-   !> the normal load does not change, nor the pressures with it, and the tangential force does, as many as slip in Mindlin's contact of cylinders: the edge of
-   !> the stick zone is there where the pressure is sqrt(Q/(mu P)) of the largest; after a reversal with half the change in place
-   !> of Q.
+   !> A first guess of who slips at the part `part` of the segment: where the tangential load changes, nodes slip with it.
+   !> Where the normal load does not change, nor the pressures with it, and the tangential force does, as many as slip in
+   !> Mindlin's contact of cylinders: the edge of the stick zone is there where the pressure is sqrt(Q/(mu P)) of the largest;
+   !> after a reversal with half the change in place of Q.
    subroutine guess_slip(path, segment, part)
       class(contact_path_type), intent(inout) :: path
       type(segment_type), intent(in) :: segment
@@ -239,7 +226,7 @@ contains
       if (.not. moves_nothing) return
       moves_nothing = .not. abs(segment%tangential%rate) > 0.0_wp .and. .not. any(slips(path%state%status)) .and. &
                       max(maxval(abs(path%state%fields%shear)), maxval(abs(after%shear))) &
-                      <= nothing*max(path%certificate%traction_scale(), maxval(abs(after%pressure)))
+                      <= max(nothing, path%system%noise)*max(path%certificate%traction_scale(), maxval(abs(after%pressure)))
    end function moves_nothing
 
    !> Go where the leap led.
@@ -256,20 +243,24 @@ contains
       end do
    end subroutine take
 
-   !> What friction dissipates on the way from `before`, which has the statuses on the way, to the fields `after`, energy per unit
-   !> thickness. Nodes that slip already at the start do so with tractions from those then to those after: the trapezoid. Others
-   !> begin to slip on the way, half way on the average; and nodes that part do so half way on the average. With constant
-   !> pressures this is exact, else of second order in the length of the leap.
-   pure real(wp) function dissipation(model, before, after)
+   !> What friction dissipates on the way from `before`, which has the statuses on the way, to the fields `after`, energy per
+   !> unit thickness. Nodes that slip already at the start do so with tractions from those then to those after: the trapezoid.
+   !> Others begin to slip on the way, half way on the average; and nodes that part do so half way on the average. With
+   !> constant pressures this is exact, else of second order in the length of the leap. `noise`: the linear solver's.
+   pure real(wp) function dissipation(model, before, after, noise)
       type(contact_model_type), intent(in) :: model
       type(contact_state_type), intent(in) :: before
       type(contact_fields_type), intent(in) :: after
-      real(wp), parameter :: at_limit = 1.0e-9_wp
+      real(wp), intent(in) :: noise
+      real(wp), parameter :: at_limit = 1.0e-9_wp, noises = 100.0_wp
       real(wp), dimension(size(before%status)) :: work, slipped, limit
+      logical :: on(size(work))
 
       slipped = after%slip() - before%stuck_slip
       limit = model%static_friction*before%fields%pressure
-      where (slips(before%status) .and. -before%fields%shear*slip_sign(before%status) >= limit*(1.0_wp - at_limit))
+      on = slips(before%status) .and. -before%fields%shear*slip_sign(before%status) &
+           >= limit*(1.0_wp - max(at_limit, noises*noise))
+      where (on)
          work = -0.5_wp*(before%fields%shear + after%shear)*slipped
       elsewhere (slips(before%status))
          work = (0.75_wp*abs(after%shear) + 0.25_wp*limit)*abs(slipped)

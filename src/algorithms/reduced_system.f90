@@ -64,6 +64,7 @@ module mfv_reduced_system
       procedure :: solve
       procedure :: rebuilds
       procedure, private :: match
+      procedure, private :: undetermined
       procedure, private :: follow
       procedure, private :: lose_constraints
       procedure, private :: change_unknowns
@@ -77,6 +78,7 @@ module mfv_reduced_system
       procedure, private :: rebuild
       procedure, private :: part_of
       procedure, private :: refine
+      procedure, private :: set_known_motions
       procedure, private :: find_residual
       procedure, private :: correct
    end type reduced_system_type
@@ -106,14 +108,43 @@ contains
          return
       end if
       call self%match(model)
-      call self%follow(model, constraints, singular)
+      call respond(self, model, constraints, start, .false., response, singular)
+      ! The inverse may have lost its digits: once more with a new one.
+      if (singular .and. .not. self%undetermined(model, constraints)) &
+         call respond(self, model, constraints, start, .true., response, singular)
+   end subroutine solve
+
+   !> State and rates. `anew`: with the inverse computed anew.
+   subroutine respond(self, model, constraints, start, anew, response, singular)
+      class(reduced_system_type), intent(inout) :: self
+      type(contact_model_type), intent(in) :: model
+      type(constraints_type), intent(in) :: constraints
+      type(contact_fields_type), intent(in) :: start
+      logical, intent(in) :: anew
+      type(response_type), intent(inout) :: response
+      logical, intent(out) :: singular
+
+      if (anew) call self%match(model)
+      call self%follow(model, constraints, anew, singular)
+      if (.not. singular) singular = self%undetermined(model, constraints)
       if (singular) return
       response%state = start
       call self%refine(model, constraints, .false., response%state, singular)
       if (singular) return
       response%rate = new_contact_fields(size(constraints%status))
       call self%refine(model, constraints, .true., response%rate, singular)
-   end subroutine solve
+   end subroutine respond
+
+   !> Whether a force is prescribed where nothing answers to it: without contact, or a moment on one node.
+   pure logical function undetermined(self, model, constraints)
+      class(reduced_system_type), intent(in) :: self
+      type(contact_model_type), intent(in) :: model
+      type(constraints_type), intent(in) :: constraints
+
+      undetermined = self%motion_place(along_approach) == 0 .and. .not. is_held(constraints, along_approach)
+      if (model%rotational) undetermined = undetermined .or. (self%motion_place(along_rotation) == 0 .and. &
+                                                              .not. is_held(constraints, along_rotation))
+   end function undetermined
 
    !> Forget what belongs to another model; follow the nodes where the mesh has grown.
    subroutine match(self, model)
@@ -169,11 +200,12 @@ contains
       if (sort == a_shear .or. (sort == a_motion .and. number == along_shift)) part_of = 2
    end function part_of
 
-   !> Bring unknowns and constraints to the statuses and controls of `constraints`.
-   subroutine follow(self, model, constraints, singular)
+   !> Bring unknowns and constraints to the statuses and controls of `constraints`. `anew`: compute the inverse anew.
+   subroutine follow(self, model, constraints, anew, singular)
       class(reduced_system_type), intent(inout) :: self
       type(contact_model_type), intent(in) :: model
       type(constraints_type), intent(in) :: constraints
+      logical, intent(in) :: anew
       logical, intent(out) :: singular
       logical, parameter :: touches(0:6) = [.false., .true., .true., .true., .true., .true., .true.], &
                             has_shear(0:6) = [.false., .true., .true., .true., .false., .true., .true.]
@@ -188,7 +220,11 @@ contains
       if (model%rotational) wanted_motion(along_rotation) = count(wanted(:, a_pressure)) > 1 .and. &
                                                             (model%upright .or. any(wanted(:, a_shear)))
       call self%lose_constraints(constraints, wanted, wanted_motion)
-      call self%change_unknowns(model, wanted, wanted_motion, singular)
+      if (anew) then
+         call self%rebuild(model, wanted, wanted_motion, singular)
+      else
+         call self%change_unknowns(model, wanted, wanted_motion, singular)
+      end if
       if (singular) return
       call self%set_constraints(model, constraints)
    end subroutine follow
@@ -262,17 +298,18 @@ contains
       singular = .false.
       if (all(changes == 0) .and. all(wanted_motion .eqv. self%motion_place > 0)) return
       if (all(changes <= max(few, self%part%unknowns/2))) then
+         ! What is added comes first: with little contact left in between the matrix would have no inverse.
          call self%change_motions(model, wanted_motion, .false., singular)
+         do part = 1, 2
+            if (.not. singular) call self%add_unknowns(model, part, wanted, singular)
+         end do
+         if (.not. singular) call self%change_motions(model, wanted_motion, .true., singular)
          do sort = a_shear, a_pressure, -1
             do i = 1, size(wanted, 1)
                if (singular) exit
                if (self%place(i, sort) > 0 .and. .not. wanted(i, sort)) call self%remove_unknown(sort, i, singular)
             end do
          end do
-         do part = 1, 2
-            if (.not. singular) call self%add_unknowns(model, part, wanted, singular)
-         end do
-         if (.not. singular) call self%change_motions(model, wanted_motion, .true., singular)
          if (.not. singular) return
       end if
       call self%rebuild(model, wanted, wanted_motion, singular)
@@ -440,7 +477,7 @@ contains
          end associate
          if (.not. singular) cycle
          ! Nothing is left of it: the next solve begins again.
-         deallocate (self%place)
+         deallocate (self%place, self%constraint_of)
          return
       end do
    end subroutine rebuild
@@ -592,19 +629,8 @@ contains
 
       singular = .false.
       fine = merge(5.0e-14_wp, 1.0e-14_wp, rates)
-      do i = 1, 3
-         if (self%motion_place(i) > 0) cycle
-         load = load_of(constraints, i)
-         value = merge(load%rate, load%value, rates)
-         if (i == along_rotation .and. .not. model%rotational) value = 0.0_wp
-         if (i == along_approach .and. load%control == control_force) cycle
-         call set_motion(fields, i, value)
-      end do
+      call self%set_known_motions(model, constraints, rates, fields)
       if (.not. rates) call open_up(self, model, fields)
-      if (rates .and. (model%rotational .or. .not. model%upright)) then
-         fields%normal = -model%rigid_normal(fields)
-         fields%tangential = -model%rigid_tangential(fields)
-      end if
       do pass = 1, most_passes
          call self%find_residual(model, constraints, rates, pass == 1 .and. rates, fields, residual)
          if (residual <= fine) exit
@@ -624,6 +650,32 @@ contains
          if (i == along_rotation) fields%moment = value
       end do
    end subroutine refine
+
+   !> Motions that are not among the unknowns, with what they do to the displacements.
+   subroutine set_known_motions(self, model, constraints, rates, fields)
+      class(reduced_system_type), intent(in) :: self
+      type(contact_model_type), intent(in) :: model
+      type(constraints_type), intent(in) :: constraints
+      logical, intent(in) :: rates
+      type(contact_fields_type), intent(inout) :: fields
+      type(load_type) :: load
+      integer :: i
+
+      if (all(self%motion_place > 0)) return
+      if (model%rotational .or. .not. model%upright) then
+         fields%normal = fields%normal + model%rigid_normal(fields)
+         fields%tangential = fields%tangential + model%rigid_tangential(fields)
+      end if
+      do i = 1, 3
+         load = load_of(constraints, i)
+         if (self%motion_place(i) > 0 .or. (i == along_rotation .and. .not. model%rotational)) cycle
+         call set_motion(fields, i, merge(load%rate, load%value, rates))
+      end do
+      if (model%rotational .or. .not. model%upright) then
+         fields%normal = fields%normal - model%rigid_normal(fields)
+         fields%tangential = fields%tangential - model%rigid_tangential(fields)
+      end if
+   end subroutine set_known_motions
 
    !> No tractions on nodes without unknowns.
    subroutine open_up(self, model, fields)
@@ -759,6 +811,8 @@ contains
 
       normal = max(abs(fields%approach), tiny(1.0_wp))
       tangential = max(abs(fields%shift), tiny(1.0_wp))
+      if (model%rotational .or. .not. model%upright) &
+         normal = max(normal, abs(fields%shift), abs(fields%rotation)*model%length())
       traction = tiny(1.0_wp)
       force = tiny(1.0_wp)
       shear_force = 0.0_wp

@@ -8,15 +8,17 @@ module mfv_straight
    use mfv_contact_state, only: contact_state_type
    use mfv_contact_system, only: load_type
    use mfv_error, only: error_type
-   use mfv_first_violation, only: lead_by_violations
+   use mfv_first_violation, only: failed_certificate, lead_by_violations, noises
    use mfv_kinds, only: wp
    use mfv_node_status
    use mfv_observer, only: observer_type
    use mfv_scene, only: control_force, stepping_nominal
    use mfv_status, only: MFV_INTERRUPTED
+   use mfv_strings, only: to_text
    implicit none
    private
-   public :: lead_straight, settle_on_mesh, grow_mesh, before_separation, carries_nothing_yet, part_of
+   public :: lead_straight, settle_on_mesh, grow_mesh, before_separation, carries_nothing_yet, &
+             close_leap, part_of
 
 contains
 
@@ -28,7 +30,7 @@ contains
       class(observer_type), intent(inout), optional :: observer
       type(error_type), allocatable, intent(out) :: error
       type(contact_fields_type) :: fields
-      logical :: settled, stop_wanted, friction
+      logical :: settled, friction
       real(wp) :: part
 
       friction = segment%friction .and. path%model%scene%friction%acts()
@@ -45,14 +47,30 @@ contains
       if (.not. settled) part = 0.0_wp
       if (settled) then
          call path%take_increment(fields, fields%slip() - path%state%fields%slip(), 0.0_wp, dissipated=0.0_wp)
-         if (present(observer)) then
-            call observer%notify(path%state, segment%number, segment%segments, part, stop_wanted)
-            if (stop_wanted) call path%end_here(MFV_INTERRUPTED, 'stopped on request', error)
-         end if
+         call close_leap(path, segment, part, observer, error)
          if (allocated(error) .or. .not. part < 1.0_wp) return
       end if
       call lead_by_violations(path, part_of(segment, part, 1.0_wp), observer, error)
    end subroutine lead_straight
+
+   !> After a leap to the part `part` of the segment: look at the certificate, and tell the observer.
+   !> Errors MFV_NO_CONTINUATION: the certificate fails by far; MFV_INTERRUPTED.
+   subroutine close_leap(path, segment, part, observer, error)
+      class(contact_path_type), intent(in) :: path
+      type(segment_type), intent(in) :: segment
+      real(wp), intent(in) :: part
+      class(observer_type), intent(inout), optional :: observer
+      type(error_type), allocatable, intent(out) :: error
+      logical :: stop_wanted
+
+      if (path%certificate%largest() > max(failed_certificate, noises*path%system%noise)) &
+         call path%no_continuation('the equations are no longer satisfied (certificate '// &
+                                   to_text(path%certificate%largest())//')', error)
+      if (allocated(error) .or. .not. present(observer)) return
+      call observer%notify(path%state, segment%number, segment%segments, &
+                           segment%from + (segment%to - segment%from)*part, stop_wanted)
+      if (stop_wanted) call path%end_here(MFV_INTERRUPTED, 'stopped on request', error)
+   end subroutine close_leap
 
    !> Statuses and fields at a part of the segment, on a mesh that grows with the contact where it may. `settled`: whether they
    !> were found; the statuses are as they were otherwise. The fields of `path` stay those of the start.
@@ -76,9 +94,9 @@ contains
       end do
    end subroutine settle_and_grow
 
-   !> Statuses and fields at a part of the segment. The statuses of `path` are the first guess; where nothing is in contact there
-   !> is another. `settled`: whether they were found, on this mesh; if not, the statuses are of no use, and `exceeded` tells
-   !> whether only the mesh is too short. The fields of `path` stay those of the start.
+   !> Statuses and fields at a part of the segment. The statuses of `path` are the first guess; where nothing is in contact
+   !> there is another. `settled`: whether they were found, on this mesh; if not, the statuses are of no use, and `exceeded`
+   !> tells whether only the mesh is too short. The fields of `path` stay those of the start.
    subroutine settle_on_mesh(path, segment, part, fields, settled, exceeded)
       class(contact_path_type), intent(inout) :: path
       type(segment_type), intent(in) :: segment
@@ -118,8 +136,8 @@ contains
       call path%set_status(contact, status)
    end subroutine guess_contact
 
-   !> How far along the segment the bodies are certainly pressed together: the whole of it unless the normal force falls to zero,
-   !> then up to where little of it is left. (At zero the pressures of any contact are zero.)
+   !> How far along the segment the bodies are certainly pressed together: the whole of it unless the normal force falls to
+   !> zero, then up to where little of it is left. (At zero the pressures of any contact are zero.)
    pure real(wp) function before_separation(segment) result(part)
       type(segment_type), intent(in) :: segment
       real(wp), parameter :: nothing = 1.0e-9_wp, little = 1.0e-4_wp
@@ -133,8 +151,8 @@ contains
       end associate
    end function before_separation
 
-   !> Whether a tangential force or a moment begins to act while the bodies are apart and only draw near: it has nothing to carry
-   !> it until they touch.
+   !> Whether a tangential force or a moment begins to act while the bodies are apart and only draw near: it has nothing to
+   !> carry it until they touch.
    pure logical function carries_nothing_yet(path, segment)
       class(contact_path_type), intent(in) :: path
       type(segment_type), intent(in) :: segment
