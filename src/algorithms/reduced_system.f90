@@ -734,7 +734,8 @@ contains
       logical, intent(in) :: rates, at_rest
       type(contact_fields_type), intent(in) :: fields
       real(wp), intent(out) :: largest
-      real(wp) :: normal_scale, shear_scale, traction_scale, force, shear_force, length, modulus, interval, missing, value
+      real(wp) :: normal_scale, shear_scale, traction_scale, force, shear_force, length, modulus, interval, missing, value, &
+                  by_length, by_stress, gap_rest, slip_rest, traction_rest
       type(load_type) :: load
       integer :: i, node, p
 
@@ -747,6 +748,11 @@ contains
       length = self%length
       modulus = model%compliance%modulus
       interval = model%interval()
+      by_length = 1.0_wp/length
+      by_stress = 1.0_wp/(interval*modulus)
+      gap_rest = 0.0_wp
+      slip_rest = 0.0_wp
+      traction_rest = 0.0_wp
       largest = 0.0_wp
       do p = 1, 2
          associate (part => self%part(p))
@@ -756,49 +762,47 @@ contains
             end if
             do i = 1, part%unknowns
                node = part%of(i)
-               missing = 0.0_wp
-               select case (part%sort(i))
-               case (a_pressure)
+               if (part%sort(i) == a_pressure) then
                   missing = fields%approach - fields%normal(node)
                   if (.not. rates) then
                      missing = missing - model%initial_gap(node)
                   else if (allocated(constraints%gap_rate)) then
                      missing = missing + constraints%gap_rate(node)
                   end if
-                  largest = max(largest, abs(missing)/normal_scale)
-                  missing = missing/length
-               case (a_shear)
-                  if (constraints%status(node) == node_stick) then
-                     missing = fields%shift - fields%tangential(node)
-                     if (.not. rates) then
-                        missing = missing + constraints%stuck_slip(node)
-                     else if (allocated(constraints%slip_rate)) then
-                        missing = missing + constraints%slip_rate(node)
-                     end if
-                     largest = max(largest, abs(missing)/shear_scale)
-                     missing = missing/length
-                  else
-                     value = missing_shear(constraints, rates, fields, node)
-                     largest = max(largest, abs(value)/traction_scale)
-                     part%values(self%constraint_of(node)) = value*model%width(node)/(interval*modulus)
-                  end if
-               case (a_motion)
+                  gap_rest = max(gap_rest, abs(missing))
+                  part%right(i) = missing*by_length
+               else if (part%sort(i) == a_motion) then
                   load = load_of(constraints, node)
                   value = merge(load%rate, load%value, rates)
                   if (self%motion_constraint(node) > 0) then
-                     value = (value - motion_of(fields, node))*arm_unit(self%length, node)
+                     value = (value - motion_of(fields, node))*arm_unit(length, node)
                      largest = max(largest, abs(value)/max(normal_scale, shear_scale))
-                     part%values(self%motion_constraint(node)) = value/length
+                     part%values(self%motion_constraint(node)) = value*by_length
+                     part%right(i) = 0.0_wp
                   else
-                     missing = (model%resultant(node, fields%pressure, fields%shear) - value)/arm_unit(self%length, node)
+                     missing = (model%resultant(node, fields%pressure, fields%shear) - value)/arm_unit(length, node)
                      largest = max(largest, abs(missing)/merge(shear_force, force, node == along_shift))
-                     missing = missing/(interval*modulus)
+                     part%right(i) = missing*by_stress
                   end if
-               end select
-               part%right(i) = missing
+               else if (constraints%status(node) == node_stick) then
+                  missing = fields%shift - fields%tangential(node)
+                  if (.not. rates) then
+                     missing = missing + constraints%stuck_slip(node)
+                  else if (allocated(constraints%slip_rate)) then
+                     missing = missing + constraints%slip_rate(node)
+                  end if
+                  slip_rest = max(slip_rest, abs(missing))
+                  part%right(i) = missing*by_length
+               else
+                  value = missing_shear(constraints, rates, fields, node)
+                  traction_rest = max(traction_rest, abs(value))
+                  part%values(self%constraint_of(node)) = value*model%width(node)*by_stress
+                  part%right(i) = 0.0_wp
+               end if
             end do
          end associate
       end do
+      largest = max(largest, gap_rest/normal_scale, slip_rest/shear_scale, traction_rest/traction_scale)
       if (at_rest) largest = huge(1.0_wp)
    end subroutine find_residual
 

@@ -70,7 +70,24 @@ contains
       class(toeplitz_type), intent(in) :: self
       real(wp), intent(in) :: x(:), y(:)
       real(wp), intent(out) :: by_x(:), by_y(:)
+      integer, parameter :: short = 512
+      complex(wp) :: nearby(short)
       complex(wp), allocatable :: work(:)
+
+      if (self%length <= short) then
+         call multiply_in(self, nearby(:self%length), x, by_x, y, by_y)
+      else
+         allocate (work(self%length))
+         call multiply_in(self, work, x, by_x, y, by_y)
+      end if
+   end subroutine multiply
+
+   !> The same with the work space `work`, shape (length).
+   subroutine multiply_in(self, work, x, by_x, y, by_y)
+      class(toeplitz_type), intent(in) :: self
+      complex(wp), intent(inout), contiguous :: work(:)
+      real(wp), intent(in) :: x(:), y(:)
+      real(wp), intent(out) :: by_x(:), by_y(:)
       complex(wp) :: here, there
       integer, parameter :: most = 500
       real(wp) :: factor, largest_x, largest_y
@@ -78,7 +95,6 @@ contains
 
       n = self%nodes
       length = self%length
-      allocate (work(length))
       if (allocated(self%mirrored)) then
          work(:n) = cmplx(x, y, wp)
       else
@@ -110,6 +126,6 @@ contains
       by_y = by_y/factor
       if (.not. largest_x > 0.0_wp) by_x = 0.0_wp
       if (.not. largest_y > 0.0_wp) by_y = 0.0_wp
-   end subroutine multiply
+   end subroutine multiply_in
 
 end module mfv_toeplitz

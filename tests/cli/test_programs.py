@@ -44,6 +44,20 @@ def test_examples_have_a_certificate(example, tmp_path):
         assert result.attrs["outcome"] == "complete"
 
 
+def test_digits_do_not_depend_on_threads(tmp_path):
+    example = case(tmp_path, BODIES + "&friction law='coulomb', mu=0.5 /\n&mesh nodes=161 /\n&step normal_force=1e-3 /\n"
+                   "&step tangential_force=3e-4, cycles=1 /\n")
+    states = []
+    for threads in ("1", "2"):
+        folder = tmp_path / threads
+        folder.mkdir()
+        subprocess.run([PROGRAM, example], cwd=folder, check=True, capture_output=True, timeout=300,
+                       env=os.environ | {"OPENBLAS_NUM_THREADS": threads})
+        with h5py.File(folder / "case.h5") as result:
+            states.append({name: result["state"][name][()].tobytes() for name in result["state"]})
+    assert states[0] == states[1]
+
+
 def test_examples_are_there():
     assert len(EXAMPLES) >= 4
 
