@@ -1,7 +1,7 @@
 !> How many nodes, and which linear solver, a scene needs for a wanted error. Pairs of coarse meshes of the scene itself, of
 !> m and 3 m intervals, whose nodes lie in the same places, tell the size c of the errors c/nodes^order of the tractions
 !> (l2, over the nodes) and of the dissipation; the width of the intervals that of half-width and stick ratio. What a solver
-!> costs comes from laws that were measured by bench/.
+!> costs comes from laws with measured constants.
 module mfv_advice
    use mfv_discretisation_error
    use mfv_error_bar, only: quantity_count, quantity_half_width, quantity_stick_ratio
@@ -34,15 +34,17 @@ module mfv_advice
    integer, parameter :: fewest_pilot_nodes = 8, fewest_nodes = 10
 
    !> Seconds that one linear solve with m unknown tractions takes, with all that goes with it: dgesv coefficient*m^3,
-   !> reduced coefficient*m^2, fft coefficient*m*log2(m). Measured by bench/ (dgesv: examples/mindlin.nml, 87 to 259 nodes
-   !> in contact, one thread; reduced and fft: PROVISIONAL, until bench/ has measured them). Crossovers are where the laws
-   !> meet.
-   real(wp), parameter :: dgesv_seconds = 1.6e-10_wp, reduced_seconds = 2.0e-9_wp, fft_seconds = 1.6e-6_wp
+   !> reduced coefficient*m^2, fft coefficient*m*log2(m). PROVISIONAL, until bench/ has measured them: from mfv_run with
+   !> examples/mindlin.nml, Goodman's and full coupling, 87 to 1723 nodes in contact, one thread of a busy machine; fft and
+   !> reduced scatter by a factor of 3 with the coupling. Crossovers are where the laws meet.
+   real(wp), parameter :: dgesv_seconds = 2.0e-10_wp, reduced_seconds = 1.2e-9_wp, fft_seconds = 1.2e-7_wp
    !> Relative residual that an iterative solver may leave, in parts of the wanted error; never below the default.
    real(wp), parameter :: tolerance_part = 1.0e-3_wp
    !> Tolerance of friction laws that are not linear, in parts of the wanted error: the error itself is about a sixth of it
    !> (docs/verification.md).
    real(wp), parameter :: friction_tolerance_part = 0.3_wp
+   !> Tolerance of leaps, in parts of the wanted error: the error follows it.
+   real(wp), parameter :: leap_tolerance_part = 0.1_wp
 
    type :: advice_type
       !> How it went (see mfv_status), and why there is no advice; empty where there is.
@@ -59,18 +61,19 @@ module mfv_advice
       integer, allocatable :: pair_nodes(:)
       !> See method_type.
       integer :: linear_solver = solver_auto
-      real(wp) :: linear_tolerance = 0.0_wp, friction_tolerance = 0.0_wp
+      real(wp) :: linear_tolerance = 0.0_wp, friction_tolerance = 0.0_wp, leap_tolerance = 0.0_wp
       !> Linear solves and seconds that the run will take, about.
       real(wp) :: solves = 0.0_wp, seconds = 0.0_wp
-      !> Whether the path does not matter, because no friction acts.
-      logical :: path_does_not_matter = .false.
+      !> Linear solves on the finest of the coarse meshes, of &mesh nodes `tried_nodes`, by events and by leaps; 0: not tried.
+      integer :: tried_nodes = 0, event_solves = 0, leap_solves = 0
    end type advice_type
 
    !> What the pairs tell: squares of the coefficients c of the errors c/nodes^order, nodes in contact; shape (advice_count).
    type :: law_type
       real(wp) :: squares(advice_count) = 0.0_wp
-      !> Nodes in contact over &mesh nodes; linear solves over nodes in contact.
-      real(wp) :: density = 0.0_wp, solves = 0.0_wp
+      !> Nodes in contact over &mesh nodes. Linear solves with `nodes` nodes in contact, and the power of the nodes with which
+      !> they grow.
+      real(wp) :: density = 0.0_wp, solves = 0.0_wp, nodes = 1.0_wp, growth = 0.0_wp
       logical :: known(advice_count) = .false.
       integer :: pairs = 0
    end type law_type
@@ -103,7 +106,7 @@ contains
       advice%present_nodes = scene%mesh%nodes
       call refuse_fixed_meshes(scene, advice)
       if (advice%message /= '') return
-      watch%runs = 2*size(pair_nodes) + 1
+      watch%runs = 2*size(pair_nodes) + 2
       if (present(observer)) watch%caller => observer
       call measure(scene, law, advice, watch)
       if (advice%message /= '') return
@@ -160,8 +163,11 @@ contains
       end if
       law%squares = law%squares/law%pairs
       law%density = real(fine%contact%state%contact_nodes(), wp)/(3*advice%pair_nodes(size(advice%pair_nodes)))
-      law%solves = real(fine%contact%system%solves, wp)/max(fine%contact%state%contact_nodes(), 1)
+      law%nodes = max(fine%contact%state%contact_nodes(), 1)
+      law%solves = max(fine%contact%system%solves, 1)
+      law%growth = max(log(law%solves/max(coarse%contact%system%solves, 1))/log(3.0_wp), 0.0_wp)
       call add_interval_laws(law, fine)
+      call try_leaps(scene, fine, pilot, advice, watch)
    end subroutine measure
 
    !> A coarse mesh with enough nodes in contact to tell how many there are on any other.
@@ -211,6 +217,29 @@ contains
       advice%status = simulation%outcome
       advice%message = 'with '//to_text(nodes)//' nodes: '//status_outcome(simulation%outcome)
    end subroutine solve
+
+   !> Whether leaps take fewer solves than events, on the finest of the coarse meshes, under Coulomb's friction.
+   subroutine try_leaps(scene, fine, pilot, advice, watch)
+      type(scene_type), intent(in) :: scene
+      type(simulation_type), intent(in) :: fine, pilot
+      type(advice_type), intent(inout) :: advice
+      type(watch_type), intent(inout) :: watch
+      type(advice_type) :: trial
+      type(scene_type) :: leaping
+      type(simulation_type) :: simulation
+
+      if (scene%method%algorithm /= algorithm_mfv .or. scene%method%stepping /= stepping_event) return
+      if (scene%friction%name /= 'coulomb' .or. .not. scene%tangential()) return
+      leaping = scene
+      leaping%method%stepping = stepping_leap
+      leaping%method%leap_tolerance = min(leap_tolerance_part*advice%wanted_error, scene%method%leap_tolerance)
+      advice%tried_nodes = 3*advice%pair_nodes(size(advice%pair_nodes))
+      trial%message = ''
+      call solve(leaping, advice%tried_nodes, pilot, simulation, trial, watch)
+      if (trial%message /= '') return
+      advice%event_solves = fine%contact%system%solves
+      advice%leap_solves = simulation%contact%system%solves
+   end subroutine try_leaps
 
    !> See mfv_observer.
    subroutine notify(self, state, segment, segments, fraction, stop_wanted)
@@ -322,10 +351,10 @@ contains
       unknowns = real(advice%contact_nodes, wp)*merge(2, 1, scene%tangential())
       advice%linear_solver = cheapest_solver(unknowns)
       advice%linear_tolerance = max(tolerance_part*advice%wanted_error, usual%linear_tolerance)
+      advice%leap_tolerance = min(leap_tolerance_part*advice%wanted_error, scene%method%leap_tolerance)
       advice%friction_tolerance = min(friction_tolerance_part*advice%wanted_error, scene%method%friction_tolerance)
-      advice%solves = law%solves*advice%contact_nodes
+      advice%solves = law%solves*(advice%contact_nodes/law%nodes)**law%growth
       advice%seconds = advice%solves*seconds_of_solve(advice%linear_solver, unknowns)
-      advice%path_does_not_matter = .not. scene%tangential()
    end subroutine choose_solver
 
    !> The solver with the least cost for a number of unknown tractions.
