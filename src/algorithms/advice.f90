@@ -6,7 +6,7 @@ module mfv_advice
    use mfv_discretisation_error
    use mfv_error_bar, only: quantity_count, quantity_half_width, quantity_stick_ratio
    use mfv_kinds, only: wp
-   use mfv_observer, only: observer_type
+   use mfv_observer, only: observer_type, relay_type
    use mfv_contact_state, only: contact_state_type
    use mfv_scene
    use mfv_simulation, only: history_none, new_simulation, simulation_type
@@ -78,16 +78,6 @@ module mfv_advice
       integer :: pairs = 0
    end type law_type
 
-   !> Passes on to the caller's observer what happens on the coarse meshes, as a part of the work on all of them.
-   type, extends(observer_type) :: watch_type
-      class(observer_type), pointer :: caller => null()
-      integer :: before = 0, runs = 1
-      !> Whether the caller has stopped it.
-      logical :: ended = .false.
-   contains
-      procedure :: notify
-   end type watch_type
-
 contains
 
    !> What a scene needs for the error `wanted_error`, between 0 and 1, in the quantities of `wanted`, shape (advice_count).
@@ -98,7 +88,7 @@ contains
       logical, intent(in) :: wanted(:)
       type(advice_type), intent(out) :: advice
       class(observer_type), intent(inout), target, optional :: observer
-      type(watch_type) :: watch
+      type(relay_type) :: watch
       type(law_type) :: law
 
       advice%message = ''
@@ -139,7 +129,7 @@ contains
       type(scene_type), intent(in) :: scene
       type(law_type), intent(out) :: law
       type(advice_type), intent(inout) :: advice
-      type(watch_type), intent(inout) :: watch
+      type(relay_type), intent(inout) :: watch
       type(simulation_type) :: pilot, coarse, fine
       integer :: i, nodes
 
@@ -176,7 +166,7 @@ contains
       type(simulation_type), intent(out) :: pilot
       integer, intent(out) :: nodes
       type(advice_type), intent(inout) :: advice
-      type(watch_type), intent(inout) :: watch
+      type(relay_type), intent(inout) :: watch
       integer, parameter :: first = 30, attempts = 8
       integer :: attempt, contact
 
@@ -205,7 +195,7 @@ contains
       type(simulation_type), intent(in) :: pilot
       type(simulation_type), intent(out) :: simulation
       type(advice_type), intent(inout) :: advice
-      type(watch_type), intent(inout) :: watch
+      type(relay_type), intent(inout) :: watch
       type(scene_type) :: other
 
       other = scene_on_mesh(scene, nodes)
@@ -223,7 +213,7 @@ contains
       type(scene_type), intent(in) :: scene
       type(simulation_type), intent(in) :: fine, pilot
       type(advice_type), intent(inout) :: advice
-      type(watch_type), intent(inout) :: watch
+      type(relay_type), intent(inout) :: watch
       type(advice_type) :: trial
       type(scene_type) :: leaping
       type(simulation_type) :: simulation
@@ -240,20 +230,6 @@ contains
       advice%event_solves = fine%contact%system%solves
       advice%leap_solves = simulation%contact%system%solves
    end subroutine try_leaps
-
-   !> See mfv_observer.
-   subroutine notify(self, state, segment, segments, fraction, stop_wanted)
-      class(watch_type), intent(inout) :: self
-      type(contact_state_type), intent(in) :: state
-      integer, intent(in) :: segment, segments
-      real(wp), intent(in) :: fraction
-      logical, intent(out) :: stop_wanted
-
-      stop_wanted = .false.
-      if (.not. associated(self%caller)) return
-      call self%caller%notify(state, self%before*segments + segment, self%runs*segments, fraction, stop_wanted)
-      self%ended = stop_wanted
-   end subroutine notify
 
    !> Add what a pair of meshes tells of the tractions and the dissipation.
    subroutine add_pair(law, coarse, fine)

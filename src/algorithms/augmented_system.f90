@@ -16,6 +16,7 @@ module mfv_augmented_system
    use mfv_contact_model, only: along_approach, along_rotation, along_shift, contact_model_type
    use mfv_contact_system
    use mfv_kinds, only: wp
+   use mfv_lapack, only: dgesv
    use mfv_node_status
    use mfv_scene, only: control_force
    implicit none
@@ -40,15 +41,6 @@ module mfv_augmented_system
       !> Units of pressure, shear traction and length.
       real(wp) :: stress = 1.0_wp, shear_stress = 1.0_wp, length = 1.0_wp
    end type assembly_type
-
-   interface
-      subroutine dgesv(n, nrhs, a, lda, ipiv, b, ldb, info)
-         import :: wp
-         integer, intent(in) :: n, nrhs, lda, ldb
-         real(wp), intent(inout) :: a(lda, *), b(ldb, *)
-         integer, intent(out) :: ipiv(*), info
-      end subroutine dgesv
-   end interface
 
 contains
 
