@@ -40,6 +40,8 @@ module mfv_contact_system
    end type response_type
 
    type, abstract :: contact_system_type
+      !> What &solver linear_solver calls it.
+      character(len=7) :: name = 'dgesv'
       !> Linear solves so far.
       integer :: solves = 0
       !> Of solvers that iterate: iterations, and products with the compliance, so far.

@@ -20,8 +20,10 @@ contains
       select case (model%scene%method%linear_solver)
       case (solver_fft)
          allocate (krylov_system_type :: system)
+         system%name = 'fft'
       case (solver_auto, solver_reduced)
          allocate (reduced_system_type :: system)
+         system%name = 'reduced'
       case default
          allocate (augmented_system_type :: system)
       end select
