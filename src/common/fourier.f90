@@ -8,7 +8,7 @@ module mfv_fourier
    use mfv_kinds, only: wp
    implicit none
    private
-   public :: fourier_sum, fourier_coefficients, complex_transform, real_transform, back_transform, transform_length, fast_length, &
+   public :: fourier_sum, fourier_coefficients, complex_transform, real_transform, back_transform, fast_length, &
              forward, backward, plans_kept
 
    include 'fftw3.f03'
@@ -33,19 +33,6 @@ module mfv_fourier
    integer(c_long), target :: mutex(16) = 0
 
    interface
-      !> FFTW's procedures for transforms in place: fftw3.f03 has two arrays, which in Fortran must not be the same.
-      function plan_in_place(n, in, out, sign, flags) bind(C, name='fftw_plan_dft_1d') result(plan)
-         import :: c_int, c_ptr
-         integer(c_int), value :: n, sign, flags
-         type(c_ptr), value :: in, out
-         type(c_ptr) :: plan
-      end function plan_in_place
-
-      subroutine execute_in_place(plan, in, out) bind(C, name='fftw_execute_dft')
-         import :: c_ptr
-         type(c_ptr), value :: plan, in, out
-      end subroutine execute_in_place
-
       function pthread_mutex_lock(mutex) bind(C, name='pthread_mutex_lock') result(code)
          import :: c_int, c_ptr
          type(c_ptr), value :: mutex
@@ -96,16 +83,17 @@ contains
       coefficients(2:(n + 1)/2) = 2.0_wp*coefficients(2:(n + 1)/2)
    end subroutine fourier_coefficients
 
-   !> `values(k+1)` becomes the sum over j = 0 to N-1 of values(j+1) exp(-/+ 2 pi i j k/N), N = size(values); `direction`:
-   !> forward (-) or backward (+). There and back multiplies by N.
-   subroutine complex_transform(direction, values)
+   !> `transformed(k+1)` = sum over j = 0 to N-1 of values(j+1) exp(-/+ 2 pi i j k/N), N = size(values) = size(transformed);
+   !> `direction`: forward (-) or backward (+). There and back multiplies by N. `values` is used as work space.
+   subroutine complex_transform(direction, values, transformed)
       integer, intent(in) :: direction
       complex(wp), intent(inout), contiguous, target :: values(:)
+      complex(wp), intent(out), contiguous, target :: transformed(:)
       type(c_ptr) :: plan
       logical :: kept
 
-      call get_plan(size(values), direction, plan, kept, is_aligned(c_loc(values)))
-      call execute_in_place(plan, c_loc(values), c_loc(values))
+      call get_plan(size(values), direction, plan, kept, is_aligned(c_loc(values)) .and. is_aligned(c_loc(transformed)))
+      call fftw_execute_dft(plan, values, transformed)
       if (.not. kept) call throw_away(plan)
    end subroutine complex_transform
 
@@ -159,25 +147,6 @@ contains
       end do
    end function fast_length
 
-   !> The smallest length of a transform, not less than `at_least`, that has no prime factors but 2, 3 and 5.
-   pure integer function transform_length(at_least) result(length)
-      integer, intent(in) :: at_least
-      integer :: left, i
-      integer, parameter :: factors(3) = [2, 3, 5]
-
-      length = max(at_least, 1)
-      do
-         left = length
-         do i = 1, size(factors)
-            do while (modulo(left, factors(i)) == 0)
-               left = left/factors(i)
-            end do
-         end do
-         if (left == 1) return
-         length = length + 1
-      end do
-   end function transform_length
-
    !> Number of plans in the cache.
    integer function plans_kept()
       integer(c_int) :: code
@@ -201,8 +170,9 @@ contains
       plan = c_null_ptr
       kept = .true.
       do i = 1, plan_count
-         if (plans(i)%size == size .and. plans(i)%direction == direction .and. (plans(i)%aligned .eqv. aligned)) &
-            plan = plans(i)%plan
+         if (plans(i)%size /= size .or. plans(i)%direction /= direction .or. (plans(i)%aligned .neqv. aligned)) cycle
+         plan = plans(i)%plan
+         exit
       end do
       if (.not. c_associated(plan)) then
          plan = new_plan(size, direction, aligned)
@@ -220,16 +190,16 @@ contains
       integer, intent(in) :: size, direction
       logical, intent(in) :: aligned
       type(c_ptr) :: plan
-      complex(wp), allocatable, target :: coefficients(:)
+      complex(wp), allocatable :: coefficients(:), transformed(:)
       real(wp), allocatable :: values(:)
       integer(c_int) :: flags
 
       flags = FFTW_ESTIMATE
       if (.not. aligned) flags = ior(FFTW_ESTIMATE, FFTW_UNALIGNED)
       if (direction == forward .or. direction == backward) then
-         allocate (coefficients(size))
-         plan = plan_in_place(int(size, c_int), c_loc(coefficients), c_loc(coefficients), &
-                              merge(FFTW_FORWARD, FFTW_BACKWARD, direction == forward), flags)
+         allocate (coefficients(size), transformed(size))
+         plan = fftw_plan_dft_1d(int(size, c_int), coefficients, transformed, &
+                                 merge(FFTW_FORWARD, FFTW_BACKWARD, direction == forward), flags)
          return
       end if
       allocate (coefficients(size/2 + 1), values(size))
