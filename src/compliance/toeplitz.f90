@@ -23,6 +23,8 @@ module mfv_toeplitz
       !> What the transform and its mirror image are multiplied by, divided by the length; the second is left out where it
       !> is zero. Shape (length).
       real(wp), allocatable :: straight(:), mirrored(:)
+      !> Whether there is a B: X depends on y, and Y on x.
+      logical :: coupled = .false.
    contains
       procedure :: multiply
    end type toeplitz_type
@@ -56,7 +58,8 @@ contains
       else
          self%straight = real(work, wp)/self%length
       end if
-      if (.not. present(odd)) return
+      self%coupled = present(odd)
+      if (.not. self%coupled) return
       work = 0.0_wp
       work(2:n) = odd(2:)
       work(self%length:self%length - n + 2:-1) = -odd(2:)
@@ -72,24 +75,18 @@ contains
       real(wp), intent(out) :: by_x(:), by_y(:)
       complex(wp), allocatable :: work(:)
       complex(wp) :: here, there
-      integer, parameter :: most = 500
-      real(wp) :: factor, largest_x, largest_y
+      real(wp) :: factor
+      logical :: alike
       integer :: k, n, length
 
       n = self%nodes
       length = self%length
+      ! A z alone: the two vectors do not meet.
+      alike = .not. (allocated(self%mirrored) .or. self%coupled)
+      factor = 1.0_wp
+      if (alike) factor = evening_factor(x, y)
       allocate (work(length))
-      if (allocated(self%mirrored)) then
-         work(:n) = cmplx(x, y, wp)
-      else
-         ! Both of one size, so that the smaller one keeps its digits beside the larger one.
-         largest_x = maxval(abs(x))
-         largest_y = maxval(abs(y))
-         factor = 1.0_wp
-         if (largest_x > 0.0_wp .and. largest_y > 0.0_wp) &
-            factor = scale(1.0_wp, min(max(exponent(largest_x) - exponent(largest_y), -most), most))
-         work(:n) = cmplx(x, factor*y, wp)
-      end if
+      work(:n) = cmplx(x, factor*y, wp)
       work(n + 1:) = 0.0_wp
       call complex_transform(forward, work)
       if (allocated(self%mirrored)) then
@@ -105,11 +102,23 @@ contains
       end if
       call complex_transform(backward, work)
       by_x = real(work(:n), wp)
-      by_y = aimag(work(:n))
-      if (allocated(self%mirrored)) return
-      by_y = by_y/factor
-      if (.not. largest_x > 0.0_wp) by_x = 0.0_wp
-      if (.not. largest_y > 0.0_wp) by_y = 0.0_wp
+      by_y = aimag(work(:n))/factor
+      if (.not. alike) return
+      if (.not. maxval(abs(x)) > 0.0_wp) by_x = 0.0_wp
+      if (.not. maxval(abs(y)) > 0.0_wp) by_y = 0.0_wp
    end subroutine multiply
+
+   !> A power of two that makes y about as large as x, so that the smaller one keeps its digits beside the larger one.
+   pure real(wp) function evening_factor(x, y)
+      real(wp), intent(in) :: x(:), y(:)
+      integer, parameter :: most = 500
+      real(wp) :: largest_x, largest_y
+
+      largest_x = maxval(abs(x))
+      largest_y = maxval(abs(y))
+      evening_factor = 1.0_wp
+      if (largest_x > 0.0_wp .and. largest_y > 0.0_wp) &
+         evening_factor = scale(1.0_wp, min(max(exponent(largest_x) - exponent(largest_y), -most), most))
+   end function evening_factor
 
 end module mfv_toeplitz
