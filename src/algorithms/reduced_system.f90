@@ -409,7 +409,6 @@ contains
       integer :: here, last, p
 
       p = self%part_of(sort, number)
-      here = self%motion_place(1)
       if (sort == a_motion) then
          here = self%motion_place(number)
       else
@@ -547,10 +546,9 @@ contains
       type(contact_model_type), intent(in) :: model
       type(constraints_type), intent(in) :: constraints
       real(wp) :: stiffness
-      integer :: changes, i, p, partner
+      integer :: i, p, partner
 
       p = self%part_of(a_shear, 0)
-      changes = 0
       do i = 1, size(constraints%status)
          if (self%place(i, a_shear) == 0 .or. constraints%status(i) == node_stick) cycle
          partner = 0
@@ -807,11 +805,14 @@ contains
       if (at_rest) largest = huge(1.0_wp)
    end subroutine find_residual
 
-   !> Magnitudes: of normal and of tangential displacements, of tractions, of all forces and of tangential ones.
+   !> Magnitudes: of normal and of tangential displacements, of tractions, of all forces and of tangential ones. Where bodies
+   !> only slide on each other the tractions' rates are zero but for round-off, and no measure of what is missing: tractions
+   !> count as at least a very small part of those that displacements of this size could bring.
    pure subroutine find_scales(model, fields, normal, tangential, traction, force, shear_force)
       type(contact_model_type), intent(in) :: model
       type(contact_fields_type), intent(in) :: fields
       real(wp), intent(out) :: normal, tangential, traction, force, shear_force
+      real(wp), parameter :: least = 1.0e-10_wp
       integer :: i
 
       normal = max(abs(fields%approach), tiny(1.0_wp))
@@ -828,10 +829,14 @@ contains
          force = force + model%width(i)*abs(fields%pressure(i))
          shear_force = shear_force + model%width(i)*abs(fields%shear(i))
       end do
-      shear_force = max(shear_force, model%grip*force, tiny(1.0_wp))
-      force = max(force, shear_force)
       tangential = max(tangential, model%grip*normal)
       normal = max(normal, tangential)
+      associate (possible => least*model%compliance%modulus*normal)
+         traction = max(traction, possible/model%length())
+         force = max(force, possible)
+      end associate
+      shear_force = max(shear_force, model%grip*force, tiny(1.0_wp))
+      force = max(force, shear_force)
    end subroutine find_scales
 
    !> What is missing to the shear traction of a slipping or creeping node.
@@ -867,6 +872,8 @@ contains
          if (p == 2) call self%find_residual(model, constraints, rates, .false., fields, residual)
          associate (part => self%part(p), n => self%part(p)%unknowns)
             call part%system%solve(part%right(:n), part%values(:part%system%constraints), part%solution(:n), singular)
+            ! Of what is no number the residual would see nothing.
+            if (.not. singular) singular = .not. all(abs(part%solution(:n)) <= huge(1.0_wp))
          end associate
          if (singular) return
          call apply(self, model, constraints, rates, p, fields)

@@ -23,6 +23,8 @@ module mfv_toeplitz
       !> What the transform and its mirror image are multiplied by, divided by the length; the second is left out where it
       !> is zero. Shape (length).
       real(wp), allocatable :: straight(:), mirrored(:)
+      !> Whether there is a B: X depends on y, and Y on x.
+      logical :: coupled = .false.
    contains
       procedure :: multiply
    end type toeplitz_type
@@ -56,7 +58,8 @@ contains
       else
          self%straight = real(spectrum, wp)/self%length
       end if
-      if (.not. present(odd)) return
+      self%coupled = present(odd)
+      if (.not. self%coupled) return
       work = 0.0_wp
       work(2:n) = odd(2:)
       work(self%length:self%length - n + 2:-1) = -odd(2:)
@@ -89,23 +92,19 @@ contains
       real(wp), intent(in) :: x(:), y(:)
       real(wp), intent(out) :: by_x(:), by_y(:)
       complex(wp) :: here, there
-      integer, parameter :: most = 500
       real(wp) :: factor, largest_x, largest_y
+      logical :: alike
       integer :: k, n, length
 
       n = self%nodes
       length = self%length
-      if (allocated(self%mirrored)) then
-         values(:n) = cmplx(x, y, wp)
-      else
-         ! Both of one size, so that the smaller one keeps its digits beside the larger one.
-         largest_x = maxval(abs(x))
-         largest_y = maxval(abs(y))
-         factor = 1.0_wp
-         if (largest_x > 0.0_wp .and. largest_y > 0.0_wp) &
-            factor = scale(1.0_wp, min(max(exponent(largest_x) - exponent(largest_y), -most), most))
-         values(:n) = cmplx(x, factor*y, wp)
-      end if
+      ! A z alone: the two vectors do not meet.
+      alike = .not. (allocated(self%mirrored) .or. self%coupled)
+      factor = 1.0_wp
+      largest_x = 1.0_wp
+      largest_y = 1.0_wp
+      if (alike) call find_evening(x, y, largest_x, largest_y, factor)
+      values(:n) = cmplx(x, factor*y, wp)
       values(n + 1:) = 0.0_wp
       call complex_transform(forward, values, work)
       if (allocated(self%mirrored)) then
@@ -121,11 +120,23 @@ contains
       end if
       call complex_transform(backward, work, values)
       by_x = real(values(:n), wp)
-      by_y = aimag(values(:n))
-      if (allocated(self%mirrored)) return
-      by_y = by_y/factor
+      by_y = aimag(values(:n))/factor
       if (.not. largest_x > 0.0_wp) by_x = 0.0_wp
       if (.not. largest_y > 0.0_wp) by_y = 0.0_wp
    end subroutine multiply_in
+
+   !> The largest sizes in x and y, and a power of two that makes y about as large as x, so that the smaller one keeps its digits
+   !> beside the larger one.
+   pure subroutine find_evening(x, y, largest_x, largest_y, factor)
+      real(wp), intent(in) :: x(:), y(:)
+      real(wp), intent(out) :: largest_x, largest_y, factor
+      integer, parameter :: most = 500
+
+      largest_x = maxval(abs(x))
+      largest_y = maxval(abs(y))
+      factor = 1.0_wp
+      if (largest_x > 0.0_wp .and. largest_y > 0.0_wp) &
+         factor = scale(1.0_wp, min(max(exponent(largest_x) - exponent(largest_y), -most), most))
+   end subroutine find_evening
 
 end module mfv_toeplitz

@@ -14,7 +14,7 @@ module test_closed_form_cases
    use test_scenes
    implicit none
    private
-   public :: random_case, kinds, kind_hertz, kind_punch, kind_cycle, kind_mindlin
+   public :: random_case, random_numbers, kinds, kind_hertz, kind_punch, kind_cycle, kind_mindlin
 
    !> A case is of the kind modulo(its number, kinds): one of these, or a cylinder pressed with friction.
    integer, parameter :: kinds = 6, kind_hertz = 0, kind_punch = 1, kind_cycle = 2, kind_mindlin = 3
