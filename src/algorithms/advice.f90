@@ -10,6 +10,7 @@ module mfv_advice
    use mfv_contact_state, only: contact_state_type
    use mfv_scene
    use mfv_simulation, only: history_none, new_simulation, simulation_type
+   use mfv_solver_costs, only: cheapest_solver, seconds_of_solve
    use mfv_status, only: MFV_COMPLETE, MFV_INPUT_ERROR, status_outcome
    use mfv_strings, only: to_text
    implicit none
@@ -33,11 +34,6 @@ module mfv_advice
    !> least.
    integer, parameter :: fewest_pilot_nodes = 8, fewest_nodes = 10
 
-   !> Seconds that one linear solve with m unknown tractions takes, with all that goes with it: dgesv coefficient*m^3,
-   !> reduced coefficient*m^2, fft coefficient*m*log2(m). PROVISIONAL, until bench/ has measured them: from mfv_run with
-   !> examples/mindlin.nml, Goodman's and full coupling, 87 to 1723 nodes in contact, one thread of a busy machine; fft and
-   !> reduced scatter by a factor of 3 with the coupling. Crossovers are where the laws meet.
-   real(wp), parameter :: dgesv_seconds = 2.0e-10_wp, reduced_seconds = 1.2e-9_wp, fft_seconds = 1.2e-7_wp
    !> Relative residual that an iterative solver may leave, in parts of the wanted error; never below the default.
    real(wp), parameter :: tolerance_part = 1.0e-3_wp
    !> Tolerance of friction laws that are not linear, in parts of the wanted error: the error itself is about a sixth of it
@@ -332,29 +328,5 @@ contains
       advice%solves = law%solves*(advice%contact_nodes/law%nodes)**law%growth
       advice%seconds = advice%solves*seconds_of_solve(advice%linear_solver, unknowns)
    end subroutine choose_solver
-
-   !> The solver with the least cost for a number of unknown tractions.
-   pure integer function cheapest_solver(unknowns) result(solver)
-      real(wp), intent(in) :: unknowns
-
-      solver = solver_dgesv
-      if (seconds_of_solve(solver_reduced, unknowns) < seconds_of_solve(solver, unknowns)) solver = solver_reduced
-      if (seconds_of_solve(solver_fft, unknowns) < seconds_of_solve(solver, unknowns)) solver = solver_fft
-   end function cheapest_solver
-
-   !> Seconds that one linear solve takes, about.
-   pure real(wp) function seconds_of_solve(solver, unknowns) result(seconds)
-      integer, intent(in) :: solver
-      real(wp), intent(in) :: unknowns
-
-      select case (solver)
-      case (solver_reduced)
-         seconds = reduced_seconds*unknowns**2
-      case (solver_fft)
-         seconds = fft_seconds*unknowns*log(max(unknowns, 2.0_wp))/log(2.0_wp)
-      case default
-         seconds = dgesv_seconds*unknowns**3
-      end select
-   end function seconds_of_solve
 
 end module mfv_advice

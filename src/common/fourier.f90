@@ -5,7 +5,7 @@
 !> thing in the library that outlives an object. When it is full, plans are made and thrown away.
 module mfv_fourier
    use, intrinsic :: iso_c_binding
-   use mfv_kinds, only: wp
+   use mfv_kinds, only: pi, wp
    implicit none
    private
    public :: fourier_sum, fourier_coefficients, complex_transform, real_transform, back_transform, fast_length, &
@@ -26,8 +26,15 @@ module mfv_fourier
       type(c_ptr) :: plan = c_null_ptr
    end type plan_type
 
+   !> Factors between transforms of real values and of half as many complex ones.
+   type :: turns_type
+      integer :: half = 0
+      complex(wp), pointer, contiguous :: turns(:) => null()
+   end type turns_type
+
    type(plan_type) :: plans(most_plans)
-   integer :: plan_count = 0
+   type(turns_type) :: all_turns(most_plans)
+   integer :: plan_count = 0, turn_count = 0
 
    !> Storage of a pthread_mutex_t, which is ready for use when it is zero; 40 bytes on Linux, 64 on macOS.
    integer(c_long), target :: mutex(16) = 0
@@ -97,30 +104,66 @@ contains
       if (.not. kept) call throw_away(plan)
    end subroutine complex_transform
 
-   !> `spectrum(m+1)` = sum over k of values(k+1) exp(-2 pi i m k/N), m = 0 to N/2; N = size(values), size(spectrum) = N/2 + 1.
-   !> `values` is used as work space.
+   !> `spectrum(m+1)` = sum over k of values(k+1) exp(-2 pi i m k/N), m = 0 to N/2; N = size(values), even, size(spectrum) =
+   !> N/2 + 1. By a complex transform of half the length (even values real, odd ones imaginary), whose plan is made in a tenth of
+   !> the time that FFTW takes over one for real values.
    subroutine real_transform(values, spectrum)
-      real(wp), intent(inout), contiguous, target :: values(:)
+      real(wp), intent(in) :: values(:)
       complex(wp), intent(out), contiguous, target :: spectrum(:)
-      type(c_ptr) :: plan
+      complex(wp), pointer, contiguous :: turns(:)
+      complex(wp), allocatable :: packed(:)
+      complex(wp) :: even, odd
       logical :: kept
+      integer :: k, half
 
-      call get_plan(size(values), to_coefficients, plan, kept, is_aligned(c_loc(values)) .and. is_aligned(c_loc(spectrum)))
-      call fftw_execute_dft_r2c(plan, values, spectrum)
-      if (.not. kept) call throw_away(plan)
+      half = size(values)/2
+      allocate (packed(half))
+      do k = 1, half
+         packed(k) = cmplx(values(2*k - 1), values(2*k), wp)
+      end do
+      call complex_transform(forward, packed, spectrum(:half))
+      call get_turns(half, turns, kept)
+      spectrum(half + 1) = real(spectrum(1), wp) - aimag(spectrum(1))
+      spectrum(1) = real(spectrum(1), wp) + aimag(spectrum(1))
+      do k = 1, half/2
+         even = 0.5_wp*(spectrum(k + 1) + conjg(spectrum(half - k + 1)))
+         odd = 0.5_wp*(spectrum(k + 1) - conjg(spectrum(half - k + 1)))*turns(k)
+         spectrum(k + 1) = even + odd
+         spectrum(half - k + 1) = conjg(even - odd)
+      end do
+      if (.not. kept) deallocate (turns)
    end subroutine real_transform
 
-   !> N times the values of which `spectrum` is the real_transform; N = size(values), size(spectrum) = N/2 + 1. `spectrum` is used
-   !> as work space.
+   !> N times the values of which `spectrum` is the real_transform; N = size(values), even, size(spectrum) = N/2 + 1. `spectrum` is
+   !> used as work space.
    subroutine back_transform(spectrum, values)
       complex(wp), intent(inout), contiguous, target :: spectrum(:)
-      real(wp), intent(out), contiguous, target :: values(:)
-      type(c_ptr) :: plan
+      real(wp), intent(out) :: values(:)
+      complex(wp), pointer, contiguous :: turns(:)
+      complex(wp), allocatable :: packed(:)
+      complex(wp) :: even, odd
+      real(wp) :: first, last
       logical :: kept
+      integer :: k, half
 
-      call get_plan(size(values), to_values, plan, kept, is_aligned(c_loc(values)) .and. is_aligned(c_loc(spectrum)))
-      call fftw_execute_dft_c2r(plan, spectrum, values)
-      if (.not. kept) call throw_away(plan)
+      half = size(values)/2
+      call get_turns(half, turns, kept)
+      first = real(spectrum(1), wp)
+      last = real(spectrum(half + 1), wp)
+      spectrum(1) = cmplx(first + last, first - last, wp)
+      do k = 1, half/2
+         even = spectrum(k + 1) + conjg(spectrum(half - k + 1))
+         odd = (spectrum(k + 1) - conjg(spectrum(half - k + 1)))*conjg(turns(k))
+         spectrum(k + 1) = even + odd
+         spectrum(half - k + 1) = conjg(even - odd)
+      end do
+      allocate (packed(half))
+      call complex_transform(backward, spectrum(:half), packed)
+      do k = 1, half
+         values(2*k - 1) = real(packed(k), wp)
+         values(2*k) = aimag(packed(k))
+      end do
+      if (.not. kept) deallocate (turns)
    end subroutine back_transform
 
    !> Whether an address is on a boundary that vector instructions want.
@@ -184,6 +227,34 @@ contains
       end if
       code = pthread_mutex_unlock(c_loc(mutex))
    end subroutine get_plan
+
+   !> The factors -i exp(-pi i k/half), k = 1 to half/2. `kept`: whether they stay in the cache.
+   subroutine get_turns(half, turns, kept)
+      integer, intent(in) :: half
+      complex(wp), pointer, contiguous, intent(out) :: turns(:)
+      logical, intent(out) :: kept
+      integer(c_int) :: code
+      integer :: i, k
+
+      code = pthread_mutex_lock(c_loc(mutex))
+      turns => null()
+      kept = .true.
+      do i = 1, turn_count
+         if (all_turns(i)%half == half) turns => all_turns(i)%turns
+      end do
+      if (.not. associated(turns)) then
+         allocate (turns(half/2))
+         do k = 1, half/2
+            turns(k) = -cmplx(sin(pi*k/half), cos(pi*k/half), wp)
+         end do
+         kept = turn_count < most_plans
+         if (kept) then
+            turn_count = turn_count + 1
+            all_turns(turn_count) = turns_type(half, turns)
+         end if
+      end if
+      code = pthread_mutex_unlock(c_loc(mutex))
+   end subroutine get_turns
 
    !> A plan that measures nothing.
    function new_plan(size, direction, aligned) result(plan)
