@@ -26,8 +26,10 @@ contains
       select case (solver)
       case (solver_fft)
          allocate (krylov_system_type :: system)
+         system%name = 'fft'
       case (solver_reduced)
          allocate (reduced_system_type :: system)
+         system%name = 'reduced'
       case default
          allocate (augmented_system_type :: system)
       end select

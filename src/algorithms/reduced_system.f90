@@ -19,7 +19,7 @@ module mfv_reduced_system
    use mfv_augmented_system, only: augmented_system_type
    use mfv_compliance, only: block_up, block_ut, block_wp, block_wt
    use mfv_constrained_inverse, only: constrained_inverse_type
-   use mfv_contact_fields, only: contact_fields_type, new_contact_fields
+   use mfv_contact_fields, only: contact_fields_type
    use mfv_contact_model, only: along_approach, along_rotation, along_shift, contact_model_type
    use mfv_contact_system
    use mfv_kinds, only: wp
@@ -98,12 +98,13 @@ contains
       type(contact_model_type), intent(in) :: model
       type(constraints_type), intent(in) :: constraints
       type(contact_fields_type), intent(in) :: start
-      type(response_type), intent(out) :: response
+      type(response_type), intent(inout) :: response
       logical, intent(out) :: singular
 
       self%solves = self%solves + 1
       if (model%compliance%has_block(block_up) .and. .not. model%compliance%has_block(block_wt) .and. &
           (model%rotational .or. model%scene%mesh%radial)) then
+         self%name = self%augmented%name
          call self%augmented%solve(model, constraints, start, response, singular)
          return
       end if
@@ -128,10 +129,10 @@ contains
       call self%follow(model, constraints, anew, singular)
       if (.not. singular) singular = self%undetermined(model, constraints)
       if (singular) return
-      response%state = start
+      call response%state%take(start)
       call self%refine(model, constraints, .false., response%state, singular)
       if (singular) return
-      response%rate = new_contact_fields(size(constraints%status))
+      call response%rate%clear(size(constraints%status))
       call self%refine(model, constraints, .true., response%rate, singular)
    end subroutine respond
 
@@ -408,7 +409,6 @@ contains
       integer :: here, last, p
 
       p = self%part_of(sort, number)
-      here = self%motion_place(1)
       if (sort == a_motion) then
          here = self%motion_place(number)
       else
@@ -546,10 +546,9 @@ contains
       type(contact_model_type), intent(in) :: model
       type(constraints_type), intent(in) :: constraints
       real(wp) :: stiffness
-      integer :: changes, i, p, partner
+      integer :: i, p, partner
 
       p = self%part_of(a_shear, 0)
-      changes = 0
       do i = 1, size(constraints%status)
          if (self%place(i, a_shear) == 0 .or. constraints%status(i) == node_stick) cycle
          partner = 0
@@ -806,11 +805,14 @@ contains
       if (at_rest) largest = huge(1.0_wp)
    end subroutine find_residual
 
-   !> Magnitudes: of normal and of tangential displacements, of tractions, of all forces and of tangential ones.
+   !> Magnitudes: of normal and of tangential displacements, of tractions, of all forces and of tangential ones. Where bodies
+   !> only slide on each other the tractions' rates are zero but for round-off, and no measure of what is missing: tractions
+   !> count as at least a very small part of those that displacements of this size could bring.
    pure subroutine find_scales(model, fields, normal, tangential, traction, force, shear_force)
       type(contact_model_type), intent(in) :: model
       type(contact_fields_type), intent(in) :: fields
       real(wp), intent(out) :: normal, tangential, traction, force, shear_force
+      real(wp), parameter :: least = 1.0e-10_wp
       integer :: i
 
       normal = max(abs(fields%approach), tiny(1.0_wp))
@@ -827,10 +829,14 @@ contains
          force = force + model%width(i)*abs(fields%pressure(i))
          shear_force = shear_force + model%width(i)*abs(fields%shear(i))
       end do
-      shear_force = max(shear_force, model%grip*force)
-      force = max(force, shear_force)
       tangential = max(tangential, model%grip*normal)
       normal = max(normal, tangential)
+      associate (possible => least*model%compliance%modulus*normal)
+         traction = max(traction, possible/model%length())
+         force = max(force, possible)
+      end associate
+      shear_force = max(shear_force, model%grip*force, tiny(1.0_wp))
+      force = max(force, shear_force)
    end subroutine find_scales
 
    !> What is missing to the shear traction of a slipping or creeping node.
@@ -866,6 +872,8 @@ contains
          if (p == 2) call self%find_residual(model, constraints, rates, .false., fields, residual)
          associate (part => self%part(p), n => self%part(p)%unknowns)
             call part%system%solve(part%right(:n), part%values(:part%system%constraints), part%solution(:n), singular)
+            ! Of what is no number the residual would see nothing.
+            if (.not. singular) singular = .not. all(abs(part%solution(:n)) <= huge(1.0_wp))
          end associate
          if (singular) return
          call apply(self, model, constraints, rates, p, fields)

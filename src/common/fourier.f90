@@ -8,7 +8,7 @@ module mfv_fourier
    use mfv_kinds, only: pi, wp
    implicit none
    private
-   public :: fourier_sum, fourier_coefficients, complex_transform, real_transform, back_transform, transform_length, fast_length, &
+   public :: fourier_sum, fourier_coefficients, complex_transform, real_transform, back_transform, fast_length, &
              forward, backward, plans_kept
 
    include 'fftw3.f03'
@@ -16,8 +16,6 @@ module mfv_fourier
    integer, parameter :: to_values = 1, to_coefficients = 2
    !> Directions of complex_transform: exp(-2 pi i j k/N) and exp(2 pi i j k/N).
    integer, parameter :: forward = 3, backward = 4
-   !> The same from one array to another.
-   integer, parameter :: forward_apart = 5, backward_apart = 6
    integer, parameter :: most_plans = 256
    !> The boundary, bytes, at which an array is aligned.
    integer(c_intptr_t), parameter :: boundary = 16
@@ -42,19 +40,6 @@ module mfv_fourier
    integer(c_long), target :: mutex(16) = 0
 
    interface
-      !> FFTW's procedures by address: fftw3.f03 has two complex arrays, which in Fortran must not be the same.
-      function plan_by_address(n, in, out, sign, flags) bind(C, name='fftw_plan_dft_1d') result(plan)
-         import :: c_int, c_ptr
-         integer(c_int), value :: n, sign, flags
-         type(c_ptr), value :: in, out
-         type(c_ptr) :: plan
-      end function plan_by_address
-
-      subroutine execute_by_address(plan, in, out) bind(C, name='fftw_execute_dft')
-         import :: c_ptr
-         type(c_ptr), value :: plan, in, out
-      end subroutine execute_by_address
-
       function pthread_mutex_lock(mutex) bind(C, name='pthread_mutex_lock') result(code)
          import :: c_int, c_ptr
          type(c_ptr), value :: mutex
@@ -105,32 +90,34 @@ contains
       coefficients(2:(n + 1)/2) = 2.0_wp*coefficients(2:(n + 1)/2)
    end subroutine fourier_coefficients
 
-   !> `values(k+1)` becomes the sum over j = 0 to N-1 of values(j+1) exp(-/+ 2 pi i j k/N), N = size(values); `direction`:
-   !> forward (-) or backward (+). There and back multiplies by N.
-   subroutine complex_transform(direction, values)
+   !> `transformed(k+1)` = sum over j = 0 to N-1 of values(j+1) exp(-/+ 2 pi i j k/N), N = size(values) = size(transformed);
+   !> `direction`: forward (-) or backward (+). There and back multiplies by N. `values` is used as work space.
+   subroutine complex_transform(direction, values, transformed)
       integer, intent(in) :: direction
       complex(wp), intent(inout), contiguous, target :: values(:)
+      complex(wp), intent(out), contiguous, target :: transformed(:)
       type(c_ptr) :: plan
       logical :: kept
 
-      call get_plan(size(values), direction, plan, kept, is_aligned(c_loc(values)))
-      call execute_by_address(plan, c_loc(values), c_loc(values))
+      call get_plan(size(values), direction, plan, kept, is_aligned(c_loc(values)) .and. is_aligned(c_loc(transformed)))
+      call fftw_execute_dft(plan, values, transformed)
       if (.not. kept) call throw_away(plan)
    end subroutine complex_transform
 
    !> `spectrum(m+1)` = sum over k of values(k+1) exp(-2 pi i m k/N), m = 0 to N/2; N = size(values), even, size(spectrum) =
-   !> N/2 + 1. By a complex transform of half the length (even values real, odd ones imaginary), whose plan is made in a tenth of
-   !> the time that FFTW takes over one for real values.
+   !> N/2 + 1. By a complex transform of half the length (even values real, odd ones imaginary), whose plan is made in a tenth
+   !> of the time that FFTW takes over one for real values. `values` is used as work space.
    subroutine real_transform(values, spectrum)
-      real(wp), intent(in), contiguous, target :: values(:)
+      real(wp), intent(inout), contiguous, target :: values(:)
       complex(wp), intent(out), contiguous, target :: spectrum(:)
-      complex(wp), pointer, contiguous :: turns(:)
+      complex(wp), pointer, contiguous :: turns(:), pairs(:)
       real(wp) :: even(2), odd(2), sums(2), differences(2)
       logical :: kept
       integer :: k, l, half
 
       half = size(values)/2
-      call transform_apart(forward_apart, half, c_loc(values), c_loc(spectrum))
+      call c_f_pointer(c_loc(values), pairs, [half])
+      call complex_transform(forward, pairs, spectrum(:half))
       call get_turns(half, turns, kept)
       spectrum(half + 1) = real(spectrum(1), wp) - aimag(spectrum(1))
       spectrum(1) = real(spectrum(1), wp) + aimag(spectrum(1))
@@ -147,12 +134,12 @@ contains
       if (.not. kept) deallocate (turns)
    end subroutine real_transform
 
-   !> N times the values of which `spectrum` is the real_transform; N = size(values), even, size(spectrum) = N/2 + 1. `spectrum` is
-   !> used as work space.
+   !> N times the values of which `spectrum` is the real_transform; N = size(values), even, size(spectrum) = N/2 + 1. `spectrum`
+   !> is used as work space.
    subroutine back_transform(spectrum, values)
       complex(wp), intent(inout), contiguous, target :: spectrum(:)
       real(wp), intent(out), contiguous, target :: values(:)
-      complex(wp), pointer, contiguous :: turns(:)
+      complex(wp), pointer, contiguous :: turns(:), pairs(:)
       real(wp) :: even(2), odd(2), sums(2), differences(2), first, last
       logical :: kept
       integer :: k, l, half
@@ -172,21 +159,10 @@ contains
          spectrum(k) = cmplx(even(1) + odd(1), even(2) + odd(2), wp)
          spectrum(l) = cmplx(even(1) - odd(1), odd(2) - even(2), wp)
       end do
-      call transform_apart(backward_apart, half, c_loc(spectrum), c_loc(values))
+      call c_f_pointer(c_loc(values), pairs, [half])
+      call complex_transform(backward, spectrum(:half), pairs)
       if (.not. kept) deallocate (turns)
    end subroutine back_transform
-
-   !> A transform of `size` complex values from one place to another.
-   subroutine transform_apart(direction, size, from, to)
-      integer, intent(in) :: direction, size
-      type(c_ptr), intent(in) :: from, to
-      type(c_ptr) :: plan
-      logical :: kept
-
-      call get_plan(size, direction, plan, kept, is_aligned(from) .and. is_aligned(to))
-      call execute_by_address(plan, from, to)
-      if (.not. kept) call throw_away(plan)
-   end subroutine transform_apart
 
    !> Whether an address is on a boundary that vector instructions want.
    logical function is_aligned(address)
@@ -212,25 +188,6 @@ contains
       end do
    end function fast_length
 
-   !> The smallest length of a transform, not less than `at_least`, that has no prime factors but 2, 3 and 5.
-   pure integer function transform_length(at_least) result(length)
-      integer, intent(in) :: at_least
-      integer :: left, i
-      integer, parameter :: factors(3) = [2, 3, 5]
-
-      length = max(at_least, 1)
-      do
-         left = length
-         do i = 1, size(factors)
-            do while (modulo(left, factors(i)) == 0)
-               left = left/factors(i)
-            end do
-         end do
-         if (left == 1) return
-         length = length + 1
-      end do
-   end function transform_length
-
    !> Number of plans in the cache.
    integer function plans_kept()
       integer(c_int) :: code
@@ -254,8 +211,9 @@ contains
       plan = c_null_ptr
       kept = .true.
       do i = 1, plan_count
-         if (plans(i)%size == size .and. plans(i)%direction == direction .and. (plans(i)%aligned .eqv. aligned)) &
-            plan = plans(i)%plan
+         if (plans(i)%size /= size .or. plans(i)%direction /= direction .or. (plans(i)%aligned .neqv. aligned)) cycle
+         plan = plans(i)%plan
+         exit
       end do
       if (.not. c_associated(plan)) then
          plan = new_plan(size, direction, aligned)
@@ -301,22 +259,16 @@ contains
       integer, intent(in) :: size, direction
       logical, intent(in) :: aligned
       type(c_ptr) :: plan
-      complex(wp), allocatable, target :: coefficients(:), others(:)
+      complex(wp), allocatable :: coefficients(:), transformed(:)
       real(wp), allocatable :: values(:)
       integer(c_int) :: flags
 
       flags = FFTW_ESTIMATE
       if (.not. aligned) flags = ior(FFTW_ESTIMATE, FFTW_UNALIGNED)
-      if (direction == forward_apart .or. direction == backward_apart) then
-         allocate (coefficients(size), others(size))
-         plan = plan_by_address(int(size, c_int), c_loc(coefficients), c_loc(others), &
-                              merge(FFTW_FORWARD, FFTW_BACKWARD, direction == forward_apart), flags)
-         return
-      end if
       if (direction == forward .or. direction == backward) then
-         allocate (coefficients(size))
-         plan = plan_by_address(int(size, c_int), c_loc(coefficients), c_loc(coefficients), &
-                              merge(FFTW_FORWARD, FFTW_BACKWARD, direction == forward), flags)
+         allocate (coefficients(size), transformed(size))
+         plan = fftw_plan_dft_1d(int(size, c_int), coefficients, transformed, &
+                                 merge(FFTW_FORWARD, FFTW_BACKWARD, direction == forward), flags)
          return
       end if
       allocate (coefficients(size/2 + 1), values(size))

@@ -21,6 +21,7 @@ module test_random_scenes_support
       procedure :: between
       procedure :: one_of
       procedure :: chance
+      procedure :: chance_where
    end type generator_type
 
    !> What a contact is like: force P, half-width, approach and shift that go with it, coefficient of friction.
@@ -61,6 +62,7 @@ contains
       type(sizes_type), intent(inout) :: sizes
       integer :: shapes
       real(wp) :: radius
+      logical :: both
 
       radius = 10.0_wp**random%between(-2.0_wp, 2.0_wp)
       sizes%half_width = random%between(0.02_wp, 0.08_wp)*radius
@@ -79,7 +81,8 @@ contains
          scene%upper = new_flat_punch(sizes%half_width)
       end select
       call make_elastic(random, scene%plane, radius, scene%lower)
-      if (random%chance(0.5_wp) .and. shapes /= 7 .and. shapes /= 3) call make_elastic(random, scene%plane, radius, scene%upper)
+      both = random%chance(0.5_wp)
+      if (both .and. shapes /= 7 .and. shapes /= 3) call make_elastic(random, scene%plane, radius, scene%upper)
       sizes%radius = merge(radius, 0.0_wp, shapes == 1 .or. shapes == 2)
 
       scene%mesh%nodes = 11 + int(random%between(0.0_wp, 20.99_wp))
@@ -134,7 +137,7 @@ contains
          scene%friction = dahl_friction(mu, 10.0_wp*part*scene%modulus()/sizes%half_width, &
                                         0.5_wp*random%one_of([0, 1, 2, 2, 3, 4]))
       end select
-      if (law == 1 .or. .not. random%chance(0.2_wp)) return
+      if (.not. random%chance_where(law /= 1, 0.2_wp)) return
       scene%friction%static%value = [1.2_wp, 0.8_wp]*mu
       scene%friction%static%position = [-1.0_wp, 1.0_wp]*random%between(0.1_wp, 2.0_wp)*sizes%half_width
       scene%friction%kinetic = scene%friction%static
@@ -148,29 +151,30 @@ contains
       type(sizes_type), intent(in) :: sizes
       type(step_type) :: step
       real(wp) :: normal, part
-      logical :: friction
+      logical :: friction, presses, shears
       integer :: i
 
       friction = scene%friction%acts()
       normal = 1.0_wp
       do i = 1, random%one_of([2, 3, 4, 5])
          step = step_type()
-         if (i == 1 .or. random%chance(0.4_wp) .or. .not. friction) then
+         presses = random%chance_where(i > 1, 0.4_wp)
+         if (presses .or. i == 1 .or. .not. friction) then
             if (i > 1) normal = random%between(0.1_wp, 1.2_wp)
-            if (i > 1 .and. random%chance(0.05_wp)) normal = 0.0_wp
+            if (random%chance_where(i > 1, 0.05_wp)) normal = 0.0_wp
             step%normal_control = merge(control_force, control_displacement, random%chance(0.8_wp))
             step%normal_target = normal*merge(sizes%force, sizes%approach, step%normal_control == control_force)
          end if
-         if (friction .and. ((i == 1 .and. random%chance(0.2_wp)) .or. (i > 1 .and. (random%chance(0.7_wp) .or. &
-              step%normal_control == control_keep)))) then
+         shears = random%chance_where(friction, merge(0.2_wp, 0.7_wp, i == 1))
+         if (shears .or. (friction .and. i > 1 .and. step%normal_control == control_keep)) then
             part = random%between(-1.0_wp, 1.0_wp)
             step%tangential_control = merge(control_force, control_displacement, random%chance(0.8_wp))
             step%tangential_target = part*min(normal, 1.0_wp)*merge(sizes%mu*sizes%force, sizes%shift, &
                                                                     step%tangential_control == control_force)
          end if
-         if (i == 1) step%friction = friction .and. random%chance(0.8_wp)
-         if (i > 1 .and. random%chance(0.3_wp)) step%cycles = random%one_of([1, 2])
-         if (i > 1 .and. friction .and. sizes%radius > 0.0_wp .and. random%chance(0.2_wp)) then
+         if (i == 1) step%friction = random%chance_where(friction, 0.8_wp)
+         if (random%chance_where(i > 1, 0.3_wp)) step%cycles = random%one_of([1, 2])
+         if (random%chance_where(i > 1 .and. friction .and. sizes%radius > 0.0_wp, 0.2_wp)) then
             step%rotational_control = control_force
             step%rotational_target = random%between(-0.3_wp, 0.3_wp)*normal*sizes%force*sizes%half_width
          end if
@@ -202,5 +206,16 @@ contains
 
       chance = self%between(0.0_wp, 1.0_wp) < probability
    end function chance
+
+   !> The same where it is `possible`; else false, and nothing is drawn. (In a logical expression the compiler chooses how much
+   !> of it is evaluated: the scenes would differ with the optimisation.)
+   logical function chance_where(self, possible, probability)
+      class(generator_type), intent(inout) :: self
+      logical, intent(in) :: possible
+      real(wp), intent(in) :: probability
+
+      chance_where = .false.
+      if (possible) chance_where = self%chance(probability)
+   end function chance_where
 
 end module test_random_scenes_support
