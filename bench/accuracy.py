@@ -10,7 +10,6 @@ import numpy as np
 from events import BODIES, MU, PRESS
 from harness import Bench, Case, Tractions, duration, number, stamp, table
 from matplotlib import pyplot
-
 from mfv import reference
 
 QUANTITIES = {"pressure": "pressure, l2", "shear": "shear, l2", "stick": "stick ratio", "dissipation": "dissipation"}
@@ -26,7 +25,9 @@ Errors = dict[str, float]
 
 #: Knobs on the coupled scene: name, and the keys of &solver for every setting.
 KNOBS: dict[str, list[dict[str, Any]]] = {
-    "linear_tolerance": [{"linear_solver": "fft", "linear_tolerance": value} for value in (1e-3, 1e-5, 1e-7, 1e-9, 1e-11)],
+    "linear_tolerance": [
+        {"linear_solver": "fft", "linear_tolerance": value} for value in (1e-3, 1e-5, 1e-7, 1e-9, 1e-11)
+    ],
     "event_tolerance": [{"event_tolerance": value} for value in (1e-3, 1e-2, 3e-2, 1e-1)],
     "leap": [{"stepping": "leap", "leap_tolerance": value} for value in (1e-1, 3e-2, 1e-2, 3e-3, 1e-3)],
     "nominal": [{"stepping": "nominal", "load_step": value} for value in (0.2, 0.05, 0.0125)],
@@ -70,7 +71,11 @@ def measure(bench: Bench, quick: bool) -> dict[str, Any]:
     meshes = MESHES[:4] if quick else MESHES
     finest = bench.run([coupled(480 if quick else FINEST)])[0]
     base = bench.run([coupled(MESH)], 3)[0]
-    data = stamp() | {"finest": finest["contact"], "base": point("events", base, finest, base), "contact": base["contact"]}
+    data = stamp() | {
+        "finest": finest["contact"],
+        "base": point("events", base, finest, base),
+        "contact": base["contact"],
+    }
     data["meshes"] = _meshes(bench, meshes, finest)
     data["knobs"] = _knobs(bench, finest, base)
     data["coupling"] = [
@@ -117,7 +122,9 @@ def _harmonics(bench: Bench) -> list[dict[str, Any]]:
     """The Fourier kernel against the exact one, the same mesh."""
     numbers = (0, 1, 4, 16, 64)
     results = bench.run([disk(harmonics) for harmonics in numbers], 3)
-    return [point(harmonics, result, results[0], results[0]) for harmonics, result in zip(numbers, results, strict=True)]
+    return [
+        point(harmonics, result, results[0], results[0]) for harmonics, result in zip(numbers, results, strict=True)
+    ]
 
 
 def point(label: Any, result: dict[str, Any], finest: dict[str, Any], base: dict[str, Any]) -> dict[str, Any]:
@@ -163,7 +170,12 @@ def _closed(result: dict[str, Any], exact: dict[str, Any]) -> dict[str, Any]:
     found["stick"] = abs(result["stuck"] / result["contact"] - float(exact["stick"]))
     if "dissipation" in exact:
         found["dissipation"] = abs(result["dissipation"] / float(exact["dissipation"]) - 1.0)
-    return {"contact": result["contact"], "seconds": result["whole"]["seconds"], "error": found, "label": result["nodes"]}
+    return {
+        "contact": result["contact"],
+        "seconds": result["whole"]["seconds"],
+        "error": found,
+        "label": result["nodes"],
+    }
 
 
 def _against_mindlin(bench: Bench, case: Case) -> dict[str, Any]:
@@ -214,7 +226,11 @@ def section(data: dict[str, Any], pictures: Path) -> str:
     conventional = [entry for entry in knobs["conventional"] if entry["outcome"] == 0]
     goodman, none = data["coupling"]
     few, many = data["harmonics"][2], data["harmonics"][-1]
-    loose_text = f"down to {_time(loose)} with {loose['label']:g}" if loose["outcome"] == 0 else f"(with {loose['label']:g} it ends early)"
+    loose_text = (
+        f"down to {_time(loose)} with {loose['label']:g}"
+        if loose["outcome"] == 0
+        else f"(with {loose['label']:g} it ends early)"
+    )
     return f"""## Speed against accuracy: which knob first?
 
 Two pictures: errors against closed forms (Mindlin: pressed without friction, sheared to Q, -Q, Q, decoupled; Spence: pressed with friction, mu = {SPENCE_MU},

@@ -40,7 +40,9 @@ A disk pressed and sheared on a rigid plane with friction, fully coupled, about 
 
 def measure(bench: Bench, _quick: bool) -> dict[str, Any]:
     """The rows that the program writes."""
-    output = subprocess.run([bench.program, "circle"], check=True, capture_output=True, text=True, env=ENVIRONMENT).stdout
+    output = subprocess.run(
+        [bench.program, "circle"], check=True, capture_output=True, text=True, env=ENVIRONMENT
+    ).stdout
     return stamp() | {"rows": list(csv.reader(output.splitlines()))}
 
 
@@ -70,7 +72,9 @@ CellText = Callable[[int, tuple[float, float]], str]
 def table(kernels: Kernels, circles: list[int], multiples: list[int], cell_text: CellText) -> str:
     """A row for each circle, a column for each number of harmonics."""
     lines = [
-        "| intervals on the circle | " + " | ".join(f"{multiple} harmonics an interval" for multiple in multiples) + " |",
+        "| intervals on the circle | "
+        + " | ".join(f"{multiple} harmonics an interval" for multiple in multiples)
+        + " |",
         "| ---: |" + " ---: |" * len(multiples),
     ]
     for circle in circles:
@@ -109,4 +113,3 @@ def draw(kernels: Kernels, circles: list[int], multiples: list[int], path: Path)
         axes.grid(alpha=0.3)
     figure.savefig(path, dpi=150)
     pyplot.close(figure)
-

@@ -2,19 +2,23 @@
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 from typing import Any
 
-from harness import SOLVERS, Bench, Case, duration, number, plain, size, slope, stamp, table
+import numpy as np
+from harness import ROOT, SOLVERS, Bench, Case, duration, number, plain, size, slope, stamp, table
 from matplotlib import pyplot
 
 CONTACTS = (40, 80, 160, 331, 1000, 3000, 10000)
 MU, PRESS, SHEAR = 0.5, 1.0e-3, 3.0e-4
 #: Nodes in contact up to which a solver is measured, and up to which the whole history is led.
 MOST = {"dgesv": 1000, "reduced": 3000, "fft": 10000}
-WHOLE = {"dgesv": 331, "reduced": 3000, "fft": 3000}
+WHOLE = {"dgesv": 331, "reduced": 1000, "fft": 1000}
 #: Above: so many events of shear, about.
 EVENTS = {"dgesv": 10, "reduced": 60, "fft": 60}
+#: and so many of a shorter one, which is taken off.
+FEW = 2
 BODIES = [
     {"shape": "half_plane", "shear_modulus": 1.0, "poisson_ratio": 0.3},
     {"shape": "disk", "radius": 0.25, "rigid": True},
@@ -43,13 +47,19 @@ def little(contact: int, events: int, coupling: str = "full") -> Case:
 def measure(bench: Bench, quick: bool) -> dict[str, Any]:
     """Everything in this section."""
     contacts = CONTACTS[:4] if quick else CONTACTS
+    cycle = [row for contact in contacts for row in _cost(bench, contact, "full", quick)]
     return stamp() | {
-        "cycle": [row for contact in contacts for row in _cost(bench, contact, "full", quick)],
+        "cycle": cycle,
         "families": {
-            name: [row for contact in contacts if contact >= 80 for row in _little(bench, contact, keys["coupling"])]
+            name: [
+                row
+                for contact in contacts
+                if 80 <= contact <= 1000
+                for row in _little(bench, contact, keys["coupling"])
+            ]
             for name, keys in FAMILIES.items()
         },
-        "memory": _memory(bench, contacts),
+        "memory": _memory(bench, contacts, cycle),
     }
 
 
@@ -63,8 +73,11 @@ def _cost(bench: Bench, contact: int, coupling: str, quick: bool) -> list[dict[s
         rows += [_row(result, result["whole"], "press, cycle") for result in results]
     part = [solver for solver in SOLVERS if WHOLE[solver] < contact <= MOST[solver]]
     for solver in part:
-        result = bench.run([little(contact, EVENTS[solver], coupling).by(linear_solver=solver)])[0]
-        rows.append(_row(result, result["last"], "part of a shear"))
+        cases = [little(contact, number_of, coupling).by(linear_solver=solver) for number_of in (FEW, EVENTS[solver])]
+        few, many = bench.run(cases)
+        # What both have in common, the first factorisation above all, is no event's.
+        counts = {key: many["last"][key] - few["last"][key] for key in many["last"]}
+        rows.append(_row(many, counts, "part of a shear"))
     return rows
 
 
@@ -89,12 +102,13 @@ def _row(result: dict[str, Any], counts: dict[str, Any], history: str) -> dict[s
     }
 
 
-def _memory(bench: Bench, contacts: tuple[int, ...]) -> list[dict[str, Any]]:
+def _memory(bench: Bench, contacts: tuple[int, ...], cycle: list[dict[str, Any]]) -> list[dict[str, Any]]:
     """Peak memory of a process for the press, straight to the load, and the first few nodes that slip."""
-    rows = []
+    # The largest have had a process of their own.
+    rows = [row for row in cycle if row["solver"] == "reduced" and row["contact"] > 1.1 * WHOLE["reduced"]]
     for contact in contacts:
         for solver in SOLVERS:
-            if contact > MOST[solver]:
+            if contact > min(MOST[solver], WHOLE["reduced"] if solver == "reduced" else MOST[solver]):
                 continue
             result = bench.process(little(contact, 2).by(linear_solver=solver), 1)
             rows.append({"solver": solver, "contact": result["contact"], "memory": result["memory"]})
@@ -111,15 +125,17 @@ def fits(rows: list[dict[str, Any]], key: str = "seconds", least: int = 150) -> 
     return laws
 
 
-def flops(solver: str, contact: int, row: dict[str, Any]) -> float:
-    """Floating-point operations of a solve, about: what its linear algebra alone must do."""
-    if solver == "dgesv":
-        return 2.0 / 3.0 * (4.0 * 1.2 * contact) ** 3
-    if solver == "reduced":
-        return 4.0 * (2.0 * contact) ** 2
-    length = 4.0 * contact
-    transform = 5.0 * length * max(length.bit_length() if isinstance(length, int) else int(length).bit_length(), 1)
-    return 2.0 * transform * row["products"] * 2.5
+def flops(row: dict[str, Any]) -> float:
+    """Floating-point operations of an event, about: what the linear algebra alone does."""
+    contact, solves = row["contact"], row["solves"] / max(row["events"], 1)
+    if row["solver"] == "dgesv":
+        return float(solves * 2.0 / 3.0 * (4.0 * contact) ** 3)
+    if row["solver"] == "reduced":
+        # An update and, each solve, a product with the inverse, 2 m^2 each, m up to twice the nodes in contact.
+        return float((1.0 + solves) * 2.0 * (2.0 * contact) ** 2)
+    length = 2.0 * row["nodes"]
+    # A product is two complex transforms; so is, about, what preconditioning takes.
+    return float(solves * row["products"] * 2.0 * 2.0 * 5.0 * length * np.log2(length))
 
 
 def section(data: dict[str, Any], pictures: Path) -> str:
@@ -136,21 +152,27 @@ def section(data: dict[str, Any], pictures: Path) -> str:
                 number(row["solves"] / max(row["events"], 1), 3),
                 number(row["iterations"]) if row["iterations"] else "",
                 number(row["products"]) if row["products"] else "",
+                number(flops(row) / 1e6),
                 duration(row["seconds"]),
+                number(flops(row) / row["seconds"] / 1e9),
                 f"{row['certificate']:.0e}",
             ]
         )
     laws = fits(data["cycle"])
     exponents = ", ".join(f"{solver} {exponent:.1f}" for solver, (exponent, _) in laws.items())
-    memory = {(row["solver"], row["contact"]): row["memory"] for row in data["memory"]}
+    memory = {
+        (row["solver"], min(CONTACTS, key=lambda contact: abs(contact - row["contact"]))): row["memory"]
+        for row in data["memory"]
+    }
     contacts = sorted({contact for _, contact in memory})
     return f"""## What does an event cost?
 
 A rigid cylinder on a half-plane, nu = 0.3, mu = {MU}, full coupling: pressed with friction, then a cycle of shear to {SHEAR / (MU * PRESS):g} of
 the friction limit, by events; where that takes too long, pressed without friction and sheared until some nodes slip, the first
-factorisation included. Iterations and products with the compliance are a solve's, which finds state and rates.
+few of which are not counted, nor is the first factorisation. Iterations and products with the compliance are a solve's, which finds state and rates. Operations are estimated:
+those of the factorisation (dgesv), of an update and a product with the inverse, as if all were in contact and stuck (reduced), of the transforms (fft).
 
-{table(["linear solver", "nodes in contact", "history", "events", "solves an event", "iterations", "products", "time an event", "certificate"], rows)}
+{table(["linear solver", "nodes in contact", "history", "events", "solves an event", "iterations", "products", "Mflop an event", "time an event", "Gflop/s", "certificate"], rows)}
 
 ![Time of an event over nodes in contact](pictures/cost_per_event.png)
 
@@ -181,9 +203,20 @@ def family_text(data: dict[str, Any]) -> str:
                 ]
             )
     head = ["coupling", "nodes in contact", "iterations of fft", "fft, an event", "reduced, an event", "reduced/fft"]
-    return f"""Reduced against fft on the same short history, {EVENTS["fft"]} nodes or so beginning to slip, factorisation included:
+    return f"""`auto` takes, by the number of nodes of the mesh, reduced up to {_most("coupled")} and fft beyond (events, full coupling), {_most("one_way")} with Goodman's coupling, {_most("apart")}
+decoupled; up to {_most("at_once")} where there are no events (no friction, leaps without coupling), {_most("bristles")} under Dahl's law and for leaps with coupling. A user's
+matrix is always reduced.
+
+Reduced against fft on the same short history, {EVENTS["fft"]} nodes or so beginning to slip, factorisation included:
 
 {table(head, rows)}"""
+
+
+def _most(structure: str) -> int:
+    """Where the library has its crossover."""
+    found = re.search(rf"most_{structure} = (\d+)", (ROOT / "src/algorithms/solver_costs.f90").read_text())
+    assert found is not None
+    return int(found[1])
 
 
 def draw(data: dict[str, Any], path: Path) -> None:

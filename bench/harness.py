@@ -37,7 +37,7 @@ class Case:
 
     def text(self) -> str:
         """The namelist."""
-        groups = [("scene", {"coupling": self.coupling})]
+        groups: list[tuple[str, Group]] = [("scene", {"coupling": self.coupling})]
         groups += [("body", body) for body in self.bodies]
         groups += [("mesh", self.mesh)]
         groups += [("friction", {"law": "coulomb", "mu": self.mu})] if self.mu is not None else []
@@ -103,14 +103,14 @@ class Bench:
         return results
 
     def _call(self, command: str, repeats: int, paths: Iterable[Path]) -> str:
-        call = [self.program, command, str(repeats), *paths]
-        return subprocess.run(
-            call, check=True, stdout=subprocess.PIPE, text=True, env=ENVIRONMENT, timeout=self.limit
-        ).stdout
+        call = [str(argument) for argument in (self.program, command, repeats, *paths)]
+        done = subprocess.run(call, check=True, stdout=subprocess.PIPE, text=True, env=ENVIRONMENT, timeout=self.limit)
+        return str(done.stdout)
 
     def process(self, case: Case, repeats: int) -> dict[str, Any]:
         """Solve a case in a process of its own: the least wall time of the process; `memory`: its peak, bytes."""
         least = float("inf")
+        best: dict[str, Any] = {}
         with tempfile.TemporaryDirectory() as folder:
             path = Path(folder) / "case.nml"
             path.write_text(case.text())

@@ -1,8 +1,8 @@
 """Measure MFV and write docs/performance.md with its pictures. Everything takes about a quarter of an hour.
 
-    cmake --preset release && cmake --build --preset release --target bench
-    PYTHONPATH=python build/venv/bin/python bench/measure.py                 # everything but --long
-    PYTHONPATH=python build/venv/bin/python bench/measure.py --only peer     # the other sections from results.json
+cmake --preset release && cmake --build --preset release --target bench
+PYTHONPATH=python build/venv/bin/python bench/measure.py                 # everything but --long
+PYTHONPATH=python build/venv/bin/python bench/measure.py --only peer     # the other sections from results.json
 """
 
 from __future__ import annotations
@@ -22,12 +22,12 @@ ROOT = Path(__file__).resolve().parents[1]
 sys.path.insert(0, str(ROOT / "python"))
 os.environ.setdefault("MFV_LIBRARY", str(ROOT / "build/release/lib/libmfv.so"))
 
-import accuracy  # noqa: E402
-import circle  # noqa: E402
-import events  # noqa: E402
-import peer  # noqa: E402
-import targets  # noqa: E402
-from harness import CERTIFICATE, CERTIFICATE_DIRECT, Bench, number  # noqa: E402
+import accuracy
+import circle
+import events
+import peer
+import targets
+from harness import CERTIFICATE, CERTIFICATE_DIRECT, Bench, number
 
 MODULES = {"targets": targets, "peer": peer, "events": events, "accuracy": accuracy, "circle": circle}
 HEAD = """# Performance
@@ -42,11 +42,15 @@ Every run that is compared has to be complete, with a certificate below {direct:
 def main() -> None:
     """Measure, keep the numbers, write the page."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--only", nargs="+", choices=[*MODULES, "none"], help="sections to measure; none: write the page")
+    parser.add_argument(
+        "--only", nargs="+", choices=[*MODULES, "none"], help="sections to measure; none: write the page"
+    )
     parser.add_argument("--quick", action="store_true", help="smaller meshes, fewer repeats, to try it out")
     parser.add_argument("--long", action="store_true", help="measure 10,000 nodes too (about 10 minutes)")
     parser.add_argument("--program", type=Path, default=ROOT / "build/release/bin/bench")
-    parser.add_argument("--results", type=Path, default=Path(__file__).with_name("results.json"), help="where numbers are kept")
+    parser.add_argument(
+        "--results", type=Path, default=Path(__file__).with_name("results.json"), help="where numbers are kept"
+    )
     parser.add_argument("--docs", type=Path, default=ROOT / "docs", help="where performance.md goes")
     parser.add_argument("--limit", type=float, default=1800.0, help="seconds that one process may take")
     options = parser.parse_args()
@@ -92,7 +96,9 @@ def head(results: dict[str, Any]) -> str:
     runs = sum(entry["runs"] for entry in results.values())
     broken = [text for entry in results.values() for text in entry["broken"]]
     largest = max(entry["largest_certificate"] for entry in results.values())
-    verdict = f"all {runs} are, the largest is {largest:.0e}." if not broken else f"{len(broken)} of {runs} are NOT:\n\n"
+    verdict = (
+        f"all {runs} are, the largest is {largest:.0e}." if not broken else f"{len(broken)} of {runs} are NOT:\n\n"
+    )
     verdict += "\n".join(f"    {line}" for text in broken for line in text.splitlines())
     loads = ", ".join(f"{name} {entry['date']} (load {number(entry['load'])})" for name, entry in results.items())
     return HEAD.format(machine=machine(), dates=loads, direct=CERTIFICATE_DIRECT, iterative=CERTIFICATE, gate=verdict)

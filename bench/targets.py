@@ -63,7 +63,13 @@ def section(data: dict[str, Any], long: dict[str, Any] | None) -> str:
                 f"{wanted:.0f}",
             ]
         )
-    head = ["nodes in contact", "events dgesv / reduced", "largest difference of final tractions", "solves", "solves an event"]
+    head = [
+        "nodes in contact",
+        "events dgesv / reduced",
+        "largest difference of final tractions",
+        "solves",
+        "solves an event",
+    ]
     head += ["dgesv", "reduced", "ratio", "wanted"]
     large = [
         [
@@ -97,8 +103,11 @@ updated.
     if long is None:
         return text
     whole = long["whole"]
-    return text + f"""
+    return (
+        text
+        + f"""
 {HUGE} nodes, press and one cycle, fft (`--long`, measured {long["date"]}; to take less than {HUGE_SECONDS / 60:.0f} minutes and {size(HUGE_MEMORY)}):
 {long["contact"]} nodes in contact, {whole["events"]} events, {whole["solves"]} solves, {whole["iterations"] / whole["solves"]:.1f} iterations a solve, {whole["seconds"] / 60:.1f} minutes, peak memory of the process
 {size(long["memory"])}, certificate {long["certificate"]:.0e}.
 """
+    )
