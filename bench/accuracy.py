@@ -302,11 +302,12 @@ def conventional_text(done: list[dict[str, Any]], tried: list[dict[str, Any]]) -
     text = f"With load_step {', '.join(early)} it ends early. " if early else ""
     if not done:
         return text
-    first, last = done[0], done[-1]
-    return text + (
-        f"With load_step {first['label']:g} it takes {_time(first)} and differs by {_knob(first, 'shear')} in shear, {_knob(first, 'dissipation')} in dissipation; with "
-        f"{last['label']:g} {_time(last)}, {_knob(last, 'shear')} and {_knob(last, 'dissipation')}."
-    )
+    words = [
+        f"with {entry['label']:g} it takes {_time(entry)} and differs by {_knob(entry, 'shear')} in shear and "
+        f"{_knob(entry, 'dissipation')} in dissipation"
+        for entry in done
+    ]
+    return text + f"{'; '.join(words).capitalize()}."
 
 
 def knob_table(data: dict[str, Any]) -> str:

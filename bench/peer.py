@@ -16,7 +16,7 @@ SHEAR = SHARE * MU * FORCE
 NODES = (512, 2048, 8192)
 #: The mesh that just spans the contact, in parts of the window.
 NARROW = 1.02 * 2.0 * HALF_WIDTH / WINDOW
-REPEATS = 15
+REPEATS = 60
 #: Stick ratio of the frictional press (nu = 0, mu = 0.7), of the issue.
 PRESS_STICK_RATIO = 0.745
 

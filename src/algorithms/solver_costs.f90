@@ -9,13 +9,13 @@ module mfv_solver_costs
 
    !> Seconds that one linear solve with m unknown tractions takes on the way from event to event, with all that goes with it:
    !> dgesv coefficient*m^3, reduced coefficient*m^2, fft coefficient*m*log2(m). Full coupling, one thread.
-   real(wp), parameter :: dgesv_seconds = 1.6e-10_wp, reduced_seconds = 2.1e-10_wp, fft_seconds = 6.5e-8_wp
+   real(wp), parameter :: dgesv_seconds = 1.3e-10_wp, reduced_seconds = 2.4e-10_wp, fft_seconds = 6.8e-8_wp
 
    !> Nodes of the mesh up to which linear_solver='auto' takes the reduced system, and beyond which it takes fft. By events: with
    !> pressures and shear coupled, coupled one way (Goodman), and apart (the last two have an exact inverse in fft on a
    !> half-plane). Straight to the end of a segment or by leaps without coupling, where the reduced system has little to
    !> update; and with bristles, whose rows change with every increment, or by leaps with coupling.
-   integer, parameter :: most_coupled = 2000, most_one_way = 1400, most_apart = 900, most_at_once = 100, most_bristles = 300
+   integer, parameter :: most_coupled = 1800, most_one_way = 1400, most_apart = 900, most_at_once = 100, most_bristles = 300
 
 contains
 
