@@ -3,7 +3,7 @@
 !>
 !>     kernels,<body>,<intervals on the circle>,<window>,<harmonics per interval, 0: exact>,<seconds>,<largest relative error>
 !>     run,<intervals on the circle>,<nodes in contact>,<kernel>,<seconds assembly>,<seconds in all>,<linear solves>
-program bench_circle
+module bench_circle
    use, intrinsic :: iso_fortran_env, only: output_unit
    use mfv_body, only: new_disk, new_half_plane_body
    use mfv_circle, only: kernel_exact, kernel_fourier
@@ -12,27 +12,32 @@ program bench_circle
    use mfv_friction, only: coulomb_friction
    use mfv_kinds, only: pi, wp
    use mfv_material, only: new_material, plane_strain
-   use mfv_scene, only: control_force, scene_type, step_type
+   use mfv_scene, only: control_force, scene_type, solver_dgesv, step_type
    use mfv_simulation, only: history_none, new_simulation, simulation_type
    implicit none
+   private
+   public :: measure_circle_kernels
 
    integer, parameter :: circles(5) = [1000, 10000, 100000, 1000000, 10000000], window = 500
    integer, parameter :: multiples(4) = [1, 4, 16, 64], largest_series = 160000000
    real(wp), parameter :: kappa = 1.8_wp
-   integer :: i, j
-
-   do i = 1, size(circles)
-      call measure(circles(i), 0)
-      do j = 1, size(multiples)
-         if (real(multiples(j), wp)*circles(i) <= largest_series) call measure(circles(i), multiples(j))
-      end do
-   end do
-   do i = 1, 4
-      call run(circles(i), kernel_exact)
-      call run(circles(i), kernel_fourier)
-   end do
-
 contains
+
+   !> Everything, on one line each.
+   subroutine measure_circle_kernels()
+      integer :: i, j
+
+      do i = 1, size(circles)
+         call measure(circles(i), 0)
+         do j = 1, size(multiples)
+            if (real(multiples(j), wp)*circles(i) <= largest_series) call measure(circles(i), multiples(j))
+         end do
+      end do
+      do i = 1, 4
+         call run(circles(i), kernel_exact)
+         call run(circles(i), kernel_fourier)
+      end do
+   end subroutine measure_circle_kernels
 
    !> Kernels of a disk: time, the best of three, and error against the closed form.
    subroutine measure(circle, multiple)
@@ -77,6 +82,7 @@ contains
       scene%mesh%nodes = circle
       scene%mesh%whole_circle = .true.
       scene%friction = coulomb_friction(0.3_wp)
+      scene%method%linear_solver = solver_dgesv
       step%normal_control = control_force
       step%normal_target = half_width**2*pi*scene%modulus()/2
       step%tangential_control = control_force
@@ -91,4 +97,4 @@ contains
          simulation%contact%model%assembly_seconds, ',', seconds, ',', simulation%contact%system%solves
    end subroutine run
 
-end program bench_circle
+end module bench_circle

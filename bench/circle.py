@@ -1,29 +1,19 @@
-"""Measure the kernels of disk and hole, and write docs/performance.md and its picture.
-
-    cmake --preset release && cmake --build --preset release --target bench_circle
-    build/venv/bin/python bench/circle.py
-"""
+"""Kernels of disk and hole: time and error."""
 
 from __future__ import annotations
 
-import argparse
 import csv
-import os
 import subprocess
+from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
-import matplotlib
-
-matplotlib.use("Agg")
+from harness import ENVIRONMENT, Bench, stamp
 from matplotlib import pyplot
 
-ROOT = Path(__file__).resolve().parents[1]
+Kernels = dict[tuple[int, int], tuple[float, float]]
 
-TEXT = """# Performance
-
-Written by `bench/circle.py`; do not edit. Times are of one run on one machine: compare them with each other, not with yours.
-
-## Which kernel for disk and hole?
+TEXT = """## Which kernel for disk and hole?
 
 `kernel='exact'`, the default. It computes only the entries that the mesh near the contact needs ({window} here), each to round-off, so
 that its time does not depend on how fine the circle is. The Fourier series has to be summed over the whole circle; its error falls with
@@ -48,23 +38,23 @@ A disk pressed and sheared on a rigid plane with friction, fully coupled, about 
 """
 
 
-def main() -> None:
-    """Run the benchmark, write the page."""
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--program", type=Path, default=ROOT / "build/release/bin/bench_circle")
-    parser.add_argument("--docs", type=Path, default=ROOT / "docs", help="where performance.md goes")
-    options = parser.parse_args()
-    environment = os.environ | {"OPENBLAS_NUM_THREADS": "1"}
-    output = subprocess.run([options.program], check=True, capture_output=True, text=True, env=environment).stdout
-    rows = list(csv.reader(output.splitlines()))
+def measure(bench: Bench, _quick: bool) -> dict[str, Any]:
+    """The rows that the program writes."""
+    output = subprocess.run([bench.program, "circle"], check=True, capture_output=True, text=True, env=ENVIRONMENT).stdout
+    return stamp() | {"rows": list(csv.reader(output.splitlines()))}
+
+
+def section(data: dict[str, Any], pictures: Path) -> str:
+    """The text."""
+    rows = data["rows"]
     kernels = {
         (int(circle), int(multiple)): (float(seconds), float(error))
         for kind, _, circle, _, multiple, seconds, error in (row for row in rows if row[0] == "kernels")
     }
     circles, multiples = (sorted({key[place] for key in kernels}) for place in (0, 1))
     multiples.remove(0)
-    draw(kernels, circles, multiples, options.docs / "pictures/circle_kernels.png")
-    text = TEXT.format(
+    draw(kernels, circles, multiples, pictures / "circle_kernels.png")
+    return TEXT.format(
         window=next(row[3] for row in rows if row[0] == "kernels"),
         error_at_4=kernels[circles[-1], 4][1],
         exact_seconds=kernels[circles[0], 0][0],
@@ -72,10 +62,12 @@ def main() -> None:
         time_table=table(kernels, circles, multiples, lambda circle, cell: f"{cell[0] / kernels[circle, 0][0]:.2g}"),
         run_table=run_table([row[1:] for row in rows if row[0] == "run"]),
     )
-    (options.docs / "performance.md").write_text(text)
 
 
-def table(kernels, circles, multiples, cell_text) -> str:
+CellText = Callable[[int, tuple[float, float]], str]
+
+
+def table(kernels: Kernels, circles: list[int], multiples: list[int], cell_text: CellText) -> str:
     """A row for each circle, a column for each number of harmonics."""
     lines = [
         "| intervals on the circle | " + " | ".join(f"{multiple} harmonics an interval" for multiple in multiples) + " |",
@@ -87,7 +79,7 @@ def table(kernels, circles, multiples, cell_text) -> str:
     return "\n".join(lines)
 
 
-def run_table(runs) -> str:
+def run_table(runs: list[list[str]]) -> str:
     """Share of the assembly in whole runs."""
     lines = ["| intervals on the circle | nodes in contact | kernel | linear solves | share of assembly |"]
     lines.append("| ---: | ---: | --- | ---: | ---: |")
@@ -96,7 +88,7 @@ def run_table(runs) -> str:
     return "\n".join(lines)
 
 
-def draw(kernels, circles, multiples, path: Path) -> None:
+def draw(kernels: Kernels, circles: list[int], multiples: list[int], path: Path) -> None:
     """Error over harmonics (the dissertation's Figure 4.4 as a curve), time over circles."""
     figure, (left, right) = pyplot.subplots(1, 2, figsize=(9, 3.6), layout="constrained")
     for circle in circles:
@@ -116,7 +108,5 @@ def draw(kernels, circles, multiples, path: Path) -> None:
         axes.legend(fontsize=8, frameon=False)
         axes.grid(alpha=0.3)
     figure.savefig(path, dpi=150)
+    pyplot.close(figure)
 
-
-if __name__ == "__main__":
-    main()

@@ -8,6 +8,7 @@ module mfv_advise_case
    use mfv_error, only: error_type, set_error
    use mfv_kinds, only: wp
    use mfv_status, only: MFV_COMPLETE
+   use mfv_one_thread, only: use_one_thread
    use mfv_terminal
    implicit none
    private
@@ -27,6 +28,7 @@ contains
       real(wp) :: wanted_error
       logical :: wanted(advice_count)
 
+      call use_one_thread()
       call read_arguments(usage, path, wanted_error, wanted)
       call read_case_file(path, case, error)
       if (allocated(error)) call fail(error)

@@ -8,6 +8,7 @@ module mfv_run_case
    use mfv_error, only: error_type, set_error
    use mfv_hdf5_writer, only: check_writable
    use mfv_kinds, only: wp
+   use mfv_one_thread, only: use_one_thread
    use mfv_result_file, only: write_result
    use mfv_simulation, only: new_simulation, simulation_type
    use mfv_status
@@ -48,6 +49,7 @@ contains
          error%message = path//": &output file='"//case%result_path//"': "//error%message
          call fail(error)
       end if
+      call use_one_thread()
       started = seconds_now()
       simulation = new_simulation(case%scene, case%keep_history, case%keep_reversals)
       call catch_interrupts()

@@ -1,15 +1,16 @@
 !> How many nodes, and which linear solver, a scene needs for a wanted error. Pairs of coarse meshes of the scene itself, of
 !> m and 3 m intervals, whose nodes lie in the same places, tell the size c of the errors c/nodes^order of the tractions
 !> (l2, over the nodes) and of the dissipation; the width of the intervals that of half-width and stick ratio. What a solver
-!> costs comes from laws that were measured by bench/.
+!> costs comes from laws with measured constants.
 module mfv_advice
    use mfv_discretisation_error
    use mfv_error_bar, only: quantity_count, quantity_half_width, quantity_stick_ratio
    use mfv_kinds, only: wp
-   use mfv_observer, only: observer_type
+   use mfv_observer, only: observer_type, relay_type
    use mfv_contact_state, only: contact_state_type
    use mfv_scene
    use mfv_simulation, only: history_none, new_simulation, simulation_type
+   use mfv_solver_costs, only: cheapest_solver, seconds_of_solve
    use mfv_status, only: MFV_COMPLETE, MFV_INPUT_ERROR, status_outcome
    use mfv_strings, only: to_text
    implicit none
@@ -33,16 +34,13 @@ module mfv_advice
    !> least.
    integer, parameter :: fewest_pilot_nodes = 8, fewest_nodes = 10
 
-   !> Seconds that one linear solve with m unknown tractions takes, with all that goes with it: dgesv coefficient*m^3,
-   !> reduced coefficient*m^2, fft coefficient*m*log2(m). Measured by bench/ (dgesv: examples/mindlin.nml, 87 to 259 nodes
-   !> in contact, one thread; reduced and fft: PROVISIONAL, until bench/ has measured them). Crossovers are where the laws
-   !> meet.
-   real(wp), parameter :: dgesv_seconds = 1.6e-10_wp, reduced_seconds = 2.0e-9_wp, fft_seconds = 1.6e-6_wp
    !> Relative residual that an iterative solver may leave, in parts of the wanted error; never below the default.
    real(wp), parameter :: tolerance_part = 1.0e-3_wp
    !> Tolerance of friction laws that are not linear, in parts of the wanted error: the error itself is about a sixth of it
    !> (docs/verification.md).
    real(wp), parameter :: friction_tolerance_part = 0.3_wp
+   !> Tolerance of leaps, in parts of the wanted error: the error follows it.
+   real(wp), parameter :: leap_tolerance_part = 0.1_wp
 
    type :: advice_type
       !> How it went (see mfv_status), and why there is no advice; empty where there is.
@@ -59,31 +57,22 @@ module mfv_advice
       integer, allocatable :: pair_nodes(:)
       !> See method_type.
       integer :: linear_solver = solver_auto
-      real(wp) :: linear_tolerance = 0.0_wp, friction_tolerance = 0.0_wp
+      real(wp) :: linear_tolerance = 0.0_wp, friction_tolerance = 0.0_wp, leap_tolerance = 0.0_wp
       !> Linear solves and seconds that the run will take, about.
       real(wp) :: solves = 0.0_wp, seconds = 0.0_wp
-      !> Whether the path does not matter, because no friction acts.
-      logical :: path_does_not_matter = .false.
+      !> Linear solves on the finest of the coarse meshes, of &mesh nodes `tried_nodes`, by events and by leaps; 0: not tried.
+      integer :: tried_nodes = 0, event_solves = 0, leap_solves = 0
    end type advice_type
 
    !> What the pairs tell: squares of the coefficients c of the errors c/nodes^order, nodes in contact; shape (advice_count).
    type :: law_type
       real(wp) :: squares(advice_count) = 0.0_wp
-      !> Nodes in contact over &mesh nodes; linear solves over nodes in contact.
-      real(wp) :: density = 0.0_wp, solves = 0.0_wp
+      !> Nodes in contact over &mesh nodes. Linear solves with `nodes` nodes in contact, and the power of the nodes with which
+      !> they grow.
+      real(wp) :: density = 0.0_wp, solves = 0.0_wp, nodes = 1.0_wp, growth = 0.0_wp
       logical :: known(advice_count) = .false.
       integer :: pairs = 0
    end type law_type
-
-   !> Passes on to the caller's observer what happens on the coarse meshes, as a part of the work on all of them.
-   type, extends(observer_type) :: watch_type
-      class(observer_type), pointer :: caller => null()
-      integer :: before = 0, runs = 1
-      !> Whether the caller has stopped it.
-      logical :: ended = .false.
-   contains
-      procedure :: notify
-   end type watch_type
 
 contains
 
@@ -95,7 +84,7 @@ contains
       logical, intent(in) :: wanted(:)
       type(advice_type), intent(out) :: advice
       class(observer_type), intent(inout), target, optional :: observer
-      type(watch_type) :: watch
+      type(relay_type) :: watch
       type(law_type) :: law
 
       advice%message = ''
@@ -103,7 +92,7 @@ contains
       advice%present_nodes = scene%mesh%nodes
       call refuse_fixed_meshes(scene, advice)
       if (advice%message /= '') return
-      watch%runs = 2*size(pair_nodes) + 1
+      watch%runs = 2*size(pair_nodes) + 2
       if (present(observer)) watch%caller => observer
       call measure(scene, law, advice, watch)
       if (advice%message /= '') return
@@ -136,7 +125,7 @@ contains
       type(scene_type), intent(in) :: scene
       type(law_type), intent(out) :: law
       type(advice_type), intent(inout) :: advice
-      type(watch_type), intent(inout) :: watch
+      type(relay_type), intent(inout) :: watch
       type(simulation_type) :: pilot, coarse, fine
       integer :: i, nodes
 
@@ -160,8 +149,11 @@ contains
       end if
       law%squares = law%squares/law%pairs
       law%density = real(fine%contact%state%contact_nodes(), wp)/(3*advice%pair_nodes(size(advice%pair_nodes)))
-      law%solves = real(fine%contact%system%solves, wp)/max(fine%contact%state%contact_nodes(), 1)
+      law%nodes = max(fine%contact%state%contact_nodes(), 1)
+      law%solves = max(fine%contact%system%solves, 1)
+      law%growth = max(log(law%solves/max(coarse%contact%system%solves, 1))/log(3.0_wp), 0.0_wp)
       call add_interval_laws(law, fine)
+      call try_leaps(scene, fine, pilot, advice, watch)
    end subroutine measure
 
    !> A coarse mesh with enough nodes in contact to tell how many there are on any other.
@@ -170,7 +162,7 @@ contains
       type(simulation_type), intent(out) :: pilot
       integer, intent(out) :: nodes
       type(advice_type), intent(inout) :: advice
-      type(watch_type), intent(inout) :: watch
+      type(relay_type), intent(inout) :: watch
       integer, parameter :: first = 30, attempts = 8
       integer :: attempt, contact
 
@@ -199,7 +191,7 @@ contains
       type(simulation_type), intent(in) :: pilot
       type(simulation_type), intent(out) :: simulation
       type(advice_type), intent(inout) :: advice
-      type(watch_type), intent(inout) :: watch
+      type(relay_type), intent(inout) :: watch
       type(scene_type) :: other
 
       other = scene_on_mesh(scene, nodes)
@@ -212,19 +204,28 @@ contains
       advice%message = 'with '//to_text(nodes)//' nodes: '//status_outcome(simulation%outcome)
    end subroutine solve
 
-   !> See mfv_observer.
-   subroutine notify(self, state, segment, segments, fraction, stop_wanted)
-      class(watch_type), intent(inout) :: self
-      type(contact_state_type), intent(in) :: state
-      integer, intent(in) :: segment, segments
-      real(wp), intent(in) :: fraction
-      logical, intent(out) :: stop_wanted
+   !> Whether leaps take fewer solves than events, on the finest of the coarse meshes, under Coulomb's friction.
+   subroutine try_leaps(scene, fine, pilot, advice, watch)
+      type(scene_type), intent(in) :: scene
+      type(simulation_type), intent(in) :: fine, pilot
+      type(advice_type), intent(inout) :: advice
+      type(relay_type), intent(inout) :: watch
+      type(advice_type) :: trial
+      type(scene_type) :: leaping
+      type(simulation_type) :: simulation
 
-      stop_wanted = .false.
-      if (.not. associated(self%caller)) return
-      call self%caller%notify(state, self%before*segments + segment, self%runs*segments, fraction, stop_wanted)
-      self%ended = stop_wanted
-   end subroutine notify
+      if (scene%method%algorithm /= algorithm_mfv .or. scene%method%stepping /= stepping_event) return
+      if (scene%friction%name /= 'coulomb' .or. .not. scene%tangential()) return
+      leaping = scene
+      leaping%method%stepping = stepping_leap
+      leaping%method%leap_tolerance = min(leap_tolerance_part*advice%wanted_error, scene%method%leap_tolerance)
+      advice%tried_nodes = 3*advice%pair_nodes(size(advice%pair_nodes))
+      trial%message = ''
+      call solve(leaping, advice%tried_nodes, pilot, simulation, trial, watch)
+      if (trial%message /= '') return
+      advice%event_solves = fine%contact%system%solves
+      advice%leap_solves = simulation%contact%system%solves
+   end subroutine try_leaps
 
    !> Add what a pair of meshes tells of the tractions and the dissipation.
    subroutine add_pair(law, coarse, fine)
@@ -322,34 +323,10 @@ contains
       unknowns = real(advice%contact_nodes, wp)*merge(2, 1, scene%tangential())
       advice%linear_solver = cheapest_solver(unknowns)
       advice%linear_tolerance = max(tolerance_part*advice%wanted_error, usual%linear_tolerance)
+      advice%leap_tolerance = min(leap_tolerance_part*advice%wanted_error, scene%method%leap_tolerance)
       advice%friction_tolerance = min(friction_tolerance_part*advice%wanted_error, scene%method%friction_tolerance)
-      advice%solves = law%solves*advice%contact_nodes
+      advice%solves = law%solves*(advice%contact_nodes/law%nodes)**law%growth
       advice%seconds = advice%solves*seconds_of_solve(advice%linear_solver, unknowns)
-      advice%path_does_not_matter = .not. scene%tangential()
    end subroutine choose_solver
-
-   !> The solver with the least cost for a number of unknown tractions.
-   pure integer function cheapest_solver(unknowns) result(solver)
-      real(wp), intent(in) :: unknowns
-
-      solver = solver_dgesv
-      if (seconds_of_solve(solver_reduced, unknowns) < seconds_of_solve(solver, unknowns)) solver = solver_reduced
-      if (seconds_of_solve(solver_fft, unknowns) < seconds_of_solve(solver, unknowns)) solver = solver_fft
-   end function cheapest_solver
-
-   !> Seconds that one linear solve takes, about.
-   pure real(wp) function seconds_of_solve(solver, unknowns) result(seconds)
-      integer, intent(in) :: solver
-      real(wp), intent(in) :: unknowns
-
-      select case (solver)
-      case (solver_reduced)
-         seconds = reduced_seconds*unknowns**2
-      case (solver_fft)
-         seconds = fft_seconds*unknowns*log(max(unknowns, 2.0_wp))/log(2.0_wp)
-      case default
-         seconds = dgesv_seconds*unknowns**3
-      end select
-   end function seconds_of_solve
 
 end module mfv_advice

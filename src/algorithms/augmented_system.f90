@@ -16,6 +16,7 @@ module mfv_augmented_system
    use mfv_contact_model, only: along_approach, along_rotation, along_shift, contact_model_type
    use mfv_contact_system
    use mfv_kinds, only: wp
+   use mfv_lapack, only: dgesv
    use mfv_node_status
    use mfv_scene, only: control_force
    implicit none
@@ -41,15 +42,6 @@ module mfv_augmented_system
       real(wp) :: stress = 1.0_wp, shear_stress = 1.0_wp, length = 1.0_wp
    end type assembly_type
 
-   interface
-      subroutine dgesv(n, nrhs, a, lda, ipiv, b, ldb, info)
-         import :: wp
-         integer, intent(in) :: n, nrhs, lda, ldb
-         real(wp), intent(inout) :: a(lda, *), b(ldb, *)
-         integer, intent(out) :: ipiv(*), info
-      end subroutine dgesv
-   end interface
-
 contains
 
    !> See mfv_contact_system.
@@ -58,7 +50,7 @@ contains
       type(contact_model_type), intent(in) :: model
       type(constraints_type), intent(in) :: constraints
       type(contact_fields_type), intent(in) :: start
-      type(response_type), intent(out) :: response
+      type(response_type), intent(inout) :: response
       logical, intent(out) :: singular
       type(assembly_type) :: assembly
       integer, allocatable :: pivots(:)

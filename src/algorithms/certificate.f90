@@ -156,8 +156,13 @@ contains
       class(certificate_type), intent(inout) :: self
       type(contact_fields_type), intent(in) :: before, after
       real(wp) :: jump
+      integer :: i
 
-      jump = max(maxval(abs(after%pressure - before%pressure)), maxval(abs(after%shear - before%shear)))
+      jump = 0.0_wp
+      do i = 1, size(before%pressure)
+         jump = largest_or_nan(jump, after%pressure(i) - before%pressure(i))
+         jump = largest_or_nan(jump, after%shear(i) - before%shear(i))
+      end do
       if (self%traction > 0.0_wp) call self%note(continuity, jump, self%traction)
    end subroutine note_jump
 

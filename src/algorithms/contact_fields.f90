@@ -20,6 +20,9 @@ module mfv_contact_fields
       real(wp) :: normal_force = 0.0_wp, tangential_force = 0.0_wp, moment = 0.0_wp
    contains
       procedure :: plus
+      procedure :: take
+      procedure :: clear
+      procedure :: move
       procedure :: slip
       procedure :: padded
    end type contact_fields_type
@@ -41,17 +44,67 @@ contains
       type(contact_fields_type), intent(in) :: rate
       type(contact_fields_type) :: total
 
-      total%pressure = self%pressure + step*rate%pressure
-      total%shear = self%shear + step*rate%shear
-      total%normal = self%normal + step*rate%normal
-      total%tangential = self%tangential + step*rate%tangential
-      total%approach = self%approach + step*rate%approach
-      total%shift = self%shift + step*rate%shift
-      total%rotation = self%rotation + step*rate%rotation
-      total%normal_force = self%normal_force + step*rate%normal_force
-      total%tangential_force = self%tangential_force + step*rate%tangential_force
-      total%moment = self%moment + step*rate%moment
+      call total%take(self)
+      call total%move(step, rate)
    end function plus
+
+   !> Become equal to `other`, in the storage there is.
+   pure subroutine take(self, other)
+      class(contact_fields_type), intent(inout) :: self
+      type(contact_fields_type), intent(in) :: other
+
+      self%pressure = other%pressure
+      self%shear = other%shear
+      self%normal = other%normal
+      self%tangential = other%tangential
+      self%approach = other%approach
+      self%shift = other%shift
+      self%rotation = other%rotation
+      self%normal_force = other%normal_force
+      self%tangential_force = other%tangential_force
+      self%moment = other%moment
+   end subroutine take
+
+   !> Become zero for `nodes` nodes, in the storage there is.
+   pure subroutine clear(self, nodes)
+      class(contact_fields_type), intent(inout) :: self
+      integer, intent(in) :: nodes
+
+      if (allocated(self%pressure)) then
+         if (size(self%pressure) == nodes) then
+            self%pressure = 0.0_wp
+            self%shear = 0.0_wp
+            self%normal = 0.0_wp
+            self%tangential = 0.0_wp
+            self%approach = 0.0_wp
+            self%shift = 0.0_wp
+            self%rotation = 0.0_wp
+            self%normal_force = 0.0_wp
+            self%tangential_force = 0.0_wp
+            self%moment = 0.0_wp
+            return
+         end if
+      end if
+      call self%take(new_contact_fields(nodes))
+   end subroutine clear
+
+   !> self = self + step*rate.
+   pure subroutine move(self, step, rate)
+      class(contact_fields_type), intent(inout) :: self
+      real(wp), intent(in) :: step
+      type(contact_fields_type), intent(in) :: rate
+
+      self%pressure = self%pressure + step*rate%pressure
+      self%shear = self%shear + step*rate%shear
+      self%normal = self%normal + step*rate%normal
+      self%tangential = self%tangential + step*rate%tangential
+      self%approach = self%approach + step*rate%approach
+      self%shift = self%shift + step*rate%shift
+      self%rotation = self%rotation + step*rate%rotation
+      self%normal_force = self%normal_force + step*rate%normal_force
+      self%tangential_force = self%tangential_force + step*rate%tangential_force
+      self%moment = self%moment + step*rate%moment
+   end subroutine move
 
    !> Slip s = u - U of every node, length.
    pure function slip(self)

@@ -10,6 +10,7 @@ module mfv_contact_model
    use mfv_compliance, only: compliance_type
    use mfv_contact_fields, only: contact_fields_type
    use mfv_kinds, only: pi, wp
+   use mfv_lapack, only: ddot
    use mfv_reference_hertz, only: hertz_half_width, hertz_half_width_of_approach
    use mfv_clock, only: seconds_now
    use mfv_scene, only: control_displacement, control_force, scene_type
@@ -67,15 +68,6 @@ module mfv_contact_model
       procedure, private :: build_compliance
       procedure, private :: place_nodes
    end type contact_model_type
-
-   interface
-      pure function ddot(n, x, incx, y, incy) result(product)
-         import :: wp
-         integer, intent(in) :: n, incx, incy
-         real(wp), intent(in) :: x(*), y(*)
-         real(wp) :: product
-      end function ddot
-   end interface
 
    !> Contact estimates leave this much room to the end of a chosen mesh.
    real(wp), parameter :: room = 1.2_wp

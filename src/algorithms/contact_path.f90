@@ -35,6 +35,8 @@ module mfv_contact_path
       type(contact_model_type) :: model
       class(contact_system_type), allocatable :: system
       type(contact_state_type) :: state
+      !> The state before the last increment.
+      type(contact_state_type), private :: before
       type(history_type) :: history
       type(certificate_type) :: certificate
       !> Whether every event is recorded, or only what the caller records.
@@ -70,8 +72,9 @@ module mfv_contact_path
 
    !> What is known at one load while statuses settle.
    type :: moment_type
-      !> Status sets tried here, shape (nodes, tried).
+      !> Status sets tried here, shape (nodes, at least `tries`).
       integer, allocatable :: tried(:, :)
+      integer :: tries = 0
       !> Rates below this part of the largest are round-off.
       real(wp) :: round_off = 1.0e-12_wp
       !> One change at a time, after a cycle.
@@ -517,22 +520,30 @@ contains
       real(wp), intent(in) :: slip_rate(:), dropped
       real(wp), intent(in), optional :: dissipated
       real(wp), parameter :: moving = 1.0e-9_wp
-      type(contact_state_type) :: before
+      real(wp) :: loss, fastest
+      integer :: i
 
-      before = self%state
+      call self%before%take(self%state)
       call remember_slip(self, after, dropped)
-      self%state%fields = after
+      call self%state%fields%take(after)
       if (present(dissipated)) then
          self%state%dissipation = self%state%dissipation + dissipated
       else
-         self%state%dissipation = self%state%dissipation &
-                                  - 0.5_wp*self%model%force((before%fields%shear + after%shear) &
-                                                            *(after%slip() - before%fields%slip()))
+         loss = 0.0_wp
+         associate (before => self%before%fields)
+            do i = 1, size(slip_rate)
+               loss = loss - self%model%width(i)*(before%shear(i) + after%shear(i)) &
+                      *((after%tangential(i) - after%shift) - (before%tangential(i) - before%shift))
+            end do
+         end associate
+         self%state%dissipation = self%state%dissipation + 0.5_wp*loss
       end if
-      self%state%slip_direction = 0
-      where (abs(slip_rate) > moving*maxval(abs(slip_rate))) &
-         self%state%slip_direction = nint(sign(1.0_wp, slip_rate))
-      call self%certificate%check_increment(self%model, before, self%state, present(dissipated))
+      fastest = maxval(abs(slip_rate))
+      do i = 1, size(slip_rate)
+         self%state%slip_direction(i) = 0
+         if (abs(slip_rate(i)) > moving*fastest) self%state%slip_direction(i) = merge(1, -1, slip_rate(i) > 0.0_wp)
+      end do
+      call self%certificate%check_increment(self%model, self%before, self%state, present(dissipated))
    end subroutine take_increment
 
    !> What the friction law remembers after an increment to the fields `after`.
@@ -585,7 +596,7 @@ contains
       call self%state%widen(extra)
       call self%history%move_nodes(extra)
       if (moment%node > 0) moment%node = moment%node + extra
-      if (allocated(moment%tried)) deallocate (moment%tried)
+      moment%tries = 0
       call fill_ends(self%model, self%state%fields, extra)
    end subroutine widen
 

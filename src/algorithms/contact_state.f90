@@ -25,6 +25,7 @@ module mfv_contact_state
       real(wp) :: dissipation = 0.0_wp
    contains
       procedure :: set_status
+      procedure :: take
       procedure :: friction_point
       procedure :: widen
       procedure :: contact_nodes
@@ -61,6 +62,21 @@ contains
          self%status(i) = status(i)
       end do
    end subroutine set_status
+
+   !> Become equal to `other`, in the storage there is.
+   pure subroutine take(self, other)
+      class(contact_state_type), intent(inout) :: self
+      type(contact_state_type), intent(in) :: other
+
+      call self%fields%take(other%fields)
+      self%status = other%status
+      self%stuck_slip = other%stuck_slip
+      self%slip_direction = other%slip_direction
+      self%slipped = other%slipped
+      self%excess = other%excess
+      self%capped = other%capped
+      self%dissipation = other%dissipation
+   end subroutine take
 
    !> What a friction law knows of node `node` where the fields are `fields` and the coefficients of friction `static` and
    !> `kinetic`.

@@ -40,6 +40,8 @@ module mfv_contact_system
    end type response_type
 
    type, abstract :: contact_system_type
+      !> What &solver linear_solver calls it.
+      character(len=7) :: name = 'dgesv'
       !> Linear solves so far.
       integer :: solves = 0
       !> Of solvers that iterate: iterations, and products with the compliance, so far.
@@ -53,14 +55,14 @@ module mfv_contact_system
    abstract interface
       !> Solve for state and rates. `start`: fields at or near which the state is expected (those now, when statuses have
       !> changed): a guess, of which the result does not depend beyond the solver's tolerance. `singular`: the constraints do
-      !> not determine them; the response is then of no use.
+      !> not determine them; the response is then of no use. `response`: its storage is used again.
       subroutine solve_interface(self, model, constraints, start, response, singular)
          import :: constraints_type, contact_fields_type, contact_model_type, contact_system_type, response_type
          class(contact_system_type), intent(inout) :: self
          type(contact_model_type), intent(in) :: model
          type(constraints_type), intent(in) :: constraints
          type(contact_fields_type), intent(in) :: start
-         type(response_type), intent(out) :: response
+         type(response_type), intent(inout) :: response
          logical, intent(out) :: singular
       end subroutine solve_interface
    end interface

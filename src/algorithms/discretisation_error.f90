@@ -9,7 +9,7 @@ module mfv_discretisation_error
    use mfv_friction, only: friction_coefficient_type
    use mfv_kinds, only: pi, wp
    use mfv_node_status, only: holds, in_contact
-   use mfv_observer, only: observer_type
+   use mfv_observer, only: observer_type, relay_type
    use mfv_scene, only: scene_type
    use mfv_simulation, only: history_none, new_simulation, simulation_type
    use mfv_status, only: MFV_COMPLETE, MFV_INPUT_ERROR, status_outcome
@@ -23,15 +23,6 @@ module mfv_discretisation_error
    real(wp), parameter :: coarsening(3) = [1.4_wp, 1.7_wp, 2.0_wp]
    !> Nodes in contact that the coarsest companion should have at least.
    integer, parameter :: fewest_contact_nodes = 5
-
-   !> Passes on to the caller's observer what happens in a companion: as a part of the work on all of them.
-   type, extends(observer_type) :: companion_observer_type
-      class(observer_type), pointer :: caller => null()
-      !> Companions before this one, and of all.
-      integer :: before = 0, companions = 1
-   contains
-      procedure :: notify
-   end type companion_observer_type
 
 contains
 
@@ -152,7 +143,7 @@ contains
       real(wp), allocatable, intent(out) :: values(:, :), allowances(:, :)
       type(error_estimate_type), intent(inout) :: estimate
       class(observer_type), intent(inout), target, optional :: observer
-      type(companion_observer_type) :: watch
+      type(relay_type) :: watch
       type(simulation_type) :: companion
       integer :: i
 
@@ -160,7 +151,7 @@ contains
       values(:, 1) = quantities_of(simulation)
       allowances(:, 1) = interval_allowances(simulation)
       if (present(observer)) watch%caller => observer
-      watch%companions = size(nodes) - 1
+      watch%runs = size(nodes) - 1
       do i = 2, size(nodes)
          watch%before = i - 2
          companion = new_simulation(coarser_scene(simulation, nodes(i)), history_none, .false.)
@@ -174,19 +165,6 @@ contains
          allowances(:, i) = interval_allowances(companion)
       end do
    end subroutine solve_companions
-
-   !> See mfv_observer: the straight parts of all companions are counted together.
-   subroutine notify(self, state, segment, segments, fraction, stop_wanted)
-      class(companion_observer_type), intent(inout) :: self
-      type(contact_state_type), intent(in) :: state
-      integer, intent(in) :: segment, segments
-      real(wp), intent(in) :: fraction
-      logical, intent(out) :: stop_wanted
-
-      stop_wanted = .false.
-      if (.not. associated(self%caller)) return
-      call self%caller%notify(state, self%before*segments + segment, self%companions*segments, fraction, stop_wanted)
-   end subroutine notify
 
    !> The scene of a simulation on `nodes` intervals, with as many cycles as were run, steady or not.
    function coarser_scene(simulation, nodes) result(scene)

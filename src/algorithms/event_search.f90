@@ -40,22 +40,26 @@ contains
    !> All violations that the rates lead to.
    !> `status`: shape (nodes). `corners`: what friction adds to them.
    !> `state`, `rate`: fields now and their rates per unit of the load parameter. Rates below the part `round_off` of the
-   !> largest one of their sort count as zero.
-   function find_violations(model, status, corners, state, rate, round_off) result(violations)
+   !> largest one of their sort count as zero. `violations`: their storage is used again.
+   subroutine find_violations(model, status, corners, state, rate, round_off, violations)
       type(contact_model_type), intent(in) :: model
       integer, intent(in) :: status(:)
       type(corners_type), intent(in) :: corners
       type(contact_fields_type), intent(in) :: state, rate
       real(wp), intent(in) :: round_off
-      type(violations_type) :: violations
+      type(violations_type), intent(inout) :: violations
       real(wp) :: traction_scale, motion_scale, mu, full, gap_rate, slip_rate, noise
       logical :: soft_limit, sticks, has_corners
       real(wp), parameter :: secant_noise = 100.0_wp
       integer :: i, n
 
       n = size(status)
-      allocate (violations%kind(n), source=event_none)
-      allocate (violations%step(n), violations%speed(n), source=0.0_wp)
+      if (allocated(violations%kind)) then
+         if (size(violations%kind) /= n) deallocate (violations%kind, violations%step, violations%speed)
+      end if
+      if (.not. allocated(violations%kind)) allocate (violations%kind(n), violations%step(n), violations%speed(n))
+      violations%kind = event_none
+      violations%speed = 0.0_wp
       violations%step = huge(1.0_wp)
       full = 1.0_wp
       sticks = .true.
@@ -139,7 +143,7 @@ contains
          violations%step(i) = step
          violations%speed(i) = -slack_rate/scale
       end subroutine consider
-   end function find_violations
+   end subroutine find_violations
 
    !> The largest rates of tractions and of motions.
    pure subroutine find_scales(rate, traction_scale, motion_scale)

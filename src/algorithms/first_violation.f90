@@ -80,7 +80,7 @@ contains
          if (standing == patience + size(path%state%status) .and. .not. moment%solved) then
             call settle_at_once(path, segment, done, settled)
             moment%solved = .true.
-            if (settled .and. allocated(moment%tried)) deallocate (moment%tried)
+            if (settled) moment%tries = 0
          end if
          drop = path%dropping()
          call path%settle_loads(segment, done, moment, constraints, settled, error)
@@ -113,7 +113,7 @@ contains
                if (allocated(error)) return
             end if
             if (last) return
-            moment = moment_type()
+            call renew(moment)
             standing = 0
             if (.not. drop) creeping = merge(creeping + 1, 0, increment%step < tie_of(path))
             since = since + 1
@@ -132,29 +132,33 @@ contains
       end do
    end subroutine lead_by_violations
 
-   !> Take a step of the load (of the drop) with the rates of the increment, and check it.
+   !> Take a step of the load (of the drop) with the rates of the increment, and check it; the increment's state goes along.
    !> Errors MFV_NO_CONTINUATION: the statuses would make the tractions jump, or the certificate fails by far (loads out of
    !> all proportion, for example).
    subroutine advance(path, increment, drop, error)
       class(contact_path_type), intent(inout) :: path
-      type(increment_type), intent(in) :: increment
+      type(increment_type), intent(inout) :: increment
       logical, intent(in) :: drop
       type(error_type), allocatable, intent(out) :: error
-      real(wp) :: scale
+      real(wp) :: jump, scale
+      integer :: i
 
       associate (before => path%state%fields, response => increment%response)
-         scale = max(path%certificate%traction_scale(), &
-                     maxval(abs(response%rate%pressure)), maxval(abs(response%rate%shear)))
-         if (max(maxval(abs(response%state%pressure - before%pressure)), &
-                 maxval(abs(response%state%shear - before%shear))) &
-             > max(largest_jump, allowed(path), noises*path%system%noise)*scale) then
+         scale = path%certificate%traction_scale()
+         jump = 0.0_wp
+         do i = 1, size(before%pressure)
+            scale = max(scale, abs(response%rate%pressure(i)), abs(response%rate%shear(i)))
+            jump = max(jump, abs(response%state%pressure(i) - before%pressure(i)), &
+                       abs(response%state%shear(i) - before%shear(i)))
+         end do
+         if (jump > max(largest_jump, allowed(path), noises*path%system%noise)*scale) then
             call path%no_continuation('the tractions would have to jump', error)
             return
          end if
          call path%certificate%note_jump(before, response%state)
+         call response%state%move(increment%step, response%rate)
       end associate
-      call path%take_increment(increment%response%state%plus(increment%step, increment%response%rate), &
-                               increment%response%rate%slip(), merge(increment%step, 0.0_wp, drop))
+      call path%take_increment(increment%response%state, increment%response%rate%slip(), merge(increment%step, 0.0_wp, drop))
       if (path%certificate%largest() > max(failed_certificate, allowed(path), noises*path%system%noise)) &
          call path%no_continuation('the equations are no longer satisfied (certificate '// &
                                    to_text(path%certificate%largest())//')', error)
@@ -186,20 +190,22 @@ contains
          if (path%trial > shortest_trial) then
             ! Over a shorter increment friction that is not linear may have rates that agree.
             path%trial = 0.1_wp*path%trial
-            deallocate (moment%tried)
+            moment%tries = 0
             return
          end if
          if (moment%one_at_a_time .and. moment%round_off >= larger_round_off) then
             if (.not. moment%solved) then
                call settle_at_once(path, segment, done, snapped)
                if (snapped) then
-                  moment = moment_type(solved=.true., event=moment%event, node=moment%node, count=moment%count)
+                  call renew(moment, moment%event, moment%node, moment%count)
+                  moment%solved = .true.
                   return
                end if
             end if
             if (.not. moment%snapped) call path%snap(snapped)
             if (snapped) then
-               moment = moment_type(snapped=.true.)
+               call renew(moment)
+               moment%snapped = .true.
                return
             end if
             call path%no_continuation('no set of statuses has consistent rates; node '// &
@@ -208,7 +214,7 @@ contains
          end if
          moment%one_at_a_time = moment%round_off >= larger_round_off
          moment%round_off = larger_round_off
-         deallocate (moment%tried)
+         moment%tries = 0
       end if
       call remember(moment, path%state%status)
 
@@ -228,7 +234,7 @@ contains
          where (changing .and. violations%kind == event_caught) path%state%excess = 0.0_wp
          ! These change what friction remembers, not the statuses: what was tried says nothing any more.
          if (any(changing .and. (violations%kind == event_weakened .or. violations%kind == event_caught .or. &
-                                 violations%kind == event_capped)) .and. allocated(moment%tried)) deallocate (moment%tried)
+                                 violations%kind == event_capped))) moment%tries = 0
          path%state%capped = (path%state%capped .or. (changing .and. violations%kind == event_capped)) .and. &
                              path%state%excess > 0.0_wp
       end associate
@@ -264,8 +270,31 @@ contains
       if (.not. any(increment%violations%kind == event_stick .and. increment%violations%step <= no_step_of(path) .and. &
                     corners%room < huge(1.0_wp))) return
       call path%snap(snapped)
-      if (snapped) moment = moment_type(snapped=.true., event=moment%event, node=moment%node, count=moment%count)
+      if (.not. snapped) return
+      call renew(moment, moment%event, moment%node, moment%count)
+      moment%snapped = .true.
    end subroutine snap_if_unstable
+
+   !> Begin a new moment, in the storage there is; what changed first, where told.
+   pure subroutine renew(moment, event, node, number)
+      type(moment_type), intent(inout) :: moment
+      integer, intent(in), optional :: event, node, number
+      type(moment_type) :: fresh
+
+      if (present(event)) fresh%event = event
+      if (present(node)) fresh%node = node
+      if (present(number)) fresh%count = number
+      call move_alloc(moment%tried, fresh%tried)
+      moment%tries = fresh%tries
+      moment%round_off = fresh%round_off
+      moment%one_at_a_time = fresh%one_at_a_time
+      moment%snapped = fresh%snapped
+      moment%solved = fresh%solved
+      moment%event = fresh%event
+      moment%node = fresh%node
+      moment%count = fresh%count
+      call move_alloc(fresh%tried, moment%tried)
+   end subroutine renew
 
    pure logical function was_tried(moment, status)
       type(moment_type), intent(in) :: moment
@@ -273,24 +302,31 @@ contains
       integer :: i
 
       was_tried = .false.
-      if (.not. allocated(moment%tried)) return
-      do i = 1, size(moment%tried, 2)
+      do i = 1, moment%tries
          was_tried = was_tried .or. all(moment%tried(:, i) == status)
       end do
    end function was_tried
 
-   subroutine remember(moment, status)
+   !> Note that `status` has been tried; with a new number of nodes what was noted is of no use.
+   pure subroutine remember(moment, status)
       type(moment_type), intent(inout) :: moment
       integer, intent(in) :: status(:)
-      integer :: tried
+      integer, parameter :: some = 8
+      integer, allocatable :: wider(:, :)
 
-      tried = 0
-      if (allocated(moment%tried)) tried = size(moment%tried, 2)
-      if (tried == 0) then
-         moment%tried = reshape(status, [size(status), 1])
-      else
-         moment%tried = reshape([moment%tried, status], [size(status), tried + 1])
+      if (allocated(moment%tried)) then
+         if (size(moment%tried, 1) /= size(status)) deallocate (moment%tried)
       end if
+      if (.not. allocated(moment%tried)) then
+         allocate (moment%tried(size(status), some))
+         moment%tries = 0
+      else if (moment%tries == size(moment%tried, 2)) then
+         allocate (wider(size(status), 2*moment%tries))
+         wider(:, :moment%tries) = moment%tried
+         call move_alloc(wider, moment%tried)
+      end if
+      moment%tries = moment%tries + 1
+      moment%tried(:, moment%tries) = status
    end subroutine remember
 
 end module mfv_first_violation

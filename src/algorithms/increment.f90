@@ -55,13 +55,19 @@ contains
 
    !> `constraints`: as contact_path_type%settle_loads leaves them. `left`: what is left of the segment (of the drop: 1).
    !> `drop`: whether excess tractions are let go at a fixed load. `round_off`: rates below this part of the largest are none.
+   !> `increment`: its storage is used again.
    subroutine find_increment(path, constraints, left, drop, round_off, increment)
       class(contact_path_type), intent(inout) :: path
       type(constraints_type), intent(in) :: constraints
       real(wp), intent(in) :: left, round_off
       logical, intent(in) :: drop
-      type(increment_type), intent(out) :: increment
+      type(increment_type), intent(inout) :: increment
 
+      increment%step = 0.0_wp
+      increment%reach = 0.0_wp
+      increment%ends_in_event = .false.
+      increment%singular = .false.
+      increment%diverges = .false.
       if (path%model%scene%method%stepping == stepping_nominal) then
          call nominal_increment(path, constraints, min(left, path%model%scene%method%load_step), drop, round_off, increment)
       else
@@ -98,11 +104,11 @@ contains
       if (path%has_corners()) call path%find_corners(path%state%fields%plus(longest, increment%response%rate), corners)
       if (grouping(path)) then
          ! Inequalities that were broken hold again in the state that the new statuses make.
-         increment%violations = find_violations(path%model, path%state%status, corners, increment%response%state, &
-                                                increment%response%rate, max(round_off, path%system%noise))
+         call find_violations(path%model, path%state%status, corners, increment%response%state, increment%response%rate, &
+                              max(round_off, path%system%noise), increment%violations)
       else
-         increment%violations = find_violations(path%model, path%state%status, corners, path%state%fields, &
-                                                increment%response%rate, max(round_off, path%system%noise))
+         call find_violations(path%model, path%state%status, corners, path%state%fields, increment%response%rate, &
+                              max(round_off, path%system%noise), increment%violations)
       end if
       first = minval(increment%violations%step)
       increment%step = min(first, longest)

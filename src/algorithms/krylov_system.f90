@@ -82,7 +82,7 @@ contains
       type(contact_model_type), intent(in) :: model
       type(constraints_type), intent(in) :: constraints
       type(contact_fields_type), intent(in) :: start
-      type(response_type), intent(out) :: response
+      type(response_type), intent(inout) :: response
       logical, intent(out) :: singular
       type(right_side_type) :: right
       real(wp), allocatable :: unknowns(:)

@@ -1,11 +1,14 @@
 !> Which linear solver a scene gets.
 module mfv_linear_solvers
    use mfv_augmented_system, only: augmented_system_type
+   use mfv_body, only: shape_matrix, shape_profile
+   use mfv_compliance, only: block_up
    use mfv_contact_model, only: contact_model_type
    use mfv_contact_system, only: contact_system_type
    use mfv_krylov_system, only: krylov_system_type
    use mfv_reduced_system, only: reduced_system_type
    use mfv_scene
+   use mfv_solver_costs, only: most_apart, most_at_once, most_bristles, most_coupled
    implicit none
    private
    public :: new_contact_system
@@ -16,15 +19,52 @@ contains
    subroutine new_contact_system(model, system)
       type(contact_model_type), intent(in) :: model
       class(contact_system_type), allocatable, intent(out) :: system
+      integer :: solver
 
-      select case (model%scene%method%linear_solver)
+      solver = model%scene%method%linear_solver
+      if (solver == solver_auto) solver = chosen_solver(model)
+      select case (solver)
       case (solver_fft)
          allocate (krylov_system_type :: system)
-      case (solver_auto, solver_reduced)
+         system%name = 'fft'
+      case (solver_reduced)
          allocate (reduced_system_type :: system)
+         system%name = 'reduced'
       case default
          allocate (augmented_system_type :: system)
       end select
    end subroutine new_contact_system
+
+   !> What 'auto' is: the reduced system up to a number of nodes that depends on the structure (mfv_solver_costs), beyond it
+   !> fft, whose memory does not grow with the square. A user's matrix has no fast products, and there is the reduced system.
+   pure integer function chosen_solver(model) result(solver)
+      type(contact_model_type), intent(in) :: model
+
+      solver = solver_reduced
+      if (model%scene%lower%shape == shape_matrix) return
+      if (model%nodes() > most_reduced(model)) solver = solver_fft
+   end function chosen_solver
+
+   !> The number of nodes up to which the reduced system is taken.
+   pure integer function most_reduced(model) result(most)
+      type(contact_model_type), intent(in) :: model
+      logical :: coupled, at_once
+
+      coupled = model%compliance%has_block(block_up)
+      associate (scene => model%scene)
+         at_once = scene%method%algorithm == algorithm_mfv .and. &
+                   (scene%method%stepping == stepping_leap .or. &
+                    scene%method%stepping == stepping_event .and. .not. model%tangential)
+         if (any([scene%lower%shape, scene%upper%shape] == shape_profile)) then
+            most = most_coupled
+         else if (scene%friction%name == 'dahl' .or. at_once .and. coupled) then
+            most = most_bristles
+         else if (at_once) then
+            most = most_at_once
+         else
+            most = merge(most_coupled, most_apart, coupled)
+         end if
+      end associate
+   end function most_reduced
 
 end module mfv_linear_solvers

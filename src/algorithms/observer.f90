@@ -4,7 +4,7 @@ module mfv_observer
    use mfv_kinds, only: wp
    implicit none
    private
-   public :: observer_type
+   public :: observer_type, relay_type
 
    type, abstract :: observer_type
    contains
@@ -23,5 +23,33 @@ module mfv_observer
          logical, intent(out) :: stop_wanted
       end subroutine notify_interface
    end interface
+
+   !> Tells a caller of one run among several, all as one work.
+   type, extends(observer_type) :: relay_type
+      !> Who is told; not associated: nobody.
+      class(observer_type), pointer :: caller => null()
+      !> Runs before this one, and of all.
+      integer :: before = 0, runs = 1
+      !> Whether the caller has stopped it.
+      logical :: ended = .false.
+   contains
+      procedure :: notify => relay
+   end type relay_type
+
+contains
+
+   !> See observer_type.
+   subroutine relay(self, state, segment, segments, fraction, stop_wanted)
+      class(relay_type), intent(inout) :: self
+      type(contact_state_type), intent(in) :: state
+      integer, intent(in) :: segment, segments
+      real(wp), intent(in) :: fraction
+      logical, intent(out) :: stop_wanted
+
+      stop_wanted = .false.
+      if (.not. associated(self%caller)) return
+      call self%caller%notify(state, self%before*segments + segment, self%runs*segments, fraction, stop_wanted)
+      self%ended = stop_wanted
+   end subroutine relay
 
 end module mfv_observer

@@ -19,7 +19,7 @@ module mfv_reduced_system
    use mfv_augmented_system, only: augmented_system_type
    use mfv_compliance, only: block_up, block_ut, block_wp, block_wt
    use mfv_constrained_inverse, only: constrained_inverse_type
-   use mfv_contact_fields, only: contact_fields_type, new_contact_fields
+   use mfv_contact_fields, only: contact_fields_type
    use mfv_contact_model, only: along_approach, along_rotation, along_shift, contact_model_type
    use mfv_contact_system
    use mfv_kinds, only: wp
@@ -104,12 +104,13 @@ contains
       type(contact_model_type), intent(in) :: model
       type(constraints_type), intent(in) :: constraints
       type(contact_fields_type), intent(in) :: start
-      type(response_type), intent(out) :: response
+      type(response_type), intent(inout) :: response
       logical, intent(out) :: singular
 
       self%solves = self%solves + 1
       if (model%compliance%has_block(block_up) .and. .not. model%compliance%has_block(block_wt) .and. &
           (model%rotational .or. model%scene%mesh%radial)) then
+         self%name = self%augmented%name
          call self%augmented%solve(model, constraints, start, response, singular)
          return
       end if
@@ -134,10 +135,10 @@ contains
       call self%follow(model, constraints, anew, singular)
       if (.not. singular) singular = self%undetermined(model, constraints)
       if (singular) return
-      response%state = start
+      call response%state%take(start)
       call self%refine(model, constraints, .false., response%state, singular)
       if (singular) return
-      response%rate = new_contact_fields(size(constraints%status))
+      call response%rate%clear(size(constraints%status))
       call self%refine(model, constraints, .true., response%rate, singular)
    end subroutine respond
 
@@ -749,13 +750,18 @@ contains
       type(contact_fields_type), intent(in) :: fields
       type(scales_type), intent(in) :: scales
       real(wp), intent(out) :: largest
-      real(wp) :: length, modulus, interval, missing, value
+      real(wp) :: length, modulus, interval, missing, value, by_length, by_stress, gap_rest, slip_rest, traction_rest, stiffness
       type(load_type) :: load
       integer :: i, node, p
 
       length = self%length
       modulus = model%compliance%modulus
       interval = model%interval()
+      by_length = 1.0_wp/length
+      by_stress = 1.0_wp/(interval*modulus)
+      gap_rest = 0.0_wp
+      slip_rest = 0.0_wp
+      traction_rest = 0.0_wp
       largest = 0.0_wp
       do p = 1, 2
          associate (part => self%part(p))
@@ -765,51 +771,53 @@ contains
             end if
             do i = 1, part%unknowns
                node = part%of(i)
-               missing = 0.0_wp
-               select case (part%sort(i))
-               case (a_pressure)
+               if (part%sort(i) == a_pressure) then
                   missing = fields%approach - fields%normal(node)
                   if (.not. rates) then
                      missing = missing - model%initial_gap(node)
                   else if (allocated(constraints%gap_rate)) then
                      missing = missing + constraints%gap_rate(node)
                   end if
-                  largest = max(largest, abs(missing)/scales%normal)
-                  missing = missing/length
-               case (a_shear)
-                  if (constraints%status(node) == node_stick) then
-                     missing = fields%shift - fields%tangential(node)
-                     if (.not. rates) then
-                        missing = missing + constraints%stuck_slip(node)
-                     else if (allocated(constraints%slip_rate)) then
-                        missing = missing + constraints%slip_rate(node)
-                     end if
-                     largest = max(largest, abs(missing)/scales%tangential)
-                     missing = missing/length
-                  else
-                     value = missing_shear(constraints, rates, fields, node)
-                     ! Its slip is known as well as that of a stuck node.
-                     largest = max(largest, abs(value)/max(scales%traction, &
-                                                           abs(constraints%row(node)%stiffness)*scales%tangential))
-                     part%values(self%constraint_of(node)) = value*model%width(node)/(interval*modulus)
-                  end if
-               case (a_motion)
+                  gap_rest = max(gap_rest, abs(missing))
+                  part%right(i) = missing*by_length
+               else if (part%sort(i) == a_motion) then
                   load = load_of(constraints, node)
                   value = merge(load%rate, load%value, rates)
                   if (self%motion_constraint(node) > 0) then
-                     value = (value - motion_of(fields, node))*arm_unit(self%length, node)
+                     value = (value - motion_of(fields, node))*arm_unit(length, node)
                      largest = max(largest, abs(value)/scales%normal)
-                     part%values(self%motion_constraint(node)) = value/length
+                     part%values(self%motion_constraint(node)) = value*by_length
+                     part%right(i) = 0.0_wp
                   else
-                     missing = (model%resultant(node, fields%pressure, fields%shear) - value)/arm_unit(self%length, node)
+                     missing = (model%resultant(node, fields%pressure, fields%shear) - value)/arm_unit(length, node)
                      largest = max(largest, abs(missing)/merge(scales%shear_force, scales%force, node == along_shift))
-                     missing = missing/(interval*modulus)
+                     part%right(i) = missing*by_stress
                   end if
-               end select
-               part%right(i) = missing
+               else if (constraints%status(node) == node_stick) then
+                  missing = fields%shift - fields%tangential(node)
+                  if (.not. rates) then
+                     missing = missing + constraints%stuck_slip(node)
+                  else if (allocated(constraints%slip_rate)) then
+                     missing = missing + constraints%slip_rate(node)
+                  end if
+                  slip_rest = max(slip_rest, abs(missing))
+                  part%right(i) = missing*by_length
+               else
+                  value = missing_shear(constraints, rates, fields, node)
+                  stiffness = abs(constraints%row(node)%stiffness)
+                  if (stiffness > 0.0_wp) then
+                     ! Its slip is known as well as that of a stuck node.
+                     largest = max(largest, abs(value)/max(scales%traction, stiffness*scales%tangential))
+                  else
+                     traction_rest = max(traction_rest, abs(value))
+                  end if
+                  part%values(self%constraint_of(node)) = value*model%width(node)*by_stress
+                  part%right(i) = 0.0_wp
+               end if
             end do
          end associate
       end do
+      largest = max(largest, gap_rest/scales%normal, slip_rest/scales%tangential, traction_rest/scales%traction)
    end subroutine find_residual
 
    !> Magnitudes of the fields. Where these become zero, or bodies only slide on each other, what is left is round-off and no
@@ -829,7 +837,7 @@ contains
          normal = max(normal, abs(fields%shift), abs(fields%rotation)*model%length())
       traction = max(least*first%traction, smallest)
       force = smallest
-      shear_force = 0.0_wp
+      shear_force = smallest
       do i = 1, size(fields%pressure)
          normal = max(normal, abs(fields%normal(i)))
          tangential = max(tangential, abs(fields%tangential(i)))

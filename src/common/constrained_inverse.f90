@@ -10,6 +10,7 @@
 !> as many operations as S has entries, and when all of them go nothing is left to do.
 module mfv_constrained_inverse
    use mfv_kinds, only: wp
+   use mfv_lapack, only: dgemv, dger, dgetrf, dgetri
    use mfv_updated_inverse, only: updated_inverse_type
    implicit none
    private
@@ -43,37 +44,6 @@ module mfv_constrained_inverse
       procedure, private :: border_small
       procedure, private :: rebuild_small
    end type constrained_inverse_type
-
-   interface
-      subroutine dgemv(trans, m, n, alpha, a, lda, x, incx, beta, y, incy)
-         import :: wp
-         character, intent(in) :: trans
-         integer, intent(in) :: m, n, lda, incx, incy
-         real(wp), intent(in) :: alpha, beta, a(lda, *), x(*)
-         real(wp), intent(inout) :: y(*)
-      end subroutine dgemv
-
-      subroutine dger(m, n, alpha, x, incx, y, incy, a, lda)
-         import :: wp
-         integer, intent(in) :: m, n, incx, incy, lda
-         real(wp), intent(in) :: alpha, x(*), y(*)
-         real(wp), intent(inout) :: a(lda, *)
-      end subroutine dger
-
-      subroutine dgetrf(m, n, a, lda, ipiv, info)
-         import :: wp
-         integer, intent(in) :: m, n, lda
-         real(wp), intent(inout) :: a(lda, *)
-         integer, intent(out) :: ipiv(*), info
-      end subroutine dgetrf
-
-      subroutine dgetri(n, a, lda, ipiv, work, lwork, info)
-         import :: wp
-         integer, intent(in) :: n, lda, lwork, ipiv(*)
-         real(wp), intent(inout) :: a(lda, *), work(*)
-         integer, intent(out) :: info
-      end subroutine dgetri
-   end interface
 
    !> Pivots below this part of what they are made of are none.
    real(wp), parameter :: no_pivot = 1.0e-12_wp

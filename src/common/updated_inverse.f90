@@ -11,6 +11,7 @@
 !> kept apart until there are `most_pending` of them, and then added together, as fast as matrices are multiplied.
 module mfv_updated_inverse
    use mfv_kinds, only: wp
+   use mfv_lapack, only: dgemm, dgemv, dgetrf, dgetri
    implicit none
    private
    public :: updated_inverse_type
@@ -44,38 +45,6 @@ module mfv_updated_inverse
       procedure, private :: reserve
       procedure, private :: append
    end type updated_inverse_type
-
-   interface
-      subroutine dgemm(transa, transb, m, n, k, alpha, a, lda, b, ldb, beta, c, ldc)
-         import :: wp
-         character, intent(in) :: transa, transb
-         integer, intent(in) :: m, n, k, lda, ldb, ldc
-         real(wp), intent(in) :: alpha, beta, a(lda, *), b(ldb, *)
-         real(wp), intent(inout) :: c(ldc, *)
-      end subroutine dgemm
-
-      subroutine dgemv(trans, m, n, alpha, a, lda, x, incx, beta, y, incy)
-         import :: wp
-         character, intent(in) :: trans
-         integer, intent(in) :: m, n, lda, incx, incy
-         real(wp), intent(in) :: alpha, beta, a(lda, *), x(*)
-         real(wp), intent(inout) :: y(*)
-      end subroutine dgemv
-
-      subroutine dgetrf(m, n, a, lda, ipiv, info)
-         import :: wp
-         integer, intent(in) :: m, n, lda
-         real(wp), intent(inout) :: a(lda, *)
-         integer, intent(out) :: ipiv(*), info
-      end subroutine dgetrf
-
-      subroutine dgetri(n, a, lda, ipiv, work, lwork, info)
-         import :: wp
-         integer, intent(in) :: n, lda, lwork, ipiv(*)
-         real(wp), intent(inout) :: a(lda, *), work(*)
-         integer, intent(out) :: info
-      end subroutine dgetri
-   end interface
 
 contains
 

@@ -8,6 +8,7 @@ module mfv_matrix_compliance
    use mfv_compliance
    use mfv_error, only: error_type, set_error
    use mfv_kinds, only: wp
+   use mfv_lapack, only: dpotrf, dpotri
    use mfv_status, only: MFV_INPUT_ERROR
    use mfv_strings, only: to_text
    implicit none
@@ -23,24 +24,6 @@ module mfv_matrix_compliance
       procedure :: entries
       procedure :: parts
    end type matrix_compliance_type
-
-   interface
-      subroutine dpotrf(uplo, n, a, lda, info)
-         import :: wp
-         character, intent(in) :: uplo
-         integer, intent(in) :: n, lda
-         real(wp), intent(inout) :: a(lda, *)
-         integer, intent(out) :: info
-      end subroutine dpotrf
-
-      subroutine dpotri(uplo, n, a, lda, info)
-         import :: wp
-         character, intent(in) :: uplo
-         integer, intent(in) :: n, lda
-         real(wp), intent(inout) :: a(lda, *)
-         integer, intent(out) :: info
-      end subroutine dpotri
-   end interface
 
    !> Matrices that differ from their transpose by more than this part of their largest entry are not symmetric.
    real(wp), parameter :: symmetry_tolerance = 1.0e-8_wp

@@ -10,7 +10,7 @@
 !> is the inverse transform of [(A^ + C^)/2 - B^] Z + (A^ - C^)/2 Z*, X its real and Y its imaginary part, with the real
 !> numbers A^, C^ (cosine sums) and B^ (sine sum).
 module mfv_toeplitz
-   use mfv_fourier, only: backward, complex_transform, forward, transform_length
+   use mfv_fourier, only: backward, complex_transform, fast_length, forward
    use mfv_kinds, only: wp
    implicit none
    private
@@ -37,13 +37,13 @@ contains
       real(wp), intent(in) :: even(:)
       real(wp), intent(in), optional :: odd(:), other(:)
       type(toeplitz_type) :: self
-      complex(wp), allocatable :: work(:)
+      complex(wp), allocatable :: work(:), spectrum(:)
       integer :: n
 
       n = size(even)
       self%nodes = n
-      self%length = transform_length(2*n - 1)
-      allocate (work(self%length))
+      self%length = fast_length(2*n - 1)
+      allocate (work(self%length), spectrum(self%length))
       work = 0.0_wp
       work(:n) = even
       work(self%length:self%length - n + 2:-1) = even(2:)
@@ -51,21 +51,21 @@ contains
          work(:n) = work(:n) + cmplx(0.0_wp, other, wp)
          work(self%length:self%length - n + 2:-1) = work(self%length:self%length - n + 2:-1) + cmplx(0.0_wp, other(2:), wp)
       end if
-      call complex_transform(forward, work)
+      call complex_transform(forward, work, spectrum)
       if (present(other)) then
-         self%straight = 0.5_wp*(real(work, wp) + aimag(work))/self%length
-         self%mirrored = 0.5_wp*(real(work, wp) - aimag(work))/self%length
+         self%straight = 0.5_wp*(real(spectrum, wp) + aimag(spectrum))/self%length
+         self%mirrored = 0.5_wp*(real(spectrum, wp) - aimag(spectrum))/self%length
       else
-         self%straight = real(work, wp)/self%length
+         self%straight = real(spectrum, wp)/self%length
       end if
       self%coupled = present(odd)
       if (.not. self%coupled) return
       work = 0.0_wp
       work(2:n) = odd(2:)
       work(self%length:self%length - n + 2:-1) = -odd(2:)
-      call complex_transform(forward, work)
+      call complex_transform(forward, work, spectrum)
       ! The transform of an odd sequence is i times B^.
-      self%straight = self%straight - aimag(work)/self%length
+      self%straight = self%straight - aimag(spectrum)/self%length
    end function new_toeplitz
 
    !> X and Y of x and y, all of shape (nodes).
@@ -73,9 +73,26 @@ contains
       class(toeplitz_type), intent(in) :: self
       real(wp), intent(in) :: x(:), y(:)
       real(wp), intent(out) :: by_x(:), by_y(:)
-      complex(wp), allocatable :: work(:)
+      integer, parameter :: short = 512
+      complex(wp) :: nearby(short, 2)
+      complex(wp), allocatable :: work(:, :)
+
+      if (self%length <= short) then
+         call multiply_in(self, nearby(:self%length, 1), nearby(:self%length, 2), x, by_x, y, by_y)
+      else
+         allocate (work(self%length, 2))
+         call multiply_in(self, work(:, 1), work(:, 2), x, by_x, y, by_y)
+      end if
+   end subroutine multiply
+
+   !> The same with the work spaces `values` and `work`, shape (length).
+   subroutine multiply_in(self, values, work, x, by_x, y, by_y)
+      class(toeplitz_type), intent(in) :: self
+      complex(wp), intent(inout), contiguous :: values(:), work(:)
+      real(wp), intent(in) :: x(:), y(:)
+      real(wp), intent(out) :: by_x(:), by_y(:)
       complex(wp) :: here, there
-      real(wp) :: factor
+      real(wp) :: factor, largest_x, largest_y
       logical :: alike
       integer :: k, n, length
 
@@ -84,11 +101,12 @@ contains
       ! A z alone: the two vectors do not meet.
       alike = .not. (allocated(self%mirrored) .or. self%coupled)
       factor = 1.0_wp
-      if (alike) factor = evening_factor(x, y)
-      allocate (work(length))
-      work(:n) = cmplx(x, factor*y, wp)
-      work(n + 1:) = 0.0_wp
-      call complex_transform(forward, work)
+      largest_x = 1.0_wp
+      largest_y = 1.0_wp
+      if (alike) call find_evening(x, y, largest_x, largest_y, factor)
+      values(:n) = cmplx(x, factor*y, wp)
+      values(n + 1:) = 0.0_wp
+      call complex_transform(forward, values, work)
       if (allocated(self%mirrored)) then
          work(1) = self%straight(1)*work(1) + self%mirrored(1)*conjg(work(1))
          do k = 2, length/2 + 1
@@ -100,25 +118,25 @@ contains
       else
          work = self%straight*work
       end if
-      call complex_transform(backward, work)
-      by_x = real(work(:n), wp)
-      by_y = aimag(work(:n))/factor
-      if (.not. alike) return
-      if (.not. maxval(abs(x)) > 0.0_wp) by_x = 0.0_wp
-      if (.not. maxval(abs(y)) > 0.0_wp) by_y = 0.0_wp
-   end subroutine multiply
+      call complex_transform(backward, work, values)
+      by_x = real(values(:n), wp)
+      by_y = aimag(values(:n))/factor
+      if (.not. largest_x > 0.0_wp) by_x = 0.0_wp
+      if (.not. largest_y > 0.0_wp) by_y = 0.0_wp
+   end subroutine multiply_in
 
-   !> A power of two that makes y about as large as x, so that the smaller one keeps its digits beside the larger one.
-   pure real(wp) function evening_factor(x, y)
+   !> The largest sizes in x and y, and a power of two that makes y about as large as x, so that the smaller one keeps its digits
+   !> beside the larger one.
+   pure subroutine find_evening(x, y, largest_x, largest_y, factor)
       real(wp), intent(in) :: x(:), y(:)
+      real(wp), intent(out) :: largest_x, largest_y, factor
       integer, parameter :: most = 500
-      real(wp) :: largest_x, largest_y
 
       largest_x = maxval(abs(x))
       largest_y = maxval(abs(y))
-      evening_factor = 1.0_wp
+      factor = 1.0_wp
       if (largest_x > 0.0_wp .and. largest_y > 0.0_wp) &
-         evening_factor = scale(1.0_wp, min(max(exponent(largest_x) - exponent(largest_y), -most), most))
-   end function evening_factor
+         factor = scale(1.0_wp, min(max(exponent(largest_x) - exponent(largest_y), -most), most))
+   end subroutine find_evening
 
 end module mfv_toeplitz

@@ -152,7 +152,7 @@ contains
       type(string_type), intent(in) :: warnings(:)
       type(string_type), allocatable, intent(out) :: names(:), texts(:)
       character(*), parameter :: planes = 'strain stress', couplings = 'full goodman none', &
-                                 algorithms = 'mfv conventional', steppings = 'event nominal'
+                                 algorithms = 'mfv conventional', steppings = 'event nominal leap'
       character(:), allocatable :: text, directory
       integer :: i
 
@@ -177,6 +177,7 @@ contains
       call add('friction_law', trim(case%scene%friction%name))
       call add('algorithm', word(algorithms, case%scene%method%algorithm))
       call add('stepping', word(steppings, case%scene%method%stepping))
+      call add('linear_solver', trim(simulation%contact%system%name))
       call add('lower_body', trim(body_name(case%scene%lower)))
       call add('upper_body', trim(body_name(case%scene%upper)))
       if (allocated(simulation%estimate)) call add('error_estimate', trim(merge('there', 'none ', has_estimate(simulation)))// &

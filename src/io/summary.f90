@@ -25,6 +25,7 @@ contains
       real(wp), intent(in) :: seconds
       character(:), allocatable, intent(out) :: text
       type(field_type), allocatable :: fields(:)
+      character(:), allocatable :: words
       integer :: i
 
       call group_fields(case, simulation, 'summary', fields)
@@ -42,9 +43,10 @@ contains
          end if
          if (model%rotational) &
             call add_line(text, 'moment', amount(fields, 'moment')//', rotation '//amount(fields, 'rotation'))
-         call add_line(text, 'work', amount(fields, 'events')//' events, '//amount(fields, 'leaps')//' leaps, '// &
-                       amount(fields, 'linear_solves')// &
-                       ' linear solves, '//to_text(seconds, 3)//' s')
+         words = ''
+         if (simulation%contact%certificate%leaps > 0) words = amount(fields, 'leaps')//' leaps, '
+         call add_line(text, 'work', amount(fields, 'events')//' events, '//words//amount(fields, 'linear_solves')// &
+                       ' linear solves ('//trim(simulation%contact%system%name)//'), '//to_text(seconds, 3)//' s')
          call add_compliance(text, model)
          call add_line(text, 'certificate', 'largest relative residual '//amount(fields, 'largest_residual'))
          if (allocated(simulation%estimate)) call add_estimate(text, case, simulation)

@@ -34,13 +34,13 @@ contains
       modulus = 10.0_wp**(12.0_wp*u(3) - 6.0_wp)
       select case (modulo(i, kinds))
       case (kind_hertz)
-         scene = cylinder(intervals(30, 150), 1.0_wp)
+         scene = cylinder(intervals(30, 400), 1.0_wp)
       case (kind_punch)
-         scene = flat_punch(intervals(20, 90), length*radius, mu, coupling_goodman)
+         scene = flat_punch(intervals(20, 200), length*radius, mu, coupling_goodman)
       case (kind_cycle)
-         scene = cylinder(intervals(24, 70), 1.0_wp, mu, coupling_goodman)
+         scene = cylinder(intervals(24, 150), 1.0_wp, mu, coupling_goodman)
       case default
-         scene = cylinder(intervals(24, 100), 1.0_wp, mu, coupling_goodman)
+         scene = cylinder(intervals(24, 250), 1.0_wp, mu, coupling_goodman)
       end select
       scene%lower%material = new_material(modulus, 0.48_wp*u(5), plane_strain)
       scene%lower%datum = length*radius

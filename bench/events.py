@@ -1,0 +1,202 @@
+"""Cost of an event against the number of nodes in contact, for every linear solver."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+from harness import SOLVERS, Bench, Case, duration, number, plain, size, slope, stamp, table
+from matplotlib import pyplot
+
+CONTACTS = (40, 80, 160, 331, 1000, 3000, 10000)
+MU, PRESS, SHEAR = 0.5, 1.0e-3, 3.0e-4
+#: Nodes in contact up to which a solver is measured, and up to which the whole history is led.
+MOST = {"dgesv": 1000, "reduced": 3000, "fft": 10000}
+WHOLE = {"dgesv": 160, "reduced": 331, "fft": 160}
+#: Above: so many events of shear, about.
+EVENTS = {"dgesv": 10, "reduced": 60, "fft": 40}
+BODIES = [
+    {"shape": "half_plane", "shear_modulus": 1.0, "poisson_ratio": 0.3},
+    {"shape": "disk", "radius": 0.25, "rigid": True},
+]
+#: Families of scenes, each with what makes a linear solve dear or cheap.
+FAMILIES = {
+    "full coupling": {"coupling": "full"},
+    "Goodman": {"coupling": "goodman"},
+    "decoupled": {"coupling": "none"},
+}
+
+
+def cycles(contact: int, number_of: int = 1, coupling: str = "full") -> Case:
+    """Press with friction, shear cycles, by events; `contact` nodes in contact, about."""
+    steps = [{"normal_force": PRESS}, {"tangential_force": SHEAR, "cycles": number_of}]
+    return Case(BODIES, steps, {"nodes": round(1.2 * contact)}, MU, coupling)
+
+
+def little(contact: int, events: int, coupling: str = "full") -> Case:
+    """Press without friction, straight to the load, and shear until about so many nodes slip."""
+    share = min(1.0 - (1.0 - events / contact) ** 2, SHEAR / (MU * PRESS)) if events < contact else SHEAR / (MU * PRESS)
+    steps = [{"normal_force": PRESS, "friction": False}, {"tangential_force": share * MU * PRESS}]
+    return Case(BODIES, steps, {"nodes": round(1.2 * contact)}, MU, coupling)
+
+
+def measure(bench: Bench, quick: bool) -> dict[str, Any]:
+    """Everything in this section."""
+    contacts = CONTACTS[:4] if quick else CONTACTS
+    return stamp() | {
+        "cycle": [row for contact in contacts for row in _cost(bench, contact, "full", quick)],
+        "families": {
+            name: [row for contact in contacts if contact >= 80 for row in _little(bench, contact, keys["coupling"])]
+            for name, keys in FAMILIES.items()
+        },
+        "memory": _memory(bench, contacts),
+    }
+
+
+def _cost(bench: Bench, contact: int, coupling: str, quick: bool) -> list[dict[str, Any]]:
+    """Cost per event, of one cycle where that is affordable, else of a part of the first shear."""
+    rows = []
+    whole = [solver for solver in SOLVERS if contact <= WHOLE[solver]]
+    if whole:
+        case = cycles(contact, 1, coupling)
+        results = bench.run([case.by(linear_solver=solver) for solver in whole], 1 if quick or contact > 100 else 3)
+        rows += [_row(result, result["whole"], "press, cycle") for result in results]
+    part = [solver for solver in SOLVERS if WHOLE[solver] < contact <= MOST[solver]]
+    for solver in part:
+        result = bench.run([little(contact, EVENTS[solver], coupling).by(linear_solver=solver)])[0]
+        rows.append(_row(result, result["last"], "part of a shear"))
+    return rows
+
+
+def _little(bench: Bench, contact: int, coupling: str) -> list[dict[str, Any]]:
+    """Reduced and fft on the same part of a shear, factorisation included and not."""
+    solvers = [solver for solver in ("reduced", "fft") if contact <= MOST[solver]]
+    case = little(contact, EVENTS["fft"], coupling)
+    results = bench.run([case.by(linear_solver=solver) for solver in solvers], 2 if contact < 2000 else 1)
+    return [_row(result, result["last"], "part of a shear") for result in results]
+
+
+def _row(result: dict[str, Any], counts: dict[str, Any], history: str) -> dict[str, Any]:
+    events = max(counts["events"], 1)
+    return plain(result) | {
+        "history": history,
+        "events": counts["events"],
+        "solves": counts["solves"],
+        "seconds": counts["seconds"] / events,
+        "solve": counts["seconds"] / max(counts["solves"], 1),
+        "iterations": counts["iterations"] / max(counts["solves"], 1),
+        "products": counts["products"] / max(counts["solves"], 1),
+    }
+
+
+def _memory(bench: Bench, contacts: tuple[int, ...]) -> list[dict[str, Any]]:
+    """Peak memory of a process for the press, straight to the load, and the first few nodes that slip."""
+    rows = []
+    for contact in contacts:
+        for solver in SOLVERS:
+            if contact > MOST[solver]:
+                continue
+            result = bench.process(little(contact, 2).by(linear_solver=solver), 1)
+            rows.append({"solver": solver, "contact": result["contact"], "memory": result["memory"]})
+    return rows
+
+
+def fits(rows: list[dict[str, Any]], key: str = "seconds", least: int = 150) -> dict[str, tuple[float, float]]:
+    """Exponent and factor of every solver, from `least` nodes in contact on."""
+    laws = {}
+    for solver in SOLVERS:
+        points = [(row["contact"], row[key]) for row in rows if row["solver"] == solver and row["contact"] >= least]
+        if len(points) >= 2:
+            laws[solver] = slope(*zip(*points, strict=True))
+    return laws
+
+
+def flops(solver: str, contact: int, row: dict[str, Any]) -> float:
+    """Floating-point operations of a solve, about: what its linear algebra alone must do."""
+    if solver == "dgesv":
+        return 2.0 / 3.0 * (4.0 * 1.2 * contact) ** 3
+    if solver == "reduced":
+        return 4.0 * (2.0 * contact) ** 2
+    length = 4.0 * contact
+    transform = 5.0 * length * max(length.bit_length() if isinstance(length, int) else int(length).bit_length(), 1)
+    return 2.0 * transform * row["products"] * 2.5
+
+
+def section(data: dict[str, Any], pictures: Path) -> str:
+    """The text."""
+    draw(data, pictures / "cost_per_event.png")
+    rows = []
+    for row in data["cycle"]:
+        rows.append(
+            [
+                row["solver"],
+                row["contact"],
+                row["history"],
+                row["events"],
+                number(row["solves"] / max(row["events"], 1), 3),
+                number(row["iterations"]) if row["iterations"] else "",
+                number(row["products"]) if row["products"] else "",
+                duration(row["seconds"]),
+                f"{row['certificate']:.0e}",
+            ]
+        )
+    laws = fits(data["cycle"])
+    exponents = ", ".join(f"{solver} {exponent:.1f}" for solver, (exponent, _) in laws.items())
+    memory = {(row["solver"], row["contact"]): row["memory"] for row in data["memory"]}
+    contacts = sorted({contact for _, contact in memory})
+    return f"""## What does an event cost?
+
+A rigid cylinder on a half-plane, nu = 0.3, mu = {MU}, full coupling: pressed with friction, then a cycle of shear to {SHEAR / (MU * PRESS):g} of
+the friction limit, by events; where that takes too long, pressed without friction and sheared until some nodes slip, the first
+factorisation included. Iterations and products with the compliance are a solve's, which finds state and rates.
+
+{table(["linear solver", "nodes in contact", "history", "events", "solves an event", "iterations", "products", "time an event", "certificate"], rows)}
+
+![Time of an event over nodes in contact](pictures/cost_per_event.png)
+
+Exponents of time over nodes in contact, from 150 nodes on: {exponents}. Peak memory of the process, of which the program itself is some 15 MB:
+
+{table(["nodes in contact", *SOLVERS], [[contact, *(size(memory[solver, contact]) if (solver, contact) in memory else "" for solver in SOLVERS)] for contact in contacts])}
+
+{family_text(data)}
+"""
+
+
+def family_text(data: dict[str, Any]) -> str:
+    """Crossovers by coupling."""
+    rows = []
+    for name, family in data["families"].items():
+        for row in family:
+            if row["solver"] != "fft":
+                continue
+            other = [r for r in family if r["solver"] == "reduced" and r["contact"] == row["contact"]]
+            rows.append(
+                [
+                    name,
+                    row["contact"],
+                    number(row["iterations"]),
+                    duration(row["seconds"]),
+                    duration(other[0]["seconds"]) if other else "",
+                    number(other[0]["seconds"] / row["seconds"]) if other else "",
+                ]
+            )
+    head = ["coupling", "nodes in contact", "iterations of fft", "fft, an event", "reduced, an event", "reduced/fft"]
+    return f"""Reduced against fft on the same short history, {EVENTS["fft"]} nodes or so beginning to slip, factorisation included:
+
+{table(head, rows)}"""
+
+
+def draw(data: dict[str, Any], path: Path) -> None:
+    """Time over nodes in contact."""
+    figure, axes = pyplot.subplots(figsize=(6, 4), layout="constrained")
+    laws = fits(data["cycle"])
+    for solver in SOLVERS:
+        points = [(row["contact"], row["seconds"]) for row in data["cycle"] if row["solver"] == solver]
+        name = f"{solver}, slope {laws[solver][0]:.1f}" if solver in laws else solver
+        axes.loglog(*zip(*points, strict=True), "o-", label=name)
+    axes.set_xlabel("nodes in contact")
+    axes.set_ylabel("seconds an event")
+    axes.legend(frameon=False)
+    axes.grid(alpha=0.3)
+    figure.savefig(path, dpi=150)
+    pyplot.close(figure)

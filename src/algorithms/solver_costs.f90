@@ -1,0 +1,45 @@
+!> What linear solvers cost, as bench/measure.py has measured it (docs/performance.md), and which is the cheapest.
+module mfv_solver_costs
+   use mfv_kinds, only: wp
+   use mfv_scene, only: solver_dgesv, solver_fft, solver_reduced
+   implicit none
+   private
+   public :: cheapest_solver, seconds_of_solve, most_coupled, most_apart, most_at_once, most_bristles
+
+   !> Seconds that one linear solve with m unknown tractions takes on the way from event to event, with all that goes with it:
+   !> dgesv coefficient*m^3, reduced coefficient*m^2, fft coefficient*m*log2(m). Full coupling, one thread.
+   real(wp), parameter :: dgesv_seconds = 1.6e-10_wp, reduced_seconds = 2.1e-10_wp, fft_seconds = 6.5e-8_wp
+
+   !> Nodes of the mesh up to which linear_solver='auto' takes the reduced system, and beyond which it takes fft: by events with
+   !> pressures and shear coupled; with them apart, where fft has an exact inverse on a half-plane; straight to the end of a
+   !> segment or by leaps, where the reduced system has nothing to update; and with bristles, whose rows change with every
+   !> increment.
+   integer, parameter :: most_coupled = 2000, most_apart = 900, most_at_once = 100, most_bristles = 250
+
+contains
+
+   !> The solver with the least cost for a number of unknown tractions.
+   pure integer function cheapest_solver(unknowns) result(solver)
+      real(wp), intent(in) :: unknowns
+
+      solver = solver_dgesv
+      if (seconds_of_solve(solver_reduced, unknowns) < seconds_of_solve(solver, unknowns)) solver = solver_reduced
+      if (seconds_of_solve(solver_fft, unknowns) < seconds_of_solve(solver, unknowns)) solver = solver_fft
+   end function cheapest_solver
+
+   !> Seconds that one linear solve takes, about.
+   pure real(wp) function seconds_of_solve(solver, unknowns) result(seconds)
+      integer, intent(in) :: solver
+      real(wp), intent(in) :: unknowns
+
+      select case (solver)
+      case (solver_reduced)
+         seconds = reduced_seconds*unknowns**2
+      case (solver_fft)
+         seconds = fft_seconds*unknowns*log(max(unknowns, 2.0_wp))/log(2.0_wp)
+      case default
+         seconds = dgesv_seconds*unknowns**3
+      end select
+   end function seconds_of_solve
+
+end module mfv_solver_costs

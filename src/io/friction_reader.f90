@@ -1,0 +1,202 @@
+!> The friction of a case, from its text: the law, its coefficients, and the steps in which it acts.
+module mfv_friction_reader
+   use mfv_body, only: shape_matrix
+   use mfv_error, only: error_type
+   use mfv_friction
+   use mfv_key_reader
+   use mfv_kinds, only: wp
+   use mfv_profile_file, only: read_table
+   use mfv_scene, only: scene_type
+   use mfv_strings, only: list_of_words, string_type, to_text
+   implicit none
+   private
+   public :: read_friction, check_friction_keys, check_coefficients_a_node, check_friction_of_steps
+
+contains
+
+   !> The friction law; its keys have been checked.
+   subroutine read_friction(reader, scene, error)
+      type(reader_type), intent(in) :: reader
+      type(scene_type), intent(inout) :: scene
+      type(error_type), allocatable, intent(out) :: error
+      real(wp) :: exponent
+
+      select case (reader%text_value('friction', 1, 'law'))
+      case ('coulomb')
+         scene%friction = coulomb_friction(0.0_wp)
+      case ('static_kinetic')
+         scene%friction = static_kinetic_friction(0.0_wp, 0.0_wp)
+      case ('weakening')
+         scene%friction = weakening_friction(0.0_wp, 0.0_wp, reader%real_value('friction', 1, 'weakening_distance'))
+      case ('dahl')
+         exponent = 1.0_wp
+         if (reader%has('friction', 1, 'exponent')) exponent = reader%real_value('friction', 1, 'exponent')
+         scene%friction = dahl_friction(0.0_wp, reader%real_value('friction', 1, 'stiffness'), exponent)
+      case default
+         scene%friction = no_friction()
+         return
+      end select
+      call read_coefficients(reader, scene%friction, error)
+   end subroutine read_friction
+
+   !> Keys that the law needs, and none that mean nothing to it.
+   subroutine check_friction_keys(reader, error)
+      type(reader_type), intent(in) :: reader
+      type(error_type), allocatable, intent(out) :: error
+      character(:), allocatable :: law, coefficients, needed
+      type(string_type), allocatable :: keys(:)
+      integer :: i
+
+      law = reader%text_value('friction', 1, 'law')
+      call keys_of_law(law, coefficients, needed)
+      keys = keys_of(reader, 'friction')
+      do i = 1, size(keys)
+         if (.not. reader%has('friction', 1, keys(i)%text)) cycle
+         if (index(' law '//coefficients//' '//needed//' exponent mu_file ', ' '//keys(i)%text//' ') == 0 .or. &
+             (keys(i)%text == 'exponent' .and. law /= 'dahl') .or. (keys(i)%text == 'mu_file' .and. law == 'none')) then
+            call reader%complain('friction', 1, keys(i)%text, "means nothing with law='"//law//"'", error)
+         else if (index(' '//coefficients//' ', ' '//keys(i)%text//' ') > 0 .and. reader%has('friction', 1, 'mu_file')) then
+            call reader%complain('friction', 1, keys(i)%text, 'mu_file is there too; give one of them', error)
+         end if
+         if (allocated(error)) return
+      end do
+      if (.not. reader%has('friction', 1, 'mu_file')) needed = coefficients//' '//needed
+      keys = list_of_words(needed)
+      do i = 1, size(keys)
+         call reader%need('friction', 1, keys(i)%text, error)
+         if (allocated(error)) return
+      end do
+   end subroutine check_friction_keys
+
+   !> Keys of a law's coefficients, and what else it needs; separated by blanks.
+   subroutine keys_of_law(law, coefficients, needed)
+      character(*), intent(in) :: law
+      character(:), allocatable, intent(out) :: coefficients, needed
+
+      coefficients = ''
+      needed = ''
+      if (law == 'coulomb' .or. law == 'dahl') coefficients = 'mu'
+      if (has_two_coefficients(law)) coefficients = 'mu_static mu_kinetic'
+      if (law == 'weakening') needed = 'weakening_distance'
+      if (law == 'dahl') needed = 'stiffness'
+   end subroutine keys_of_law
+
+   pure logical function has_two_coefficients(law)
+      character(*), intent(in) :: law
+
+      has_two_coefficients = law == 'static_kinetic' .or. law == 'weakening'
+   end function has_two_coefficients
+
+   !> Coefficients of friction: numbers, one number a node, or a file.
+   subroutine read_coefficients(reader, friction, error)
+      type(reader_type), intent(in) :: reader
+      type(friction_type), intent(inout) :: friction
+      type(error_type), allocatable, intent(out) :: error
+
+      if (reader%has('friction', 1, 'mu_file')) then
+         call read_mu_file(reader, friction, error)
+      else if (reader%has('friction', 1, 'mu')) then
+         call reader%real_values('friction', 1, 'mu', friction%static%value)
+         friction%kinetic = friction%static
+      else
+         call reader%real_values('friction', 1, 'mu_static', friction%static%value)
+         call reader%real_values('friction', 1, 'mu_kinetic', friction%kinetic%value)
+         call spread_single(friction%kinetic%value, size(friction%static%value))
+         call spread_single(friction%static%value, size(friction%kinetic%value))
+         if (size(friction%static%value) /= size(friction%kinetic%value)) then
+            call reader%complain('friction', 1, 'mu_kinetic', 'must have one value or as many as mu_static', error)
+         else if (any(friction%kinetic%value > friction%static%value)) then
+            call reader%complain('friction', 1, 'mu_kinetic', 'must not be above mu_static', error)
+         end if
+      end if
+   end subroutine read_coefficients
+
+   !> Make `number` values of a single one.
+   subroutine spread_single(values, number)
+      real(wp), allocatable, intent(inout) :: values(:)
+      integer, intent(in) :: number
+
+      if (size(values) == 1 .and. number > 1) values = spread(values(1), 1, number)
+   end subroutine spread_single
+
+   !> Coefficients along x from the file of &friction mu_file.
+   subroutine read_mu_file(reader, friction, error)
+      type(reader_type), intent(in) :: reader
+      type(friction_type), intent(inout) :: friction
+      type(error_type), allocatable, intent(out) :: error
+      type(error_type), allocatable :: file_error
+      character(:), allocatable :: path
+      real(wp), allocatable :: table(:, :)
+
+      call find_file(reader, 'friction', 1, 'mu_file', path)
+      if (has_two_coefficients(reader%text_value('friction', 1, 'law'))) then
+         call read_table(path, 'x, mu_static and mu_kinetic', 3, .true., table, file_error)
+      else
+         call read_table(path, 'x and mu', 2, .true., table, file_error)
+      end if
+      if (allocated(file_error)) then
+         call reader%complain('friction', 1, 'mu_file', file_error%message, error)
+      else if (size(table, 2) < 2) then
+         call reader%complain('friction', 1, 'mu_file', path//': needs at least 2 lines of numbers', error)
+      else if (any(table(2:, :) < 0.0_wp)) then
+         call reader%complain('friction', 1, 'mu_file', path//': coefficients must not be negative', error)
+      else if (any(table(size(table, 1), :) > table(2, :))) then
+         call reader%complain('friction', 1, 'mu_file', path//': mu_kinetic must not be above mu_static', error)
+      end if
+      if (allocated(error)) return
+      ! Component by component: gfortran 12 makes garbage of a constructor with sections of an array.
+      friction%static%value = table(2, :)
+      friction%static%position = table(1, :)
+      friction%kinetic%value = table(size(table, 1), :)
+      friction%kinetic%position = table(1, :)
+   end subroutine read_mu_file
+
+   !> Coefficients given one a node need a mesh that is fixed, and as many nodes.
+   subroutine check_coefficients_a_node(reader, scene, error)
+      type(reader_type), intent(in) :: reader
+      type(scene_type), intent(in) :: scene
+      type(error_type), allocatable, intent(out) :: error
+      character(:), allocatable :: key
+      integer :: nodes
+
+      if (.not. allocated(scene%friction%static%value) .or. allocated(scene%friction%static%position)) return
+      if (size(scene%friction%static%value) == 1) return
+      key = 'mu_static'
+      if (reader%has('friction', 1, 'mu')) key = 'mu'
+      nodes = scene%mesh%nodes
+      if (scene%lower%shape == shape_matrix) nodes = size(scene%lower%position)
+      if (scene%lower%shape /= shape_matrix .and. .not. scene%mesh%half_width > 0.0_wp) then
+         call reader%complain('friction', 1, key, 'one value a node needs a mesh with half_width or half_angle', error)
+      else if (size(scene%friction%static%value) /= nodes) then
+         call reader%complain('friction', 1, key, 'must have one value or one a node, '//to_text(nodes)//', not '// &
+                              to_text(size(scene%friction%static%value)), error)
+      end if
+   end subroutine check_coefficients_a_node
+
+   !> Without friction no tangential force can be carried.
+   subroutine check_friction_of_steps(reader, error)
+      type(reader_type), intent(in) :: reader
+      type(error_type), allocatable, intent(out) :: error
+      real(wp), allocatable :: coefficients(:)
+      logical :: law
+      integer :: i
+
+      law = reader%text_value('friction', 1, 'law') /= 'none'
+      if (law .and. reader%has('friction', 1, 'mu')) then
+         call reader%real_values('friction', 1, 'mu', coefficients)
+         law = any(coefficients > 0.0_wp)
+      else if (law .and. reader%has('friction', 1, 'mu_static')) then
+         call reader%real_values('friction', 1, 'mu_static', coefficients)
+         law = any(coefficients > 0.0_wp)
+      end if
+      do i = 1, count_groups(reader, 'step')
+         if (.not. reader%has('step', i, 'tangential_force')) cycle
+         if (.not. abs(reader%real_value('step', i, 'tangential_force')) > 0.0_wp) cycle
+         if (law .and. reader%logical_value('step', i, 'friction')) cycle
+         call reader%complain('step', i, 'tangential_force', 'must be 0 in a step without friction (or where every '// &
+                              'coefficient is 0)', error)
+         return
+      end do
+   end subroutine check_friction_of_steps
+
+end module mfv_friction_reader

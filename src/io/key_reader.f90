@@ -1,0 +1,446 @@
+!> A text taken apart into groups and keys, checked against the list of keys (mfv_case_keys), and read value by value; every
+!> message names file, line, group, key, value and what is right.
+module mfv_key_reader
+   use, intrinsic :: ieee_arithmetic, only: ieee_is_finite
+   use mfv_case_keys
+   use mfv_error, only: error_type, set_error
+   use mfv_kinds, only: wp
+   use mfv_namelist, only: entry_type, group_type
+   use mfv_status, only: MFV_INPUT_ERROR
+   use mfv_strings, only: add_text, list_of_words, lower_case, nearest_name, quoted, string_type, to_text
+   use mfv_text_file, only: directory_of
+   implicit none
+   private
+   public :: reader_type, check_groups, check_entries, count_groups, line_of, keys_of, find_file, merge_text, fail
+
+   !> A text taken apart, with the list of keys to read it by.
+   type :: reader_type
+      character(:), allocatable :: source
+      type(group_type), allocatable :: groups(:)
+      type(key_type), allocatable :: keys(:)
+      logical :: without_steps = .false.
+   contains
+      procedure :: has
+      procedure :: real_value
+      procedure :: real_values
+      procedure :: integer_value
+      procedure :: logical_value
+      procedure :: text_value
+      procedure :: complain
+      procedure :: need
+      procedure, private :: entry_of
+      procedure, private :: key_of
+   end type reader_type
+
+contains
+
+   !> Every group known, and those that must be alone alone.
+   subroutine check_groups(reader, error)
+      type(reader_type), intent(in) :: reader
+      type(error_type), allocatable, intent(out) :: error
+      character(:), allocatable :: why
+      integer :: i, j
+
+      do i = 1, size(reader%groups)
+         associate (group => reader%groups(i))
+            if (.not. any_equal(case_groups(), group%name)) then
+               call suggest(group%name, case_groups(), '&', why)
+               call fail(reader, group%line, '&'//group%name//': unknown group'// &
+                         why//'; groups are '//group_list, error)
+               return
+            end if
+            do j = 1, i - 1
+               if (reader%groups(j)%name /= group%name .or. group_repeats(group%name)) cycle
+               call fail(reader, group%line, '&'//group%name//': may come only once, and is already in line '// &
+                         to_text(reader%groups(j)%line), error)
+               return
+            end do
+         end associate
+      end do
+   end subroutine check_groups
+
+   !> Every key known, there once, with one value of the right kind in the right range.
+   subroutine check_entries(reader, error)
+      type(reader_type), intent(in) :: reader
+      type(error_type), allocatable, intent(out) :: error
+      character(:), allocatable :: why, written
+      integer :: i, j, k
+
+      do i = 1, size(reader%groups)
+         do j = 1, size(reader%groups(i)%entries)
+            associate (group => reader%groups(i)%name, entry => reader%groups(i)%entries(j))
+               k = reader%key_of(group, entry%key)
+               if (k == 0) then
+                  call suggest(entry%key, keys_of(reader, group), '', why)
+                  why = 'unknown key'//why
+               else if (any([(reader%groups(i)%entries(k)%key == entry%key, k=1, j - 1)])) then
+                  why = 'the key is there twice'
+               else
+                  call find_fault(reader%keys(reader%key_of(group, entry%key)), entry, why)
+               end if
+               if (why /= '') then
+                  call write_entry(entry, written)
+                  call fail(reader, entry%line, '&'//group//' '//written//': '//why, error)
+                  return
+               end if
+            end associate
+         end do
+      end do
+   end subroutine check_entries
+
+   !> What is wrong with the value of an entry; empty when nothing is.
+   subroutine find_fault(key, entry, why)
+      type(key_type), intent(in) :: key
+      type(entry_type), intent(in) :: entry
+      character(:), allocatable, intent(out) :: why
+      real(wp) :: value
+      integer :: code
+      logical :: right
+      integer :: i
+
+      right = size(entry%values) == 1 .or. (key%is_list .and. size(entry%values) > 1)
+      do i = 1, size(entry%values)
+         if (.not. right) exit
+         right = entry%is_quoted(i) .eqv. (key%kind == kind_text .or. key%kind == kind_choice)
+         if (.not. right) exit
+         select case (key%kind)
+         case (kind_choice)
+            right = any_equal(list_of_words(key%choices), entry%values(i)%text)
+         case (kind_logical)
+            right = logical_code(entry%values(i)%text) >= 0
+         case (kind_integer, kind_real)
+            call read_number(entry%values(i)%text, key%kind, value, code)
+            right = code == 0 .and. value >= key%lower .and. value <= key%upper
+            if (right .and. key%lower_open) right = value > key%lower
+         end select
+      end do
+      why = ''
+      if (right) return
+      call describe_allowed(key, why)
+      why = 'must be '//why
+      if (key%unit /= '') why = why//' ('//key%unit//')'
+   end subroutine find_fault
+
+   !> A finite number; `code` is not 0 where the text is none.
+   pure subroutine read_number(text, kind, value, code)
+      character(*), intent(in) :: text
+      integer, intent(in) :: kind
+      real(wp), intent(out) :: value
+      integer, intent(out) :: code
+      character(*), parameter :: digits = '0123456789+-'
+      integer :: whole
+
+      value = 0.0_wp
+      code = 1
+      if (kind == kind_integer) then
+         if (verify(text, digits) > 0) return
+         read (text, *, iostat=code) whole
+         if (code == 0) value = whole
+      else
+         if (verify(text, digits//'.eEdD') > 0 .or. scan(text, '0123456789') == 0) return
+         read (text, *, iostat=code) value
+         if (code == 0 .and. .not. ieee_is_finite(value)) code = 1
+      end if
+   end subroutine read_number
+
+   !> 1 for true, 0 for false, -1 for neither.
+   pure integer function logical_code(text)
+      character(*), intent(in) :: text
+
+      select case (lower_case(text))
+      case ('.true.', 't', 'true', '.t.')
+         logical_code = 1
+      case ('.false.', 'f', 'false', '.f.')
+         logical_code = 0
+      case default
+         logical_code = -1
+      end select
+   end function logical_code
+
+   !> Path of a file that a key names, beside the case.
+   subroutine find_file(reader, group, number, name, path)
+      type(reader_type), intent(in) :: reader
+      character(*), intent(in) :: group, name
+      integer, intent(in) :: number
+      character(:), allocatable, intent(out) :: path
+
+      path = reader%text_value(group, number, name)
+      if (path(1:min(1, len(path))) /= '/') path = directory_of(reader%source)//path
+   end subroutine find_file
+
+   !> Place of a key in the list of keys, 0 for none.
+   pure integer function key_of(self, group, name)
+      class(reader_type), intent(in) :: self
+      character(*), intent(in) :: group, name
+
+      do key_of = size(self%keys), 1, -1
+         if (self%keys(key_of)%group == group .and. self%keys(key_of)%name == name) return
+      end do
+   end function key_of
+
+   !> The entry of a key in the `number`-th group of a name; `found` false where it is not written.
+   pure subroutine entry_of(self, group, number, name, entry, found)
+      class(reader_type), intent(in) :: self
+      character(*), intent(in) :: group, name
+      integer, intent(in) :: number
+      type(entry_type), intent(out) :: entry
+      logical, intent(out) :: found
+      integer :: i, j, seen
+
+      found = .false.
+      seen = 0
+      do i = 1, size(self%groups)
+         if (self%groups(i)%name == group) seen = seen + 1
+         if (self%groups(i)%name /= group .or. seen /= number) cycle
+         do j = 1, size(self%groups(i)%entries)
+            found = self%groups(i)%entries(j)%key == name
+            if (found) entry = self%groups(i)%entries(j)
+            if (found) return
+         end do
+      end do
+   end subroutine entry_of
+
+   !> Whether a key is written in the `number`-th group of a name.
+   pure logical function has(self, group, number, name)
+      class(reader_type), intent(in) :: self
+      character(*), intent(in) :: group, name
+      integer, intent(in) :: number
+      type(entry_type) :: entry
+
+      call self%entry_of(group, number, name, entry, has)
+   end function has
+
+   !> The value as written, or the default.
+   pure function text_value(self, group, number, name) result(text)
+      class(reader_type), intent(in) :: self
+      character(*), intent(in) :: group, name
+      integer, intent(in) :: number
+      character(len=length_of_value(self, group, number, name)) :: text
+      character(:), allocatable :: value
+
+      call find_value(self, group, number, name, value)
+      text = value
+   end function text_value
+
+   !> Length of the value as written, or of the default.
+   pure integer function length_of_value(reader, group, number, name) result(length)
+      class(reader_type), intent(in) :: reader
+      character(*), intent(in) :: group, name
+      integer, intent(in) :: number
+      character(:), allocatable :: value
+
+      call find_value(reader, group, number, name, value)
+      length = len(value)
+   end function length_of_value
+
+   !> The value as written, or the default: text_value for a caller who has a variable for it.
+   pure subroutine find_value(reader, group, number, name, value)
+      class(reader_type), intent(in) :: reader
+      character(*), intent(in) :: group, name
+      integer, intent(in) :: number
+      character(:), allocatable, intent(out) :: value
+      type(entry_type) :: entry
+      logical :: found
+
+      call reader%entry_of(group, number, name, entry, found)
+      if (found) then
+         value = entry%values(1)%text
+      else
+         value = reader%keys(reader%key_of(group, name))%default
+      end if
+   end subroutine find_value
+
+   !> The value of a key for a number.
+   pure real(wp) function real_value(self, group, number, name)
+      class(reader_type), intent(in) :: self
+      character(*), intent(in) :: group, name
+      integer, intent(in) :: number
+      character(:), allocatable :: text
+      integer :: code
+
+      call find_value(self, group, number, name, text)
+      call read_number(text, kind_real, real_value, code)
+   end function real_value
+
+   !> All values of a key that is written, as numbers.
+   pure subroutine real_values(self, group, number, name, values)
+      class(reader_type), intent(in) :: self
+      character(*), intent(in) :: group, name
+      integer, intent(in) :: number
+      real(wp), allocatable, intent(out) :: values(:)
+      type(entry_type) :: entry
+      logical :: found
+      integer :: i, code
+
+      call self%entry_of(group, number, name, entry, found)
+      if (.not. found) return
+      allocate (values(size(entry%values)))
+      do i = 1, size(values)
+         call read_number(entry%values(i)%text, kind_real, values(i), code)
+      end do
+   end subroutine real_values
+
+   !> The value of a key for a whole number.
+   pure integer function integer_value(self, group, number, name)
+      class(reader_type), intent(in) :: self
+      character(*), intent(in) :: group, name
+      integer, intent(in) :: number
+      character(:), allocatable :: text
+      real(wp) :: value
+      integer :: code
+
+      call find_value(self, group, number, name, text)
+      call read_number(text, kind_integer, value, code)
+      integer_value = nint(value)
+   end function integer_value
+
+   !> The value of a key for .true. or .false.
+   pure logical function logical_value(self, group, number, name)
+      class(reader_type), intent(in) :: self
+      character(*), intent(in) :: group, name
+      integer, intent(in) :: number
+      character(:), allocatable :: text
+
+      call find_value(self, group, number, name, text)
+      logical_value = logical_code(text) == 1
+   end function logical_value
+
+   !> Error where a key is not written.
+   subroutine need(self, group, number, name, error)
+      class(reader_type), intent(in) :: self
+      character(*), intent(in) :: group, name
+      integer, intent(in) :: number
+      type(error_type), allocatable, intent(out) :: error
+      character(:), allocatable :: allowed
+
+      if (self%has(group, number, name)) return
+      call describe_allowed(self%keys(self%key_of(group, name)), allowed)
+      call fail(self, line_of(self, group, number), '&'//group//trim(numbered(group, number))//': '//name// &
+                ' is missing; it must be '//allowed, error)
+   end subroutine need
+
+   !> Error about a key of the `number`-th group of a name.
+   subroutine complain(self, group, number, name, why, error)
+      class(reader_type), intent(in) :: self
+      character(*), intent(in) :: group, name, why
+      integer, intent(in) :: number
+      type(error_type), allocatable, intent(inout) :: error
+      character(:), allocatable :: written
+      type(entry_type) :: entry
+      logical :: found
+      integer :: line
+
+      call self%entry_of(group, number, name, entry, found)
+      line = merge(entry%line, line_of(self, group, number), found)
+      written = name
+      if (found) call write_entry(entry, written)
+      call fail(self, line, '&'//group//trim(numbered(group, number))//' '//written//': '//why, error)
+   end subroutine complain
+
+   !> One of two texts, without the blanks that merge wants.
+   pure function merge_text(condition, yes, no) result(text)
+      logical, intent(in) :: condition
+      character(*), intent(in) :: yes, no
+      character(len=merge(len(yes), len(no), condition)) :: text
+
+      text = no
+      if (condition) text = yes
+   end function merge_text
+
+   !> Number of a group that may come more than once, after a blank; padded with blanks.
+   pure function numbered(group, number) result(text)
+      character(*), intent(in) :: group
+      integer, intent(in) :: number
+      character(len=12) :: text
+
+      text = ''
+      if (group_repeats(group)) text = ' '//to_text(number)
+   end function numbered
+
+   !> key=value as the user wrote it.
+   pure subroutine write_entry(entry, text)
+      type(entry_type), intent(in) :: entry
+      character(:), allocatable, intent(out) :: text
+      integer :: i
+
+      text = entry%key//'='
+      do i = 1, size(entry%values)
+         if (i > 1) text = text//', '
+         text = text//merge_text(entry%is_quoted(i), quoted(entry%values(i)%text), entry%values(i)%text)
+      end do
+   end subroutine write_entry
+
+   !> Number of groups of a name.
+   pure integer function count_groups(reader, name)
+      type(reader_type), intent(in) :: reader
+      character(*), intent(in) :: name
+      integer :: i
+
+      count_groups = 0
+      do i = 1, size(reader%groups)
+         if (reader%groups(i)%name == name) count_groups = count_groups + 1
+      end do
+   end function count_groups
+
+   !> Line of the `number`-th group of a name, 0 for none.
+   pure integer function line_of(reader, name, number)
+      type(reader_type), intent(in) :: reader
+      character(*), intent(in) :: name
+      integer, intent(in) :: number
+      integer :: i, seen
+
+      line_of = 0
+      seen = 0
+      do i = 1, size(reader%groups)
+         if (reader%groups(i)%name == name) seen = seen + 1
+         if (reader%groups(i)%name == name .and. seen == number) line_of = reader%groups(i)%line
+      end do
+   end function line_of
+
+   !> Names of the keys of a group.
+   pure function keys_of(reader, group) result(names)
+      type(reader_type), intent(in) :: reader
+      character(*), intent(in) :: group
+      type(string_type), allocatable :: names(:)
+      integer :: i
+
+      do i = 1, size(reader%keys)
+         if (reader%keys(i)%group == group) call add_text(names, reader%keys(i)%name)
+      end do
+   end function keys_of
+
+   pure logical function any_equal(words, text)
+      type(string_type), intent(in) :: words(:)
+      character(*), intent(in) :: text
+      integer :: i
+
+      any_equal = .false.
+      do i = 1, size(words)
+         any_equal = any_equal .or. words(i)%text == text
+      end do
+   end function any_equal
+
+   !> '; did you mean ...?' where a known name is near, else empty.
+   pure subroutine suggest(name, names, prefix, text)
+      character(*), intent(in) :: name, prefix
+      type(string_type), intent(in) :: names(:)
+      character(:), allocatable, intent(out) :: text
+
+      text = nearest_name(name, names)
+      if (text /= '') text = '; did you mean '//prefix//text//'?'
+   end subroutine suggest
+
+   subroutine fail(reader, line, message, error)
+      type(reader_type), intent(in) :: reader
+      integer, intent(in) :: line
+      character(*), intent(in) :: message
+      type(error_type), allocatable, intent(inout) :: error
+      character(:), allocatable :: place
+
+      place = reader%source//':'
+      if (line > 0) place = place//to_text(line)//':'
+      if (allocated(error)) deallocate (error)
+      call set_error(error, MFV_INPUT_ERROR, place//' '//message)
+   end subroutine fail
+
+end module mfv_key_reader

@@ -1,0 +1,135 @@
+!> The mesh of a case, from its text.
+module mfv_mesh_reader
+   use mfv_body
+   use mfv_circle, only: kernel_fourier
+   use mfv_contact_model, only: choose_mesh
+   use mfv_error, only: error_type
+   use mfv_key_reader
+   use mfv_kinds, only: pi, wp
+   use mfv_scene, only: scene_type
+   use mfv_strings, only: to_text
+   implicit none
+   private
+   public :: read_mesh
+
+contains
+
+   !> The mesh, which must see both bodies, and fit the circle of a Fourier series.
+   subroutine read_mesh(reader, scene, error)
+      type(reader_type), intent(in) :: reader
+      type(scene_type), intent(inout) :: scene
+      type(error_type), allocatable, intent(out) :: error
+      character(*), parameter :: keys(3) = [character(10) :: 'nodes', 'half_width', 'half_angle']
+      integer, parameter :: most_carried = 1000000
+      integer :: i
+
+      scene%mesh%nodes = reader%integer_value('mesh', 1, 'nodes')
+      scene%mesh%parabolic = reader%text_value('mesh', 1, 'gap') == 'parabolic'
+      if (reader%has('mesh', 1, 'gap') .and. .not. (scene%lower%circular() .or. scene%upper%circular())) then
+         call reader%complain('mesh', 1, 'gap', 'means nothing without a disk', error)
+         return
+      end if
+      scene%mesh%radial = reader%text_value('mesh', 1, 'normals') == 'radial'
+      if (scene%mesh%radial .and. .not. (scene%lower%circular() .and. scene%upper%circular() .and. &
+                                         scene%lower%shape /= scene%upper%shape)) then
+         call reader%complain('mesh', 1, 'normals', 'means nothing without a disk in a hole', error)
+      else if (scene%mesh%radial .and. scene%mesh%parabolic) then
+         call reader%complain('mesh', 1, 'normals', "must be 'vertical' with gap='parabolic'", error)
+      end if
+      if (allocated(error)) return
+      do i = 1, size(keys)
+         if (scene%lower%shape /= shape_matrix .or. .not. reader%has('mesh', 1, trim(keys(i)))) cycle
+         call reader%complain('mesh', 1, trim(keys(i)), 'means nothing for a matrix, which has its own nodes', error)
+         return
+      end do
+      if (reader%has('mesh', 1, 'half_width')) scene%mesh%half_width = reader%real_value('mesh', 1, 'half_width')
+      if (reader%has('mesh', 1, 'half_angle')) call read_half_angle(reader, scene, error)
+      if (allocated(error)) return
+      if (scene%mesh%nodes > most_carried .and. .not. scene%mesh%whole_circle) then
+         call reader%complain('mesh', 1, 'nodes', 'can be more than '//to_text(most_carried)//' only with half_angle=180', &
+                              error)
+         return
+      end if
+      call check_mesh_is_under(reader, scene, error)
+      if (.not. allocated(error)) call check_circle(reader, 1, scene, scene%lower, error)
+      if (.not. allocated(error)) call check_circle(reader, 2, scene, scene%upper, error)
+   end subroutine read_mesh
+
+   subroutine read_half_angle(reader, scene, error)
+      type(reader_type), intent(in) :: reader
+      type(scene_type), intent(inout) :: scene
+      type(error_type), allocatable, intent(out) :: error
+      real(wp), parameter :: half_turn = 180.0_wp
+      real(wp) :: half_angle
+
+      half_angle = reader%real_value('mesh', 1, 'half_angle')
+      if (reader%has('mesh', 1, 'half_width')) then
+         call reader%complain('mesh', 1, 'half_angle', 'half_width is there too; give one of them', error)
+      else if (.not. scene%arc_radius() > 0.0_wp) then
+         call reader%complain('mesh', 1, 'half_angle', 'means nothing without an elastic disk or hole; use half_width', &
+                              error)
+      else
+         scene%mesh%whole_circle = .not. half_angle < half_turn
+         if (.not. scene%mesh%whole_circle) scene%mesh%half_width = scene%arc_radius()*pi*half_angle/half_turn
+      end if
+   end subroutine read_half_angle
+
+   !> A node at least that both bodies can touch.
+   subroutine check_mesh_is_under(reader, scene, error)
+      type(reader_type), intent(in) :: reader
+      type(scene_type), intent(in) :: scene
+      type(error_type), allocatable, intent(out) :: error
+      real(wp) :: interval
+      integer :: i, nodes
+      logical :: growing
+
+      if (scene%lower%shape == shape_matrix) then
+         if (any(scene%touchable(scene%lower%position))) return
+         call reader%complain('body', 1, 'file', 'no node of this body is under the indenter', error)
+         return
+      end if
+      call choose_mesh(scene, nodes, interval, growing)
+      do i = 1, nodes
+         if (scene%touchable(0.5_wp*interval*(2*i - nodes - 1))) return
+      end do
+      call reader%complain('mesh', 1, trim(mesh_key(reader)), 'no node of this mesh is under the indenter', error)
+   end subroutine check_mesh_is_under
+
+   !> The key of the mesh to complain about; padded with blanks.
+   pure function mesh_key(reader) result(key)
+      type(reader_type), intent(in) :: reader
+      character(len=10) :: key
+
+      key = 'nodes'
+      if (reader%has('mesh', 1, 'half_width')) key = 'half_width'
+      if (reader%has('mesh', 1, 'half_angle')) key = 'half_angle'
+   end function mesh_key
+
+   !> A Fourier series needs a circle of a whole number of intervals, and no more of it than there is.
+   subroutine check_circle(reader, number, scene, body, error)
+      type(reader_type), intent(in) :: reader
+      integer, intent(in) :: number
+      type(scene_type), intent(in) :: scene
+      type(body_type), intent(in) :: body
+      type(error_type), allocatable, intent(out) :: error
+      real(wp), parameter :: whole = 1.0e-9_wp, most_intervals = 5.0e7_wp
+      real(wp) :: interval, intervals
+      integer :: nodes
+      logical :: growing
+
+      if (body%rigid .or. .not. body%circular()) return
+      call choose_mesh(scene, nodes, interval, growing)
+      intervals = 2.0_wp*pi*body%radius/interval
+      if (nodes > intervals*(1.0_wp + whole)) then
+         call reader%complain('mesh', 1, trim(mesh_key(reader)), &
+                              'goes more than once round body '//to_text(number), error)
+      else if (body%kernel == kernel_fourier .and. intervals > most_intervals) then
+         call reader%complain('body', number, 'kernel', 'the circle would have '//to_text(intervals, 3)// &
+                              ' intervals, more than '//to_text(most_intervals)//"; use kernel='exact'", error)
+      else if (body%kernel == kernel_fourier .and. abs(intervals - anint(intervals)) > whole*intervals) then
+         call reader%complain('body', number, 'kernel', 'needs a whole number of intervals on the circle, there are '// &
+                              to_text(intervals, 10)//"; make 180*nodes/half_angle whole, or use kernel='exact'", error)
+      end if
+   end subroutine check_circle
+
+end module mfv_mesh_reader
