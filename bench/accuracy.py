@@ -30,7 +30,7 @@ KNOBS: dict[str, list[dict[str, Any]]] = {
     "event_tolerance": [{"event_tolerance": value} for value in (1e-3, 1e-2, 3e-2, 1e-1)],
     "leap": [{"stepping": "leap", "leap_tolerance": value} for value in (1e-1, 3e-2, 1e-2, 3e-3, 1e-3)],
     "nominal": [{"stepping": "nominal", "load_step": value} for value in (0.2, 0.05, 0.0125)],
-    "conventional": [{"algorithm": "conventional", "load_step": value} for value in (0.5, 0.2, 0.05, 0.0125)],
+    "conventional": [{"algorithm": "conventional", "load_step": value} for value in (0.2, 0.0125, 0.003)],
 }
 
 

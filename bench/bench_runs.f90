@@ -127,10 +127,10 @@ contains
          solver = 'dgesv'
       end select
       associate (contact => entry%simulation%contact, state => entry%simulation%contact%state)
-         write (output_unit, '(4a,6(a,i0),5(a,es22.15),a)', advance='no') '{"case": "', path, '", "solver": "', &
+         write (output_unit, '(4a,7(a,i0),5(a,es22.15),a)', advance='no') '{"case": "', path, '", "solver": "', &
             trim(solver)//'"', ', "outcome": ', entry%simulation%outcome, ', "nodes": ', contact%model%nodes(), &
             ', "contact": ', state%contact_nodes(), ', "stuck": ', state%stick_nodes(), &
-            ', "refinements": ', refinements, ', "rebuilds": ', rebuilds, &
+            ', "refinements": ', refinements, ', "rebuilds": ', rebuilds, ', "memory": ', peak_memory(), &
             ', "certificate": ', contact%certificate%largest(), ', "dissipation": ', state%dissipation, &
             ', "interval": ', contact%model%interval(), ', "normal_force": ', state%fields%normal_force, &
             ', "tangential_force": ', state%fields%tangential_force, ', '
@@ -140,6 +140,26 @@ contains
       call write_counts('last', entry%last)
       write (output_unit, '(a)') '}'
    end subroutine write_entry
+
+   !> Peak memory of this process so far, bytes; 0 where the system does not tell.
+   integer(int64) function peak_memory() result(bytes)
+      character(*), parameter :: key = 'VmHWM:'
+      character(len=80) :: line
+      integer :: unit, status
+
+      bytes = 0
+      open (newunit=unit, file='/proc/self/status', status='old', action='read', iostat=status)
+      if (status /= 0) return
+      do
+         read (unit, '(a)', iostat=status) line
+         if (status /= 0) exit
+         if (index(line, key) /= 1) cycle
+         read (line(len(key) + 1:index(line, 'kB') - 1), *) bytes
+         bytes = 1024*bytes
+         exit
+      end do
+      close (unit)
+   end function peak_memory
 
    subroutine write_counts(name, counts)
       character(*), intent(in) :: name

@@ -12,9 +12,9 @@ CONTACTS = (40, 80, 160, 331, 1000, 3000, 10000)
 MU, PRESS, SHEAR = 0.5, 1.0e-3, 3.0e-4
 #: Nodes in contact up to which a solver is measured, and up to which the whole history is led.
 MOST = {"dgesv": 1000, "reduced": 3000, "fft": 10000}
-WHOLE = {"dgesv": 160, "reduced": 331, "fft": 160}
+WHOLE = {"dgesv": 331, "reduced": 3000, "fft": 3000}
 #: Above: so many events of shear, about.
-EVENTS = {"dgesv": 10, "reduced": 60, "fft": 40}
+EVENTS = {"dgesv": 10, "reduced": 60, "fft": 60}
 BODIES = [
     {"shape": "half_plane", "shear_modulus": 1.0, "poisson_ratio": 0.3},
     {"shape": "disk", "radius": 0.25, "rigid": True},

@@ -2,13 +2,13 @@
 module mfv_linear_solvers
    use mfv_augmented_system, only: augmented_system_type
    use mfv_body, only: shape_matrix, shape_profile
-   use mfv_compliance, only: block_up
+   use mfv_compliance, only: block_up, block_wt
    use mfv_contact_model, only: contact_model_type
    use mfv_contact_system, only: contact_system_type
    use mfv_krylov_system, only: krylov_system_type
    use mfv_reduced_system, only: reduced_system_type
    use mfv_scene
-   use mfv_solver_costs, only: most_apart, most_at_once, most_bristles, most_coupled
+   use mfv_solver_costs, only: most_apart, most_at_once, most_bristles, most_coupled, most_one_way
    implicit none
    private
    public :: new_contact_system
@@ -48,21 +48,24 @@ contains
    !> The number of nodes up to which the reduced system is taken.
    pure integer function most_reduced(model) result(most)
       type(contact_model_type), intent(in) :: model
-      logical :: coupled, at_once
+      logical :: coupled, one_way, at_once
 
-      coupled = model%compliance%has_block(block_up)
+      coupled = model%compliance%has_block(block_wt)
+      one_way = model%compliance%has_block(block_up) .and. .not. coupled
       associate (scene => model%scene)
          at_once = scene%method%algorithm == algorithm_mfv .and. &
                    (scene%method%stepping == stepping_leap .or. &
                     scene%method%stepping == stepping_event .and. .not. model%tangential)
          if (any([scene%lower%shape, scene%upper%shape] == shape_profile)) then
             most = most_coupled
-         else if (scene%friction%name == 'dahl' .or. at_once .and. coupled) then
+         else if (scene%friction%name == 'dahl' .or. (at_once .and. (coupled .or. one_way))) then
             most = most_bristles
          else if (at_once) then
             most = most_at_once
          else
-            most = merge(most_coupled, most_apart, coupled)
+            most = most_apart
+            if (one_way) most = most_one_way
+            if (coupled) most = most_coupled
          end if
       end associate
    end function most_reduced

@@ -4,17 +4,18 @@ module mfv_solver_costs
    use mfv_scene, only: solver_dgesv, solver_fft, solver_reduced
    implicit none
    private
-   public :: cheapest_solver, seconds_of_solve, most_coupled, most_apart, most_at_once, most_bristles
+   public :: cheapest_solver, seconds_of_solve, most_coupled, most_one_way, most_apart, most_at_once, &
+             most_bristles
 
    !> Seconds that one linear solve with m unknown tractions takes on the way from event to event, with all that goes with it:
    !> dgesv coefficient*m^3, reduced coefficient*m^2, fft coefficient*m*log2(m). Full coupling, one thread.
    real(wp), parameter :: dgesv_seconds = 1.6e-10_wp, reduced_seconds = 2.1e-10_wp, fft_seconds = 6.5e-8_wp
 
-   !> Nodes of the mesh up to which linear_solver='auto' takes the reduced system, and beyond which it takes fft: by events with
-   !> pressures and shear coupled; with them apart, where fft has an exact inverse on a half-plane; straight to the end of a
-   !> segment or by leaps, where the reduced system has nothing to update; and with bristles, whose rows change with every
-   !> increment.
-   integer, parameter :: most_coupled = 2000, most_apart = 900, most_at_once = 100, most_bristles = 250
+   !> Nodes of the mesh up to which linear_solver='auto' takes the reduced system, and beyond which it takes fft. By events: with
+   !> pressures and shear coupled, coupled one way (Goodman), and apart (the last two have an exact inverse in fft on a
+   !> half-plane). Straight to the end of a segment or by leaps without coupling, where the reduced system has little to
+   !> update; and with bristles, whose rows change with every increment, or by leaps with coupling.
+   integer, parameter :: most_coupled = 2000, most_one_way = 1400, most_apart = 900, most_at_once = 100, most_bristles = 300
 
 contains
 

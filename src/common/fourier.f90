@@ -105,64 +105,62 @@ contains
    end subroutine complex_transform
 
    !> `spectrum(m+1)` = sum over k of values(k+1) exp(-2 pi i m k/N), m = 0 to N/2; N = size(values), even, size(spectrum) =
-   !> N/2 + 1. By a complex transform of half the length (even values real, odd ones imaginary), whose plan is made in a tenth of
-   !> the time that FFTW takes over one for real values.
+   !> N/2 + 1. By a complex transform of half the length (even values real, odd ones imaginary), whose plan is made in a tenth
+   !> of the time that FFTW takes over one for real values. `values` is used as work space.
    subroutine real_transform(values, spectrum)
-      real(wp), intent(in) :: values(:)
+      real(wp), intent(inout), contiguous, target :: values(:)
       complex(wp), intent(out), contiguous, target :: spectrum(:)
-      complex(wp), pointer, contiguous :: turns(:)
-      complex(wp), allocatable :: packed(:)
-      complex(wp) :: even, odd
+      complex(wp), pointer, contiguous :: turns(:), pairs(:)
+      real(wp) :: even(2), odd(2), sums(2), differences(2)
       logical :: kept
-      integer :: k, half
+      integer :: k, l, half
 
       half = size(values)/2
-      allocate (packed(half))
-      do k = 1, half
-         packed(k) = cmplx(values(2*k - 1), values(2*k), wp)
-      end do
-      call complex_transform(forward, packed, spectrum(:half))
+      call c_f_pointer(c_loc(values), pairs, [half])
+      call complex_transform(forward, pairs, spectrum(:half))
       call get_turns(half, turns, kept)
       spectrum(half + 1) = real(spectrum(1), wp) - aimag(spectrum(1))
       spectrum(1) = real(spectrum(1), wp) + aimag(spectrum(1))
-      do k = 1, half/2
-         even = 0.5_wp*(spectrum(k + 1) + conjg(spectrum(half - k + 1)))
-         odd = 0.5_wp*(spectrum(k + 1) - conjg(spectrum(half - k + 1)))*turns(k)
-         spectrum(k + 1) = even + odd
-         spectrum(half - k + 1) = conjg(even - odd)
+      do k = 2, half/2 + 1
+         l = half - k + 2
+         sums = 0.5_wp*[real(spectrum(k), wp) + real(spectrum(l), wp), aimag(spectrum(k)) + aimag(spectrum(l))]
+         differences = 0.5_wp*[real(spectrum(k), wp) - real(spectrum(l), wp), aimag(spectrum(k)) - aimag(spectrum(l))]
+         even = [sums(1), differences(2)]
+         odd(1) = differences(1)*real(turns(k - 1), wp) - sums(2)*aimag(turns(k - 1))
+         odd(2) = differences(1)*aimag(turns(k - 1)) + sums(2)*real(turns(k - 1), wp)
+         spectrum(k) = cmplx(even(1) + odd(1), even(2) + odd(2), wp)
+         spectrum(l) = cmplx(even(1) - odd(1), odd(2) - even(2), wp)
       end do
       if (.not. kept) deallocate (turns)
    end subroutine real_transform
 
-   !> N times the values of which `spectrum` is the real_transform; N = size(values), even, size(spectrum) = N/2 + 1. `spectrum` is
-   !> used as work space.
+   !> N times the values of which `spectrum` is the real_transform; N = size(values), even, size(spectrum) = N/2 + 1. `spectrum`
+   !> is used as work space.
    subroutine back_transform(spectrum, values)
       complex(wp), intent(inout), contiguous, target :: spectrum(:)
-      real(wp), intent(out) :: values(:)
-      complex(wp), pointer, contiguous :: turns(:)
-      complex(wp), allocatable :: packed(:)
-      complex(wp) :: even, odd
-      real(wp) :: first, last
+      real(wp), intent(out), contiguous, target :: values(:)
+      complex(wp), pointer, contiguous :: turns(:), pairs(:)
+      real(wp) :: even(2), odd(2), sums(2), differences(2), first, last
       logical :: kept
-      integer :: k, half
+      integer :: k, l, half
 
       half = size(values)/2
       call get_turns(half, turns, kept)
       first = real(spectrum(1), wp)
       last = real(spectrum(half + 1), wp)
       spectrum(1) = cmplx(first + last, first - last, wp)
-      do k = 1, half/2
-         even = spectrum(k + 1) + conjg(spectrum(half - k + 1))
-         odd = (spectrum(k + 1) - conjg(spectrum(half - k + 1)))*conjg(turns(k))
-         spectrum(k + 1) = even + odd
-         spectrum(half - k + 1) = conjg(even - odd)
+      do k = 2, half/2 + 1
+         l = half - k + 2
+         sums = [real(spectrum(k), wp) + real(spectrum(l), wp), aimag(spectrum(k)) + aimag(spectrum(l))]
+         differences = [real(spectrum(k), wp) - real(spectrum(l), wp), aimag(spectrum(k)) - aimag(spectrum(l))]
+         even = [sums(1), differences(2)]
+         odd(1) = differences(1)*real(turns(k - 1), wp) + sums(2)*aimag(turns(k - 1))
+         odd(2) = sums(2)*real(turns(k - 1), wp) - differences(1)*aimag(turns(k - 1))
+         spectrum(k) = cmplx(even(1) + odd(1), even(2) + odd(2), wp)
+         spectrum(l) = cmplx(even(1) - odd(1), odd(2) - even(2), wp)
       end do
-      allocate (packed(half))
-      call complex_transform(backward, spectrum(:half), packed)
-      do k = 1, half
-         values(2*k - 1) = real(packed(k), wp)
-         values(2*k) = aimag(packed(k))
-      end do
+      call c_f_pointer(c_loc(values), pairs, [half])
+      call complex_transform(backward, spectrum(:half), pairs)
       if (.not. kept) deallocate (turns)
    end subroutine back_transform
 
@@ -173,11 +171,11 @@ contains
       is_aligned = modulo(transfer(address, boundary), boundary) == 0
    end function is_aligned
 
-   !> The smallest length, not less than `at_least` nor than 16, that is 1, 3, 5, 9 or 15 times a power of 2: transforms of many
-   !> lengths then need few plans.
+   !> The smallest length, not less than `at_least` nor than 16, that is 1, 5 or 15 times a power of 2: transforms of many
+   !> lengths then need few plans, and FFTW is slower at 3 and 9 times a power than at the next longer one.
    pure integer function fast_length(at_least)
       integer, intent(in) :: at_least
-      integer, parameter :: odd(5) = [1, 3, 5, 9, 15]
+      integer, parameter :: odd(3) = [1, 5, 15]
       integer :: i, length
 
       fast_length = huge(1)
