@@ -42,6 +42,12 @@ module mfv_reduced_system
       real(wp), allocatable :: right(:), solution(:), values(:)
    end type part_type
 
+   !> Magnitudes that what is missing is measured by: normal and tangential displacements, length; tractions, force/length^2;
+   !> all forces and tangential ones, force/length.
+   type :: scales_type
+      real(wp) :: normal = 1.0_wp, tangential = 1.0_wp, traction = 1.0_wp, force = 1.0_wp, shear_force = 1.0_wp
+   end type scales_type
+
    type, extends(contact_system_type) :: reduced_system_type
       private
       !> Normal and tangential problem where they are apart, else both in the first.
@@ -624,18 +630,28 @@ contains
       real(wp) :: residual, fine
       integer :: i, pass
       type(load_type) :: load
+      type(scales_type) :: scales, first
       real(wp) :: value
+      logical :: at_rest
 
       singular = .false.
+      first = scales_type(0.0_wp, 0.0_wp, 0.0_wp, 0.0_wp, 0.0_wp)
       fine = merge(5.0e-14_wp, 1.0e-14_wp, rates)
       call self%set_known_motions(model, constraints, rates, fields)
       if (.not. rates) call open_up(self, model, fields)
       do pass = 1, most_passes
-         call self%find_residual(model, constraints, rates, pass == 1 .and. rates, fields, residual)
+         ! Rates begin at rest: nothing to measure by yet.
+         at_rest = rates .and. pass == 1
+         if (.not. at_rest) then
+            call find_scales(model, fields, first, scales)
+            if (pass == 1) first = scales
+         end if
+         call self%find_residual(model, constraints, rates, fields, scales, residual)
+         if (at_rest) residual = huge(1.0_wp)
          if (residual <= fine) exit
          if (pass > 3 .and. residual <= fair) exit
          if (pass > 1 .or. .not. rates) self%refinements = self%refinements + 1
-         call self%correct(model, constraints, rates, fields, singular)
+         call self%correct(model, constraints, rates, scales, fields, singular)
          if (singular) return
       end do
       singular = .not. residual <= fair
@@ -724,26 +740,20 @@ contains
       if (motion == along_rotation) motion_of = fields%rotation
    end function motion_of
 
-   !> What is missing in every row and constraint, in their units, as right sides for a correction; and the largest of them,
-   !> relative to the magnitudes of their sort. `at_rest`: all fields are zero yet.
-   subroutine find_residual(self, model, constraints, rates, at_rest, fields, largest)
+   !> What is missing in every row and constraint, in their units, as right sides for a correction; and the largest of them, in
+   !> parts of the magnitude of their sort.
+   subroutine find_residual(self, model, constraints, rates, fields, scales, largest)
       class(reduced_system_type), intent(inout) :: self
       type(contact_model_type), intent(in) :: model
       type(constraints_type), intent(in) :: constraints
-      logical, intent(in) :: rates, at_rest
+      logical, intent(in) :: rates
       type(contact_fields_type), intent(in) :: fields
+      type(scales_type), intent(in) :: scales
       real(wp), intent(out) :: largest
-      real(wp) :: normal_scale, shear_scale, traction_scale, force, shear_force, length, modulus, interval, missing, value, &
-                  by_length, by_stress, gap_rest, slip_rest, traction_rest
+      real(wp) :: length, modulus, interval, missing, value, by_length, by_stress, gap_rest, slip_rest, traction_rest, stiffness
       type(load_type) :: load
       integer :: i, node, p
 
-      normal_scale = 1.0_wp
-      shear_scale = 1.0_wp
-      traction_scale = 1.0_wp
-      force = 1.0_wp
-      shear_force = 1.0_wp
-      if (.not. at_rest) call find_scales(model, fields, normal_scale, shear_scale, traction_scale, force, shear_force)
       length = self%length
       modulus = model%compliance%modulus
       interval = model%interval()
@@ -775,12 +785,12 @@ contains
                   value = merge(load%rate, load%value, rates)
                   if (self%motion_constraint(node) > 0) then
                      value = (value - motion_of(fields, node))*arm_unit(length, node)
-                     largest = max(largest, abs(value)/max(normal_scale, shear_scale))
+                     largest = max(largest, abs(value)/scales%normal)
                      part%values(self%motion_constraint(node)) = value*by_length
                      part%right(i) = 0.0_wp
                   else
                      missing = (model%resultant(node, fields%pressure, fields%shear) - value)/arm_unit(length, node)
-                     largest = max(largest, abs(missing)/merge(shear_force, force, node == along_shift))
+                     largest = max(largest, abs(missing)/merge(scales%shear_force, scales%force, node == along_shift))
                      part%right(i) = missing*by_stress
                   end if
                else if (constraints%status(node) == node_stick) then
@@ -794,34 +804,40 @@ contains
                   part%right(i) = missing*by_length
                else
                   value = missing_shear(constraints, rates, fields, node)
-                  traction_rest = max(traction_rest, abs(value))
+                  stiffness = abs(constraints%row(node)%stiffness)
+                  if (stiffness > 0.0_wp) then
+                     ! Its slip is known as well as that of a stuck node.
+                     largest = max(largest, abs(value)/max(scales%traction, stiffness*scales%tangential))
+                  else
+                     traction_rest = max(traction_rest, abs(value))
+                  end if
                   part%values(self%constraint_of(node)) = value*model%width(node)*by_stress
                   part%right(i) = 0.0_wp
                end if
             end do
          end associate
       end do
-      largest = max(largest, gap_rest/normal_scale, slip_rest/shear_scale, traction_rest/traction_scale)
-      if (at_rest) largest = huge(1.0_wp)
+      largest = max(largest, gap_rest/scales%normal, slip_rest/scales%tangential, traction_rest/scales%traction)
    end subroutine find_residual
 
-   !> Magnitudes: of normal and of tangential displacements, of tractions, of all forces and of tangential ones. Where bodies
-   !> only slide on each other the tractions' rates are zero but for round-off, and no measure of what is missing: tractions
-   !> count as at least a very small part of those that displacements of this size could bring.
-   pure subroutine find_scales(model, fields, normal, tangential, traction, force, shear_force)
+   !> Magnitudes of the fields. Where these become zero, or bodies only slide on each other, what is left is round-off and no
+   !> measure: magnitudes count as at least a very small part of the `first` ones, and of what displacements could bring.
+   pure subroutine find_scales(model, fields, first, scales)
       type(contact_model_type), intent(in) :: model
       type(contact_fields_type), intent(in) :: fields
-      real(wp), intent(out) :: normal, tangential, traction, force, shear_force
-      real(wp), parameter :: least = 1.0e-10_wp
+      type(scales_type), intent(in) :: first
+      type(scales_type), intent(out) :: scales
+      real(wp), parameter :: least = 1.0e-10_wp, smallest = 1.0e-270_wp
+      real(wp) :: normal, tangential, traction, force, shear_force, possible
       integer :: i
 
-      normal = max(abs(fields%approach), tiny(1.0_wp))
-      tangential = max(abs(fields%shift), tiny(1.0_wp))
+      normal = max(abs(fields%approach), least*first%normal, smallest)
+      tangential = max(abs(fields%shift), least*first%tangential, smallest)
       if (model%rotational .or. .not. model%upright) &
          normal = max(normal, abs(fields%shift), abs(fields%rotation)*model%length())
-      traction = tiny(1.0_wp)
-      force = tiny(1.0_wp)
-      shear_force = 0.0_wp
+      traction = max(least*first%traction, smallest)
+      force = smallest
+      shear_force = smallest
       do i = 1, size(fields%pressure)
          normal = max(normal, abs(fields%normal(i)))
          tangential = max(tangential, abs(fields%tangential(i)))
@@ -831,12 +847,11 @@ contains
       end do
       tangential = max(tangential, model%grip*normal)
       normal = max(normal, tangential)
-      associate (possible => least*model%compliance%modulus*normal)
-         traction = max(traction, possible/model%length())
-         force = max(force, possible)
-      end associate
-      shear_force = max(shear_force, model%grip*force, tiny(1.0_wp))
-      force = max(force, shear_force)
+      possible = least*model%compliance%modulus*normal
+      traction = max(traction, possible/model%length())
+      force = max(force, least*first%force, possible)
+      shear_force = max(shear_force, model%grip*force, least*first%shear_force)
+      scales = scales_type(normal, tangential, traction, max(force, shear_force), shear_force)
    end subroutine find_scales
 
    !> What is missing to the shear traction of a slipping or creeping node.
@@ -855,11 +870,12 @@ contains
    end function missing_shear
 
    !> Solve for a correction by the residuals found, and apply it.
-   subroutine correct(self, model, constraints, rates, fields, singular)
+   subroutine correct(self, model, constraints, rates, scales, fields, singular)
       class(reduced_system_type), intent(inout) :: self
       type(contact_model_type), intent(in) :: model
       type(constraints_type), intent(in) :: constraints
       logical, intent(in) :: rates
+      type(scales_type), intent(in) :: scales
       type(contact_fields_type), intent(inout) :: fields
       logical, intent(out) :: singular
       real(wp), dimension(size(fields%pressure)) :: normal, tangential
@@ -869,7 +885,7 @@ contains
       singular = .false.
       do p = 1, 2
          if (self%part(p)%unknowns == 0) cycle
-         if (p == 2) call self%find_residual(model, constraints, rates, .false., fields, residual)
+         if (p == 2) call self%find_residual(model, constraints, rates, fields, scales, residual)
          associate (part => self%part(p), n => self%part(p)%unknowns)
             call part%system%solve(part%right(:n), part%values(:part%system%constraints), part%solution(:n), singular)
             ! Of what is no number the residual would see nothing.

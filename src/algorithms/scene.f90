@@ -58,7 +58,7 @@ module mfv_scene
       integer :: most_iterations = 1000
       integer :: linear_solver = solver_auto
       !> Relative residual to which an iterative linear solver goes.
-      real(wp) :: linear_tolerance = 1.0e-11_wp
+      real(wp) :: linear_tolerance = 1.0e-12_wp
       !> Events closer to each other than this part of what is done of a straight part of the load history are taken together.
       real(wp) :: event_tolerance = 0.0_wp
       !> By how much a leap and its two halves may differ, in parts of the largest traction.

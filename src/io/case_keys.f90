@@ -177,7 +177,7 @@ contains
       call add_choice_key(keys, 'solver', 'linear_solver', 'auto', 'auto dgesv reduced fft', 'auto: chosen by size and '// &
                           'structure; dgesv: augmented system with LAPACK, the reference; reduced: factorisation that is '// &
                           'updated at every event; fft: products through FFTW and iteration, no matrix')
-      call add_part_key(keys, 'linear_tolerance', '1e-11', "linear_solver='fft': relative residual to which it iterates")
+      call add_part_key(keys, 'linear_tolerance', '1e-12', "linear_solver='fft': relative residual to which it iterates")
    end subroutine add_solver_keys
 
    !> A number of the solver from 1e-12 to 1, with a default.

@@ -4,12 +4,14 @@ module test_random_scenes_support
    use mfv_body
    use mfv_compliance, only: coupling_full, coupling_goodman, coupling_none
    use mfv_friction
+   use mfv_contact_state, only: contact_state_type
    use mfv_kinds, only: pi, wp
    use mfv_material, only: new_material, plane_strain, plane_stress
+   use mfv_observer, only: observer_type
    use mfv_scene
    implicit none
    private
-   public :: random_scene, law_count, law_names
+   public :: random_scene, law_count, law_names, patience_type
 
    integer, parameter :: law_count = 5
    character(*), parameter :: law_names(law_count) = [character(14) :: 'none', 'coulomb', 'static_kinetic', 'weakening', 'dahl']
@@ -23,6 +25,15 @@ module test_random_scenes_support
       procedure :: chance
       procedure :: chance_where
    end type generator_type
+
+   !> Stops a run that chatters, after so many increments.
+   type, extends(observer_type) :: patience_type
+      integer :: increments = 0
+   contains
+      procedure :: notify
+   end type patience_type
+
+   integer, parameter :: most_increments = 400
 
    !> What a contact is like: force P, half-width, approach and shift that go with it, coefficient of friction.
    type :: sizes_type
@@ -217,5 +228,17 @@ contains
       chance_where = .false.
       if (possible) chance_where = self%chance(probability)
    end function chance_where
+
+   !> Stop after so many increments.
+   subroutine notify(self, state, segment, segments, fraction, stop_wanted)
+      class(patience_type), intent(inout) :: self
+      type(contact_state_type), intent(in) :: state
+      integer, intent(in) :: segment, segments
+      real(wp), intent(in) :: fraction
+      logical, intent(out) :: stop_wanted
+
+      self%increments = self%increments + 1
+      stop_wanted = self%increments > most_increments
+   end subroutine notify
 
 end module test_random_scenes_support
