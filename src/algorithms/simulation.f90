@@ -197,10 +197,13 @@ contains
       class(observer_type), intent(inout), optional :: observer
       type(error_type), allocatable, intent(out) :: error
       type(segment_type) :: segment
+      real(wp) :: force
 
-      segment%normal = load_towards(start_of(self%contact%state, targets(1), 1), targets(1))
-      segment%tangential = load_towards(start_of(self%contact%state, targets(2), 2), targets(2))
-      segment%rotational = load_towards(start_of(self%contact%state, targets(3), 3), targets(3))
+      force = self%contact%certificate%force_scale()
+      segment%normal = load_towards(start_of(self%contact%state, targets(1), 1), targets(1), force)
+      segment%tangential = load_towards(start_of(self%contact%state, targets(2), 2), targets(2), force)
+      segment%rotational = load_towards(start_of(self%contact%state, targets(3), 3), targets(3), &
+                                        force*self%contact%model%length())
       segment%friction = step%friction
       segment%step = self%steps_done + 1
       if (present(before)) segment%number = before + reversal
@@ -219,11 +222,14 @@ contains
          call self%contact%record(merge(event_stopped, event_step_end, allocated(error)), 0, 0, segment%step)
    end subroutine lead_to
 
-   !> From the load `start` to `goal`, at a rate per segment.
-   pure type(load_type) function load_towards(start, goal)
+   !> From the load `start` to `goal`, at a rate per segment. A change of a force that is round-off of the largest one so far,
+   !> `scale`, is none: what it would do to bodies just apart is noise.
+   pure type(load_type) function load_towards(start, goal, scale)
       type(load_type), intent(in) :: start, goal
+      real(wp), intent(in) :: scale
 
       load_towards = load_type(start%control, start%value, goal%value - start%value)
+      if (start%control == control_force .and. abs(load_towards%rate) <= epsilon(scale)*scale) load_towards%rate = 0.0_wp
    end function load_towards
 
    subroutine take_snapshot(self, step, reversal)
