@@ -77,7 +77,6 @@ module mfv_reduced_system
       procedure, private :: change_motions
       procedure, private :: set_constraints
       procedure, private :: release
-      procedure, private :: constrain
       procedure, private :: add_unknowns
       procedure, private :: add_named
       procedure, private :: remove_unknown
@@ -153,7 +152,8 @@ contains
                                                               .not. is_held(constraints, along_rotation))
    end function undetermined
 
-   !> Forget what belongs to another model; follow the nodes where the mesh has grown.
+   !> Forget what belongs to other blocks, or to a scene without rotation; follow the nodes where the mesh has grown. (An object
+   !> serves one model.)
    subroutine match(self, model)
       class(reduced_system_type), intent(inout) :: self
       type(contact_model_type), intent(in) :: model
@@ -561,7 +561,7 @@ contains
          if (.not. self%apart) partner = self%place(i, a_pressure)
          stiffness = constraints%row(i)%stiffness*self%length/model%compliance%modulus*model%width(i)/model%interval()
          if (self%constraint_of(i) == 0) then
-            call self%constrain(p, self%place(i, a_shear), partner, constraints%row(i)%slope, stiffness)
+            call self%part(p)%system%constrain(self%place(i, a_shear), partner, constraints%row(i)%slope, stiffness)
             self%constraint_of(i) = self%part(p)%system%constraints
          else
             associate (system => self%part(p)%system, c => self%constraint_of(i))
@@ -575,18 +575,10 @@ contains
       do i = 1, 3
          if (self%motion_place(i) == 0 .or. self%motion_constraint(i) > 0 .or. .not. is_held(constraints, i)) cycle
          p = self%part_of(a_motion, i)
-         call self%constrain(p, self%motion_place(i), 0, 0.0_wp, 0.0_wp)
+         call self%part(p)%system%constrain(self%motion_place(i), 0, 0.0_wp, 0.0_wp)
          self%motion_constraint(i) = self%part(p)%system%constraints
       end do
    end subroutine set_constraints
-
-   subroutine constrain(self, p, slot, partner, slope, stiffness)
-      class(reduced_system_type), intent(inout) :: self
-      integer, intent(in) :: p, slot, partner
-      real(wp), intent(in) :: slope, stiffness
-
-      call self%part(p)%system%constrain(slot, partner, slope, stiffness)
-   end subroutine constrain
 
    !> Lose a constraint of part `p`; the last one takes its place.
    subroutine release(self, p, number)
