@@ -86,8 +86,9 @@ def section(data: dict[str, Any], long: dict[str, Any] | None) -> str:
     text = f"""## Targets
 
 Full coupling, pressed with friction, {CYCLES} cycles of shear (the scene of the section before), dgesv and reduced in one run, the difference in parts
-of the largest traction (to be below {TRACTIONS:.0e}). Where numbers of events differ, round-off has taken mirror images of one another, which change together,
-for one event or for two; the states after both are the same:
+of the largest traction (to be below {TRACTIONS:.0e}). Where numbers of events differ: at the end of every cycle
+many nodes come to their limits at one load, and rates of dgesv, good to 1e-12, take for several events a trifle before it what happens together; the
+states after are the same:
 
 {table(head, rows)}
 
