@@ -45,6 +45,7 @@ contains
             call add_line(text, 'moment', amount(fields, 'moment')//', rotation '//amount(fields, 'rotation'))
          words = ''
          if (simulation%contact%certificate%leaps > 0) words = amount(fields, 'leaps')//' leaps, '
+         if (simulation%contact%certificate%leaps == 1) words = '1 leap, '
          call add_line(text, 'work', amount(fields, 'events')//' events, '//words//amount(fields, 'linear_solves')// &
                        ' linear solves ('//trim(simulation%contact%system%name)//'), '//to_text(seconds, 3)//' s')
          call add_compliance(text, model)
