@@ -21,7 +21,7 @@ ENVIRONMENT = os.environ | {"OPENBLAS_NUM_THREADS": "1"}
 SOLVERS = ("dgesv", "reduced", "fft")
 Group = dict[str, Any]
 #: Certificates that runs may have: with fft and its default tolerance, and with a factorisation.
-CERTIFICATE, CERTIFICATE_DIRECT = 1e-7, 1e-10
+CERTIFICATE, CERTIFICATE_DIRECT = 1e-8, 1e-10
 
 
 @dataclass
