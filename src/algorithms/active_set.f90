@@ -68,7 +68,7 @@ contains
          call find_touching(path, fields, wanted, hold)
          call path%set_status(wanted /= path%state%status, wanted)
          path%state%stuck_slip = hold
-         if (.not. came_before(tried(:, first:solve), wanted)) cycle
+         if (.not. is_among(wanted, tried(:, first:solve))) cycle
          if (.not. by_edges) return
          by_edges = .false.
          first = solve + 1
@@ -281,16 +281,5 @@ contains
          if (right) wanted(first:last - joining) = status(first:last - joining)
       end subroutine stay_behind
    end subroutine move_edges
-
-   pure logical function came_before(tried, status)
-      integer, intent(in) :: tried(:, :), status(:)
-      integer :: i
-
-      came_before = .false.
-      do i = size(tried, 2), 1, -1
-         came_before = all(tried(:, i) == status)
-         if (came_before) return
-      end do
-   end function came_before
 
 end module mfv_active_set

@@ -7,7 +7,6 @@ module mfv_advice
    use mfv_error_bar, only: quantity_count, quantity_half_width, quantity_stick_ratio
    use mfv_kinds, only: wp
    use mfv_observer, only: observer_type, relay_type
-   use mfv_contact_state, only: contact_state_type
    use mfv_scene
    use mfv_simulation, only: history_none, new_simulation, simulation_type
    use mfv_solver_costs, only: cheapest_solver, seconds_of_solve

@@ -182,7 +182,7 @@ contains
                                   tangential_by_shear)
       rigid_normal = 0.0_wp
       rigid_tangential = 0.0_wp
-      if (model%rotational .or. .not. model%upright) then
+      if (model%has_rigid_parts()) then
          rigid_normal = model%rigid_normal(fields)
          rigid_tangential = model%rigid_tangential(fields)
       end if
@@ -350,7 +350,7 @@ contains
             stored = stored + model%width(i)*(now%pressure(i)*now%normal(i) + now%shear(i)*now%tangential(i))
          end do
          stored = 0.5_wp*stored
-         if (model%rotational .or. .not. model%upright) &
+         if (model%has_rigid_parts()) &
             stored = stored + 0.5_wp*(now%approach*(model%resultant(along_approach, now%pressure, now%shear) &
                                                     - model%force(now%pressure)) &
                                       + now%shift*(model%resultant(along_shift, now%pressure, now%shear) &

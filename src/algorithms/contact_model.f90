@@ -55,6 +55,8 @@ module mfv_contact_model
       procedure :: length
       procedure :: gap
       procedure :: relative_displacements
+      procedure :: displace
+      procedure :: has_rigid_parts
       procedure :: rigid_normal
       procedure :: rigid_tangential
       procedure :: nearest_approach
@@ -193,10 +195,29 @@ contains
       real(wp), intent(out) :: normal(:), tangential(:)
 
       call self%compliance%displacements(fields%pressure, fields%shear, normal, tangential)
-      if (self%upright .and. .not. self%rotational) return
+      if (.not. self%has_rigid_parts()) return
       normal = normal - self%rigid_normal(fields)
       tangential = tangential - self%rigid_tangential(fields)
    end subroutine relative_displacements
+
+   !> Give the fields the displacements that belong to their tractions and motions.
+   subroutine displace(self, fields)
+      class(contact_model_type), intent(in) :: self
+      type(contact_fields_type), intent(inout) :: fields
+      real(wp), dimension(self%compliance%nodes) :: normal, tangential
+
+      call self%relative_displacements(fields, normal, tangential)
+      fields%normal = normal
+      fields%tangential = tangential
+   end subroutine displace
+
+   !> Whether motions of the upper body do more than lessen all gaps alike and slide all nodes alike: it may rotate, or normals
+   !> lean. Without, rigid_normal and rigid_tangential are zero.
+   pure logical function has_rigid_parts(self)
+      class(contact_model_type), intent(in) :: self
+
+      has_rigid_parts = self%rotational .or. .not. self%upright
+   end function has_rigid_parts
 
    !> By how much the upper body's motion lessens the gaps, but for the approach itself; shape (nodes), length.
    pure function rigid_normal(self, fields)

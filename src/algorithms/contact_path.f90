@@ -92,15 +92,12 @@ contains
       type(contact_model_type), intent(in) :: model
       logical, intent(in) :: record_events
       type(contact_path_type), intent(out) :: self
-      real(wp), dimension(model%nodes()) :: normal, tangential
 
       self%model = model
       call new_contact_system(model, self%system)
       self%state = new_contact_state(model%nodes())
       self%state%fields%approach = model%nearest_approach(model%initial_gap)
-      call model%relative_displacements(self%state%fields, normal, tangential)
-      self%state%fields%normal = normal
-      self%state%fields%tangential = tangential
+      call model%displace(self%state%fields)
       self%certificate = new_certificate(model)
       self%record_events = record_events
    end subroutine new_contact_path

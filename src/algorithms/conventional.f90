@@ -112,7 +112,7 @@ contains
          end if
          tried = reshape([tried, path%state%status], [n, size(tried, 2) + 1])
          call make(path, repair, moment)
-         if (any(all(tried == spread(path%state%status, 2, size(tried, 2)), dim=1))) then
+         if (is_among(path%state%status, tried)) then
             path%state%status = start
             call path%end_here(MFV_CYCLING, 'cycling: after '//to_text(iteration)//' repairs at one load the statuses are '// &
                                'as before; node '//to_text(repair%node)//' was the last', error)

@@ -4,7 +4,6 @@ module mfv_discretisation_error
    use mfv_body, only: body_type, shape_matrix
    use mfv_circle, only: kernel_fourier
    use mfv_contact_model, only: contact_model_type
-   use mfv_contact_state, only: contact_state_type
    use mfv_error_bar
    use mfv_friction, only: friction_coefficient_type
    use mfv_kinds, only: pi, wp

@@ -299,12 +299,9 @@ contains
    pure logical function was_tried(moment, status)
       type(moment_type), intent(in) :: moment
       integer, intent(in) :: status(:)
-      integer :: i
 
-      was_tried = .false.
-      do i = 1, moment%tries
-         was_tried = was_tried .or. all(moment%tried(:, i) == status)
-      end do
+      was_tried = moment%tries > 0
+      if (was_tried) was_tried = is_among(status, moment%tried(:, :moment%tries))
    end function was_tried
 
    !> Note that `status` has been tried; with a new number of nodes what was noted is of no use.

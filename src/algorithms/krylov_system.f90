@@ -22,6 +22,7 @@ module mfv_krylov_system
    use mfv_contact_system
    use mfv_gmres, only: gmres_type
    use mfv_kinds, only: wp
+   use mfv_lapack, only: dgesv
    use mfv_krylov_preconditioner, only: krylov_preconditioner_type
    use mfv_node_status
    use mfv_scene, only: control_force
@@ -226,7 +227,7 @@ contains
       if (.not. singular) singular = smallest_pivot(scaled) < no_pivot
    end subroutine prepare_preconditioner
 
-   !> The smallest pivot of a small matrix, used as work space, in complete elimination.
+   !> The smallest pivot of a small matrix in complete elimination.
    pure real(wp) function smallest_pivot(matrix) result(smallest)
       real(wp), intent(in) :: matrix(:, :)
       real(wp) :: left(size(matrix, 1), size(matrix, 2))
@@ -553,8 +554,8 @@ contains
       class(krylov_system_type), intent(inout) :: self
       type(contact_model_type), intent(in) :: model
       real(wp), intent(inout) :: rows(:)
-      real(wp) :: motion(size(self%free))
-      integer :: i, n
+      real(wp) :: motion(size(self%free)), factors(size(self%free), size(self%free))
+      integer :: pivots(size(self%free)), i, info, n
 
       n = size(self%contact) + size(self%held)
       call precondition_tractions(self, model, rows(:n))
@@ -563,7 +564,8 @@ contains
       do i = 1, size(self%free)
          motion(i) = resultant(self, self%free(i)) - rows(n + i)
       end do
-      motion = solution(self%schur, motion)
+      factors = self%schur
+      call dgesv(size(motion), 1, factors, size(motion), pivots, motion, size(motion), info)
       rows(:n) = rows(:n) - matmul(self%columns, motion)
       rows(n + 1:) = motion
    end subroutine precondition
@@ -589,26 +591,6 @@ contains
       end if
       call self%preconditioner%apply_held(rows(m + 1:))
    end subroutine precondition_tractions
-
-   !> Solution of a small system, by elimination with pivots.
-   pure function solution(matrix, right) result(x)
-      real(wp), intent(in) :: matrix(:, :), right(:)
-      real(wp) :: x(size(right)), left(size(right), size(right) + 1), row(size(right) + 1)
-      integer :: i, k, pivot
-
-      left(:, :size(right)) = matrix
-      left(:, size(right) + 1) = right
-      do k = 1, size(right)
-         pivot = k - 1 + maxloc(abs(left(k:, k)), dim=1)
-         row = left(pivot, :)
-         left(pivot, :) = left(k, :)
-         left(k, :) = row/row(k)
-         do i = 1, size(right)
-            if (i /= k) left(i, :) = left(i, :) - left(i, k)*left(k, :)
-         end do
-      end do
-      x = left(:, size(right) + 1)
-   end function solution
 
    !> Fields of the tractions and displacements in `found` and the motions.
    function fields_of(self, model, right, unknowns) result(fields)

@@ -6,7 +6,7 @@ module mfv_node_status
              node_status_names
    public :: event_none, event_close, event_open, event_slip_right, event_slip_left, event_stick, event_step_end, &
              event_stopped, event_reverse, event_weakened, event_caught, event_capped, event_names, in_contact, slips, &
-             creeps, holds, slip_sign, motion_sign
+             creeps, holds, slip_sign, motion_sign, is_among
 
    !> Node statuses. `node_frictionless`: in contact while friction is off or absent. `node_creep_right`, `node_creep_left`:
    !> held by bristles below the friction limit (partial slip of Table B.1), which give way to the right or to the left.
@@ -64,5 +64,17 @@ contains
 
       motion_sign = slip_sign(status) + merge(1, 0, status == node_creep_right) - merge(1, 0, status == node_creep_left)
    end function motion_sign
+
+   !> Whether the statuses, shape (nodes), are one of the `sets`, shape (nodes, any).
+   pure logical function is_among(status, sets)
+      integer, intent(in) :: status(:), sets(:, :)
+      integer :: i
+
+      is_among = .false.
+      do i = size(sets, 2), 1, -1
+         is_among = all(sets(:, i) == status)
+         if (is_among) return
+      end do
+   end function is_among
 
 end module mfv_node_status

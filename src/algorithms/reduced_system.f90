@@ -158,14 +158,14 @@ contains
       class(reduced_system_type), intent(inout) :: self
       type(contact_model_type), intent(in) :: model
       integer, allocatable :: place(:, :), constraint_of(:)
+      logical :: same
       integer :: extra, i, n
 
       n = model%nodes()
       if (allocated(self%place)) then
-         if (size(self%place, 1) == n .and. all(self%block .eqv. model%compliance%has_block) .and. &
-             (self%rotational .eqv. model%rotational)) return
-         if (all(self%block .eqv. model%compliance%has_block) .and. (self%rotational .eqv. model%rotational) .and. &
-             n > size(self%place, 1)) then
+         same = all(self%block .eqv. model%compliance%has_block) .and. (self%rotational .eqv. model%rotational)
+         if (same .and. size(self%place, 1) == n) return
+         if (same .and. n > size(self%place, 1)) then
             extra = (n - size(self%place, 1))/2
             allocate (place(n, 2), constraint_of(n), source=0)
             place(extra + 1:n - extra, :) = self%place
@@ -669,7 +669,7 @@ contains
       integer :: i
 
       if (all(self%motion_place > 0)) return
-      if (model%rotational .or. .not. model%upright) then
+      if (model%has_rigid_parts()) then
          fields%normal = fields%normal + model%rigid_normal(fields)
          fields%tangential = fields%tangential + model%rigid_tangential(fields)
       end if
@@ -678,7 +678,7 @@ contains
          if (self%motion_place(i) > 0 .or. (i == along_rotation .and. .not. model%rotational)) cycle
          call set_motion(fields, i, merge(load%rate, load%value, rates))
       end do
-      if (model%rotational .or. .not. model%upright) then
+      if (model%has_rigid_parts()) then
          fields%normal = fields%normal - model%rigid_normal(fields)
          fields%tangential = fields%tangential - model%rigid_tangential(fields)
       end if
@@ -690,7 +690,6 @@ contains
       type(contact_model_type), intent(in) :: model
       type(contact_fields_type), intent(inout) :: fields
       real(wp), parameter :: nothing = 1.0e-14_wp
-      real(wp), dimension(size(fields%pressure)) :: normal, tangential
       real(wp) :: largest, scale
       integer :: i
 
@@ -708,9 +707,7 @@ contains
          end if
       end do
       if (largest <= nothing*scale) return
-      call model%relative_displacements(fields, normal, tangential)
-      fields%normal = normal
-      fields%tangential = tangential
+      call model%displace(fields)
    end subroutine open_up
 
    pure subroutine set_motion(fields, motion, value)
@@ -825,7 +822,7 @@ contains
 
       normal = max(abs(fields%approach), least*first%normal, smallest)
       tangential = max(abs(fields%shift), least*first%tangential, smallest)
-      if (model%rotational .or. .not. model%upright) &
+      if (model%has_rigid_parts()) &
          normal = max(normal, abs(fields%shift), abs(fields%rotation)*model%length())
       traction = max(least*first%traction, smallest)
       force = smallest
@@ -870,7 +867,6 @@ contains
       type(scales_type), intent(in) :: scales
       type(contact_fields_type), intent(inout) :: fields
       logical, intent(out) :: singular
-      real(wp), dimension(size(fields%pressure)) :: normal, tangential
       real(wp) :: residual
       integer :: p
 
@@ -886,9 +882,7 @@ contains
          if (singular) return
          call apply(self, model, constraints, rates, p, fields)
          if (self%apart .and. p == 1 .and. self%part(2)%unknowns > 0 .and. .not. self%block(block_up)) cycle
-         call model%relative_displacements(fields, normal, tangential)
-         fields%normal = normal
-         fields%tangential = tangential
+         call model%displace(fields)
       end do
    end subroutine correct
 

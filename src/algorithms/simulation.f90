@@ -251,14 +251,11 @@ contains
       class(simulation_type), intent(in) :: self
       integer, intent(in) :: number
       type(contact_state_type) :: state
-      real(wp), dimension(self%contact%model%nodes()) :: normal, tangential
 
       state = self%snapshots(number)%state
       if (self%contact%model%added == self%snapshots(number)%added) return
       call state%widen(self%contact%model%added - self%snapshots(number)%added)
-      call self%contact%model%relative_displacements(state%fields, normal, tangential)
-      state%fields%normal = normal
-      state%fields%tangential = tangential
+      call self%contact%model%displace(state%fields)
    end function padded_state
 
 end module mfv_simulation

@@ -44,6 +44,7 @@ module mfv_updated_inverse
       procedure :: rebuild
       procedure, private :: reserve
       procedure, private :: append
+      procedure, private :: add_pending
    end type updated_inverse_type
 
 contains
@@ -62,12 +63,10 @@ contains
    subroutine prepare(self, borders)
       class(updated_inverse_type), intent(inout) :: self
       real(wp), intent(in) :: borders(:, :)
-      real(wp) :: along(self%pending)
       integer, parameter :: panel = 32
-      integer :: c, first, k, n, number, rows, total
+      integer :: c, first, n, number, rows, total
 
       n = self%order
-      k = self%pending
       total = size(borders, 1)
       number = size(borders, 2)
       call self%reserve(total)
@@ -85,11 +84,8 @@ contains
                        self%products(1, c), 1)
          end do
       end do
-      if (k == 0) return
       do c = 1, number
-         call dgemv('T', n, k, 1.0_wp, self%vector, rows, self%borders(1, c), 1, 0.0_wp, along, 1)
-         along = self%weight(:k)*along
-         call dgemv('N', n, k, 1.0_wp, self%vector, rows, along, 1, 1.0_wp, self%products(1, c), 1)
+         call self%add_pending(self%borders(:n, c), self%products(:n, c))
       end do
    end subroutine prepare
 
@@ -165,7 +161,6 @@ contains
       real(wp), intent(in) :: right(:)
       real(wp), intent(out) :: product(:)
       integer, parameter :: few = 6
-      real(wp) :: along(most_pending)
       integer :: j, n, filled
 
       n = self%order
@@ -179,13 +174,23 @@ contains
       else
          call dgemv('N', n, n, 1.0_wp, self%base, size(self%base, 1), right, 1, 0.0_wp, product, 1)
       end if
+      call self%add_pending(right, product)
+   end subroutine multiply
+
+   !> Add the pending products times `right` to `product`, shapes (order).
+   subroutine add_pending(self, right, product)
+      class(updated_inverse_type), intent(in) :: self
+      real(wp), intent(in) :: right(:)
+      real(wp), intent(inout) :: product(:)
+      real(wp) :: along(most_pending)
+
       if (self%pending == 0) return
-      associate (rows => size(self%vector, 1), k => self%pending)
+      associate (n => self%order, rows => size(self%vector, 1), k => self%pending)
          call dgemv('T', n, k, 1.0_wp, self%vector, rows, right, 1, 0.0_wp, along, 1)
          along(:k) = self%weight(:k)*along(:k)
          call dgemv('N', n, k, 1.0_wp, self%vector, rows, along, 1, 1.0_wp, product, 1)
       end associate
-   end subroutine multiply
+   end subroutine add_pending
 
    !> The inverse of `matrix`, shape (n, n), from nothing. `singular`: it has none.
    subroutine rebuild(self, matrix, singular)
@@ -203,7 +208,7 @@ contains
       self%rebuilds = self%rebuilds + 1
       singular = .false.
       if (n == 0) return
-      allocate (pivots(n), work(block*max(n, 1)))
+      allocate (pivots(n), work(block*n))
       self%base(:n, :n) = matrix
       call dgetrf(n, n, self%base, size(self%base, 1), pivots, info)
       if (info == 0) call dgetri(n, self%base, size(self%base, 1), pivots, work, size(work), info)
