@@ -38,21 +38,21 @@ module mfv_zone_edges
 contains
 
    !> Half the length of the contact, length.
-   pure real(wp) function half_width(self)
+   elemental real(wp) function half_width(self)
       class(zone_edges_type), intent(in) :: self
 
       half_width = 0.5_wp*self%contact_length
    end function half_width
 
    !> Middle of the contact, length from the pole.
-   pure real(wp) function centre(self)
+   elemental real(wp) function centre(self)
       class(zone_edges_type), intent(in) :: self
 
       centre = 0.5_wp*(self%contact_left + self%contact_right)
    end function centre
 
    !> Length of what sticks over that of the contact; 0 without contact.
-   pure real(wp) function stick_ratio(self)
+   elemental real(wp) function stick_ratio(self)
       class(zone_edges_type), intent(in) :: self
 
       stick_ratio = 0.0_wp
@@ -138,6 +138,7 @@ contains
       type(contact_state_type), intent(in) :: state
       type(zone_type), intent(in) :: zone
       integer, intent(in) :: side
+      real(wp), parameter :: at_limit = 1.0e-9_wp
       real(wp) :: values(0:3), power, direction
       integer :: last, nodes, next, i
 
@@ -151,13 +152,26 @@ contains
       if (.not. (slips(state%status(next)) .and. model%scene%friction%is_coulomb())) return
       direction = -slip_sign(state%status(next))
       power = 0.5_wp - side*lean(model, direction*model%kinetic_friction(next))
-      nodes = min(zone%last - zone%first + 1, size(values))
+      ! A node at its limit may hold or slip: the edge must not depend on that.
+      do while (last /= merge(zone%first, zone%last, side > 0))
+         if (lack(last) > at_limit*model%static_friction(last)*state%fields%pressure(last)) exit
+         last = last - side
+      end do
+      edge = model%arc(last) + 0.5_wp*side*model%interval()
+      nodes = min(abs(merge(zone%first, zone%last, side > 0) - last) + 1, size(values))
       do i = 0, nodes - 1
-         associate (node => last - side*i)
-            values(i) = model%static_friction(node)*state%fields%pressure(node) - direction*state%fields%shear(node)
-         end associate
+         values(i) = lack(last - side*i)
       end do
       edge = edge + side*model%interval()*distance_to_zero(straightened(values(:nodes - 1), power), 1, 1)
+
+   contains
+
+      !> What the shear traction of a node lacks of the friction limit, force/length^2.
+      pure real(wp) function lack(node)
+         integer, intent(in) :: node
+
+         lack = model%static_friction(node)*state%fields%pressure(node) - direction*state%fields%shear(node)
+      end function lack
    end function stick_edge
 
    !> Tractions that go as a power of the distance, raised to the inverse power, in parts of the largest.
