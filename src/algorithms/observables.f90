@@ -3,6 +3,7 @@
 !> are, and dimensionless as in dissertation section 5.2 and eq. 6.5.
 module mfv_observables
    use, intrinsic :: ieee_arithmetic, only: ieee_quiet_nan, ieee_value
+   use mfv_contact_state, only: contact_state_type
    use mfv_cycle, only: cycle_type
    use mfv_kinds, only: pi, wp
    use mfv_simulation, only: mark_loading, mark_return, mark_reversal, simulation_type
@@ -156,6 +157,7 @@ contains
       type(simulation_type), intent(in) :: simulation
       type(cycle_type), intent(in) :: cycle
       real(wp), intent(inout) :: values(:)
+      type(contact_state_type) :: state
       type(zone_edges_type) :: loading
 
       call put(values, 'cycles', real(cycle%number, wp))
@@ -167,7 +169,8 @@ contains
       call put(values, 'tangential_stiffness', cycle%return%stiffness_on_leaving)
       call put(values, 'secant_stiffness', cycle%secant_stiffness())
       call put(values, 'loss_factor', cycle%loss_factor())
-      call find_zone_edges(simulation%contact%model, simulation%padded(simulation%marks(mark_loading)), loading)
+      state = simulation%padded(simulation%marks(mark_loading))
+      call find_zone_edges(simulation%contact%model, state, loading)
       call add_moment(loading, 'loading', values)
       call add_moment(cycle%reversal%edges, 'reversal', values)
       call add_moment(cycle%return%edges, 'return', values)

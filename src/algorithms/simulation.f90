@@ -186,6 +186,7 @@ contains
       class(simulation_type), intent(inout) :: self
       integer, intent(in) :: leg
       type(cycle_type), intent(inout) :: cycle
+      type(contact_state_type) :: before
 
       if (mod(leg, 2) == 1) then
          cycle%start = cycle%return
@@ -196,7 +197,8 @@ contains
       end if
       cycle%number = leg/2
       cycle%return = new_turning_point(self%contact%model, self%contact%state, self%contact%first_stiffness)
-      cycle%change = self%change_since(self%padded(self%marks(mark_cycle_start)))
+      before = self%padded(self%marks(mark_cycle_start))
+      cycle%change = self%change_since(before)
       call self%set_mark(mark_return, leg)
       if (cycle%number == 1) cycle%first_dissipation = cycle%dissipation()
       call append_cycle(self%cycles, self%cycle_count, cycle, self%keep_history == history_none)

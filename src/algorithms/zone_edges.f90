@@ -38,21 +38,21 @@ module mfv_zone_edges
 contains
 
    !> Half the length of the contact, length.
-   pure real(wp) function half_width(self)
+   elemental real(wp) function half_width(self)
       class(zone_edges_type), intent(in) :: self
 
       half_width = 0.5_wp*self%contact_length
    end function half_width
 
    !> Middle of the contact, length from the pole.
-   pure real(wp) function centre(self)
+   elemental real(wp) function centre(self)
       class(zone_edges_type), intent(in) :: self
 
       centre = 0.5_wp*(self%contact_left + self%contact_right)
    end function centre
 
    !> Length of what sticks over that of the contact; 0 without contact.
-   pure real(wp) function stick_ratio(self)
+   elemental real(wp) function stick_ratio(self)
       class(zone_edges_type), intent(in) :: self
 
       stick_ratio = 0.0_wp
@@ -78,7 +78,7 @@ contains
          edges%contact_right = right
       end do
       edges%contact = size(zones) > 0
-      call find_zones(holds(state%status), zones)
+      call find_zones(held(state), zones)
       do i = 1, size(zones)
          left = stick_edge(model, state, zones(i), -1)
          right = stick_edge(model, state, zones(i), 1)
@@ -88,6 +88,19 @@ contains
       end do
       edges%stick = size(zones) > 0
    end subroutine find_zone_edges
+
+   !> Which nodes hold; those too that may slip from now on and have not done so yet. (Where a cycle repeats the tractions of one
+   !> before, many nodes come to their limit together at the very end, and round-off decides how many of them are called slipping.)
+   pure function held(state)
+      type(contact_state_type), intent(in) :: state
+      logical :: held(size(state%status))
+      real(wp), parameter :: nothing = 1.0e-6_wp
+      real(wp) :: slipped(size(state%status))
+
+      slipped = 0.0_wp
+      where (slips(state%status)) slipped = abs(state%fields%tangential - state%fields%shift - state%stuck_slip)
+      held = holds(state%status) .or. (slips(state%status) .and. slipped <= nothing*maxval(slipped))
+   end function held
 
    !> The zones where `inside` is true.
    pure subroutine find_zones(inside, zones)
@@ -151,14 +164,62 @@ contains
       if (.not. (slips(state%status(next)) .and. model%scene%friction%is_coulomb())) return
       direction = -slip_sign(state%status(next))
       power = 0.5_wp - side*lean(model, direction*model%kinetic_friction(next))
-      nodes = min(zone%last - zone%first + 1, size(values))
+      nodes = zone%last - zone%first + 1
+      if (nodes > 1 .and. at_its_limit(last)) then
+         if (at_its_limit(last - side)) then
+            edge = edge + side*model%interval()*distance_by_slip(state, next, side)
+            return
+         end if
+         ! One node may hold or slip: the edge must not depend on that.
+         last = last - side
+         nodes = nodes - 1
+         edge = edge - side*model%interval()
+      end if
+      nodes = min(nodes, size(values))
       do i = 0, nodes - 1
-         associate (node => last - side*i)
-            values(i) = model%static_friction(node)*state%fields%pressure(node) - direction*state%fields%shear(node)
-         end associate
+         values(i) = lack(last - side*i)
       end do
       edge = edge + side*model%interval()*distance_to_zero(straightened(values(:nodes - 1), power), 1, 1)
+
+   contains
+
+      !> Whether a node holds at its friction limit to within round-off.
+      pure logical function at_its_limit(node)
+         integer, intent(in) :: node
+         real(wp), parameter :: round_off = 1.0e-9_wp
+
+         at_its_limit = lack(node) <= round_off*model%static_friction(node)*state%fields%pressure(node)
+      end function at_its_limit
+
+      !> What the shear traction of a node lacks of the friction limit, force/length^2.
+      pure real(wp) function lack(node)
+         integer, intent(in) :: node
+
+         lack = model%static_friction(node)*state%fields%pressure(node) - direction*state%fields%shear(node)
+      end function lack
    end function stick_edge
+
+   !> The edge of a stick zone whose nodes hold at their limit, as in a cycle that repeats the tractions of one before: tractions do
+   !> not tell it, but what the nodes beyond it have slipped since they last held, which grows with the power 3/2 of the distance
+   !> (Mindlin). In intervals outwards from half an interval before node `next`, the first one that slips; 0 where that does not
+   !> tell either.
+   pure real(wp) function distance_by_slip(state, next, side) result(distance)
+      type(contact_state_type), intent(in) :: state
+      integer, intent(in) :: next, side
+      real(wp), parameter :: farthest = 1.5_wp
+      real(wp) :: values(0:1)
+      integer :: i, node
+
+      distance = 0.0_wp
+      if (next + side < 1 .or. next + side > size(state%status)) return
+      if (state%status(next + side) /= state%status(next)) return
+      do i = 0, 1
+         node = next + side*i
+         values(i) = abs(state%fields%tangential(node) - state%fields%shift - state%stuck_slip(node))**(2.0_wp/3.0_wp)
+      end do
+      if (.not. values(1) > values(0)) return
+      if (values(0) <= farthest*(values(1) - values(0))) distance = 0.5_wp - values(0)/(values(1) - values(0))
+   end function distance_by_slip
 
    !> Tractions that go as a power of the distance, raised to the inverse power, in parts of the largest.
    pure function straightened(tractions, power) result(values)
