@@ -1,0 +1,77 @@
+"""Numbers that are drawn from the tables: slopes, errors against closed forms, the rule of thumb."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+import mfv
+from sweeps import Table
+
+#: Loads and bodies of the cases of equal disks: P in N/m, relative radius in m, mu, compliance A = sum (kappa + 1)/(4 G) in m^2/N.
+NORMAL_FORCE, RADIUS, MU, COMPLIANCE = 1.6726e8, 2.0, 0.7, 0.7 / 77e9
+
+
+def slope(x: np.ndarray, y: np.ndarray) -> float:
+    """Slope of a straight line through log y over log x."""
+    return float(np.polyfit(np.log(x), np.log(y), 1)[0])
+
+
+def local_slopes(x: np.ndarray, y: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Slopes of log y over log x from point to point, and where they are."""
+    with np.errstate(divide="ignore", invalid="ignore"):
+        return np.sqrt(x[1:] * x[:-1]), np.diff(np.log(np.maximum(y, 0.0))) / np.diff(np.log(x))
+
+
+def mindlin_number(force_ratio: np.ndarray) -> np.ndarray:
+    """Dissipation of a cycle over P^2 A by Cattaneo and Mindlin (eq. 6.4, corrected), mu = 0.7."""
+    half_width = np.sqrt(2.0 * NORMAL_FORCE * COMPLIANCE * RADIUS / np.pi)
+    energy = mfv.reference.mindlin_dissipation(force_ratio * MU * NORMAL_FORCE, NORMAL_FORCE, half_width, RADIUS, MU)
+    return np.asarray(energy) / (NORMAL_FORCE**2 * COMPLIANCE)
+
+
+def bodies_spread(table: Table, column: str, keys: list[str], leave_out: tuple[str, ...] = ()) -> float:
+    """Largest difference of a column between bodies, over its mean over them, among rows that are the same otherwise."""
+    bases = [base for base in table.values("base") if not any(name in base for name in leave_out)]
+    curves = [table.where(base=base) for base in bases]
+    for curve in curves[1:]:
+        if any(not np.array_equal(curve[key], curves[0][key]) for key in keys):
+            raise ValueError(f"{table.values('base')}: the bodies have other rows")
+    values = np.array([curve[column] for curve in curves])
+    return float(np.nanmax(np.ptp(values, axis=0) / np.abs(values.mean(axis=0))))
+
+
+@dataclass
+class Rule:
+    """ln(D_Goodman/D_full) = beta^2 (c0 + c1 mu^2 + c2 ln(1/ratio)), fitted where it is meant to hold."""
+
+    coefficients: np.ndarray
+    beta_limit: float
+    ratio_limit: float
+    largest_miss: float
+
+    def ratio(self, beta: np.ndarray, mu: np.ndarray, force_ratio: np.ndarray) -> np.ndarray:
+        """D_Goodman/D_full by the rule."""
+        return np.exp(terms(beta, mu, force_ratio) @ self.coefficients)
+
+
+def terms(beta: np.ndarray, mu: np.ndarray, force_ratio: np.ndarray) -> np.ndarray:
+    """The terms of the rule, a column each."""
+    square = np.asarray(beta) ** 2
+    return np.stack([square, square * np.asarray(mu) ** 2, square * np.log(1.0 / np.asarray(force_ratio))], axis=-1)
+
+
+def fitted_rule(table: Table, beta_limit: float = 0.3, ratio_limit: float = 0.4) -> Rule:
+    """The rule of thumb from the map, with the largest difference from it in ln(D_Goodman/D_full)."""
+    rows = table.where(coupling="goodman").between("beta", 0.0, beta_limit).between("force_ratio", ratio_limit, 1.0)
+    matrix = terms(rows["beta"], rows["mu"], rows["force_ratio"])
+    measured = np.log(rows["dissipation_ratio"])
+    coefficients = np.linalg.lstsq(matrix, measured, rcond=None)[0]
+    return Rule(coefficients, beta_limit, ratio_limit, float(np.abs(matrix @ coefficients - measured).max()))
+
+
+def scatter_about(x: np.ndarray, y: np.ndarray, degree: int = 3) -> float:
+    """Root mean square of y about its best polynomial in x, over the spread of y: 0 where y is a function of x, 1 where it is not."""
+    fit = np.polyval(np.polyfit(x, y, degree), x)
+    return float(np.sqrt(np.mean((y - fit) ** 2)) / np.std(y))

@@ -1,0 +1,256 @@
+"""Pictures that go beyond the dissertation."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+import analysis
+from drawing import BLACK, CYCLE, FORCE_RATIO, FRICTION, Drawn, coupled, letter, line, panels, stem
+from sweeps import COUPLINGS, Table
+
+#: How the bodies were brought together before the cycles.
+BEGINNINGS = {
+    "pressed_rough": "pressed with friction",
+    "pressed_smooth": "pressed without friction",
+    "overpressed": "pressed twice as hard before",
+    "overloaded": r"sheared to $0.95\mu P$ before",
+    "overloaded_back": r"sheared to $-0.95\mu P$ before",
+}
+LAWS = {
+    "hole_050": "Coulomb, 0.7",
+    "static_kinetic": "static 0.7 and kinetic 0.49",
+    "weakening": "weakening, 0.7 to 0.49",
+    "dahl": "Dahl, 0.7",
+}
+BETA = r"Dundurs' $\beta$"
+
+
+def mindlin(table: Table) -> Drawn:
+    """Two disks that are alike against the closed form."""
+    picture, axes = panels(1, 2, (10.0, 4.3))
+    ratio = np.geomspace(table["force_ratio"].min(), 0.99, 200)
+    axes[0].loglog(ratio, analysis.mindlin_number(ratio), color=BLACK, linewidth=1.0, label="closed form (eq. 6.4, corrected)")
+    for place, (nodes, rows) in enumerate(table.each("nodes_of_mesh")):
+        exact = analysis.mindlin_number(rows["force_ratio"])
+        label = f"mesh of {nodes} nodes"
+        positive = rows["dissipation_number"] > 0.0
+        line(axes[0], rows["force_ratio"][positive], rows["dissipation_number"][positive], place, label, linestyle="none")
+        line(axes[1], rows["force_ratio"], 100.0 * np.abs(rows["dissipation_number"] / exact - 1.0), place, label)
+    axes[0].set(title="dissipation", xlabel=FORCE_RATIO, ylabel=r"$D/(P^2 A)$")
+    axes[1].set(title="error", xlabel=FORCE_RATIO, ylabel="difference from the closed form, %", yscale="log", xscale="log")
+    letter(axes)
+    axes[0].legend(fontsize=8.5)
+    caption = "Two disks of one material and radius, where nothing couples: dissipation of a cycle against the closed form."
+    return Drawn("mindlin", caption, picture, table.columns(["nodes_of_mesh", "force_ratio", "dissipation_number"]))
+
+
+def small_force(table: Table) -> Drawn:
+    """Local slopes of the dissipation over the lateral force, by mesh."""
+    picture, axes = panels(1, 2, (11.0, 4.6))
+    for place, (nodes, rows) in enumerate(table.each("nodes_of_mesh")):
+        for coupling, dashes in (("full", "-"), ("none", "--")):
+            curve = rows.where(coupling=coupling)
+            where, slopes = analysis.local_slopes(curve["force_ratio"], curve["dissipation_number"])
+            label = f"{COUPLINGS[coupling]}, {nodes} nodes"
+            line(axes[0], where, slopes, place, label, linestyle=dashes, markerfacecolor=None if dashes == "-" else "white")
+        full, none = rows.where(coupling="full"), rows.where(coupling="none")
+        with np.errstate(divide="ignore", invalid="ignore"):
+            ratio = none["dissipation_number"] / full["dissipation_number"]
+        line(axes[1], full["force_ratio"], ratio, place, f"{nodes} nodes")
+    for value in (3.0, 3.15):
+        axes[0].axhline(value, color="0.6", linewidth=0.8, linestyle=":")
+        axes[0].text(0.62, value, f"{value:g}", fontsize=8, va="center", color="0.4")
+    axes[0].set(title="local slope", xlabel=FORCE_RATIO, ylabel=r"$d\ln D/d\ln\tilde Q$", xscale="log", ylim=(2.7, 3.7))
+    axes[1].set(title="over-prediction", xlabel=FORCE_RATIO, ylabel=r"$D_\mathrm{decoupled}/D_\mathrm{full}$", xscale="log",
+                ylim=(1.0, 2.6))
+    letter(axes)
+    axes[0].legend(fontsize=7, ncols=2)
+    axes[1].legend(fontsize=8.5)
+    caption = (
+        "Small lateral forces, mu = 0.7, beta = 0.286: slope of the dissipation from point to point by mesh, and the "
+        "over-prediction. On meshes of fewer nodes only a few slip at the left end."
+    )
+    return Drawn("small_force", caption, picture, table.columns(["nodes_of_mesh", "force_ratio", "coupling", "dissipation_number"]))
+
+
+def mismatch(table: Table) -> Drawn:
+    """Dissipation and patch shift over Dundurs' beta of both signs."""
+    ratios = table.values("force_ratio")
+    picture, axes = panels(1, 2, (10.5, 4.4))
+    for place, ratio in enumerate(ratios):
+        for coupling, dashes in (("full", "-"), ("goodman", "--")):
+            rows = table.where(force_ratio=ratio, coupling=coupling)
+            reference = table.where(force_ratio=ratio, coupling="none")["dissipation_number"]
+            label = rf"{COUPLINGS[coupling]}, $\tilde Q={ratio:g}$"
+            line(axes[0], rows["beta"], rows["dissipation_number"] / reference, place, label, linestyle=dashes)
+        rows = table.where(force_ratio=ratio, coupling="full")
+        line(axes[1], rows["beta"], rows["patch_shift_return"], place, rf"$\tilde Q={ratio:g}$")
+    axes[0].set(title="dissipation", xlabel=BETA, ylabel=r"$D/D_\mathrm{decoupled}$")
+    axes[1].set(title="shift of the contact at $Q$, full coupling", xlabel=BETA, ylabel="middle over half-width")
+    letter(axes)
+    axes[0].legend(fontsize=8)
+    axes[1].legend(fontsize=9)
+    caption = "Two disks of one radius, mu = 0.7, materials from beta = -0.5 to 0.5 at the same compliance A."
+    names = ["beta", "force_ratio", "coupling", "dissipation_number", "patch_shift_return", "pressure_error_return", "shear_error_return"]
+    return Drawn("mismatch", caption, picture, table.columns(names))
+
+
+def error_map(table: Table) -> Drawn:
+    """Over-prediction of the dissipation by Goodman's approximation over beta and mu, for some lateral forces."""
+    rows = table.where(coupling="goodman")
+    ratios = rows.values("force_ratio")
+    shown = [ratios[i] for i in np.unique(np.linspace(0, len(ratios) - 1, 6).round().astype(int))]
+    picture, axes = panels(2, 3, (11.5, 7.0), sharex=True, sharey=True)
+    levels = np.array([0.5, 1, 2, 5, 10, 20, 50, 100, 200, 500, 1000])
+    for ax, ratio in zip(axes, shown):
+        filled = contours(ax, rows.where(force_ratio=ratio), levels)
+        ax.set_title(rf"$\tilde Q = {ratio:g}$")
+    for ax in axes[3:]:
+        ax.set_xlabel(BETA)
+    for ax in axes[::3]:
+        ax.set_ylabel(FRICTION)
+    letter(axes)
+    bar = picture.colorbar(filled, ax=axes, ticks=levels, shrink=0.8, pad=0.02)
+    bar.ax.set_yticklabels([f"{level:g} %" for level in levels])
+    bar.set_label("dissipation of a cycle over-predicted by Goodman's approximation")
+    caption = (
+        "By how much Goodman's approximation (and full decoupling, which has the same dissipation) over-predicts the "
+        "dissipation of a steady cycle. Two disks of one radius, pressed with friction."
+    )
+    names = ["beta", "mu", "force_ratio", "dissipation_ratio"]
+    names += [f"{name}_{moment}" for name in ("pressure_error", "shear_error") for moment in ("loading", "reversal")]
+    return Drawn("map", caption, picture, rows.columns(names), in_docs=True)
+
+
+def contours(ax: Axes, rows: Table, levels: np.ndarray) -> object:
+    """Filled contours with labels; what is below the first level or beyond the last has the colour of its end."""
+    from matplotlib.colors import LogNorm
+
+    beta, mu = np.unique(rows["beta"]), np.unique(rows["mu"])
+    error = 100.0 * (rows["dissipation_ratio"].reshape(len(beta), len(mu)).T - 1.0)
+    error = np.clip(error, levels[0], levels[-1])
+    norm = LogNorm(levels[0], levels[-1])
+    filled = ax.contourf(beta, mu, error, levels=levels, norm=norm, cmap="cividis_r")
+    lines = ax.contour(beta, mu, error, levels=levels[1:-1], colors="white", linewidths=0.6)
+    ax.clabel(lines, fmt="%g %%", fontsize=8)
+    return filled
+
+
+def rule_of_thumb(table: Table) -> Drawn:
+    """Is there one parameter? The over-prediction over beta mu, over beta squared, and against the rule."""
+    rows = table.where(coupling="goodman")
+    rule = analysis.fitted_rule(table)
+    picture, axes = panels(1, 3, (13.0, 4.4))
+    ratio = rows.values("force_ratio")[-2]
+    for place, (beta, curve) in enumerate(rows.where(force_ratio=ratio).each("beta")):
+        if place % 2 == 0 and len(rows.values("beta")) > 6:
+            continue
+        excess = np.log(curve["dissipation_ratio"])
+        line(axes[0], beta * curve["mu"], excess, place, rf"$\beta={beta:g}$")
+        line(axes[1], curve["mu"], excess / beta**2, place, rf"$\beta={beta:g}$")
+    inside = rows.between("beta", 0.0, rule.beta_limit).between("force_ratio", rule.ratio_limit, 1.0)
+    for place, (force, curve) in enumerate(inside.each("force_ratio")):
+        predicted = rule.ratio(curve["beta"], curve["mu"], curve["force_ratio"])
+        line(axes[2], 100.0 * (predicted - 1.0), 100.0 * (curve["dissipation_ratio"] - 1.0), place, rf"$\tilde Q={force:g}$",
+             linestyle="none")
+    end = 100.0 * inside["dissipation_ratio"].max() - 100.0
+    axes[2].plot([0.0, end], [0.0, end], color="0.5", linewidth=0.8)
+    axes[0].set(title=rf"over $\beta\mu$: no one curve, $\tilde Q={ratio:g}$", xlabel=r"$\beta\mu$",
+                ylabel=r"$\ln(D_\mathrm{Goodman}/D_\mathrm{full})$")
+    axes[1].set(title=rf"over $\beta^2$: nearly one, $\tilde Q={ratio:g}$", xlabel=FRICTION,
+                ylabel=r"$\ln(D_\mathrm{Goodman}/D_\mathrm{full})/\beta^2$", ylim=(0.0, None))
+    axes[2].set(title="the rule", xlabel="over-prediction by the rule, %", ylabel="computed, %")
+    letter(axes)
+    for ax in axes:
+        ax.legend(fontsize=8)
+    c0, c1, c2 = rule.coefficients
+    caption = (
+        f"What matters? ln(D_Goodman/D_full) = beta^2 ({c0:.2f} + {c1:.2f} mu^2 + {c2:.2f} ln(1/Q~)), fitted for beta up to "
+        f"{rule.beta_limit:g} and Q~ from {rule.ratio_limit:g} on; it misses ln(D_Goodman/D_full) by {rule.largest_miss:.3f} at most."
+    )
+    return Drawn("rule_of_thumb", caption, picture, rows.columns(["beta", "mu", "force_ratio", "dissipation_ratio"]))
+
+
+def shakedown(table: Table) -> Drawn:
+    """The steady dissipation by what went before."""
+    picture, axes = panels(1, 2, (11.0, 4.8), sharey=True)
+    for ax, (beta, rows) in zip(axes, table.each("beta")):
+        for place, (base, curve) in enumerate(rows.where(coupling="full").each("base")):
+            uncoupled = rows.where(coupling="none", base=base)["dissipation_number"]
+            part = curve["dissipation_number"] / uncoupled
+            style = dict(linestyle=":", markerfacecolor="none", markersize=6.0) if stem(base) == "overloaded_back" else {}
+            line(ax, curve["force_ratio"], np.maximum(part, 0.0), place, BEGINNINGS[stem(base)], **style)
+        both = rows.where(coupling="goodman")
+        ax.axhline(1.0, color="0.5", linewidth=0.8, linestyle="--", label="Goodman or decoupled, all five")
+        ax.set(title=rf"full coupling, $\beta={beta:.3g}$, {len(both)} cases", xlabel=FORCE_RATIO)
+        ax.set_title(rf"full coupling, $\beta={beta:.3g}$")
+    axes[0].set(ylabel=r"$D/D_\mathrm{decoupled}$ of the steady cycle", ylim=(-0.03, 1.08))
+    letter(axes)
+    axes[1].legend(fontsize=8.5, loc="lower right")
+    caption = (
+        "The same cycles after five ways of bringing the bodies together, mu = 0.7: with full coupling the steady state "
+        "remembers them; at beta = 0.5 nothing slips any more below a lateral force (frictional shakedown)."
+    )
+    names = ["base", "beta", "force_ratio", "coupling", "cycles", "cycle_change", "dissipation_number"]
+    return Drawn("shakedown", caption, picture, table.columns(names), in_docs=True)
+
+
+def laws(table: Table) -> Drawn:
+    """Ratio of the dissipations under other laws of friction."""
+    picture, axes = panels(1, 2, (11.0, 4.4))
+    for place, (base, rows) in enumerate(table.each("base")):
+        for coupling, dashes in (("goodman", "-"), ("none", "--")):
+            curve = rows.where(coupling=coupling)
+            label = LAWS[stem(base)] if coupling == "goodman" else None
+            style = dict(linestyle=dashes, markerfacecolor=None if dashes == "-" else "white")
+            line(axes[0], curve["force_ratio"], curve["dissipation_ratio"], place, label, **style)
+            line(axes[1], curve["force_ratio"], 100.0 * curve["shear_error_return"], place, label, **style)
+    axes[0].set(title="dissipation", xlabel=FORCE_RATIO, ylabel=r"$D/D_\mathrm{full}$")
+    axes[1].set(title="shear traction", xlabel=FORCE_RATIO, ylabel=r"$L_1$ error of the shear at $Q$, %")
+    letter(axes)
+    axes[0].axhline(1.0, color="0.7", linewidth=0.8)
+    axes[0].legend(fontsize=8.5, title="full lines Goodman, dashed decoupled", title_fontsize=8.5)
+    caption = (
+        "Other laws of friction, rigid disk in a hole, 75 nodes in contact. Where the coefficient falls, or bristles give way, "
+        "Goodman and full decoupling no longer dissipate the same: the shear of the pressing matters."
+    )
+    names = ["base", "force_ratio", "coupling", "linear_solves", "dissipation_number", "dissipation_ratio", "pressure_error_return", "shear_error_return"]
+    return Drawn("laws", caption, picture, table.columns(names))
+
+
+def stiffness(table: Table) -> Drawn:
+    """Stiffness and loss factor, which joint models take from a contact."""
+    picture, axes = panels(1, 3, (13.0, 4.2))
+    rows = table.where(base=table.values("base")[-1])
+    full = rows.where(coupling="full")
+    for place, coupling in enumerate(COUPLINGS):
+        curve = rows.where(coupling=coupling)
+        line(axes[0], curve["force_ratio"], curve["tangential_stiffness"] / full["tangential_stiffness"], place, COUPLINGS[coupling])
+        line(axes[1], curve["force_ratio"], curve["secant_stiffness"] / full["secant_stiffness"], place)
+        line(axes[2], curve["force_ratio"], curve["loss_factor"], place)
+    axes[0].set(title="stiffness after a reversal", xlabel=FORCE_RATIO, ylabel="over that of full coupling")
+    axes[1].set(title="stiffness from end to end", xlabel=FORCE_RATIO, ylabel="over that of full coupling")
+    axes[2].set(title="loss factor", xlabel=FORCE_RATIO, ylabel=r"$D/(2\pi\,\frac{1}{2}Q U)$")
+    letter(axes)
+    axes[0].legend(fontsize=9)
+    caption = "What a model of a joint takes from a contact, rigid disk on an elastic half-plane, mu = 0.7, beta = 0.286."
+    names = ["force_ratio", "coupling", "tangential_stiffness", "secant_stiffness", "loss_factor", "stiffness_number"]
+    return Drawn("stiffness", caption, picture, rows.columns(names))
+
+
+def draw_beyond(tables: Mapping[str, Table]) -> list[Drawn]:
+    """All of them."""
+    return [
+        mindlin(tables["mindlin"]),
+        small_force(tables["small_force"]),
+        mismatch(tables["mismatch"]),
+        error_map(tables["map"]),
+        rule_of_thumb(tables["map"]),
+        shakedown(tables["shakedown"]),
+        stiffness(tables["lateral_force"]),
+        laws(tables["laws"]),
+    ]
