@@ -141,7 +141,7 @@ contains
       do i = 0, nodes - 1
          values(i) = state%fields%pressure(last - side*i)
       end do
-      edge = edge + side*model%interval()*distance_to_zero(straightened(values(:nodes - 1), power), 2, 2)
+      edge = edge + side*model%interval()*distance_to_zero(straightened(values(:nodes - 1), power))
    end function contact_edge
 
    !> Edge of a zone that holds, on `side` (-1 left, 1 right), length from the pole: that of the contact where the next node is
@@ -151,7 +151,7 @@ contains
       type(contact_state_type), intent(in) :: state
       type(zone_type), intent(in) :: zone
       integer, intent(in) :: side
-      real(wp) :: values(0:3), power, direction
+      real(wp) :: values(0:6), power, direction
       integer :: last, nodes, next, i
 
       last = merge(zone%last, zone%first, side > 0)
@@ -179,7 +179,7 @@ contains
       do i = 0, nodes - 1
          values(i) = lack(last - side*i)
       end do
-      edge = edge + side*model%interval()*distance_to_zero(straightened(values(:nodes - 1), power), 1, 1)
+      edge = edge + side*model%interval()*distance_to_zero(straightened(values(:nodes - 1), power))
 
    contains
 
@@ -259,23 +259,28 @@ contains
       if (model%compliance%has_block(block_wt)) lean = atan(model%scene%dundurs_beta()*ratio)/pi
    end function lean
 
-   !> Where nearly straight values, the outermost first, are zero, in intervals outwards from half an interval beyond the first one:
-   !> a parabola through three nodes, the first `left_out` left out and `apart` from each other, or nearer to the edge where
-   !> there are fewer nodes; a line through two; 0 where these lead nowhere within one interval.
-   pure real(wp) function distance_to_zero(values, left_out, apart) result(distance)
+   !> Where nearly straight values, the outermost first, are zero, in intervals outwards from half an interval beyond the first
+   !> one. The second to fourth node tell, the outermost one carrying the largest error; where the third, fifth and seventh say
+   !> nearly the same (near edges of other zones they do not), these tell better. Where there are only two or three nodes, a line
+   !> through the outermost; 0 where all this leads nowhere within one interval.
+   pure real(wp) function distance_to_zero(values) result(distance)
       real(wp), intent(in) :: values(0:)
-      integer, intent(in) :: left_out, apart
-      logical :: found
+      real(wp), parameter :: nearly = 0.3_wp
+      real(wp) :: farther
+      logical :: found, agree
 
       found = .false.
       distance = 0.0_wp
-      if (size(values) > left_out + 2*apart) call find_zero(values, left_out, apart, distance, found)
-      if (.not. found .and. size(values) > 3) call find_zero(values, 1, 1, distance, found)
-      if (.not. found .and. size(values) > 1) then
-         if (values(1) > values(0)) distance = values(0)/(values(1) - values(0)) - 0.5_wp
-         found = values(1) > values(0) .and. abs(distance) <= 1.0_wp
+      if (size(values) > 3) call find_zero(values, 1, 1, distance, found)
+      if (found .and. size(values) > 6) then
+         call find_zero(values, 2, 2, farther, agree)
+         if (agree .and. abs(farther - distance) <= nearly) distance = farther
       end if
-      if (.not. found) distance = 0.0_wp
+      if (found) return
+      distance = 0.0_wp
+      if (size(values) < 2) return
+      if (values(1) > values(0)) distance = values(0)/(values(1) - values(0)) - 0.5_wp
+      if (abs(distance) > 1.0_wp) distance = 0.0_wp
    end function distance_to_zero
 
    !> Zero of the parabola through the values `first`, `first` + `apart` and `first` + 2 `apart`, the one nearest to the edge;
