@@ -31,6 +31,48 @@ def mindlin_number(force_ratio: np.ndarray) -> np.ndarray:
     return np.asarray(energy) / (NORMAL_FORCE**2 * COMPLIANCE)
 
 
+def edge_scale(beta: np.ndarray, mu: np.ndarray) -> np.ndarray:
+    """Distance from the edge, over the half-width, within which a stuck contact carries more than 1/mu of pressure for a shear.
+
+    Increments at a stuck edge are K r^(-1/2 + i epsilon), 2 pi epsilon = ln((1 + beta)/(1 - beta)) (Barber 2009, bonded punch): under a
+    lateral force alone pressure over shear is tan(epsilon ln(2a/r)), which comes to 1/mu at the distance given.
+    """
+    epsilon = np.log((1.0 + beta) / (1.0 - beta)) / (2.0 * np.pi)
+    return 2.0 * np.exp(-np.arctan(1.0 / np.asarray(mu)) / epsilon)
+
+
+@dataclass
+class Threshold:
+    """Where slip sets in: a lateral force ratio, and the shift of the contact over its half-width there."""
+
+    force_ratio: float
+    patch_shift: float
+
+
+def threshold(rows: Table, mu: float, part: float = 1e-3) -> Threshold | None:
+    """Where the dissipation passes a part of the decoupled one, between two forces; None where that is not in the table."""
+    decoupled = mindlin_number(rows["force_ratio"]) * (mu / MU) ** 2
+    ratio = np.log(np.maximum(rows["dissipation_number"] / decoupled, 1e-6))
+    above = np.flatnonzero(ratio > np.log(part))
+    if above.size == 0 or above[0] == 0:
+        return None
+    place = slice(above[0] - 1, above[0] + 1)
+    force = np.interp(np.log(part), ratio[place], np.log(rows["force_ratio"][place]))
+    shift = np.interp(force, np.log(rows["force_ratio"][place]), np.abs(rows["patch_shift_return"][place]))
+    return Threshold(float(np.exp(force)), float(shift))
+
+
+def thresholds(table: Table) -> dict[tuple[float, float], Threshold]:
+    """Those of a table, by beta and mu."""
+    found = {}
+    for beta, rows in table.each("beta"):
+        for mu, curve in rows.each("mu"):
+            here = threshold(curve, mu)
+            if here is not None:
+                found[beta, mu] = here
+    return found
+
+
 def bodies_spread(table: Table, column: str, keys: list[str], leave_out: tuple[str, ...] = ()) -> float:
     """Largest difference of a column between bodies, over its mean over them, among rows that are the same otherwise."""
     bases = [base for base in table.values("base") if not any(name in base for name in leave_out)]
@@ -44,28 +86,28 @@ def bodies_spread(table: Table, column: str, keys: list[str], leave_out: tuple[s
 
 @dataclass
 class Rule:
-    """ln(D_Goodman/D_full) = beta^2 (c0 + c1 mu^2 + c2 ln(1/ratio)), fitted where it is meant to hold."""
+    """ln(D_Goodman/D_full) = beta^2 (c0 + c1 mu^2), fitted where it is meant to hold."""
 
     coefficients: np.ndarray
     beta_limit: float
     ratio_limit: float
     largest_miss: float
 
-    def ratio(self, beta: np.ndarray, mu: np.ndarray, force_ratio: np.ndarray) -> np.ndarray:
+    def ratio(self, beta: np.ndarray, mu: np.ndarray) -> np.ndarray:
         """D_Goodman/D_full by the rule."""
-        return np.exp(terms(beta, mu, force_ratio) @ self.coefficients)
+        return np.exp(terms(beta, mu) @ self.coefficients)
 
 
-def terms(beta: np.ndarray, mu: np.ndarray, force_ratio: np.ndarray) -> np.ndarray:
+def terms(beta: np.ndarray, mu: np.ndarray) -> np.ndarray:
     """The terms of the rule, a column each."""
     square = np.asarray(beta) ** 2
-    return np.stack([square, square * np.asarray(mu) ** 2, square * np.log(1.0 / np.asarray(force_ratio))], axis=-1)
+    return np.stack([square, square * np.asarray(mu) ** 2], axis=-1)
 
 
-def fitted_rule(table: Table, beta_limit: float = 0.3, ratio_limit: float = 0.4) -> Rule:
+def fitted_rule(table: Table, beta_limit: float = 0.3, ratio_limit: float = 0.5) -> Rule:
     """The rule of thumb from the map, with the largest difference from it in ln(D_Goodman/D_full)."""
     rows = table.where(coupling="goodman").between("beta", 0.0, beta_limit).between("force_ratio", ratio_limit, 1.0)
-    matrix = terms(rows["beta"], rows["mu"], rows["force_ratio"])
+    matrix = terms(rows["beta"], rows["mu"])
     measured = np.log(rows["dissipation_ratio"])
     coefficients = np.linalg.lstsq(matrix, measured, rcond=None)[0]
     return Rule(coefficients, beta_limit, ratio_limit, float(np.abs(matrix @ coefficients - measured).max()))

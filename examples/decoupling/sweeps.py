@@ -15,7 +15,7 @@ import numpy as np
 import mfv
 
 HERE = Path(__file__).resolve().parent
-NAMES = ("cyclic", "lateral_force", "friction", "ratios", "mindlin", "small_force", "mismatch", "map", "shakedown", "laws")
+NAMES = ("cyclic", "lateral_force", "friction", "ratios", "mindlin", "small_force", "mismatch", "map", "shakedown", "threshold", "laws")
 COUPLINGS = {"full": "full coupling", "goodman": "Goodman", "none": "decoupled"}
 
 #: What a quick study leaves of an axis: so many values, meshes up to so many nodes.
