@@ -66,7 +66,7 @@ def test_file_opens_without_help(tmp_path):
     mfv_run(ROOT / "examples/mindlin.nml", cwd=tmp_path)
     path = tmp_path / "mindlin.h5"
     with h5py.File(path) as result:
-        names = {"pressure", "shear", "gap", "slip", "normal_displacement", "tangential_displacement", "status", "x"}
+        names = {"pressure", "shear", "gap", "slip", "normal_displacement", "tangential_displacement", "status", "friction_work", "x"}
         assert set(result["state"]) == names
         assert names < set(result["steps/0001"]) and len(result["steps"]) == 6
         history = {"normal_force", "tangential_force", "approach", "shift", "contact_nodes", "stick_nodes", "dissipation",
