@@ -21,7 +21,7 @@ module mfv_result_fields
    private
    public :: field_type, result_groups, group_fields, field_named, step_group, along_nodes, along_records, &
              along_companions, along_nothing
-   public :: result_attributes
+   public :: result_attributes, labelled_unit
 
    !> What the values of a field run along.
    integer, parameter :: along_nothing = 0, along_nodes = 1, along_records = 2, along_companions = 3
@@ -541,6 +541,46 @@ contains
       units%traction = case%force_unit//'/'//case%length_unit//'^2'
       units%energy = case%force_unit
    end subroutine name_units
+
+   !> A unit in terms of length and force, such as force/length^2, with the user's names for those two.
+   pure function labelled_unit(unit, length_unit, force_unit) result(label)
+      character(*), intent(in) :: unit, length_unit, force_unit
+      character(len=length_of_label(unit, length_unit, force_unit)) :: label
+      character(:), allocatable :: text
+
+      call find_label(unit, length_unit, force_unit, text)
+      label = text
+   end function labelled_unit
+
+   pure integer function length_of_label(unit, length_unit, force_unit) result(length)
+      character(*), intent(in) :: unit, length_unit, force_unit
+      character(:), allocatable :: text
+
+      call find_label(unit, length_unit, force_unit, text)
+      length = len(text)
+   end function length_of_label
+
+   !> See labelled_unit.
+   pure subroutine find_label(unit, length_unit, force_unit, label)
+      character(*), intent(in) :: unit, length_unit, force_unit
+      character(:), allocatable, intent(out) :: label
+      integer :: i, length
+
+      label = ''
+      i = 1
+      do while (i <= len(unit))
+         length = verify(unit(i:)//'/', 'abcdefghijklmnopqrstuvwxyz') - 1
+         select case (unit(i:i + max(length, 1) - 1))
+         case ('length')
+            label = label//length_unit
+         case ('force')
+            label = label//force_unit
+         case default
+            label = label//unit(i:i + max(length, 1) - 1)
+         end select
+         i = i + max(length, 1)
+      end do
+   end subroutine find_label
 
    subroutine add_scalar(fields, name, value, unit, description)
       type(field_type), allocatable, intent(inout) :: fields(:)
