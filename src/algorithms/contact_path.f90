@@ -1,6 +1,7 @@
 !> A contact on its way through a load history: the model, its state now, and what every algorithm does with them: begin a
 !> straight part of the history, hold what nothing determines, change statuses, record.
 module mfv_contact_path
+   use, intrinsic :: ieee_arithmetic, only: ieee_quiet_nan, ieee_value
    use mfv_certificate, only: certificate_type, new_certificate
    use mfv_contact_fields, only: contact_fields_type
    use mfv_contact_model, only: along_rotation, along_shift, contact_model_type
@@ -13,7 +14,7 @@ module mfv_contact_path
    use mfv_kinds, only: wp
    use mfv_linear_solvers, only: new_contact_system
    use mfv_node_status
-   use mfv_scene, only: control_displacement, control_force
+   use mfv_scene, only: algorithm_mfv, control_displacement, control_force, stepping_leap
    use mfv_status
    use mfv_strings, only: to_text
    implicit none
@@ -45,7 +46,14 @@ module mfv_contact_path
       integer :: events = 0
       !> Length of the increment to try next where friction is not linear, in parts of a segment; 0: not known yet.
       real(wp) :: trial = 0.0_wp
+      !> Tangential force over shift on the first increment of this segment, force/length^2; NaN where there is none yet, and of
+      !> load steps and leaps, which are no first increments.
+      real(wp) :: first_stiffness = 0.0_wp
+      !> Tangential force and shift where the segment begins, while the first increment is waited for.
+      real(wp), private :: start_force = 0.0_wp, start_shift = 0.0_wp
+      logical, private :: awaits_increment = .false.
    contains
+      procedure :: await_increment
       procedure :: begin_rotation
       procedure :: record
       procedure :: start_segment
@@ -101,6 +109,30 @@ contains
       self%certificate = new_certificate(model)
       self%record_events = record_events
    end subroutine new_contact_path
+
+   !> A segment begins: have its first_stiffness found.
+   subroutine await_increment(self)
+      class(contact_path_type), intent(inout) :: self
+
+      self%first_stiffness = ieee_value(1.0_wp, ieee_quiet_nan)
+      self%start_force = self%state%fields%tangential_force
+      self%start_shift = self%state%fields%shift
+      self%awaits_increment = self%model%scene%method%algorithm == algorithm_mfv .and. &
+                              self%model%scene%method%stepping /= stepping_leap
+   end subroutine await_increment
+
+   !> Find first_stiffness where the tangential force has changed by more than round-off.
+   subroutine find_first_stiffness(self)
+      class(contact_path_type), intent(inout) :: self
+      real(wp), parameter :: visible = 1.0e-6_wp
+      real(wp) :: force, shift
+
+      force = self%state%fields%tangential_force - self%start_force
+      shift = self%state%fields%shift - self%start_shift
+      if (.not. abs(force) > visible*self%model%grip*self%state%fields%normal_force) return
+      self%awaits_increment = .false.
+      if (abs(shift) > 0.0_wp) self%first_stiffness = force/shift
+   end subroutine find_first_stiffness
 
    !> Turn friction on or off in the nodes that touch; with the first friction the tangential problem begins to be
    !> modelled. Error MFV_INADMISSIBLE_STEP: friction off where there is shear.
@@ -509,28 +541,31 @@ contains
    end function holding
 
    !> Go to the fields `after`: memories, dissipation, directions and the certificate go along. `slip_rate`: rates of slip on
-   !> the way, any unit, shape (nodes); `dropped`: part of the excess tractions that has been let go. `dissipated`: of a leap,
-   !> whose way is not known, what friction dissipates (energy per unit thickness); else everything is linear on the way.
-   subroutine take_increment(self, after, slip_rate, dropped, dissipated)
+   !> the way, any unit, shape (nodes); `dropped`: part of the excess tractions that has been let go. `friction_work`: of a leap,
+   !> whose way is not known, what friction dissipates (force/length, shape (nodes)); else everything is linear on the way.
+   subroutine take_increment(self, after, slip_rate, dropped, friction_work)
       class(contact_path_type), intent(inout) :: self
       type(contact_fields_type), intent(in) :: after
       real(wp), intent(in) :: slip_rate(:), dropped
-      real(wp), intent(in), optional :: dissipated
+      real(wp), intent(in), optional :: friction_work(:)
       real(wp), parameter :: moving = 1.0e-9_wp
-      real(wp) :: loss, fastest
+      real(wp) :: loss, part, fastest
       integer :: i
 
       call self%before%take(self%state)
       call remember_slip(self, after, dropped)
       call self%state%fields%take(after)
-      if (present(dissipated)) then
-         self%state%dissipation = self%state%dissipation + dissipated
+      if (present(friction_work)) then
+         self%state%dissipation = self%state%dissipation + self%model%force(friction_work)
+         self%state%friction_work = self%state%friction_work + friction_work
       else
          loss = 0.0_wp
          associate (before => self%before%fields)
             do i = 1, size(slip_rate)
-               loss = loss - self%model%width(i)*(before%shear(i) + after%shear(i)) &
+               part = (before%shear(i) + after%shear(i)) &
                       *((after%tangential(i) - after%shift) - (before%tangential(i) - before%shift))
+               loss = loss - self%model%width(i)*part
+               self%state%friction_work(i) = self%state%friction_work(i) - 0.5_wp*part
             end do
          end associate
          self%state%dissipation = self%state%dissipation + 0.5_wp*loss
@@ -540,7 +575,8 @@ contains
          self%state%slip_direction(i) = 0
          if (abs(slip_rate(i)) > moving*fastest) self%state%slip_direction(i) = merge(1, -1, slip_rate(i) > 0.0_wp)
       end do
-      call self%certificate%check_increment(self%model, self%before, self%state, present(dissipated))
+      call self%certificate%check_increment(self%model, self%before, self%state, present(friction_work))
+      if (self%awaits_increment) call find_first_stiffness(self)
    end subroutine take_increment
 
    !> What the friction law remembers after an increment to the fields `after`.

@@ -23,6 +23,8 @@ module mfv_contact_state
       logical, allocatable :: capped(:)
       !> Work dissipated by friction so far, force (energy per unit thickness).
       real(wp) :: dissipation = 0.0_wp
+      !> The same per unit of surface, force/length, shape (nodes).
+      real(wp), allocatable :: friction_work(:)
    contains
       procedure :: set_status
       procedure :: take
@@ -44,7 +46,7 @@ contains
       allocate (state%status(nodes), source=node_open)
       allocate (state%slip_direction(nodes), source=0)
       allocate (state%capped(nodes), source=.false.)
-      allocate (state%stuck_slip(nodes), state%slipped(nodes), state%excess(nodes), source=0.0_wp)
+      allocate (state%stuck_slip(nodes), state%slipped(nodes), state%excess(nodes), state%friction_work(nodes), source=0.0_wp)
    end function new_contact_state
 
    !> Give the nodes of `mask` the new statuses; a node that sticks holds at the slip it has.
@@ -76,6 +78,7 @@ contains
       self%excess = other%excess
       self%capped = other%capped
       self%dissipation = other%dissipation
+      self%friction_work = other%friction_work
    end subroutine take
 
    !> What a friction law knows of node `node` where the fields are `fields` and the coefficients of friction `static` and
@@ -104,6 +107,7 @@ contains
       self%slipped = [(0.0_wp, i=1, extra), self%slipped, (0.0_wp, i=1, extra)]
       self%excess = [(0.0_wp, i=1, extra), self%excess, (0.0_wp, i=1, extra)]
       self%capped = [(.false., i=1, extra), self%capped, (.false., i=1, extra)]
+      self%friction_work = [(0.0_wp, i=1, extra), self%friction_work, (0.0_wp, i=1, extra)]
    end subroutine widen
 
    pure integer function contact_nodes(self)

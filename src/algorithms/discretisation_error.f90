@@ -13,6 +13,7 @@ module mfv_discretisation_error
    use mfv_simulation, only: history_none, new_simulation, simulation_type
    use mfv_status, only: MFV_COMPLETE, MFV_INPUT_ERROR, status_outcome
    use mfv_strings, only: to_text
+   use mfv_zone_edges, only: ends_with_body
    implicit none
    private
    public :: estimate_error, coarser_scene, scene_on_mesh, fix_cycles, nearest_mesh, quantities_of, interval_allowances, &
@@ -293,21 +294,15 @@ contains
    pure integer function free_edges(model, contact)
       type(contact_model_type), intent(in) :: model
       logical, intent(in) :: contact(:)
-      real(wp), parameter :: near = 1.0e-6_wp
-      real(wp) :: half, inner, outer
       integer :: i, side, n
 
       n = size(contact)
-      half = 0.5_wp*model%interval()
-      inner = half*(1.0_wp - near)
-      outer = half*(1.0_wp + near)
       free_edges = edges(contact)
       do i = 1, n
          if (.not. contact(i)) cycle
          do side = -1, 1, 2
             if (contact(min(max(i + side, 1), n)) .and. i + side >= 1 .and. i + side <= n) cycle
-            if (model%scene%touchable(model%arc(i) + side*inner) .and. &
-                .not. model%scene%touchable(model%arc(i) + side*outer)) free_edges = free_edges - 1
+            if (ends_with_body(model, i, side)) free_edges = free_edges - 1
          end do
       end do
    end function free_edges

@@ -36,8 +36,8 @@ module mfv_leap
       !> State before each part, with the statuses on the way through it; and fields after it; parts.
       type(contact_state_type) :: state(2)
       type(contact_fields_type) :: after(2)
-      !> What friction dissipates in each part, energy per unit thickness.
-      real(wp) :: dissipated(2) = 0.0_wp
+      !> What friction dissipates in each part, force/length, shape (nodes, 2).
+      real(wp), allocatable :: friction_work(:, :)
       integer :: parts = 0
       !> Whether the statuses were found, or at least the mesh was too short for them.
       logical :: settled = .false., exceeded = .false.
@@ -135,24 +135,26 @@ contains
       integer :: status(size(path%state%status))
 
       start = path%state
+      allocate (leap%friction_work(size(path%state%status), 2), source=0.0_wp)
       call guess_slip(path, segment, done + length)
       call settle_on_mesh(path, segment, done + length, whole, leap%settled, leap%exceeded)
       status = path%state%status
       if (leap%settled) then
          leap%traction = max(maxval(abs(whole%pressure)), maxval(abs(whole%shear)))
-         leap%work = dissipation(path%model, path%state, whole, path%system%noise)
+         leap%friction_work(:, 1) = friction_work(path%model, path%state, whole, path%system%noise)
+         leap%work = path%model%force(leap%friction_work(:, 1))
          if (moves_nothing(path, segment, whole)) then
             leap%parts = 1
             leap%state(1) = path%state
             leap%after(1) = whole
-            leap%dissipated(1) = leap%work
          else
             path%state = start
             call halve(path, segment, done, length, status, leap)
             if (leap%settled) then
                leap%difference = max(maxval(abs(leap%after(2)%pressure - whole%pressure)), &
                                      maxval(abs(leap%after(2)%shear - whole%shear)))
-               leap%work_difference = abs(sum(leap%dissipated) - leap%work)
+               leap%work_difference = abs(path%model%force(leap%friction_work(:, 1)) &
+                                           + path%model%force(leap%friction_work(:, 2)) - leap%work)
             end if
          end if
       end if
@@ -173,13 +175,12 @@ contains
       call settle_on_mesh(path, segment, done + half*length, leap%after(1), leap%settled, leap%exceeded)
       if (.not. leap%settled) return
       leap%state(1) = path%state
-      leap%dissipated(1) = dissipation(path%model, path%state, leap%after(1), path%system%noise)
+      leap%friction_work(:, 1) = friction_work(path%model, path%state, leap%after(1), path%system%noise)
       path%state%fields = leap%after(1)
       call path%set_status(in_contact(path%state%status), status)
       call settle_on_mesh(path, segment, done + length, leap%after(2), leap%settled, leap%exceeded)
       leap%state(2) = path%state
-      if (leap%settled) leap%dissipated(2) = dissipation(path%model, path%state, leap%after(2), &
-                                                              path%system%noise)
+      if (leap%settled) leap%friction_work(:, 2) = friction_work(path%model, path%state, leap%after(2), path%system%noise)
    end subroutine halve
 
    !> A first guess of who slips at the part `part` of the segment: where the tangential load changes, nodes slip with it.
@@ -239,21 +240,22 @@ contains
          path%state%status = leap%state(i)%status
          path%state%stuck_slip = leap%state(i)%stuck_slip
          call path%take_increment(leap%after(i), leap%after(i)%slip() - path%state%fields%slip(), 0.0_wp, &
-                                  dissipated=leap%dissipated(i))
+                                  friction_work=leap%friction_work(:, i))
       end do
    end subroutine take
 
-   !> What friction dissipates on the way from `before`, which has the statuses on the way, to the fields `after`, energy per
-   !> unit thickness. Nodes that slip already at the start do so with tractions from those then to those after: the trapezoid.
+   !> What friction dissipates on the way from `before`, which has the statuses on the way, to the fields `after`, force/length,
+   !> shape (nodes). Nodes that slip already at the start do so with tractions from those then to those after: the trapezoid.
    !> Others begin to slip on the way, half way on the average; and nodes that part do so half way on the average. With
    !> constant pressures this is exact, else of second order in the length of the leap. `noise`: the linear solver's.
-   pure real(wp) function dissipation(model, before, after, noise)
+   pure function friction_work(model, before, after, noise) result(work)
       type(contact_model_type), intent(in) :: model
       type(contact_state_type), intent(in) :: before
       type(contact_fields_type), intent(in) :: after
       real(wp), intent(in) :: noise
       real(wp), parameter :: at_limit = 1.0e-9_wp, noises = 100.0_wp
-      real(wp), dimension(size(before%status)) :: work, slipped, limit
+      real(wp), dimension(size(before%status)) :: work
+      real(wp), dimension(size(before%status)) :: slipped, limit
       logical :: on(size(work))
 
       slipped = after%slip() - before%stuck_slip
@@ -269,7 +271,6 @@ contains
       elsewhere
          work = 0.0_wp
       end where
-      dissipation = model%force(work)
-   end function dissipation
+   end function friction_work
 
 end module mfv_leap

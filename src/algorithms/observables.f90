@@ -3,23 +3,71 @@
 !> are, and dimensionless as in dissertation section 5.2 and eq. 6.5.
 module mfv_observables
    use, intrinsic :: ieee_arithmetic, only: ieee_quiet_nan, ieee_value
-   use mfv_kinds, only: wp
-   use mfv_simulation, only: simulation_type
+   use mfv_contact_state, only: contact_state_type
+   use mfv_cycle, only: cycle_type
+   use mfv_kinds, only: pi, wp
+   use mfv_simulation, only: mark_loading, mark_return, mark_reversal, simulation_type
+   use mfv_zone_edges, only: find_zone_edges, zone_edges_type
    implicit none
    private
    public :: observable_count, observable_name, observable_unit, observable_meaning, observables_of, moment_count, &
              moment_name, tractions_type, observed_tractions, traction_errors
 
    !> Number of observables.
-   integer, parameter :: observable_count = 3
-   character(*), parameter :: names(observable_count) = [character(32) :: 'normal_force', 'cycle_dissipation', &
-                                                         'dissipation_number']
-   character(*), parameter :: units(observable_count) = [character(16) :: 'force', 'energy', '1']
-   character(*), parameter :: meanings(observable_count) = [character(100) :: 'normal force P per unit thickness', &
-                                                            'energy dissipated in the last cycle, per unit thickness', &
-                                                            'cycle_dissipation over P^2 A (eq. 6.5)']
+   integer, parameter :: observable_count = 32
+   character(*), parameter :: names(observable_count) = [character(24) :: &
+                              'normal_force', 'tangential_force', 'approach', &
+                              'shift', 'dissipation', 'contact_half_width', &
+                              'contact_centre', 'stick_ratio', 'peak_pressure', &
+                              'peak_shear', 'cycles', 'cycle_dissipation', &
+                              'first_cycle_dissipation', 'cycle_change', 'force_amplitude', &
+                              'shift_amplitude', 'tangential_stiffness', 'secant_stiffness', &
+                              'loss_factor', 'stick_ratio_loading', 'stick_ratio_reversal', &
+                              'stick_ratio_return', 'patch_shift_loading', 'patch_shift_reversal', &
+                              'patch_shift_return', 'half_width_number', 'pressure_number', &
+                              'shear_number', 'force_number', 'shift_number', &
+                              'dissipation_number', 'stiffness_number']
+   character(*), parameter :: units(observable_count) = [character(8) :: &
+                              'force', 'force', 'length', 'length', 'energy', 'length', 'length', '1', &
+                              'traction', 'traction', '1', 'energy', 'energy', '1', 'force', 'length', &
+                              'traction', 'traction', '1', '1', '1', '1', '1', '1', &
+                              '1', '1', '1', '1', '1', '1', '1', '1']
+   character(*), parameter :: meanings(observable_count) = [character(82) :: &
+                              'normal force P per unit thickness at the end', &
+                              'tangential force Q per unit thickness at the end', &
+                              'approach of the upper body at the end', &
+                              'shift of the upper body to the right at the end', &
+                              'energy dissipated in all, per unit thickness', &
+                              'half the length of the contact at the end, from edges between nodes', &
+                              'middle of the contact at the end, from the pole along the surface', &
+                              'length that sticks over length of the contact at the end, from edges between nodes', &
+                              'largest pressure at the end', &
+                              'largest size of the shear traction at the end', &
+                              'whole cycles of the last step that has any', &
+                              'energy dissipated in the last cycle, per unit thickness', &
+                              'energy dissipated in the first cycle, per unit thickness', &
+                              'largest change of a traction over the last cycle, in parts of the largest traction', &
+                              'half of what the tangential force changes by in the last cycle', &
+                              'half of what the shift changes by in the last cycle', &
+                              'tangential force over shift right after the last reversal', &
+                              'tangential force over shift from end to end of the last cycle', &
+                              'cycle_dissipation over 2 pi times the elastic energy of the secant stiffness', &
+                              'stick ratio where the cycles begin', &
+                              'stick ratio at the far end of the last cycle', &
+                              'stick ratio at the end of the last cycle', &
+                              'middle of the contact over its half-width where the cycles begin', &
+                              'middle of the contact over its half-width at the far end of the last cycle', &
+                              'middle of the contact over its half-width at the end of the last cycle', &
+                              'contact_half_width times the relative curvature', &
+                              'peak_pressure over p0 = 2 P/(pi a), the peak of an ellipse (section 5.2)', &
+                              'peak_shear over p0 = 2 P/(pi a)', &
+                              'force_amplitude over mu P: the lateral force ratio of section 6.4', &
+                              'shift_amplitude times the relative curvature (section 5.2)', &
+                              'cycle_dissipation over P^2 A, A = sum of (kappa + 1)/(4 G) (eq. 6.5)', &
+                              'tangential_stiffness times A']
    !> Moments of the load history whose tractions are compared: where the cycles begin; the far end of the last cycle; its end.
    integer, parameter :: moment_count = 3
+   integer, parameter :: moment_marks(moment_count) = [mark_loading, mark_reversal, mark_return]
    character(*), parameter :: moment_names(moment_count) = [character(8) :: 'loading', 'reversal', 'return']
 
    !> Tractions, force/length^2, on equal intervals, length, symmetric about the pole; shape (nodes), no nodes: not there.
@@ -38,7 +86,8 @@ contains
       name = names(number)
    end function observable_name
 
-   !> Its unit: length, force (per unit thickness: force/length), traction, energy (force, per unit thickness), or 1.
+   !> Its unit: length, force (of P and Q, per unit thickness: force/length), traction (force/length^2; a stiffness has the same),
+   !> energy (per unit thickness: force), or 1.
    pure function observable_unit(number) result(unit)
       integer, intent(in) :: number
       character(len=len_trim(units(number))) :: unit
@@ -68,8 +117,106 @@ contains
       real(wp), intent(out) :: values(observable_count)
 
       values = ieee_value(1.0_wp, ieee_quiet_nan)
-      values(1) = simulation%contact%state%fields%normal_force
+      call add_present(simulation, values)
+      if (simulation%marks(mark_loading)%step == 0 .or. simulation%cycle_count == 0) return
+      associate (cycle => simulation%cycles(simulation%cycle_count))
+         ! Not those of a step before, where the last step with cycles ended in its first one.
+         if (cycle%step == simulation%marks(mark_loading)%step) call add_cycle(simulation, cycle, values)
+      end associate
    end subroutine observables_of
+
+   !> Observables of the present state.
+   subroutine add_present(simulation, values)
+      type(simulation_type), intent(in) :: simulation
+      real(wp), intent(inout) :: values(:)
+      type(zone_edges_type) :: edges
+      real(wp) :: mean_peak
+
+      associate (state => simulation%contact%state, model => simulation%contact%model)
+         call find_zone_edges(model, state, edges)
+         call put(values, 'normal_force', state%fields%normal_force)
+         call put(values, 'tangential_force', state%fields%tangential_force)
+         call put(values, 'approach', state%fields%approach)
+         call put(values, 'shift', state%fields%shift)
+         call put(values, 'dissipation', state%dissipation)
+         call put(values, 'contact_half_width', edges%half_width())
+         call put(values, 'contact_centre', edges%centre())
+         call put(values, 'stick_ratio', edges%stick_ratio())
+         call put(values, 'peak_pressure', maxval(state%fields%pressure))
+         call put(values, 'peak_shear', maxval(abs(state%fields%shear)))
+         call put(values, 'half_width_number', edges%half_width()*model%scene%curvature())
+         if (.not. (state%fields%normal_force > 0.0_wp .and. edges%contact)) return
+         mean_peak = 2.0_wp*state%fields%normal_force/(pi*edges%half_width())
+         call put(values, 'pressure_number', maxval(state%fields%pressure)/mean_peak)
+         call put(values, 'shear_number', maxval(abs(state%fields%shear))/mean_peak)
+      end associate
+   end subroutine add_present
+
+   !> Observables of the last cycle.
+   subroutine add_cycle(simulation, cycle, values)
+      type(simulation_type), intent(in) :: simulation
+      type(cycle_type), intent(in) :: cycle
+      real(wp), intent(inout) :: values(:)
+      type(contact_state_type) :: state
+      type(zone_edges_type) :: loading
+
+      call put(values, 'cycles', real(cycle%number, wp))
+      call put(values, 'cycle_dissipation', cycle%dissipation())
+      call put(values, 'first_cycle_dissipation', cycle%first_dissipation)
+      call put(values, 'cycle_change', cycle%change)
+      call put(values, 'force_amplitude', cycle%force_amplitude())
+      call put(values, 'shift_amplitude', cycle%shift_amplitude())
+      call put(values, 'tangential_stiffness', cycle%return%stiffness_on_leaving)
+      call put(values, 'secant_stiffness', cycle%secant_stiffness())
+      call put(values, 'loss_factor', cycle%loss_factor())
+      state = simulation%padded(simulation%marks(mark_loading))
+      call find_zone_edges(simulation%contact%model, state, loading)
+      call add_moment(loading, 'loading', values)
+      call add_moment(cycle%reversal%edges, 'reversal', values)
+      call add_moment(cycle%return%edges, 'return', values)
+      call add_numbers(simulation, cycle, values)
+   end subroutine add_cycle
+
+   !> Stick ratio and shift of the patch at one moment.
+   subroutine add_moment(edges, name, values)
+      type(zone_edges_type), intent(in) :: edges
+      character(*), intent(in) :: name
+      real(wp), intent(inout) :: values(:)
+
+      if (.not. edges%contact) return
+      call put(values, 'stick_ratio_'//name, edges%stick_ratio())
+      call put(values, 'patch_shift_'//name, edges%centre()/edges%half_width())
+   end subroutine add_moment
+
+   !> The last cycle without dimensions.
+   subroutine add_numbers(simulation, cycle, values)
+      type(simulation_type), intent(in) :: simulation
+      type(cycle_type), intent(in) :: cycle
+      real(wp), intent(inout) :: values(:)
+      real(wp) :: grip, force
+
+      associate (scene => simulation%contact%model%scene)
+         force = cycle%return%normal_force
+         grip = scene%friction%static%largest()*force
+         if (grip > 0.0_wp) call put(values, 'force_number', cycle%force_amplitude()/grip)
+         call put(values, 'shift_number', cycle%shift_amplitude()*scene%curvature())
+         if (.not. scene%modulus() > 0.0_wp) return
+         if (force > 0.0_wp) call put(values, 'dissipation_number', cycle%dissipation()*scene%modulus()/force**2)
+         call put(values, 'stiffness_number', cycle%return%stiffness_on_leaving/scene%modulus())
+      end associate
+   end subroutine add_numbers
+
+   !> Set the observable of a name.
+   subroutine put(values, name, value)
+      real(wp), intent(inout) :: values(:)
+      character(*), intent(in) :: name
+      real(wp), intent(in) :: value
+      integer :: i
+
+      do i = 1, observable_count
+         if (names(i) == name) values(i) = value
+      end do
+   end subroutine put
 
    !> The tractions of a simulation at moment `number`; without nodes where there was no such moment.
    subroutine observed_tractions(simulation, number, tractions)
@@ -77,19 +224,62 @@ contains
       integer, intent(in) :: number
       type(tractions_type), intent(out) :: tractions
 
-      tractions%interval = simulation%contact%model%interval()
-      tractions%pressure = simulation%contact%state%fields%pressure
-      tractions%shear = simulation%contact%state%fields%shear
+      associate (mark => simulation%marks(moment_marks(number)))
+         tractions%interval = simulation%contact%model%interval()
+         if (mark%step == 0) then
+            allocate (tractions%pressure(0), tractions%shear(0))
+         else
+            tractions%pressure = mark%state%fields%pressure
+            tractions%shear = mark%state%fields%shear
+         end if
+      end associate
    end subroutine observed_tractions
 
    !> L1 differences of tractions from those of a reference, relative to the reference (eq. 6.6): of the pressures and of the
-   !> shear tractions. NaN where there are no nodes, or where the intervals differ; the wider mesh has zeros beyond the other's ends.
+   !> shear tractions. NaN where there are no nodes, where the intervals differ or the nodes lie elsewhere, or where the reference
+   !> has no such traction; the narrower mesh has none beyond its ends.
    subroutine traction_errors(tractions, reference, pressure_error, shear_error)
       type(tractions_type), intent(in) :: tractions, reference
       real(wp), intent(out) :: pressure_error, shear_error
+      real(wp), parameter :: equal = 1.0e-9_wp
+      integer :: n, m
 
       pressure_error = ieee_value(1.0_wp, ieee_quiet_nan)
       shear_error = pressure_error
+      n = size(tractions%pressure)
+      m = size(reference%pressure)
+      if (min(n, m) == 0 .or. mod(n - m, 2) /= 0) return
+      if (abs(tractions%interval - reference%interval) > equal*reference%interval) return
+      call find_error(tractions%pressure, reference%pressure, pressure_error)
+      call find_error(tractions%shear, reference%shear, shear_error)
    end subroutine traction_errors
+
+   !> Sum of the sizes of the differences of one traction over that of the reference; both about the same middle. Untouched where
+   !> the reference is zero.
+   subroutine find_error(traction, reference, error)
+      real(wp), intent(in) :: traction(:), reference(:)
+      real(wp), intent(inout) :: error
+      real(wp) :: difference, total
+      integer :: i, here, there, wider, n, m
+
+      n = size(traction)
+      m = size(reference)
+      wider = max(n, m)
+      total = sum(abs(reference))
+      if (.not. total > 0.0_wp) return
+      difference = 0.0_wp
+      do i = 1, wider
+         here = i - (wider - n)/2
+         there = i - (wider - m)/2
+         if (here < 1 .or. here > n) then
+            difference = difference + abs(reference(there))
+         else if (there < 1 .or. there > m) then
+            difference = difference + abs(traction(here))
+         else
+            difference = difference + abs(traction(here) - reference(there))
+         end if
+      end do
+      error = difference/total
+   end subroutine find_error
 
 end module mfv_observables

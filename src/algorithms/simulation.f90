@@ -1,8 +1,10 @@
 !> A scene led through its load history: steps, their reversals, the state at the end of each, and how it all ended.
 module mfv_simulation
+   use, intrinsic :: ieee_arithmetic, only: ieee_quiet_nan, ieee_value
    use mfv_contact_model, only: new_contact_model
    use mfv_contact_state, only: contact_state_type
    use mfv_contact_system, only: load_type
+   use mfv_cycle, only: append_cycle, cycle_type, new_turning_point
    use mfv_error, only: error_type
    use mfv_contact_path, only: contact_path_type, new_contact_path, segment_type
    use mfv_conventional, only: lead_conventionally
@@ -18,9 +20,14 @@ module mfv_simulation
    implicit none
    private
    public :: simulation_type, new_simulation, snapshot_type, history_events, history_steps, history_none
+   public :: mark_count, mark_loading, mark_reversal, mark_return, mark_cycle_start
 
    !> What the load history keeps: a record an event, a record a step end, nothing.
    integer, parameter :: history_events = 1, history_steps = 2, history_none = 3
+
+   !> States that the last step with cycles leaves: where the step began, the far end of its last whole cycle, the end of that,
+   !> and its start.
+   integer, parameter :: mark_loading = 1, mark_reversal = 2, mark_return = 3, mark_cycle_start = 4, mark_count = 4
 
    !> The state at the end of a step, or of one reversal of a step with cycles.
    type :: snapshot_type
@@ -36,6 +43,11 @@ module mfv_simulation
       !> States at the end of every step and reversal so far: the first `snapshot_count` entries are in use.
       type(snapshot_type), allocatable :: snapshots(:)
       integer :: snapshot_count = 0
+      !> Whole cycles so far, the first `cycle_count` entries in use; without a load history the last one only.
+      type(cycle_type), allocatable :: cycles(:)
+      integer :: cycle_count = 0
+      !> See mark_loading and so on; `step` is 0 where there is none.
+      type(snapshot_type) :: marks(mark_count)
       !> How it ended (see mfv_status): MFV_COMPLETE while nothing has gone wrong, and why in words.
       integer :: outcome = MFV_COMPLETE
       character(:), allocatable :: message
@@ -55,9 +67,13 @@ module mfv_simulation
       procedure :: run
       procedure :: advance
       procedure :: padded_state
+      procedure :: padded
       procedure, private :: lead_to
       procedure, private :: take_snapshot
-      procedure, private :: is_steady
+      procedure, private :: begin_cycles
+      procedure, private :: end_of_leg
+      procedure, private :: set_mark
+      procedure, private :: change_since
    end type simulation_type
 
 contains
@@ -113,7 +129,7 @@ contains
       class(observer_type), intent(inout), optional :: observer
       type(load_type) :: there(3), back(3)
       type(error_type), allocatable :: error
-      type(contact_state_type) :: cycle_end
+      type(cycle_type) :: cycle
       logical :: is_last
       integer :: i, cycles
 
@@ -126,6 +142,7 @@ contains
       if (step%rotational_control /= control_keep) call self%contact%begin_rotation()
       back = [(start_of(self%contact%state, there(i), i), i=1, 3)]
       cycles = 0
+      if (step%cycles > 0) call self%begin_cycles(cycle)
       do i = 1, reversals(step)
          call self%lead_to(merge(there, back, mod(i, 2) == 1), step, i, before, segments, observer, error)
          if (allocated(error)) then
@@ -136,10 +153,9 @@ contains
          end if
          cycles = i/2
          is_last = i == reversals(step)
-         if (mod(i, 2) == 0 .and. step%steady_tolerance > 0.0_wp) then
-            if (i > 2 .and. .not. is_last) is_last = self%is_steady(cycle_end, step%steady_tolerance)
-            cycle_end = self%contact%state
-         end if
+         if (step%cycles > 0) call self%end_of_leg(i, cycle)
+         if (mod(i, 2) == 0 .and. i > 2 .and. step%steady_tolerance > 0.0_wp) &
+            is_last = is_last .or. cycle%change <= step%steady_tolerance
          if (is_last .or. self%keep_reversals) call self%take_snapshot(self%steps_done + 1, i)
          if (is_last) exit
       end do
@@ -149,20 +165,69 @@ contains
                                                to_text(step%cycles)//' cycles'
    end subroutine advance
 
-   !> Whether the state is what it was at `before`, to within a part of the largest traction; a mesh that has grown is none.
-   logical function is_steady(self, before, tolerance)
+   !> The cycles of a step begin from the present state.
+   subroutine begin_cycles(self, cycle)
+      class(simulation_type), intent(inout) :: self
+      type(cycle_type), intent(out) :: cycle
+      integer :: i
+
+      do i = 1, mark_count
+         self%marks(i)%step = 0
+      end do
+      cycle%step = self%steps_done + 1
+      cycle%return = new_turning_point(self%contact%model, self%contact%state, ieee_value(1.0_wp, ieee_quiet_nan))
+      call self%set_mark(mark_loading, 0)
+      call self%set_mark(mark_return, 0)
+   end subroutine begin_cycles
+
+   !> Leg `leg` of the cycles is done: there where it is odd, back where it is even. Keep the states and, after a whole cycle,
+   !> the cycle.
+   subroutine end_of_leg(self, leg, cycle)
+      class(simulation_type), intent(inout) :: self
+      integer, intent(in) :: leg
+      type(cycle_type), intent(inout) :: cycle
+      type(contact_state_type) :: before
+
+      if (mod(leg, 2) == 1) then
+         cycle%start = cycle%return
+         self%marks(mark_cycle_start) = self%marks(mark_return)
+         cycle%reversal = new_turning_point(self%contact%model, self%contact%state, self%contact%first_stiffness)
+         call self%set_mark(mark_reversal, leg)
+         return
+      end if
+      cycle%number = leg/2
+      cycle%return = new_turning_point(self%contact%model, self%contact%state, self%contact%first_stiffness)
+      before = self%padded(self%marks(mark_cycle_start))
+      cycle%change = self%change_since(before)
+      call self%set_mark(mark_return, leg)
+      if (cycle%number == 1) cycle%first_dissipation = cycle%dissipation()
+      call append_cycle(self%cycles, self%cycle_count, cycle, self%keep_history == history_none)
+   end subroutine end_of_leg
+
+   !> Largest change of a traction since the state `before`, on the same mesh, in parts of the largest traction so far.
+   pure real(wp) function change_since(self, before)
       class(simulation_type), intent(in) :: self
       type(contact_state_type), intent(in) :: before
-      real(wp), intent(in) :: tolerance
+      real(wp) :: scale
 
-      associate (now => self%contact%state)
-         is_steady = size(now%status) == size(before%status)
-         if (.not. is_steady) return
-         is_steady = max(maxval(abs(now%fields%pressure - before%fields%pressure)), &
-                         maxval(abs(now%fields%shear - before%fields%shear))) &
-                     <= tolerance*self%contact%certificate%traction_scale()
+      change_since = 0.0_wp
+      scale = self%contact%certificate%traction_scale()
+      associate (now => self%contact%state%fields, then => before%fields)
+         if (scale > 0.0_wp) change_since = max(maxval(abs(now%pressure - then%pressure)), &
+                                                maxval(abs(now%shear - then%shear)))/scale
       end associate
-   end function is_steady
+   end function change_since
+
+   !> Keep the present state as mark `mark`.
+   subroutine set_mark(self, mark, reversal)
+      class(simulation_type), intent(inout) :: self
+      integer, intent(in) :: mark, reversal
+
+      self%marks(mark)%state = self%contact%state
+      self%marks(mark)%step = self%steps_done + 1
+      self%marks(mark)%reversal = reversal
+      self%marks(mark)%added = self%contact%model%added
+   end subroutine set_mark
 
    !> The load that a step leads to: `value` is its target; an absent one stays as it is.
    pure type(load_type) function target_of(load, control, value)
@@ -208,6 +273,7 @@ contains
       segment%step = self%steps_done + 1
       if (present(before)) segment%number = before + reversal
       if (present(segments)) segment%segments = segments
+      call self%contact%await_increment()
       if (self%contact%model%scene%method%algorithm == algorithm_conventional) then
          call lead_conventionally(self%contact, segment, observer, error)
       else if (self%contact%model%scene%method%stepping == stepping_leap) then
@@ -246,16 +312,25 @@ contains
       self%snapshots(self%snapshot_count) = snapshot_type(self%contact%state, step, reversal, self%contact%model%added)
    end subroutine take_snapshot
 
-   !> The state of snapshot `number` on the mesh as it is now: when the mesh has grown since, with its new nodes.
+   !> The state of snapshot `number`, see padded.
    function padded_state(self, number) result(state)
       class(simulation_type), intent(in) :: self
       integer, intent(in) :: number
       type(contact_state_type) :: state
 
-      state = self%snapshots(number)%state
-      if (self%contact%model%added == self%snapshots(number)%added) return
-      call state%widen(self%contact%model%added - self%snapshots(number)%added)
-      call self%contact%model%displace(state%fields)
+      state = self%padded(self%snapshots(number))
    end function padded_state
+
+   !> The state of a snapshot on the mesh as it is now: when the mesh has grown since, with its new nodes.
+   function padded(self, snapshot) result(state)
+      class(simulation_type), intent(in) :: self
+      type(snapshot_type), intent(in) :: snapshot
+      type(contact_state_type) :: state
+
+      state = snapshot%state
+      if (self%contact%model%added == snapshot%added) return
+      call state%widen(self%contact%model%added - snapshot%added)
+      call self%contact%model%displace(state%fields)
+   end function padded
 
 end module mfv_simulation

@@ -46,7 +46,8 @@ contains
       if (part > 0.0_wp) call settle_and_grow(path, segment, part, fields, settled)
       if (.not. settled) part = 0.0_wp
       if (settled) then
-         call path%take_increment(fields, fields%slip() - path%state%fields%slip(), 0.0_wp, dissipated=0.0_wp)
+         call path%take_increment(fields, fields%slip() - path%state%fields%slip(), 0.0_wp, &
+                                  friction_work=0.0_wp*fields%shear)
          call close_leap(path, segment, part, observer, error)
          if (allocated(error) .or. .not. part < 1.0_wp) return
       end if

@@ -129,6 +129,9 @@ contains
                         'target of the tangential force Q, positive to the right')
       call add_real_key(keys, 'step', 'shift', 'length', &
                         'target of the shift of the upper body to the right, in place of tangential_force')
+      call add_real_key(keys, 'step', 'force_ratio', '', 'target Q/(mu P) in place of tangential_force: mu the largest '// &
+                        'coefficient of &friction, P the normal_force that this step or the last one before it names', &
+                        lower=-1.0e6_wp, upper=1.0e6_wp)
       call add_real_key(keys, 'step', 'moment', 'force', 'target of the moment M about the centre of the upper disk or '// &
                         'hole, else of the lower one, else about the pole; counterclockwise')
       call add_real_key(keys, 'step', 'rotation', 'radians', &

@@ -207,6 +207,7 @@ contains
             call read_target(reader, i, 'normal_force', 'approach', step%normal_control, step%normal_target, error)
             if (allocated(error)) return
             call read_target(reader, i, 'tangential_force', 'shift', step%tangential_control, step%tangential_target, error)
+            if (.not. allocated(error)) call read_force_ratio(reader, i, scene, error)
             if (allocated(error)) return
             call read_target(reader, i, 'moment', 'rotation', step%rotational_control, step%rotational_target, error)
             if (allocated(error)) return
@@ -220,12 +221,41 @@ contains
             end if
             if (all([step%normal_control, step%tangential_control, step%rotational_control] == control_keep)) then
                call fail(reader, line_of(reader, 'step', i), '&step '//to_text(i)//': needs a target: normal_force or '// &
-                         'approach, tangential_force or shift, moment or rotation', error)
+                         'approach, tangential_force, force_ratio or shift, moment or rotation', error)
                return
             end if
          end associate
       end do
    end subroutine read_steps
+
+   !> The target of step `number` as a part of what friction can carry; the steps up to this one have their normal targets.
+   subroutine read_force_ratio(reader, number, scene, error)
+      type(reader_type), intent(in) :: reader
+      integer, intent(in) :: number
+      type(scene_type), intent(inout) :: scene
+      type(error_type), allocatable, intent(inout) :: error
+      integer :: last
+
+      if (.not. reader%has('step', number, 'force_ratio')) return
+      ! A step with cycles ends where it began.
+      last = findloc(scene%steps(:number)%normal_control /= control_keep .and. scene%steps(:number)%cycles == 0, .true., &
+                     dim=1, back=.true.)
+      if (scene%steps(number)%tangential_control /= control_keep) then
+         call reader%complain('step', number, 'force_ratio', 'tangential_force or shift is there too; a step controls one of '// &
+                              'them', error)
+      else if (.not. scene%friction%acts()) then
+         call reader%complain('step', number, 'force_ratio', "needs a &friction law with a coefficient above 0", error)
+      else if (last == 0) then
+         call reader%complain('step', number, 'force_ratio', 'needs a normal_force, in this step or one before it', error)
+      else if (scene%steps(last)%normal_control /= control_force) then
+         call reader%complain('step', number, 'force_ratio', 'needs a normal_force, but step '//to_text(last)// &
+                              ' names an approach', error)
+      else
+         scene%steps(number)%tangential_control = control_force
+         scene%steps(number)%tangential_target = reader%real_value('step', number, 'force_ratio') &
+                                                 *scene%friction%static%largest()*scene%steps(last)%normal_target
+      end if
+   end subroutine read_force_ratio
 
    !> The target of one direction of step `number`: a force or a displacement.
    subroutine read_target(reader, number, force, displacement, control, target, error)

@@ -1,7 +1,7 @@
 !> The one catalogue of what a result consists of: names, meanings, units and values, by group. The result file, the C
 !> API and through it Python all take their names from here.
 module mfv_result_fields
-   use, intrinsic :: ieee_arithmetic, only: ieee_positive_inf, ieee_quiet_nan, ieee_value
+   use, intrinsic :: ieee_arithmetic, only: ieee_is_nan, ieee_positive_inf, ieee_quiet_nan, ieee_value
    use mfv_body, only: body_type, shape_names
    use mfv_body_pair, only: part_lower, part_upper
    use mfv_case, only: case_type
@@ -10,21 +10,25 @@ module mfv_result_fields
    use mfv_compliance, only: block_up, block_ut, block_wp, block_wt
    use mfv_contact_state, only: contact_state_type
    use mfv_error_bar
+   use mfv_cycle, only: cycle_type
    use mfv_kinds, only: wp
    use mfv_node_status, only: event_names, in_contact, node_status_names
-   use mfv_simulation, only: history_none, simulation_type
+   use mfv_observables, only: observable_count, observable_meaning, observable_name, observable_unit, observables_of
+   use mfv_simulation, only: history_none, mark_cycle_start, mark_return, simulation_type
    use mfv_status, only: status_outcome
    use mfv_strings, only: add_text, list_of_words, string_type, to_text
    use mfv_text_file, only: find_working_directory
    use mfv_version, only: library_version
+   use mfv_zone_edges, only: find_zone_edges, zone_edges_type
    implicit none
    private
    public :: field_type, result_groups, group_fields, field_named, step_group, along_nodes, along_records, &
-             along_companions, along_nothing
-   public :: result_attributes, labelled_unit
+             along_companions, along_cycles, along_nothing, scale_count
+   public :: result_attributes, units_type, name_units, unit_label, labelled_unit
 
    !> What the values of a field run along.
-   integer, parameter :: along_nothing = 0, along_nodes = 1, along_records = 2, along_companions = 3
+   integer, parameter :: along_nothing = 0, along_nodes = 1, along_records = 2, along_companions = 3, along_cycles = 4, &
+                         scale_count = 4
 
    !> One named quantity: real `values` or whole numbers `whole`, the other not allocated.
    type :: field_type
@@ -63,6 +67,8 @@ contains
 
       groups = list_of_words('mesh scene compliance state summary certificate')
       if (simulation%keep_history /= history_none) call add_text(groups, 'history')
+      call add_text(groups, 'observables')
+      if (simulation%cycle_count > 0) call add_text(groups, 'cycles')
       call add_text(groups, 'reference')
       if (has_estimate(simulation)) call add_text(groups, 'error_estimate')
       do i = 1, simulation%snapshot_count
@@ -96,7 +102,7 @@ contains
       type(units_type) :: units
       integer :: number, code
 
-      call name_units(case, units)
+      call name_units(case%length_unit, case%force_unit, units)
       allocate (fields(0))
       select case (group)
       case ('scene')
@@ -111,6 +117,10 @@ contains
          call add_summary(fields, simulation, simulation%contact%state, units)
       case ('certificate')
          call add_certificate(fields, simulation)
+      case ('observables')
+         call add_observables(fields, simulation, units)
+      case ('cycles')
+         if (simulation%cycle_count > 0) call add_cycles(fields, simulation, units)
       case ('reference')
          call add_reference(fields, simulation, units)
       case ('error_estimate')
@@ -329,6 +339,8 @@ contains
          call add_real(fields, 'slip', modelled(simulation, state%fields%slip()), along_nodes, units%length, &
                        'slip s = u - U of the lower surface against the upper body (not modelled without friction)')
          call add_whole(fields, 'status', state%status, along_nodes, 'contact status of the nodes', node_status_names)
+         call add_real(fields, 'friction_work', state%friction_work, along_nodes, units%force, &
+                       'energy dissipated so far per unit of surface')
       end associate
    end subroutine add_state
 
@@ -418,7 +430,108 @@ contains
          call add_scalar(fields, 'stick_ratio', real(state%stick_nodes(), wp)/max(state%contact_nodes(), 1), '1', &
                          'stuck nodes over nodes in contact')
       end associate
+      call add_edges(fields, simulation, state, units)
    end subroutine add_loads
+
+   !> Edges between nodes.
+   subroutine add_edges(fields, simulation, state, units)
+      type(field_type), allocatable, intent(inout) :: fields(:)
+      type(simulation_type), intent(in) :: simulation
+      type(contact_state_type), intent(in) :: state
+      type(units_type), intent(in) :: units
+      type(zone_edges_type) :: edges
+      character(*), parameter :: where_from = ', between nodes, along the surface from the pole'
+
+      call find_zone_edges(simulation%contact%model, state, edges)
+      if (.not. edges%contact) return
+      call add_scalar(fields, 'contact_left', edges%contact_left, units%length, 'left edge of the contact'//where_from)
+      call add_scalar(fields, 'contact_right', edges%contact_right, units%length, 'right edge of the contact'//where_from)
+      call add_scalar(fields, 'edge_half_width', edges%half_width(), units%length, 'half the length of the contact from its '// &
+                      'edges between nodes')
+      if (.not. simulation%contact%model%tangential) return
+      if (edges%stick) then
+         call add_scalar(fields, 'stick_left', edges%stick_left, units%length, 'left edge of what sticks'//where_from)
+         call add_scalar(fields, 'stick_right', edges%stick_right, units%length, 'right edge of what sticks'//where_from)
+      end if
+      call add_scalar(fields, 'edge_stick_ratio', edges%stick_ratio(), '1', 'length that sticks over length of the contact, '// &
+                      'from edges between nodes')
+   end subroutine add_edges
+
+   !> What an engineer reads off the load history, where it can be told.
+   subroutine add_observables(fields, simulation, units)
+      type(field_type), allocatable, intent(inout) :: fields(:)
+      type(simulation_type), intent(in) :: simulation
+      type(units_type), intent(in) :: units
+      real(wp) :: values(observable_count)
+      integer :: i
+
+      call observables_of(simulation, values)
+      do i = 1, observable_count
+         if (ieee_is_nan(values(i))) cycle
+         call add_scalar(fields, observable_name(i), values(i), trim(unit_label(units, observable_unit(i))), &
+                         observable_meaning(i))
+      end do
+   end subroutine add_observables
+
+   !> Label of a unit that is named by its sort: length, force, traction, energy or 1; padded with blanks.
+   pure function unit_label(units, sort) result(label)
+      type(units_type), intent(in) :: units
+      character(*), intent(in) :: sort
+      character(len=max(len(units%length), len(units%force), len(units%traction), len(units%energy), 1)) :: label
+
+      select case (sort)
+      case ('length')
+         label = units%length
+      case ('force')
+         label = units%force
+      case ('traction')
+         label = units%traction
+      case ('energy')
+         label = units%energy
+      case default
+         label = '1'
+      end select
+   end function unit_label
+
+   !> The cycles, one by one; and where the last one dissipated.
+   subroutine add_cycles(fields, simulation, units)
+      type(field_type), allocatable, intent(inout) :: fields(:)
+      type(simulation_type), intent(in) :: simulation
+      type(units_type), intent(in) :: units
+      integer, parameter :: along = along_cycles
+      type(cycle_type), allocatable :: c(:)
+      type(contact_state_type) :: before, after
+      integer :: i, first
+
+      c = simulation%cycles(:simulation%cycle_count)
+      first = merge(1, c(1)%number, simulation%keep_history /= history_none)
+      call add_whole(fields, 'cycle', [(first + i - 1, i=1, size(c))], along, 'number of the cycle')
+      call add_whole(fields, 'step', c%step, along, 'number of its step')
+      call add_real(fields, 'dissipation', c%dissipation(), along, units%energy, 'energy dissipated in the cycle per unit '// &
+                    'thickness')
+      call add_real(fields, 'change', c%change, along, '1', 'largest change of a traction over the cycle, in parts of the '// &
+                    'largest traction')
+      call add_real(fields, 'force_amplitude', c%force_amplitude(), along, units%force, 'half of what the tangential force '// &
+                    'changes by')
+      call add_real(fields, 'shift_amplitude', c%shift_amplitude(), along, units%length, 'half of what the shift changes by')
+      call add_real(fields, 'tangential_stiffness', c%return%stiffness_on_leaving, along, units%traction, &
+                    'tangential force over shift right after the reversal, where all sticks')
+      call add_real(fields, 'secant_stiffness', c%secant_stiffness(), along, units%traction, 'tangential force over shift '// &
+                    'from end to end')
+      call add_real(fields, 'loss_factor', c%loss_factor(), along, '1', 'dissipation over 2 pi times the elastic energy of '// &
+                    'the secant stiffness')
+      call add_real(fields, 'stick_ratio_reversal', c%reversal%edges%stick_ratio(), along, '1', 'stick ratio at the far end')
+      call add_real(fields, 'stick_ratio_return', c%return%edges%stick_ratio(), along, '1', 'stick ratio at the end')
+      call add_real(fields, 'contact_centre_reversal', c%reversal%edges%centre(), along, units%length, 'middle of the '// &
+                    'contact at the far end, along the surface from the pole')
+      call add_real(fields, 'contact_centre_return', c%return%edges%centre(), along, units%length, 'middle of the contact at '// &
+                    'the end, along the surface from the pole')
+      if (simulation%marks(mark_cycle_start)%step == 0 .or. simulation%marks(mark_return)%reversal == 0) return
+      before = simulation%padded(simulation%marks(mark_cycle_start))
+      after = simulation%padded(simulation%marks(mark_return))
+      call add_real(fields, 'friction_work', after%friction_work - before%friction_work, along_nodes, units%force, &
+                    'energy that the last cycle dissipated per unit of surface')
+   end subroutine add_cycles
 
    subroutine add_summary(fields, simulation, state, units)
       type(field_type), allocatable, intent(inout) :: fields(:)
@@ -516,6 +629,7 @@ contains
          call add_real(fields, 'tangential_force', r%tangential_force, along, units%force, tangential_force_meaning)
          call add_real(fields, 'approach', r%approach, along, units%length, approach_meaning)
          call add_real(fields, 'shift', r%shift, along, units%length, shift_meaning)
+         call add_nonlinear_shift(fields, simulation, units)
          if (simulation%contact%model%rotational) then
             call add_real(fields, 'moment', r%moment, along, units%energy, moment_meaning)
             call add_real(fields, 'rotation', r%rotation, along, '1', rotation_meaning)
@@ -532,14 +646,32 @@ contains
       end associate
    end subroutine add_history
 
-   subroutine name_units(case, units)
-      type(case_type), intent(in) :: case
+   !> The non-linear part of the hysteresis loop, as in dissertation Fig. 6.2b: the linear part, that of a contact where all
+   !> sticks, is taken out. Where there are cycles whose stiffness is known.
+   subroutine add_nonlinear_shift(fields, simulation, units)
+      type(field_type), allocatable, intent(inout) :: fields(:)
+      type(simulation_type), intent(in) :: simulation
+      type(units_type), intent(in) :: units
+      real(wp) :: stiffness
+
+      if (simulation%cycle_count == 0) return
+      stiffness = simulation%cycles(simulation%cycle_count)%return%stiffness_on_leaving
+      if (.not. abs(stiffness) > 0.0_wp) return
+      associate (r => simulation%contact%history%record(:simulation%contact%history%records))
+         call add_real(fields, 'nonlinear_shift', r%shift - r%tangential_force/stiffness, along_records, units%length, &
+                       'shift less tangential_force over the tangential stiffness right after the last reversal')
+      end associate
+   end subroutine add_nonlinear_shift
+
+   !> Labels of units from the user's names of two.
+   subroutine name_units(length_unit, force_unit, units)
+      character(*), intent(in) :: length_unit, force_unit
       type(units_type), intent(out) :: units
 
-      units%length = case%length_unit
-      units%force = case%force_unit//'/'//case%length_unit
-      units%traction = case%force_unit//'/'//case%length_unit//'^2'
-      units%energy = case%force_unit
+      units%length = length_unit
+      units%force = force_unit//'/'//length_unit
+      units%traction = force_unit//'/'//length_unit//'^2'
+      units%energy = force_unit
    end subroutine name_units
 
    !> A unit in terms of length and force, such as force/length^2, with the user's names for those two.

@@ -76,14 +76,15 @@ contains
       end do
    end subroutine write_groups
 
-   !> The fields that are dimension scales: x of the nodes, record of the load history, intervals of the coarser meshes.
+   !> The fields that are dimension scales: x of the nodes, record of the load history, intervals of the coarser meshes, number of
+   !> the cycle.
    subroutine find_scales(case, simulation, scales)
       type(case_type), intent(in) :: case
       type(simulation_type), intent(in) :: simulation
       type(field_type), allocatable, intent(out) :: scales(:)
       type(field_type), allocatable :: fields(:)
 
-      allocate (scales(3))
+      allocate (scales(scale_count))
       call group_fields(case, simulation, 'mesh', fields)
       scales(along_nodes) = fields(field_named(fields, 'x'))
       call group_fields(case, simulation, 'history', fields)
@@ -92,6 +93,9 @@ contains
       call group_fields(case, simulation, 'error_estimate', fields)
       scales(along_companions)%name = ''
       if (size(fields) > 0) scales(along_companions) = fields(field_named(fields, 'companion_nodes'))
+      call group_fields(case, simulation, 'cycles', fields)
+      scales(along_cycles)%name = ''
+      if (size(fields) > 0) scales(along_cycles) = fields(field_named(fields, 'cycle'))
    end subroutine find_scales
 
    !> One group, with dimension scales of its own: a group can be read alone, and no scale has to list all the datasets of a

@@ -1,7 +1,7 @@
 !> The columns of a sweep's table: the one list of their names, units and meanings, in order.
 module mfv_sweep_columns
    use mfv_observables
-   use mfv_result_fields, only: labelled_unit
+   use mfv_result_fields, only: labelled_unit, name_units, unit_label, units_type
    use mfv_sweep_plan
    implicit none
    private
@@ -28,8 +28,10 @@ contains
    subroutine list_columns(sweep, columns)
       type(sweep_type), intent(in) :: sweep
       type(column_type), allocatable, intent(out) :: columns(:)
+      type(units_type) :: units
       integer :: i
 
+      call name_units(sweep%length_unit, sweep%force_unit, units)
       allocate (columns(0))
       call add(columns, 'case', column_whole, '1', 'number of the case', from_case)
       call add(columns, 'base', column_text, '1', 'base case', from_base)
@@ -49,28 +51,10 @@ contains
       call add(columns, 'largest_residual', column_real, '1', 'largest relative residual of the certificate', from_residual)
       do i = 1, observable_count
          call add(columns, observable_name(i), column_real, &
-                  labelled_unit(trim(unit_of(observable_unit(i))), sweep%length_unit, sweep%force_unit), &
-                  observable_meaning(i), from_observable, i)
+                  trim(unit_label(units, observable_unit(i))), observable_meaning(i), from_observable, i)
       end do
       if (sweep%has_reference) call add_errors(columns)
    end subroutine list_columns
-
-   !> A unit of mfv_observables in terms of length and force, per unit thickness; padded with blanks.
-   pure function unit_of(symbol) result(unit)
-      character(*), intent(in) :: symbol
-      character(len=max(len(symbol), 16)) :: unit
-
-      select case (symbol)
-      case ('force')
-         unit = 'force/length'
-      case ('traction', 'stiffness')
-         unit = 'force/length^2'
-      case ('energy')
-         unit = 'force'
-      case default
-         unit = symbol
-      end select
-   end function unit_of
 
    !> Differences from the case of full coupling.
    subroutine add_errors(columns)

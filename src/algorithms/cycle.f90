@@ -1,0 +1,117 @@
+!> What is kept of a cycle of the load history: its three turning points, and what it did.
+module mfv_cycle
+   use, intrinsic :: ieee_arithmetic, only: ieee_quiet_nan, ieee_value
+   use mfv_contact_model, only: contact_model_type
+   use mfv_contact_state, only: contact_state_type
+   use mfv_kinds, only: pi, wp
+   use mfv_zone_edges, only: find_zone_edges, zone_edges_type
+   implicit none
+   private
+   public :: cycle_type, turning_point_type, new_turning_point, append_cycle
+
+   !> Where the load turns.
+   type :: turning_point_type
+      real(wp) :: normal_force = 0.0_wp, tangential_force = 0.0_wp, approach = 0.0_wp, shift = 0.0_wp
+      real(wp) :: dissipation = 0.0_wp
+      type(zone_edges_type) :: edges
+      !> Tangential force over shift on the first event increment of the way to it, that is right after the turning point before,
+      !> where all sticks: tangential stiffness, force/length^2. NaN where no such increment was made.
+      real(wp) :: stiffness_on_leaving = 0.0_wp
+   end type turning_point_type
+
+   type :: cycle_type
+      !> Step of the load history, and number in it.
+      integer :: step = 0, number = 0
+      !> Where it began, its far end, and where it ended.
+      type(turning_point_type) :: start, reversal, return
+      !> Largest change of a traction from its start to its end, in parts of the largest traction so far.
+      real(wp) :: change = 0.0_wp
+      !> Energy that the first cycle of this step dissipated, per unit thickness: force.
+      real(wp) :: first_dissipation = 0.0_wp
+   contains
+      procedure :: dissipation
+      procedure :: force_amplitude
+      procedure :: shift_amplitude
+      procedure :: secant_stiffness
+      procedure :: loss_factor
+   end type cycle_type
+
+contains
+
+   !> The turning point that a state is. `stiffness`: see stiffness_on_leaving.
+   function new_turning_point(model, state, stiffness) result(point)
+      type(contact_model_type), intent(in) :: model
+      type(contact_state_type), intent(in) :: state
+      real(wp), intent(in) :: stiffness
+      type(turning_point_type) :: point
+
+      point%normal_force = state%fields%normal_force
+      point%tangential_force = state%fields%tangential_force
+      point%approach = state%fields%approach
+      point%shift = state%fields%shift
+      point%dissipation = state%dissipation
+      point%stiffness_on_leaving = stiffness
+      call find_zone_edges(model, state, point%edges)
+   end function new_turning_point
+
+   !> Energy that the cycle dissipated, per unit thickness: force.
+   elemental real(wp) function dissipation(self)
+      class(cycle_type), intent(in) :: self
+
+      dissipation = self%return%dissipation - self%start%dissipation
+   end function dissipation
+
+   !> Half of what the tangential force changes by, force/length.
+   elemental real(wp) function force_amplitude(self)
+      class(cycle_type), intent(in) :: self
+
+      force_amplitude = 0.5_wp*abs(self%return%tangential_force - self%reversal%tangential_force)
+   end function force_amplitude
+
+   !> Half of what the shift changes by, length.
+   elemental real(wp) function shift_amplitude(self)
+      class(cycle_type), intent(in) :: self
+
+      shift_amplitude = 0.5_wp*abs(self%return%shift - self%reversal%shift)
+   end function shift_amplitude
+
+   !> Tangential force over shift from end to end, force/length^2; NaN where the shift does not change.
+   elemental real(wp) function secant_stiffness(self)
+      class(cycle_type), intent(in) :: self
+
+      secant_stiffness = ieee_value(1.0_wp, ieee_quiet_nan)
+      if (self%shift_amplitude() > 0.0_wp) secant_stiffness = self%force_amplitude()/self%shift_amplitude()
+   end function secant_stiffness
+
+   !> Loss factor: dissipation over 2 pi times the energy force_amplitude shift_amplitude/2 of the linear spring that has the
+   !> secant stiffness. NaN where that is none.
+   elemental real(wp) function loss_factor(self)
+      class(cycle_type), intent(in) :: self
+      real(wp) :: energy
+
+      loss_factor = ieee_value(1.0_wp, ieee_quiet_nan)
+      energy = 0.5_wp*self%force_amplitude()*self%shift_amplitude()
+      if (energy > 0.0_wp) loss_factor = self%dissipation()/(2.0_wp*pi*energy)
+   end function loss_factor
+
+   !> Append a cycle to the first `number` ones of a list that doubles where it is full; where `last_only`, it takes their place.
+   subroutine append_cycle(cycles, number, cycle, last_only)
+      type(cycle_type), allocatable, intent(inout) :: cycles(:)
+      integer, intent(inout) :: number
+      type(cycle_type), intent(in) :: cycle
+      logical, intent(in) :: last_only
+      type(cycle_type), allocatable :: longer(:)
+      integer, parameter :: first_capacity = 8
+
+      if (.not. allocated(cycles)) allocate (cycles(first_capacity))
+      if (last_only) number = 0
+      if (number == size(cycles)) then
+         allocate (longer(2*number))
+         longer(:number) = cycles
+         call move_alloc(longer, cycles)
+      end if
+      number = number + 1
+      cycles(number) = cycle
+   end subroutine append_cycle
+
+end module mfv_cycle
