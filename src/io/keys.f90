@@ -97,7 +97,8 @@ contains
       call add_real_key(keys, group, name, unit, meaning, lower=0.0_wp, lower_open=.true.)
    end subroutine add_positive_key
 
-   !> Append a key. Element by element: gfortran leaks the components of arrays that a constructor joins.
+   !> Append a key. By move_alloc: a list of keys is made for every case that is read, and gfortran leaks the components of
+   !> arrays that a constructor joins.
    subroutine add_key(keys, group, name, kind, default, unit, meaning)
       type(key_type), allocatable, intent(inout) :: keys(:)
       character(*), intent(in) :: group, name, default, unit, meaning
@@ -108,7 +109,7 @@ contains
       n = size(keys)
       allocate (longer(n + 1))
       do i = 1, n
-         longer(i) = keys(i)
+         call move_key(keys(i), longer(i))
       end do
       longer(n + 1)%group = group
       longer(n + 1)%name = name
@@ -164,6 +165,23 @@ contains
          if (i == size(words)) text = text//' or '//quoted(words(i)%text)
       end do
    end subroutine join_alternatives
+
+   subroutine move_key(from, to)
+      type(key_type), intent(inout) :: from
+      type(key_type), intent(out) :: to
+
+      call move_alloc(from%group, to%group)
+      call move_alloc(from%name, to%name)
+      call move_alloc(from%default, to%default)
+      call move_alloc(from%choices, to%choices)
+      call move_alloc(from%unit, to%unit)
+      call move_alloc(from%meaning, to%meaning)
+      to%kind = from%kind
+      to%lower = from%lower
+      to%upper = from%upper
+      to%lower_open = from%lower_open
+      to%is_list = from%is_list
+   end subroutine move_key
 
    !> Names of the groups.
    pure function groups(self)
