@@ -1,4 +1,5 @@
-!> The processes of a parallel run, by MPI. One thread of each process calls this module, the one that started it.
+!> The processes of a parallel run, by MPI. One thread of each process calls this module, the one that started it. A process
+!> that no launcher has started stays alone, without MPI: some implementations take seconds to find out that there is nobody else.
 module mfv_ranks
    use, intrinsic :: iso_fortran_env, only: int8
    use mpi_f08
@@ -9,6 +10,12 @@ module mfv_ranks
    !> Whether there can be several processes.
    logical, parameter :: has_ranks = .true.
    integer, parameter :: bytes_of_number = storage_size(1)/8
+   !> Variables of the environment that launchers set: Open MPI, PMIx, PMI (MPICH, Intel MPI), MVAPICH, PALS, Slurm.
+   character(*), parameter :: launcher_variables(7) = [character(24) :: 'OMPI_COMM_WORLD_SIZE', 'PMIX_RANK', 'PMI_RANK', &
+                                                       'PMI_SIZE', 'MV2_COMM_WORLD_SIZE', 'PALS_RANKID', 'SLURM_PROCID']
+
+   !> Whether MPI is in use; a program's state, not the library's.
+   logical :: joined = .false.
 
    type :: message_type
       !> Rank of the sender, what kind of message, a number and bytes that go with it.
@@ -23,21 +30,36 @@ contains
       integer, intent(out) :: rank, ranks
       integer :: provided
 
+      rank = 0
+      ranks = 1
+      joined = has_launcher()
+      if (.not. joined) return
       call MPI_Init_thread(MPI_THREAD_FUNNELED, provided)
       call MPI_Comm_rank(MPI_COMM_WORLD, rank)
       call MPI_Comm_size(MPI_COMM_WORLD, ranks)
    end subroutine start_ranks
 
+   !> Whether a launcher has started this process.
+   logical function has_launcher()
+      integer :: i, code
+
+      has_launcher = .false.
+      do i = 1, size(launcher_variables)
+         call get_environment_variable(trim(launcher_variables(i)), status=code)
+         has_launcher = has_launcher .or. code /= 1
+      end do
+   end function has_launcher
+
    !> Leave the other processes.
    subroutine end_ranks()
-      call MPI_Finalize()
+      if (joined) call MPI_Finalize()
    end subroutine end_ranks
 
    !> Give a number of rank 0 to all.
    subroutine share_number(number)
       integer, intent(inout) :: number
 
-      call MPI_Bcast(number, 1, MPI_INTEGER, 0, MPI_COMM_WORLD)
+      if (joined) call MPI_Bcast(number, 1, MPI_INTEGER, 0, MPI_COMM_WORLD)
    end subroutine share_number
 
    !> Send a message.
@@ -59,6 +81,8 @@ contains
       integer(int8), allocatable :: buffer(:)
       integer :: length
 
+      is_there = .false.
+      if (.not. joined) return
       call MPI_Iprobe(MPI_ANY_SOURCE, MPI_ANY_TAG, MPI_COMM_WORLD, is_there, status)
       if (.not. is_there) return
       call MPI_Get_count(status, MPI_BYTE, length)

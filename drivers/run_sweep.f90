@@ -139,6 +139,7 @@ contains
       is_complete = state == same_table .and. .not. options%again
       if (is_complete) then
          write (output_unit, '(a)') sweep%result_path//' is complete: '//to_text(sweep%cases())//' cases; --again solves them anew'
+         call drop_journal(sweep)
          return
       end if
       allocate (records(sweep%cases()))
@@ -149,6 +150,21 @@ contains
       if (allocated(error)) call close_journal(journal)
       if (.not. allocated(error) .and. sweep%keeps_states) call make_directory(sweep%states_folder())
    end subroutine prepare
+
+   !> Delete the journal of a sweep that is complete: a process that ended between the table and this has left it.
+   subroutine drop_journal(sweep)
+      type(sweep_type), intent(in) :: sweep
+      type(record_type) :: records(0)
+      type(error_type), allocatable :: error
+      character(:), allocatable :: path
+      logical :: found
+
+      path = journal_path(sweep, sweep_options_type())
+      inquire (file=path, exist=found)
+      if (.not. found) return
+      call gather_journal(path, sweep%checksum, records, found, error)
+      if (found .and. .not. allocated(error)) call delete_path(path)
+   end subroutine drop_journal
 
    !> Where the journal of a run is.
    function journal_path(sweep, options) result(path)
@@ -217,11 +233,8 @@ contains
       integer, allocatable :: pending(:), wanted(:)
       integer :: i, state
 
-      wanted = [integer ::]
-      do i = 1, size(records)
-         if (options%parts == 0 .or. mod(i, max(options%parts, 1)) == mod(options%part, max(options%parts, 1))) &
-            wanted = [wanted, i]
-      end do
+      ! Every so many cases belong to a part: each has some of the hard ones.
+      wanted = [(i, i=max(options%part, 1), size(records), max(options%parts, 1))]
       pending = pack(wanted, records(wanted)%number == 0)
       if (size(pending) < size(wanted)) write (output_unit, '(a)') to_text(size(wanted) - size(pending))//' of '// &
          to_text(size(wanted))//' cases were there'

@@ -5,12 +5,17 @@ module mfv_case_changes
    use mfv_strings, only: string_type, to_text
    implicit none
    private
-   public :: set_value, set_dundurs_beta, count_of, write_number
+   public :: set_value, set_dundurs_beta, count_of, write_number, stands_for
+
+   !> Keys of one group of which a case has one at most: a value for one takes the place of the others.
+   character(*), parameter :: alternatives(5) = [character(40) :: 'tangential_force force_ratio shift', &
+                                                 'normal_force approach', 'moment rotation', &
+                                                 'shear_modulus youngs_modulus', 'half_width half_angle']
 
 contains
 
-   !> Put a value, as it would be written, into a key of the `number`-th group of a name; key and group are added where they are
-   !> not there.
+   !> Put a value, as it would be written, into a key of the `number`-th group of a name, in place of what is there for it or for a
+   !> key that it stands for; key and group are added where they are not there.
    subroutine set_value(groups, group, number, key, value, is_quoted)
       type(group_type), allocatable, intent(inout) :: groups(:)
       character(*), intent(in) :: group, key, value
@@ -33,13 +38,25 @@ contains
       entry%is_quoted = [is_quoted]
       entry%line = groups(place)%line
       do i = 1, size(groups(place)%entries)
-         if (groups(place)%entries(i)%key /= key) cycle
+         if (.not. stands_for(key, groups(place)%entries(i)%key)) cycle
          entry%line = groups(place)%entries(i)%line
          groups(place)%entries(i) = entry
          return
       end do
       call append_entry(groups(place)%entries, entry)
    end subroutine set_value
+
+   !> Whether a key takes the place of another one in its group: it is the same, or an alternative to it.
+   pure logical function stands_for(key, other)
+      character(*), intent(in) :: key, other
+      integer :: i
+
+      stands_for = key == other
+      do i = 1, size(alternatives)
+         stands_for = stands_for .or. (index(' '//alternatives(i), ' '//key//' ') > 0 .and. &
+                                       index(' '//alternatives(i), ' '//other//' ') > 0)
+      end do
+   end function stands_for
 
    !> Give both bodies materials with Dundurs' parameter `beta`, from -1/2 to 1/2, positive where the lower body couples more, and
    !> the mutual compliance A, length^2/force, the sum of (kappa + 1)/(4 G): Poisson's ratio 0, that is kappa = 3 in plane strain

@@ -2,7 +2,7 @@
 module mfv_sweep_reader
    use, intrinsic :: iso_fortran_env, only: int64
    use mfv_case, only: case_type
-   use mfv_case_changes, only: count_of, write_number
+   use mfv_case_changes, only: count_of, stands_for, write_number
    use mfv_case_keys, only: case_catalogue
    use mfv_case_reader, only: read_case_groups
    use mfv_checksum, only: add_text_to_checksum
@@ -267,7 +267,7 @@ contains
       end do
    end subroutine check_target
 
-   !> Whether a key is among those before it, of the same axis or of others.
+   !> Whether a key, or one that it stands for, is among those before it, of the same axis or of others.
    pure logical function is_varied(axes, targets, target)
       type(axis_type), intent(in) :: axes(:)
       type(target_type), intent(in) :: targets(:), target
@@ -287,7 +287,7 @@ contains
    pure logical function is_same(one, other)
       type(target_type), intent(in) :: one, other
 
-      is_same = one%group == other%group .and. one%key == other%key .and. one%number == other%number
+      is_same = one%group == other%group .and. one%number == other%number .and. stands_for(one%key, other%key)
    end function is_same
 
    !> The values of &vary `number`: written, or a row of numbers.
