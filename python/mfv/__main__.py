@@ -1,4 +1,4 @@
-"""The command line: python -m mfv plot RESULT.h5, python -m mfv info RESULT.h5."""
+"""The command line: python -m mfv plot RESULT.h5, python -m mfv info RESULT.h5, python -m mfv table STUDY.h5."""
 
 from __future__ import annotations
 
@@ -9,6 +9,7 @@ from pathlib import Path
 from . import __version__
 from .errors import MfvError
 from .result import Group, Result, kept, read
+from .table import read_table
 
 UNUSABLE = 2  # exit code, as that of mfv_run for input that cannot be used
 
@@ -28,6 +29,8 @@ examples:
                                             draw the stresses inside the lower body
   python -m mfv plot mindlin.h5 -o fig3.pdf --step 2
                                             draw the state after step 2, for print
+  python -m mfv table study.h5 --csv study.csv
+                                            the table of a sweep for a spreadsheet
 """
 
 
@@ -45,10 +48,10 @@ def main(arguments: list[str] | None = None) -> int:
 def _parser() -> argparse.ArgumentParser:
     raw = argparse.RawDescriptionHelpFormatter
     parser = argparse.ArgumentParser(
-        prog="python -m mfv", description="Look at result files of mfv_run.", epilog=EXAMPLES, formatter_class=raw
+        prog="python -m mfv", description="Look at result files of mfv_run and tables of mfv_sweep.", epilog=EXAMPLES, formatter_class=raw
     )
     parser.add_argument("--version", action="version", version=f"mfv {__version__}")
-    commands = parser.add_subparsers(required=True, metavar="plot | info")
+    commands = parser.add_subparsers(required=True, metavar="plot | info | table")
 
     plot = commands.add_parser(
         "plot", help="draw a result", description=PLOT_HELP, epilog=EXAMPLES, formatter_class=raw
@@ -76,6 +79,13 @@ def _parser() -> argparse.ArgumentParser:
     info = commands.add_parser("info", help="print what is in a result", epilog=EXAMPLES, formatter_class=raw)
     info.add_argument("file", type=Path, metavar="RESULT.h5", help="result file")
     info.set_defaults(command=_info)
+
+    table = commands.add_parser("table", help="print the table of a sweep", epilog=EXAMPLES, formatter_class=raw)
+    table.add_argument("file", type=Path, metavar="STUDY.h5", help="file of mfv_sweep")
+    table.add_argument(
+        "--csv", metavar="FILE", help="write comma-separated values; - for the standard output; else the columns are described"
+    )
+    table.set_defaults(command=_table)
     return parser
 
 
@@ -99,6 +109,14 @@ def _plot(options: argparse.Namespace) -> None:
 
 def _info(options: argparse.Namespace) -> None:
     print(_description(read(options.file)))
+
+
+def _table(options: argparse.Namespace) -> None:
+    table = read_table(options.file)
+    if options.csv is None:
+        print(table.describe())
+    else:
+        table.write_csv(None if options.csv == "-" else options.csv)
 
 
 def _description(result: Result) -> str:

@@ -15,7 +15,7 @@ import xarray
 
 ROOT = Path(__file__).resolve().parents[2]
 PROGRAM = os.environ.get("MFV_RUN", str(ROOT / "build/release/bin/mfv_run"))
-EXAMPLES = sorted((ROOT / "examples").glob("*.nml"))
+EXAMPLES = sorted(path for path in (ROOT / "examples").glob("*.nml") if "&sweep" not in path.read_text())
 
 BODIES = """&body shape='half_plane', shear_modulus=1.0, poisson_ratio=0.3 /
 &body shape='disk', radius=0.25, rigid=.true. /
