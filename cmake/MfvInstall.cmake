@@ -1,5 +1,5 @@
 # Install tree: library, header, programs, package files for find_package(mfv) and pkg-config.
-install(TARGETS mfv mfv_run mfv_conventional mfv_stress EXPORT mfv-targets
+install(TARGETS mfv mfv_run mfv_conventional mfv_stress mfv_sweep EXPORT mfv-targets
   RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR}
   LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR}
   ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})

@@ -3,9 +3,10 @@ program mfv_run
    use, intrinsic :: iso_fortran_env, only: output_unit
    use mfv_advise_case, only: advise_case
    use mfv_case, only: case_type
-   use mfv_case_keys, only: list_keys_as_markdown
+   use mfv_case_keys, only: case_catalogue
    use mfv_case_reader, only: read_case_file
    use mfv_error, only: error_type
+   use mfv_keys, only: list_keys_as_markdown
    use mfv_run_case, only: run_case
    use mfv_summary, only: summarize_check
    use mfv_terminal
@@ -47,7 +48,7 @@ program mfv_run
    case ('--version')
       write (output_unit, '(a)') 'mfv_run '//library_version
    case ('--keys')
-      call list_keys_as_markdown(text)
+      call list_keys_as_markdown(case_catalogue(), text)
       write (output_unit, '(a)', advance='no') text
    case ('--estimate')
       call get_argument(2, argument)

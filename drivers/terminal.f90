@@ -11,7 +11,8 @@ module mfv_terminal
    use mfv_strings, only: to_text
    implicit none
    private
-   public :: get_argument, terminal_observer_type, catch_interrupts, end_program, fail, refuse
+   public :: get_argument, terminal_observer_type, catch_interrupts, is_interrupted, request_interrupt, is_terminal, end_program, &
+             fail, refuse
 
    !> Shows progress on a terminal, and ends the run after Ctrl-C.
    type, extends(observer_type) :: terminal_observer_type
@@ -57,11 +58,16 @@ contains
    !> Find out whether there is a terminal to show progress on.
    subroutine start(self)
       class(terminal_observer_type), intent(inout) :: self
-      integer(c_int), parameter :: standard_error = 2
-
-      self%visible = c_isatty(standard_error) /= 0
+      self%visible = is_terminal()
       self%next_time = seconds_now() + pause
    end subroutine start
+
+   !> Whether messages go to a terminal.
+   logical function is_terminal()
+      integer(c_int), parameter :: standard_error = 2
+
+      is_terminal = c_isatty(standard_error) /= 0
+   end function is_terminal
 
    !> See mfv_observer.
    subroutine notify(self, state, segment, segments, fraction, stop_wanted)
@@ -99,6 +105,16 @@ contains
       previous = c_signal(signal_interrupt, c_funloc(handle_signal))
       previous = c_signal(signal_terminate, c_funloc(handle_signal))
    end subroutine catch_interrupts
+
+   !> Whether the program has been asked to end.
+   logical function is_interrupted()
+      is_interrupted = interrupted
+   end function is_interrupted
+
+   !> Ask the program to end, as Ctrl-C does.
+   subroutine request_interrupt()
+      interrupted = .true.
+   end subroutine request_interrupt
 
    subroutine handle_signal(number) bind(C)
       integer(c_int), value :: number

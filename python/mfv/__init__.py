@@ -1,6 +1,6 @@
 """MFV: two-dimensional frictional elastic contact by the Method of First Violation.
 
-`run` solves a case in this process, `Case` leads one step by step, `read` reads a result file, `stress` computes stresses
+`run` solves a case in this process, `Case` leads one step by step, `read` reads a result file, `read_table` the table of a sweep, `stress` computes stresses
 inside the bodies, `plot` draws results, `reference` has the closed forms. Reading and drawing need no shared library.
 """
 
@@ -17,6 +17,7 @@ from .case import Case, run
 from .codes import EventKind, NodeStatus
 from .errors import LibraryNotFound, MfvError, NotAResult
 from .result import Group, Result, read
+from .table import Table, read_table
 
 __all__ = [
     "Case",
@@ -27,10 +28,12 @@ __all__ = [
     "NodeStatus",
     "NotAResult",
     "Result",
+    "Table",
     "errors",
     "library_version",
     "plot",
     "read",
+    "read_table",
     "reference",
     "run",
     "stress",

@@ -1,4 +1,4 @@
-"""The command line: python -m mfv plot RESULT.h5, python -m mfv info RESULT.h5."""
+"""The command line: python -m mfv plot RESULT.h5, python -m mfv info RESULT.h5, python -m mfv table STUDY.h5."""
 
 from __future__ import annotations
 
@@ -9,6 +9,7 @@ from pathlib import Path
 from . import __version__
 from .errors import MfvError
 from .result import Group, Result, kept, read
+from .table import read_table
 
 UNUSABLE = 2  # exit code, as that of mfv_run for input that cannot be used
 
@@ -28,6 +29,8 @@ examples:
                                             draw the stresses inside the lower body
   python -m mfv plot mindlin.h5 -o fig3.pdf --step 2
                                             draw the state after step 2, for print
+  python -m mfv table study.h5 --csv study.csv
+                                            the table of a sweep for a spreadsheet
 """
 
 
@@ -45,10 +48,10 @@ def main(arguments: list[str] | None = None) -> int:
 def _parser() -> argparse.ArgumentParser:
     raw = argparse.RawDescriptionHelpFormatter
     parser = argparse.ArgumentParser(
-        prog="python -m mfv", description="Look at result files of mfv_run.", epilog=EXAMPLES, formatter_class=raw
+        prog="python -m mfv", description="Look at result files of mfv_run and tables of mfv_sweep.", epilog=EXAMPLES, formatter_class=raw
     )
     parser.add_argument("--version", action="version", version=f"mfv {__version__}")
-    commands = parser.add_subparsers(required=True, metavar="plot | info")
+    commands = parser.add_subparsers(required=True, metavar="plot | info | table")
 
     plot = commands.add_parser(
         "plot", help="draw a result", description=PLOT_HELP, epilog=EXAMPLES, formatter_class=raw
@@ -65,12 +68,24 @@ def _parser() -> argparse.ArgumentParser:
         metavar="NAME",
         help="contours of a stress inside a body in place of the panels: von_mises, sigma_xx, sigma_yy, sigma_xy, ...",
     )
+    plot.add_argument(
+        "--cycles",
+        action="store_true",
+        help="the cycles in place of the panels: hysteresis loop, its non-linear part, where the last one dissipates",
+    )
     plot.add_argument("--body", choices=("lower", "upper"), default="lower", help="which body, with --stress")
     plot.set_defaults(command=_plot)
 
     info = commands.add_parser("info", help="print what is in a result", epilog=EXAMPLES, formatter_class=raw)
     info.add_argument("file", type=Path, metavar="RESULT.h5", help="result file")
     info.set_defaults(command=_info)
+
+    table = commands.add_parser("table", help="print the table of a sweep", epilog=EXAMPLES, formatter_class=raw)
+    table.add_argument("file", type=Path, metavar="STUDY.h5", help="file of mfv_sweep")
+    table.add_argument(
+        "--csv", metavar="FILE", help="write comma-separated values; - for the standard output; else the columns are described"
+    )
+    table.set_defaults(command=_table)
     return parser
 
 
@@ -80,9 +95,13 @@ def _plot(options: argparse.Namespace) -> None:
     result = read(options.file)
     if options.stress:
         picture = plot.stress_figure(result, options.stress, options.body, options.step)
+    elif options.cycles:
+        picture = plot.cycles_figure(result)
     else:
         picture = plot.figure(result, options.step)
     name = f"{options.file.stem}_{options.stress}_{options.body}" if options.stress else options.file.stem
+    if options.cycles:
+        name += "_cycles"
     output = options.output or options.file.with_name(f"{name}.png")
     picture.savefig(output, dpi=200)
     print(output)
@@ -92,6 +111,14 @@ def _info(options: argparse.Namespace) -> None:
     print(_description(read(options.file)))
 
 
+def _table(options: argparse.Namespace) -> None:
+    table = read_table(options.file)
+    if options.csv is None:
+        print(table.describe())
+    else:
+        table.write_csv(None if options.csv == "-" else options.csv)
+
+
 def _description(result: Result) -> str:
     """A result in words and numbers, the input aside."""
     attributes = [f"{name:20}{value}" for name, value in result.attributes.items() if name != "input"]
@@ -99,6 +126,7 @@ def _description(result: Result) -> str:
     blocks = [
         attributes,
         ["summary", *_lines(result.summary)],
+        *([["observables", *_lines(result.observables)]] if result.observables else []),
         ["certificate", *_lines(result.certificate)],
         *([["error estimate", *_bars(result.error_estimate)]] if result.error_estimate else []),
         ["closed form", *(f"  {line}" for line in sources)] if sources else ["closed form: none"],

@@ -4,7 +4,7 @@ module mfv_advice_text
    use mfv_case, only: case_type
    use mfv_error, only: error_type
    use mfv_kinds, only: wp
-   use mfv_namelist, only: entry_type, group_type, parse_namelists
+   use mfv_namelist, only: entry_type, group_type, parse_namelists, write_entry
    use mfv_scene, only: solver_dgesv, solver_fft, solver_reduced
    use mfv_strings, only: list_of_words, quoted, string_type, to_text
    implicit none
@@ -157,17 +157,10 @@ contains
    subroutine add_entry(text, entry)
       character(:), allocatable, intent(inout) :: text
       type(entry_type), intent(in) :: entry
-      integer :: i
+      character(:), allocatable :: written
 
-      text = text//', '//entry%key//'='
-      do i = 1, size(entry%values)
-         if (i > 1) text = text//', '
-         if (entry%is_quoted(i)) then
-            text = text//quoted(entry%values(i)%text)
-         else
-            text = text//entry%values(i)%text
-         end if
-      end do
+      call write_entry(entry, written)
+      text = text//', '//written
    end subroutine add_entry
 
    !> Append a comment.

@@ -70,7 +70,7 @@ contains
       if (shape /= 'matrix' .and. .not. rigid) allowed = allowed//' shear_modulus youngs_modulus poisson_ratio '// &
                                                          'yield_strength datum'
       if ((shape == 'disk' .or. shape == 'hole') .and. .not. rigid) allowed = allowed//' kernel harmonics'
-      keys = keys_of(reader, 'body')
+      keys = reader%catalogue%names('body')
       do i = 1, size(keys)
          if (.not. reader%has('body', body, keys(i)%text)) cycle
          if (index(' '//allowed//' ', ' '//keys(i)%text//' ') > 0) cycle

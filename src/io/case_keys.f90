@@ -2,44 +2,32 @@
 !> reference in docs/namelist.md and `mfv_run --keys` are printed from it.
 module mfv_case_keys
    use mfv_body, only: shape_names
+   use mfv_keys
    use mfv_kinds, only: wp
    use mfv_scene, only: most_cycles
-   use mfv_strings, only: list_of_words, quoted, string_type, to_text
    implicit none
    private
-   public :: key_type, case_keys, case_groups, group_list, group_repeats, kind_real, kind_integer, kind_logical, kind_text, &
-             kind_choice, list_keys_as_markdown, describe_allowed
-
-   integer, parameter :: kind_real = 1, kind_integer = 2, kind_logical = 3, kind_text = 4, kind_choice = 5
-
-   !> One key.
-   type :: key_type
-      character(:), allocatable :: group, name
-      integer :: kind = 0
-      !> Default as it would be written; empty: none, the key is left out or needed, as the meaning says.
-      character(:), allocatable :: default
-      !> Choices, separated by blanks.
-      character(:), allocatable :: choices
-      !> Allowed range of a number, each end open or closed.
-      real(wp) :: lower = -huge(1.0_wp), upper = huge(1.0_wp)
-      logical :: lower_open = .false.
-      !> Whether there may be several values: one a node.
-      logical :: is_list = .false.
-      character(:), allocatable :: unit, meaning
-   end type key_type
+   public :: case_catalogue
 
    !> Groups in the order of the reference, with what they are for; and those that may come more than once.
    character(*), parameter :: group_list = 'scene body mesh friction step solver output'
    character(*), parameter :: repeated_groups = 'body step'
 
-   character(len=1), parameter :: line_feed = achar(10)
    real(wp), parameter :: most_nodes = 1.0e8_wp, most_harmonics = 2.0e9_wp
 
 contains
 
    !> All keys.
-   function case_keys() result(keys)
-      type(key_type), allocatable :: keys(:)
+   function case_catalogue() result(catalogue)
+      type(catalogue_type) :: catalogue
+
+      catalogue%group_list = group_list
+      catalogue%repeated_groups = repeated_groups
+      call list_keys(catalogue%keys)
+   end function case_catalogue
+
+   subroutine list_keys(keys)
+      type(key_type), allocatable, intent(out) :: keys(:)
 
       allocate (keys(0))
       call add_scene_keys(keys)
@@ -49,7 +37,7 @@ contains
       call add_step_keys(keys)
       call add_solver_keys(keys)
       call add_output_keys(keys)
-   end function case_keys
+   end subroutine list_keys
 
    subroutine add_scene_keys(keys)
       type(key_type), allocatable, intent(inout) :: keys(:)
@@ -204,173 +192,5 @@ contains
       call add_logical_key(keys, 'output', 'error_estimate', '.false.', 'whether the case is also solved on coarser meshes, to '// &
                            'tell the discretisation error of half-width, stick ratio, peak tractions and dissipation')
    end subroutine add_output_keys
-
-   subroutine add_text_key(keys, group, name, default, meaning)
-      type(key_type), allocatable, intent(inout) :: keys(:)
-      character(*), intent(in) :: group, name, default, meaning
-
-      call add_key(keys, group, name, kind_text, default, '', meaning)
-   end subroutine add_text_key
-
-   subroutine add_logical_key(keys, group, name, default, meaning)
-      type(key_type), allocatable, intent(inout) :: keys(:)
-      character(*), intent(in) :: group, name, default, meaning
-
-      call add_key(keys, group, name, kind_logical, default, '', meaning)
-   end subroutine add_logical_key
-
-   subroutine add_choice_key(keys, group, name, default, choices, meaning)
-      type(key_type), allocatable, intent(inout) :: keys(:)
-      character(*), intent(in) :: group, name, default, choices, meaning
-
-      call add_key(keys, group, name, kind_choice, default, '', meaning)
-      keys(size(keys))%choices = choices
-   end subroutine add_choice_key
-
-   !> A whole number from `lower` to `upper`.
-   subroutine add_integer_key(keys, group, name, default, meaning, lower, upper)
-      type(key_type), allocatable, intent(inout) :: keys(:)
-      character(*), intent(in) :: group, name, default, meaning
-      real(wp), intent(in) :: lower, upper
-
-      call add_key(keys, group, name, kind_integer, default, '', meaning)
-      keys(size(keys))%lower = lower
-      keys(size(keys))%upper = upper
-   end subroutine add_integer_key
-
-   !> A real without a default, from `lower` (itself allowed unless `lower_open`) to `upper`, each where present.
-   subroutine add_real_key(keys, group, name, unit, meaning, lower, lower_open, upper)
-      type(key_type), allocatable, intent(inout) :: keys(:)
-      character(*), intent(in) :: group, name, unit, meaning
-      real(wp), intent(in), optional :: lower, upper
-      logical, intent(in), optional :: lower_open
-
-      call add_key(keys, group, name, kind_real, '', unit, meaning)
-      if (present(lower)) keys(size(keys))%lower = lower
-      if (present(lower_open)) keys(size(keys))%lower_open = lower_open
-      if (present(upper)) keys(size(keys))%upper = upper
-   end subroutine add_real_key
-
-   subroutine add_positive_key(keys, group, name, unit, meaning)
-      type(key_type), allocatable, intent(inout) :: keys(:)
-      character(*), intent(in) :: group, name, unit, meaning
-
-      call add_real_key(keys, group, name, unit, meaning, lower=0.0_wp, lower_open=.true.)
-   end subroutine add_positive_key
-
-   !> Append a key. Element by element: gfortran leaks the components of arrays that a constructor joins.
-   subroutine add_key(keys, group, name, kind, default, unit, meaning)
-      type(key_type), allocatable, intent(inout) :: keys(:)
-      character(*), intent(in) :: group, name, default, unit, meaning
-      integer, intent(in) :: kind
-      type(key_type), allocatable :: longer(:)
-      integer :: i, n
-
-      n = size(keys)
-      allocate (longer(n + 1))
-      do i = 1, n
-         longer(i) = keys(i)
-      end do
-      longer(n + 1)%group = group
-      longer(n + 1)%name = name
-      longer(n + 1)%kind = kind
-      longer(n + 1)%default = default
-      longer(n + 1)%choices = ''
-      longer(n + 1)%unit = unit
-      longer(n + 1)%meaning = meaning
-      call move_alloc(longer, keys)
-   end subroutine add_key
-
-   !> Groups that a case may have.
-   function case_groups() result(groups)
-      type(string_type), allocatable :: groups(:)
-
-      groups = list_of_words(group_list)
-   end function case_groups
-
-   !> Whether a group may come more than once.
-   pure logical function group_repeats(group)
-      character(*), intent(in) :: group
-
-      group_repeats = index(' '//repeated_groups//' ', ' '//group//' ') > 0
-   end function group_repeats
-
-   !> What values a key takes, in words, for messages and the reference.
-   subroutine describe_allowed(key, text)
-      type(key_type), intent(in) :: key
-      character(:), allocatable, intent(out) :: text
-
-      select case (key%kind)
-      case (kind_choice)
-         call join_alternatives(list_of_words(key%choices), text)
-      case (kind_logical)
-         text = '.true. or .false.'
-      case (kind_text)
-         text = "a text between quotes"
-      case (kind_integer)
-         text = 'a whole number from '//to_text(nint(key%lower))//' to '//to_text(nint(key%upper))
-      case default
-         text = 'a number'
-         call add_range(key, text)
-      end select
-   end subroutine describe_allowed
-
-   !> Append the range of a key to a text.
-   subroutine add_range(key, text)
-      type(key_type), intent(in) :: key
-      character(:), allocatable, intent(inout) :: text
-
-      if (key%lower > -huge(1.0_wp)) &
-         text = text//trim(merge(' above   ', ' at least', key%lower_open))//' '//to_text(key%lower)
-      if (key%upper < huge(1.0_wp)) text = text//' and at most '//to_text(key%upper)
-   end subroutine add_range
-
-   !> 'a', 'b' or 'c'
-   subroutine join_alternatives(words, text)
-      type(string_type), intent(in) :: words(:)
-      character(:), allocatable, intent(out) :: text
-      integer :: i
-
-      text = quoted(words(1)%text)
-      do i = 2, size(words)
-         if (i < size(words)) text = text//', '//quoted(words(i)%text)
-         if (i == size(words)) text = text//' or '//quoted(words(i)%text)
-      end do
-   end subroutine join_alternatives
-
-   !> The reference of all keys as Markdown tables.
-   subroutine list_keys_as_markdown(text)
-      character(:), allocatable, intent(out) :: text
-      type(key_type), allocatable :: keys(:)
-      type(string_type), allocatable :: groups(:)
-      integer :: i, j
-
-      keys = case_keys()
-      groups = case_groups()
-      text = ''
-      do i = 1, size(groups)
-         text = text//'### &'//groups(i)%text
-         if (group_repeats(groups(i)%text)) text = text//' (may come more than once)'
-         text = text//line_feed//line_feed//'| key | value | default | unit | meaning |'//line_feed// &
-                '| --- | --- | --- | --- | --- |'//line_feed
-         do j = 1, size(keys)
-            if (keys(j)%group == groups(i)%text) call add_row(keys(j), text)
-         end do
-         if (i < size(groups)) text = text//line_feed
-      end do
-   end subroutine list_keys_as_markdown
-
-   !> Append the row of a key to a Markdown table.
-   subroutine add_row(key, text)
-      type(key_type), intent(in) :: key
-      character(:), allocatable, intent(inout) :: text
-      character(:), allocatable :: allowed, default
-
-      call describe_allowed(key, allowed)
-      default = '-'
-      if (key%default /= '') default = '`'//key%default//'`'
-      if (key%default /= '' .and. any(key%kind == [kind_text, kind_choice])) default = '`'//quoted(key%default)//'`'
-      text = text//'| `'//key%name//'` | '//allowed//' | '//default//' | '//key%unit//' | '//key%meaning//' |'//line_feed
-   end subroutine add_row
 
 end module mfv_case_keys

@@ -3,7 +3,7 @@ module mfv_case_reader
    use mfv_body, only: shape_matrix
    use mfv_body_reader
    use mfv_case, only: case_type
-   use mfv_case_keys, only: case_keys
+   use mfv_case_keys, only: case_catalogue
    use mfv_compliance, only: coupling_full, coupling_goodman, coupling_none
    use mfv_discretisation_error, only: has_coarser_meshes
    use mfv_error, only: error_type
@@ -12,14 +12,14 @@ module mfv_case_reader
    use mfv_kinds, only: wp
    use mfv_material, only: plane_strain, plane_stress
    use mfv_mesh_reader, only: read_mesh
-   use mfv_namelist, only: parse_namelists
+   use mfv_namelist, only: group_type, parse_namelists
    use mfv_scene
    use mfv_simulation, only: history_events, history_none, history_steps
    use mfv_strings, only: to_text
-   use mfv_text_file, only: read_text
+   use mfv_text_file, only: directory_of, read_text
    implicit none
    private
-   public :: read_case_file, read_case_text
+   public :: read_case_file, read_case_text, read_case_groups
 
 contains
 
@@ -47,19 +47,35 @@ contains
       type(case_type), intent(out) :: case
       type(error_type), allocatable, intent(out) :: error
       logical, intent(in), optional :: without_steps
+      type(group_type), allocatable :: groups(:)
+
+      call parse_namelists(text, source, groups, error)
+      if (allocated(error)) return
+      call read_case_groups(groups, source, directory_of(source), case, error, without_steps)
+      case%text = text
+   end subroutine read_case_text
+
+   !> The case in a text that has been taken apart; `case%text` is left to the caller. `directory`: where the files are that it
+   !> names, with its final slash. For the rest see read_case_text.
+   subroutine read_case_groups(groups, source, directory, case, error, without_steps)
+      type(group_type), intent(in) :: groups(:)
+      character(*), intent(in) :: source, directory
+      type(case_type), intent(out) :: case
+      type(error_type), allocatable, intent(out) :: error
+      logical, intent(in), optional :: without_steps
       type(reader_type) :: reader
 
       if (present(without_steps)) reader%without_steps = without_steps
       reader%source = source
-      reader%keys = case_keys()
-      call parse_namelists(text, source, reader%groups, error)
-      if (.not. allocated(error)) call check_groups(reader, error)
+      reader%directory = directory
+      reader%catalogue = case_catalogue()
+      reader%groups = groups
+      call check_groups(reader, error)
       if (.not. allocated(error)) call check_entries(reader, error)
       if (.not. allocated(error)) call check_friction_keys(reader, error)
       if (.not. allocated(error)) call check_friction_of_steps(reader, error)
       if (.not. allocated(error)) call read_scene(reader, case%scene, error)
       if (allocated(error)) return
-      case%text = text
       case%source = source
       case%length_unit = reader%text_value('scene', 1, 'length_unit')
       case%force_unit = reader%text_value('scene', 1, 'force_unit')
@@ -72,7 +88,7 @@ contains
       if (case%error_estimate .and. .not. has_coarser_meshes(case%scene)) &
          call reader%complain('output', 1, 'error_estimate', "must be .false. with shape='matrix', which has no coarser mesh", &
                               error)
-   end subroutine read_case_text
+   end subroutine read_case_groups
 
    !> The scene that the groups describe.
    subroutine read_scene(reader, scene, error)

@@ -49,7 +49,7 @@ contains
 
       law = reader%text_value('friction', 1, 'law')
       call keys_of_law(law, coefficients, needed)
-      keys = keys_of(reader, 'friction')
+      keys = reader%catalogue%names('friction')
       do i = 1, size(keys)
          if (.not. reader%has('friction', 1, keys(i)%text)) cycle
          if (index(' law '//coefficients//' '//needed//' exponent mu_file ', ' '//keys(i)%text//' ') == 0 .or. &

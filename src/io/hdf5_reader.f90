@@ -9,7 +9,7 @@ module mfv_hdf5_reader
    use mfv_strings, only: from_c, to_text
    implicit none
    private
-   public :: open_to_read, close_read, has, read_vector, read_matrix, read_text_attribute
+   public :: open_to_read, close_read, has, read_vector, read_matrix, read_text_attribute, read_whole_attribute
 
    interface
       subroutine c_free(memory) bind(C, name='free')
@@ -88,6 +88,30 @@ contains
       call h5aclose_f(attribute, code)
       call h5gclose_f(root, code)
    end subroutine read_text_attribute
+
+   !> A whole number that is an attribute of the file. Error MFV_INPUT_ERROR.
+   subroutine read_whole_attribute(file, name, value, error)
+      integer(hid_t), intent(in) :: file
+      character(*), intent(in) :: name
+      integer, intent(out) :: value
+      type(error_type), allocatable, intent(out) :: error
+      integer(hid_t) :: attribute, root
+      integer :: code
+      logical :: is_there
+
+      value = 0
+      call h5aexists_f(file, name, is_there, code)
+      if (code /= 0 .or. .not. is_there) then
+         call set_error(error, MFV_INPUT_ERROR, 'attribute '//name//' is missing')
+         return
+      end if
+      call h5gopen_f(file, '/', root, code)
+      call h5aopen_f(root, name, attribute, code)
+      call h5aread_f(attribute, H5T_NATIVE_INTEGER, value, [1_hsize_t], code)
+      if (code /= 0) call set_error(error, MFV_INPUT_ERROR, 'attribute '//name//' is no whole number')
+      call h5aclose_f(attribute, code)
+      call h5gclose_f(root, code)
+   end subroutine read_whole_attribute
 
    !> Whether a dataset or group is there.
    logical function has(file, name)

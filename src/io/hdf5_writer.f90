@@ -8,11 +8,11 @@ module mfv_hdf5_writer
    use mfv_kinds, only: wp
    use mfv_result_fields, only: along_nothing, field_type
    use mfv_status, only: MFV_INPUT_ERROR
-   use mfv_strings, only: to_text
+   use mfv_strings, only: string_type, to_text
    implicit none
    private
    public :: writer_type, check_writable, create_file, copy_and_open, finish_file, create_group, write_dataset, write_values, &
-             write_text, note
+             write_text, write_texts, write_whole, note
 
    !> An open file.
    type :: writer_type
@@ -264,6 +264,61 @@ contains
       call h5sclose_f(space, code)
       call h5tclose_f(text_type, code)
    end subroutine write_text
+
+   !> An attribute of several texts, as write_text has one.
+   subroutine write_texts(writer, object, name, texts)
+      type(writer_type), intent(inout) :: writer
+      integer(hid_t), intent(in) :: object
+      character(*), intent(in) :: name
+      type(string_type), intent(in) :: texts(:)
+      character(kind=c_char), allocatable, target :: letters(:)
+      type(c_ptr), target :: pointers(size(texts))
+      integer(hid_t) :: text_type, space, attribute
+      integer :: code, i, j, at
+
+      allocate (letters(sum([(len(texts(i)%text) + 1, i=1, size(texts))])))
+      at = 0
+      do i = 1, size(texts)
+         pointers(i) = c_loc(letters(at + 1))
+         do j = 1, len(texts(i)%text)
+            letters(at + j) = texts(i)%text(j:j)
+         end do
+         at = at + len(texts(i)%text) + 1
+         letters(at) = c_null_char
+      end do
+      call h5tcopy_f(H5T_STRING, text_type, code)
+      call h5tset_cset_f(text_type, H5T_CSET_UTF8_F, code)
+      call h5screate_simple_f(1, [size(texts, kind=hsize_t)], space, code)
+      call h5acreate_f(object, name, text_type, space, attribute, code)
+      call note(writer, code)
+      if (code == 0) then
+         call h5awrite_f(attribute, text_type, c_loc(pointers), code)
+         call note(writer, code)
+         call h5aclose_f(attribute, code)
+      end if
+      call h5sclose_f(space, code)
+      call h5tclose_f(text_type, code)
+   end subroutine write_texts
+
+   !> An attribute that is a whole number.
+   subroutine write_whole(writer, object, name, value)
+      type(writer_type), intent(inout) :: writer
+      integer(hid_t), intent(in) :: object
+      character(*), intent(in) :: name
+      integer, intent(in) :: value
+      integer(hid_t) :: space, attribute
+      integer :: code
+
+      call h5screate_f(H5S_SCALAR_F, space, code)
+      call h5acreate_f(object, name, H5T_STD_I32LE, space, attribute, code)
+      call note(writer, code)
+      if (code == 0) then
+         call h5awrite_f(attribute, H5T_NATIVE_INTEGER, value, [1_hsize_t], code)
+         call note(writer, code)
+         call h5aclose_f(attribute, code)
+      end if
+      call h5sclose_f(space, code)
+   end subroutine write_whole
 
    subroutine note(writer, code)
       type(writer_type), intent(inout) :: writer

@@ -1,23 +1,24 @@
-!> A text taken apart into groups and keys, checked against the list of keys (mfv_case_keys), and read value by value; every
+!> A text taken apart into groups and keys, checked against a list of keys (mfv_keys), and read value by value; every
 !> message names file, line, group, key, value and what is right.
 module mfv_key_reader
    use, intrinsic :: ieee_arithmetic, only: ieee_is_finite
-   use mfv_case_keys
    use mfv_error, only: error_type, set_error
+   use mfv_keys
    use mfv_kinds, only: wp
-   use mfv_namelist, only: entry_type, group_type
+   use mfv_namelist, only: entry_type, group_type, write_entry
    use mfv_status, only: MFV_INPUT_ERROR
-   use mfv_strings, only: add_text, list_of_words, lower_case, nearest_name, quoted, string_type, to_text
-   use mfv_text_file, only: directory_of
+   use mfv_strings, only: list_of_words, lower_case, nearest_name, quoted, string_type, to_text
    implicit none
    private
-   public :: reader_type, check_groups, check_entries, count_groups, line_of, keys_of, find_file, merge_text, fail
+   public :: reader_type, check_groups, check_entries, find_fault, read_number, logical_code, count_groups, line_of, find_file, &
+             merge_text, suggest, fail
 
    !> A text taken apart, with the list of keys to read it by.
    type :: reader_type
-      character(:), allocatable :: source
+      !> Name of the text for messages, and the directory, with its final slash, in which the files that it names are.
+      character(:), allocatable :: source, directory
       type(group_type), allocatable :: groups(:)
-      type(key_type), allocatable :: keys(:)
+      type(catalogue_type) :: catalogue
       logical :: without_steps = .false.
    contains
       procedure :: has
@@ -28,8 +29,7 @@ module mfv_key_reader
       procedure :: text_value
       procedure :: complain
       procedure :: need
-      procedure, private :: entry_of
-      procedure, private :: key_of
+      procedure :: entry_of
    end type reader_type
 
 contains
@@ -43,14 +43,14 @@ contains
 
       do i = 1, size(reader%groups)
          associate (group => reader%groups(i))
-            if (.not. any_equal(case_groups(), group%name)) then
-               call suggest(group%name, case_groups(), '&', why)
+            if (.not. any_equal(reader%catalogue%groups(), group%name)) then
+               call suggest(group%name, reader%catalogue%groups(), '&', why)
                call fail(reader, group%line, '&'//group%name//': unknown group'// &
-                         why//'; groups are '//group_list, error)
+                         why//'; groups are '//reader%catalogue%group_list, error)
                return
             end if
             do j = 1, i - 1
-               if (reader%groups(j)%name /= group%name .or. group_repeats(group%name)) cycle
+               if (reader%groups(j)%name /= group%name .or. reader%catalogue%repeats(group%name)) cycle
                call fail(reader, group%line, '&'//group%name//': may come only once, and is already in line '// &
                          to_text(reader%groups(j)%line), error)
                return
@@ -69,14 +69,14 @@ contains
       do i = 1, size(reader%groups)
          do j = 1, size(reader%groups(i)%entries)
             associate (group => reader%groups(i)%name, entry => reader%groups(i)%entries(j))
-               k = reader%key_of(group, entry%key)
+               k = reader%catalogue%place(group, entry%key)
                if (k == 0) then
-                  call suggest(entry%key, keys_of(reader, group), '', why)
+                  call suggest(entry%key, reader%catalogue%names(group), '', why)
                   why = 'unknown key'//why
                else if (any([(reader%groups(i)%entries(k)%key == entry%key, k=1, j - 1)])) then
                   why = 'the key is there twice'
                else
-                  call find_fault(reader%keys(reader%key_of(group, entry%key)), entry, why)
+                  call find_fault(reader%catalogue%keys(reader%catalogue%place(group, entry%key)), entry, why)
                end if
                if (why /= '') then
                   call write_entry(entry, written)
@@ -101,7 +101,7 @@ contains
       right = size(entry%values) == 1 .or. (key%is_list .and. size(entry%values) > 1)
       do i = 1, size(entry%values)
          if (.not. right) exit
-         right = entry%is_quoted(i) .eqv. (key%kind == kind_text .or. key%kind == kind_choice)
+         right = (entry%is_quoted(i) .eqv. (key%kind == kind_text .or. key%kind == kind_choice)) .or. key%kind == kind_any
          if (.not. right) exit
          select case (key%kind)
          case (kind_choice)
@@ -165,18 +165,8 @@ contains
       character(:), allocatable, intent(out) :: path
 
       path = reader%text_value(group, number, name)
-      if (path(1:min(1, len(path))) /= '/') path = directory_of(reader%source)//path
+      if (path(1:min(1, len(path))) /= '/') path = reader%directory//path
    end subroutine find_file
-
-   !> Place of a key in the list of keys, 0 for none.
-   pure integer function key_of(self, group, name)
-      class(reader_type), intent(in) :: self
-      character(*), intent(in) :: group, name
-
-      do key_of = size(self%keys), 1, -1
-         if (self%keys(key_of)%group == group .and. self%keys(key_of)%name == name) return
-      end do
-   end function key_of
 
    !> The entry of a key in the `number`-th group of a name; `found` false where it is not written.
    pure subroutine entry_of(self, group, number, name, entry, found)
@@ -246,7 +236,7 @@ contains
       if (found) then
          value = entry%values(1)%text
       else
-         value = reader%keys(reader%key_of(group, name))%default
+         value = reader%catalogue%keys(reader%catalogue%place(group, name))%default
       end if
    end subroutine find_value
 
@@ -314,8 +304,8 @@ contains
       character(:), allocatable :: allowed
 
       if (self%has(group, number, name)) return
-      call describe_allowed(self%keys(self%key_of(group, name)), allowed)
-      call fail(self, line_of(self, group, number), '&'//group//trim(numbered(group, number))//': '//name// &
+      call describe_allowed(self%catalogue%keys(self%catalogue%place(group, name)), allowed)
+      call fail(self, line_of(self, group, number), '&'//group//trim(numbered(self, group, number))//': '//name// &
                 ' is missing; it must be '//allowed, error)
    end subroutine need
 
@@ -334,7 +324,7 @@ contains
       line = merge(entry%line, line_of(self, group, number), found)
       written = name
       if (found) call write_entry(entry, written)
-      call fail(self, line, '&'//group//trim(numbered(group, number))//' '//written//': '//why, error)
+      call fail(self, line, '&'//group//trim(numbered(self, group, number))//' '//written//': '//why, error)
    end subroutine complain
 
    !> One of two texts, without the blanks that merge wants.
@@ -348,27 +338,15 @@ contains
    end function merge_text
 
    !> Number of a group that may come more than once, after a blank; padded with blanks.
-   pure function numbered(group, number) result(text)
+   pure function numbered(reader, group, number) result(text)
+      class(reader_type), intent(in) :: reader
       character(*), intent(in) :: group
       integer, intent(in) :: number
       character(len=12) :: text
 
       text = ''
-      if (group_repeats(group)) text = ' '//to_text(number)
+      if (reader%catalogue%repeats(group)) text = ' '//to_text(number)
    end function numbered
-
-   !> key=value as the user wrote it.
-   pure subroutine write_entry(entry, text)
-      type(entry_type), intent(in) :: entry
-      character(:), allocatable, intent(out) :: text
-      integer :: i
-
-      text = entry%key//'='
-      do i = 1, size(entry%values)
-         if (i > 1) text = text//', '
-         text = text//merge_text(entry%is_quoted(i), quoted(entry%values(i)%text), entry%values(i)%text)
-      end do
-   end subroutine write_entry
 
    !> Number of groups of a name.
    pure integer function count_groups(reader, name)
@@ -396,18 +374,6 @@ contains
          if (reader%groups(i)%name == name .and. seen == number) line_of = reader%groups(i)%line
       end do
    end function line_of
-
-   !> Names of the keys of a group.
-   pure function keys_of(reader, group) result(names)
-      type(reader_type), intent(in) :: reader
-      character(*), intent(in) :: group
-      type(string_type), allocatable :: names(:)
-      integer :: i
-
-      do i = 1, size(reader%keys)
-         if (reader%keys(i)%group == group) call add_text(names, reader%keys(i)%name)
-      end do
-   end function keys_of
 
    pure logical function any_equal(words, text)
       type(string_type), intent(in) :: words(:)

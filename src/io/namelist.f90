@@ -9,7 +9,7 @@ module mfv_namelist
    use mfv_strings, only: add_text, lower_case, string_type, to_text
    implicit none
    private
-   public :: entry_type, group_type, parse_namelists
+   public :: entry_type, group_type, parse_namelists, write_entry, write_namelists, append_group, append_entry
 
    !> One key with its value as written.
    type :: entry_type
@@ -322,6 +322,56 @@ contains
       if (length < 0) length = len(cursor%text) - cursor%at + 1
       length = min(length, longest)
    end function length_of_rest
+
+   !> key=value as the user wrote it, texts between apostrophes.
+   pure subroutine write_entry(entry, text)
+      type(entry_type), intent(in) :: entry
+      character(:), allocatable, intent(out) :: text
+      integer :: i
+
+      text = entry%key//'='
+      do i = 1, size(entry%values)
+         if (i > 1) text = text//', '
+         if (entry%is_quoted(i)) then
+            call add_quoted(entry%values(i)%text, text)
+         else
+            text = text//entry%values(i)%text
+         end if
+      end do
+   end subroutine write_entry
+
+   !> Append `words` between apostrophes to a text; an apostrophe in it is doubled.
+   pure subroutine add_quoted(words, text)
+      character(*), intent(in) :: words
+      character(:), allocatable, intent(inout) :: text
+      integer :: i
+
+      text = text//"'"
+      do i = 1, len(words)
+         text = text//words(i:i)
+         if (words(i:i) == "'") text = text//"'"
+      end do
+      text = text//"'"
+   end subroutine add_quoted
+
+   !> Groups as a text that parse_namelists takes apart into the same ones, one a line.
+   pure subroutine write_namelists(groups, text)
+      type(group_type), intent(in) :: groups(:)
+      character(:), allocatable, intent(out) :: text
+      character(:), allocatable :: written
+      integer :: i, j
+
+      text = ''
+      do i = 1, size(groups)
+         text = text//'&'//groups(i)%name//' '
+         do j = 1, size(groups(i)%entries)
+            call write_entry(groups(i)%entries(j), written)
+            if (j > 1) text = text//', '
+            text = text//written
+         end do
+         text = text//' /'//line_feed
+      end do
+   end subroutine write_namelists
 
    subroutine complain(cursor, message, error)
       type(cursor_type), intent(in) :: cursor

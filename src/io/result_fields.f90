@@ -24,7 +24,7 @@ module mfv_result_fields
    private
    public :: field_type, result_groups, group_fields, field_named, step_group, along_nodes, along_records, &
              along_companions, along_cycles, along_nothing, scale_count
-   public :: result_attributes
+   public :: result_attributes, units_type, name_units, unit_label, labelled_unit
 
    !> What the values of a field run along.
    integer, parameter :: along_nothing = 0, along_nodes = 1, along_records = 2, along_companions = 3, along_cycles = 4, &
@@ -102,7 +102,7 @@ contains
       type(units_type) :: units
       integer :: number, code
 
-      call name_units(case, units)
+      call name_units(case%length_unit, case%force_unit, units)
       allocate (fields(0))
       select case (group)
       case ('scene')
@@ -339,7 +339,7 @@ contains
          call add_real(fields, 'slip', modelled(simulation, state%fields%slip()), along_nodes, units%length, &
                        'slip s = u - U of the lower surface against the upper body (not modelled without friction)')
          call add_whole(fields, 'status', state%status, along_nodes, 'contact status of the nodes', node_status_names)
-         call add_real(fields, 'friction_work', state%friction_work, along_nodes, units%force, &
+         if (model%tangential) call add_real(fields, 'friction_work', state%friction_work, along_nodes, units%force, &
                        'energy dissipated so far per unit of surface')
       end associate
    end subroutine add_state
@@ -663,15 +663,56 @@ contains
       end associate
    end subroutine add_nonlinear_shift
 
-   subroutine name_units(case, units)
-      type(case_type), intent(in) :: case
+   !> Labels of units from the user's names of two.
+   subroutine name_units(length_unit, force_unit, units)
+      character(*), intent(in) :: length_unit, force_unit
       type(units_type), intent(out) :: units
 
-      units%length = case%length_unit
-      units%force = case%force_unit//'/'//case%length_unit
-      units%traction = case%force_unit//'/'//case%length_unit//'^2'
-      units%energy = case%force_unit
+      units%length = length_unit
+      units%force = force_unit//'/'//length_unit
+      units%traction = force_unit//'/'//length_unit//'^2'
+      units%energy = force_unit
    end subroutine name_units
+
+   !> A unit in terms of length and force, such as force/length^2, with the user's names for those two.
+   pure function labelled_unit(unit, length_unit, force_unit) result(label)
+      character(*), intent(in) :: unit, length_unit, force_unit
+      character(len=length_of_label(unit, length_unit, force_unit)) :: label
+      character(:), allocatable :: text
+
+      call find_label(unit, length_unit, force_unit, text)
+      label = text
+   end function labelled_unit
+
+   pure integer function length_of_label(unit, length_unit, force_unit) result(length)
+      character(*), intent(in) :: unit, length_unit, force_unit
+      character(:), allocatable :: text
+
+      call find_label(unit, length_unit, force_unit, text)
+      length = len(text)
+   end function length_of_label
+
+   !> See labelled_unit.
+   pure subroutine find_label(unit, length_unit, force_unit, label)
+      character(*), intent(in) :: unit, length_unit, force_unit
+      character(:), allocatable, intent(out) :: label
+      integer :: i, length
+
+      label = ''
+      i = 1
+      do while (i <= len(unit))
+         length = verify(unit(i:)//'/', 'abcdefghijklmnopqrstuvwxyz') - 1
+         select case (unit(i:i + max(length, 1) - 1))
+         case ('length')
+            label = label//length_unit
+         case ('force')
+            label = label//force_unit
+         case default
+            label = label//unit(i:i + max(length, 1) - 1)
+         end select
+         i = i + max(length, 1)
+      end do
+   end subroutine find_label
 
    subroutine add_scalar(fields, name, value, unit, description)
       type(field_type), allocatable, intent(inout) :: fields(:)

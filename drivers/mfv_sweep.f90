@@ -1,0 +1,165 @@
+!> mfv_sweep SWEEP.nml: solve the cases of a sweep, on all processors, and write one table.
+program mfv_sweep
+   use, intrinsic :: iso_fortran_env, only: output_unit
+   use mfv_error, only: error_type
+   use mfv_keys, only: list_keys_as_markdown
+   use mfv_namelist, only: group_type, write_namelists
+   use mfv_ranks, only: has_ranks
+   use mfv_run_sweep, only: run_sweep, sweep_options_type
+   use mfv_strings, only: to_text
+   use mfv_sweep_keys, only: sweep_catalogue
+   use mfv_sweep_plan, only: sweep_type
+   use mfv_sweep_reader, only: read_sweep_file
+   use mfv_terminal
+   use mfv_version, only: library_version
+   implicit none
+
+   character(len=1), parameter :: line_feed = achar(10)
+   character(*), parameter :: usage = &
+      'usage: mfv_sweep [--threads N] [--again] SWEEP.nml   solve the cases that are not there yet, write the table'//line_feed// &
+      '       mfv_sweep --part 3/16 SWEEP.nml               solve one part of the cases only; later runs gather the parts'// &
+      line_feed// &
+      '       mfv_sweep --check SWEEP.nml                   validate, and say which cases there are'//line_feed// &
+      '       mfv_sweep --case 17 SWEEP.nml                 print case 17 as a case for mfv_run'//line_feed// &
+      '       mfv_sweep --keys | --version | --help'//line_feed
+   character(*), parameter :: teaching = line_feed// &
+      'A sweep names one or more base cases and what is varied in them:'//line_feed//line_feed// &
+      "  &sweep base='mindlin.nml', file='study.h5' /"//line_feed// &
+      "  &vary  key='friction%mu', values=0.3, 0.5, 0.7 /"//line_feed// &
+      "  &vary  key='step(2)%tangential_force', 'step(3)%tangential_force', factor=1, -1,"//line_feed// &
+      "         from=0.5e-4, to=2.5e-4, count=10, spacing='linear', name='Q' /"//line_feed// &
+      "  &vary  key='scene%coupling', values='full', 'goodman', 'none' /"//line_feed//line_feed// &
+      'The table is the dataset /table of the file, one row a case. What has been solved is kept in a journal beside it: after'// &
+      line_feed//'Ctrl-C, or worse, the same command goes on. OMP_NUM_THREADS or --threads: how many cases at a time; all'// &
+      line_feed//'processors unless told. With MPI: mpirun -n 64 mfv_sweep SWEEP.nml.'//line_feed//line_feed// &
+      'Exit codes: 0 all cases are done, early ends among them; 2 the input cannot be used; 4 a file could not be read or'// &
+      line_feed//'written; 130 interrupted, the cases so far are kept.'//line_feed//line_feed// &
+      "Load the table with: python -m mfv table study.h5, or mfv.read_table('study.h5')"
+   type(sweep_options_type) :: options
+   character(:), allocatable :: argument, path, text
+   integer :: i, number
+   logical :: only_check
+
+   path = ''
+   number = 0
+   only_check = .false.
+   i = 1
+   if (command_argument_count() == 0) call refuse('mfv_sweep', usage, 'a sweep file is missing')
+   do while (i <= command_argument_count())
+      call get_argument(i, argument)
+      select case (argument)
+      case ('--help', '-h')
+         write (output_unit, '(a)') usage//teaching
+         call end_program(0)
+      case ('--version')
+         write (output_unit, '(a)') 'mfv_sweep '//library_version//trim(merge(' with MPI   ', ' without MPI', has_ranks))
+         call end_program(0)
+      case ('--keys')
+         call list_keys_as_markdown(sweep_catalogue(), text)
+         write (output_unit, '(a)', advance='no') text
+         call end_program(0)
+      case ('--again')
+         options%again = .true.
+      case ('--check')
+         only_check = .true.
+      case ('--threads', '--case', '--part')
+         i = i + 1
+         call read_option(argument, i)
+      case default
+         if (index(argument, '-') == 1) call refuse('mfv_sweep', usage, "unknown option '"//argument//"'")
+         if (path /= '') call refuse('mfv_sweep', usage, "too many arguments: '"//argument//"'")
+         path = argument
+      end select
+      i = i + 1
+   end do
+   if (path == '') call refuse('mfv_sweep', usage, 'a sweep file is missing')
+   if (only_check) then
+      call check_sweep(path)
+   else if (number > 0) then
+      call print_case(path, number)
+   else
+      call run_sweep(path, options)
+   end if
+
+contains
+
+   !> An option with a value, which is argument `place`.
+   subroutine read_option(option, place)
+      character(*), intent(in) :: option
+      integer, intent(in) :: place
+      character(:), allocatable :: value
+      integer :: slash, read_number
+      logical :: right
+
+      call get_argument(place, value)
+      right = .false.
+      if (option == '--part') then
+         slash = index(value, '/')
+         if (slash > 1) then
+            options%part = whole(value(:slash - 1))
+            options%parts = whole(value(slash + 1:))
+            right = options%part >= 1 .and. options%part <= options%parts
+         end if
+         if (.not. right) call refuse('mfv_sweep', usage, "--part '"//value//"': must be I/N with I from 1 to N, such as 3/16")
+         return
+      end if
+      read_number = whole(value)
+      if (read_number < 1) call refuse('mfv_sweep', usage, option//" '"//value//"': must be a whole number above 0")
+      if (option == '--threads') options%threads = read_number
+      if (option == '--case') number = read_number
+   end subroutine read_option
+
+   !> A whole number, 0 where the text is none.
+   integer function whole(digits)
+      character(*), intent(in) :: digits
+      integer :: code
+
+      whole = 0
+      if (len(digits) == 0 .or. verify(digits, '0123456789') > 0) return
+      read (digits, *, iostat=code) whole
+      if (code /= 0) whole = 0
+   end function whole
+
+   !> Validate, and say what there is to do.
+   subroutine check_sweep(sweep_path)
+      character(*), intent(in) :: sweep_path
+      type(sweep_type) :: sweep
+      type(error_type), allocatable :: error
+      character(:), allocatable :: words
+      integer, parameter :: shown = 5
+      integer :: place
+
+      call read_sweep_file(sweep_path, sweep, error)
+      if (allocated(error)) call fail(error)
+      write (output_unit, '(a)') sweep%source//' is valid: '//to_text(sweep%cases())//' cases, into '//sweep%result_path
+      do place = 1, size(sweep%axes)
+         write (output_unit, '(a)') '  '//sweep%axes(place)%name//': '//to_text(size(sweep%axes(place)%values))//' values'
+      end do
+      do place = 1, min(shown, sweep%cases())
+         call sweep%describe(sweep%places(place), words)
+         write (output_unit, '(a)') '  case '//to_text(place)//': '//words
+      end do
+      if (sweep%cases() > shown) write (output_unit, '(a)') '  ...'
+   end subroutine check_sweep
+
+   !> A case of the sweep as text.
+   subroutine print_case(sweep_path, case_number)
+      character(*), intent(in) :: sweep_path
+      integer, intent(in) :: case_number
+      type(sweep_type) :: sweep
+      type(error_type), allocatable :: error
+      type(group_type), allocatable :: groups(:)
+      character(:), allocatable :: words
+
+      call read_sweep_file(sweep_path, sweep, error)
+      if (allocated(error)) call fail(error)
+      if (case_number > sweep%cases()) call refuse('mfv_sweep', usage, '--case '//to_text(case_number)//': there are '// &
+                                                   to_text(sweep%cases())//' cases')
+      call sweep%groups_at(sweep%places(case_number), groups, error)
+      if (allocated(error)) call fail(error)
+      call sweep%describe(sweep%places(case_number), words)
+      call write_namelists(groups, text)
+      write (output_unit, '(a)', advance='no') '! case '//to_text(case_number)//' of '//sweep%source//': '//words//line_feed//text
+   end subroutine print_case
+
+end program mfv_sweep

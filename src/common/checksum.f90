@@ -1,0 +1,65 @@
+!> The checksum CRC-64 of ECMA-182 (reflected, as in the program xz): tells whether bytes are the same as before, and whether
+!> what was written is what is read.
+module mfv_checksum
+   use, intrinsic :: iso_fortran_env, only: int8, int64
+   implicit none
+   private
+   public :: checksum_of, add_to_checksum, add_text_to_checksum
+
+   !> The polynomial, its lowest power first: C96C5795D7870F42 in hexadecimal digits.
+   integer(int64), parameter :: polynomial = ior(shiftl(int(z'C96C5795', int64), 32), int(z'D7870F42', int64))
+   integer, parameter :: half_byte = 4
+
+contains
+
+   !> The checksum of some bytes.
+   pure integer(int64) function checksum_of(bytes)
+      integer(int8), intent(in) :: bytes(:)
+
+      checksum_of = 0
+      call add_to_checksum(bytes, checksum_of)
+   end function checksum_of
+
+   !> From the checksum of what came before to that with these bytes after it; it begins with 0.
+   pure subroutine add_to_checksum(bytes, checksum)
+      integer(int8), intent(in) :: bytes(:)
+      integer(int64), intent(inout) :: checksum
+      integer(int64) :: table(0:2**half_byte - 1), rest
+      integer :: i
+
+      table = [(remainder_of(int(i, int64)), i=0, size(table) - 1)]
+      rest = not(checksum)
+      do i = 1, size(bytes)
+         rest = ieor(rest, iand(int(bytes(i), int64), 255_int64))
+         rest = ieor(shiftr(rest, half_byte), table(iand(rest, 15_int64)))
+         rest = ieor(shiftr(rest, half_byte), table(iand(rest, 15_int64)))
+      end do
+      checksum = not(rest)
+   end subroutine add_to_checksum
+
+   !> The same for a text, with its length: two texts in a row are not their sum.
+   pure subroutine add_text_to_checksum(text, checksum)
+      character(*), intent(in) :: text
+      integer(int64), intent(inout) :: checksum
+      integer(int8) :: mold(1)
+
+      call add_to_checksum(transfer(int(len(text), int64), mold), checksum)
+      call add_to_checksum(transfer(text, mold, len(text)), checksum)
+   end subroutine add_text_to_checksum
+
+   !> What is left of half a byte after division by the polynomial.
+   pure integer(int64) function remainder_of(bits) result(rest)
+      integer(int64), intent(in) :: bits
+      integer :: i
+
+      rest = bits
+      do i = 1, half_byte
+         if (btest(rest, 0)) then
+            rest = ieor(shiftr(rest, 1), polynomial)
+         else
+            rest = shiftr(rest, 1)
+         end if
+      end do
+   end function remainder_of
+
+end module mfv_checksum

@@ -1,0 +1,155 @@
+!> Changes to the groups of a case: a value in place of another, and materials for a value of Dundurs' parameter.
+module mfv_case_changes
+   use mfv_kinds, only: wp
+   use mfv_namelist, only: append_entry, append_group, entry_type, group_type
+   use mfv_strings, only: string_type, to_text
+   implicit none
+   private
+   public :: set_value, set_dundurs_beta, count_of, write_number, stands_for
+
+   !> Keys of one group of which a case has one at most: a value for one takes the place of the others.
+   character(*), parameter :: alternatives(5) = [character(40) :: 'tangential_force force_ratio shift', &
+                                                 'normal_force approach', 'moment rotation', &
+                                                 'shear_modulus youngs_modulus', 'half_width half_angle']
+
+contains
+
+   !> Put a value, as it would be written, into a key of the `number`-th group of a name, in place of what is there for it or for a
+   !> key that it stands for; key and group are added where they are not there.
+   subroutine set_value(groups, group, number, key, value, is_quoted)
+      type(group_type), allocatable, intent(inout) :: groups(:)
+      character(*), intent(in) :: group, key, value
+      integer, intent(in) :: number
+      logical, intent(in) :: is_quoted
+      type(group_type) :: new
+      type(entry_type) :: entry
+      integer :: place, i
+
+      place = place_of(groups, group, number)
+      if (place == 0) then
+         new%name = group
+         allocate (new%entries(0))
+         call append_group(groups, new)
+         place = size(groups)
+      end if
+      entry%key = key
+      allocate (entry%values(1))
+      entry%values(1)%text = value
+      entry%is_quoted = [is_quoted]
+      entry%line = groups(place)%line
+      do i = 1, size(groups(place)%entries)
+         if (.not. stands_for(key, groups(place)%entries(i)%key)) cycle
+         entry%line = groups(place)%entries(i)%line
+         groups(place)%entries(i) = entry
+         return
+      end do
+      call append_entry(groups(place)%entries, entry)
+   end subroutine set_value
+
+   !> Whether a key takes the place of another one in its group: it is the same, or an alternative to it.
+   pure logical function stands_for(key, other)
+      character(*), intent(in) :: key, other
+      integer :: i
+
+      stands_for = key == other
+      do i = 1, size(alternatives)
+         stands_for = stands_for .or. (index(' '//alternatives(i), ' '//key//' ') > 0 .and. &
+                                       index(' '//alternatives(i), ' '//other//' ') > 0)
+      end do
+   end function stands_for
+
+   !> Give both bodies materials with Dundurs' parameter `beta`, from -1/2 to 1/2, positive where the lower body couples more, and
+   !> the mutual compliance A, length^2/force, the sum of (kappa + 1)/(4 G): Poisson's ratio 0, that is kappa = 3 in plane strain
+   !> and plane stress, 1/G_1 = A (1 + 2 beta)/2 and 1/G_2 = A (1 - 2 beta)/2 (dissertation eq. 6.1). A body without flexibility
+   !> becomes rigid.
+   subroutine set_dundurs_beta(groups, beta, compliance)
+      type(group_type), allocatable, intent(inout) :: groups(:)
+      real(wp), intent(in) :: beta, compliance
+      character(:), allocatable :: modulus
+      real(wp) :: flexibility(2)
+      integer :: body
+
+      flexibility = 0.5_wp*compliance*[1.0_wp + 2.0_wp*beta, 1.0_wp - 2.0_wp*beta]
+      do body = 1, 2
+         call remove_keys(groups, 'body', body, 'shear_modulus youngs_modulus poisson_ratio rigid')
+         if (flexibility(body) > 0.0_wp) then
+            call write_number(1.0_wp/flexibility(body), modulus)
+            call set_value(groups, 'body', body, 'shear_modulus', modulus, .false.)
+            call set_value(groups, 'body', body, 'poisson_ratio', '0', .false.)
+         else
+            call remove_keys(groups, 'body', body, 'yield_strength datum kernel harmonics')
+            call set_value(groups, 'body', body, 'rigid', '.true.', .false.)
+         end if
+      end do
+   end subroutine set_dundurs_beta
+
+   !> Take keys, separated by blanks, out of the `number`-th group of a name.
+   subroutine remove_keys(groups, group, number, keys)
+      type(group_type), intent(inout) :: groups(:)
+      character(*), intent(in) :: group, keys
+      integer, intent(in) :: number
+      type(entry_type), allocatable :: old(:), left(:)
+      integer :: place, i
+
+      place = place_of(groups, group, number)
+      if (place == 0) return
+      call move_alloc(groups(place)%entries, old)
+      allocate (left(0))
+      do i = 1, size(old)
+         if (index(' '//keys//' ', ' '//old(i)%key//' ') == 0) call append_entry(left, old(i))
+      end do
+      call move_alloc(left, groups(place)%entries)
+   end subroutine remove_keys
+
+   !> Place of the `number`-th group of a name, 0 for none.
+   pure integer function place_of(groups, name, number) result(place)
+      type(group_type), intent(in) :: groups(:)
+      character(*), intent(in) :: name
+      integer, intent(in) :: number
+      integer :: seen
+
+      seen = 0
+      do place = 1, size(groups)
+         if (groups(place)%name == name) seen = seen + 1
+         if (groups(place)%name == name .and. seen == number) return
+      end do
+      place = 0
+   end function place_of
+
+   !> Number of groups of a name.
+   pure integer function count_of(groups, name)
+      type(group_type), intent(in) :: groups(:)
+      character(*), intent(in) :: name
+      integer :: i
+
+      count_of = 0
+      do i = 1, size(groups)
+         if (groups(i)%name == name) count_of = count_of + 1
+      end do
+   end function count_of
+
+   !> The shortest text that is read as this number.
+   pure subroutine write_number(value, text)
+      real(wp), intent(in) :: value
+      character(:), allocatable, intent(out) :: text
+
+      text = to_text(value, digits_needed(value))
+   end subroutine write_number
+
+   !> How many significant digits tell a number from its neighbours.
+   pure integer function digits_needed(value) result(digits)
+      real(wp), intent(in) :: value
+      integer, parameter :: enough = 17
+      character(len=48) :: text
+      real(wp) :: again
+      integer :: code
+
+      do digits = 6, enough - 1
+         text = to_text(value, digits)
+         read (text, *, iostat=code) again
+         if (code /= 0) cycle
+         if (.not. abs(again - value) > 0.0_wp) return
+      end do
+   end function digits_needed
+
+end module mfv_case_changes
