@@ -9,7 +9,7 @@ import numpy as np
 import mfv
 from sweeps import Table
 
-#: Loads and bodies of the cases of equal disks: P in N/m, relative radius in m, mu, compliance A = sum (kappa + 1)/(4 G) in m^2/N.
+#: The cases of equal disks: P in N/m, relative radius in m, mu, compliance A = sum (kappa + 1)/(4 G) in m^2/N.
 NORMAL_FORCE, RADIUS, MU, COMPLIANCE = 1.6726e8, 2.0, 0.7, 0.7 / 77e9
 
 
@@ -31,22 +31,24 @@ def mindlin_number(force_ratio: np.ndarray) -> np.ndarray:
     return np.asarray(energy) / (NORMAL_FORCE**2 * COMPLIANCE)
 
 
-def edge_scale(beta: np.ndarray, mu: np.ndarray) -> np.ndarray:
+def edge_scale(beta: float, mu: float) -> float:
     """Distance from the edge, over the half-width, within which a stuck contact carries more than 1/mu of pressure for a shear.
 
-    Increments at a stuck edge are K r^(-1/2 + i epsilon), 2 pi epsilon = ln((1 + beta)/(1 - beta)) (Barber 2009, bonded punch): under a
-    lateral force alone pressure over shear is tan(epsilon ln(2a/r)), which comes to 1/mu at the distance given.
+    Increments at a stuck edge are K r^(-1/2 + i epsilon), 2 pi epsilon = ln((1 + beta)/(1 - beta)) (Muskhelishvili's bonded
+    punch, Johnson 1985, section 2.8): under a lateral force alone pressure over shear is tan(epsilon ln(2a/r)), which comes to
+    1/mu at the distance given.
     """
     epsilon = np.log((1.0 + beta) / (1.0 - beta)) / (2.0 * np.pi)
-    return 2.0 * np.exp(-np.arctan(1.0 / np.asarray(mu)) / epsilon)
+    return float(2.0 * np.exp(-np.arctan(1.0 / mu) / epsilon))
 
 
 @dataclass
 class Threshold:
-    """Where slip sets in: a lateral force ratio, and the shift of the contact over its half-width there."""
+    """Where slip sets in: lateral force ratio, shift of the contact over its half-width, and whether the mesh can tell."""
 
     force_ratio: float
     patch_shift: float
+    resolved: bool
 
 
 def threshold(rows: Table, mu: float, part: float = 1e-3) -> Threshold | None:
@@ -59,7 +61,8 @@ def threshold(rows: Table, mu: float, part: float = 1e-3) -> Threshold | None:
     place = slice(above[0] - 1, above[0] + 1)
     force = np.interp(np.log(part), ratio[place], np.log(rows["force_ratio"][place]))
     shift = np.interp(force, np.log(rows["force_ratio"][place]), np.abs(rows["patch_shift_return"][place]))
-    return Threshold(float(np.exp(force)), float(shift))
+    interval = 2.0 * rows["mesh%half_width"][0] / rows["mesh%nodes"][0] / rows["contact_half_width"][0]
+    return Threshold(float(np.exp(force)), float(shift), bool(edge_scale(rows["beta"][0], mu) > 2.0 * interval))
 
 
 def thresholds(table: Table) -> dict[tuple[float, float], Threshold]:
@@ -95,7 +98,7 @@ class Rule:
 
     def ratio(self, beta: np.ndarray, mu: np.ndarray) -> np.ndarray:
         """D_Goodman/D_full by the rule."""
-        return np.exp(terms(beta, mu) @ self.coefficients)
+        return np.asarray(np.exp(terms(beta, mu) @ self.coefficients))
 
 
 def terms(beta: np.ndarray, mu: np.ndarray) -> np.ndarray:
@@ -114,6 +117,6 @@ def fitted_rule(table: Table, beta_limit: float = 0.3, ratio_limit: float = 0.5)
 
 
 def scatter_about(x: np.ndarray, y: np.ndarray, degree: int = 3) -> float:
-    """Root mean square of y about its best polynomial in x, over the spread of y: 0 where y is a function of x, 1 where it is not."""
+    """Root mean square of y about its best polynomial in x, over the spread of y: 0 where y is a function of x, 1 where not."""
     fit = np.polyval(np.polyfit(x, y, degree), x)
     return float(np.sqrt(np.mean((y - fit) ** 2)) / np.std(y))

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
-from matplotlib.figure import Figure
 
 import analysis
-from drawing import BLACK, CYCLE, FORCE_RATIO, FRICTION, Drawn, coupled, letter, line, panels, stem
+from drawing import BLACK, FORCE_RATIO, FRICTION, Drawn, letter, line, panels, stem
 from sweeps import COUPLINGS, Table
 
 #: How the bodies were brought together before the cycles.
@@ -62,7 +62,11 @@ def small_force(table: Table) -> Drawn:
         line(axes[1], full["force_ratio"], ratio, place, f"{nodes}")
     for value in (3.0, 3.15):
         axes[0].axhline(value, color="0.6", linewidth=0.8, linestyle=":")
-    axes[0].set(title="local slope: full coupling full lines, decoupled dashed", ylabel=r"$d\ln D/d\ln\tilde Q$", ylim=(2.7, 3.7))
+    axes[0].set(
+        title="local slope: full coupling full lines, decoupled dashed",
+        ylabel=r"$d\ln D/d\ln\tilde Q$",
+        ylim=(2.7, 3.7),
+    )
     axes[1].set(title="over-prediction", ylabel=r"$D_\mathrm{decoupled}/D_\mathrm{full}$", ylim=(1.0, 2.6))
     for ax in axes:
         ax.set(xlabel=FORCE_RATIO, xscale="log")
@@ -74,7 +78,12 @@ def small_force(table: Table) -> Drawn:
         "Small lateral forces, mu = 0.7, beta = 0.286: slope of the dissipation from point to point by mesh, and the "
         "over-prediction. On meshes of fewer nodes only a few slip at the left end."
     )
-    return Drawn("small_force", caption, picture, table.columns(["nodes_of_mesh", "force_ratio", "coupling", "dissipation_number"]))
+    return Drawn(
+        "small_force",
+        caption,
+        picture,
+        table.columns(["nodes_of_mesh", "force_ratio", "coupling", "dissipation_number"]),
+    )
 
 
 def mismatch(table: Table) -> Drawn:
@@ -93,7 +102,15 @@ def mismatch(table: Table) -> Drawn:
     axes[0].legend(fontsize=8)
     axes[1].legend(fontsize=9)
     caption = "Two disks of one radius, mu = 0.7, materials from beta = -0.5 to 0.5 at the same compliance A."
-    names = ["beta", "force_ratio", "coupling", "dissipation_number", "patch_shift_return", "pressure_error_return", "shear_error_return"]
+    names = [
+        "beta",
+        "force_ratio",
+        "coupling",
+        "dissipation_number",
+        "patch_shift_return",
+        "pressure_error_return",
+        "shear_error_return",
+    ]
     return Drawn("mismatch", caption, picture, table.columns(names))
 
 
@@ -124,7 +141,7 @@ def error_map(table: Table) -> Drawn:
     return Drawn("map", caption, picture, rows.columns(names), in_docs=True)
 
 
-def contours(ax: Axes, rows: Table, levels: np.ndarray) -> object:
+def contours(ax: Axes, rows: Table, levels: np.ndarray) -> Any:
     """Filled contours with labels; what is below the first level or beyond the last has the colour of its end."""
     from matplotlib.colors import LogNorm
 
@@ -157,10 +174,17 @@ def rule_of_thumb(table: Table) -> Drawn:
         line(axes[2], 100.0 * (predicted - 1.0), over, place, rf"$\tilde Q={force:g}$", linestyle="none")
     end = 100.0 * inside["dissipation_ratio"].max() - 100.0
     axes[2].plot([0.0, end], [0.0, end], color="0.5", linewidth=0.8)
-    axes[0].set(title=rf"over $\beta\mu$: no one curve, $\tilde Q={ratio:g}$", xlabel=r"$\beta\mu$",
-                ylabel=r"$\ln(D_\mathrm{Goodman}/D_\mathrm{full})$")
-    axes[1].set(title=rf"over $\beta^2$: nearly one, $\tilde Q={ratio:g}$", xlabel=FRICTION,
-                ylabel=r"$\ln(D_\mathrm{Goodman}/D_\mathrm{full})/\beta^2$", ylim=(0.0, None))
+    axes[0].set(
+        title=rf"over $\beta\mu$: no one curve, $\tilde Q={ratio:g}$",
+        xlabel=r"$\beta\mu$",
+        ylabel=r"$\ln(D_\mathrm{Goodman}/D_\mathrm{full})$",
+    )
+    axes[1].set(
+        title=rf"over $\beta^2$: nearly one, $\tilde Q={ratio:g}$",
+        xlabel=FRICTION,
+        ylabel=r"$\ln(D_\mathrm{Goodman}/D_\mathrm{full})/\beta^2$",
+        ylim=(0.0, None),
+    )
     axes[2].set(title="the rule", xlabel="over-prediction by the rule, %", ylabel="computed, %")
     letter(axes)
     for ax in axes:
@@ -168,9 +192,50 @@ def rule_of_thumb(table: Table) -> Drawn:
     c0, c1 = rule.coefficients
     caption = (
         f"What matters? ln(D_Goodman/D_full) = beta^2 ({c0:.2f} + {c1:.2f} mu^2), fitted for beta up to "
-        f"{rule.beta_limit:g} and Q~ from {rule.ratio_limit:g} on; it misses ln(D_Goodman/D_full) by {rule.largest_miss:.3f} at most."
+        f"{rule.beta_limit:g} and Q~ from {rule.ratio_limit:g} on; "
+        f"it misses ln(D_Goodman/D_full) by {rule.largest_miss:.3f} at most."
     )
     return Drawn("rule_of_thumb", caption, picture, rows.columns(["beta", "mu", "force_ratio", "dissipation_ratio"]))
+
+
+def traction_errors(table: Table) -> Drawn:
+    """Errors of the tractions and shift of the contact over beta mu."""
+    picture, axes = panels(1, 3, (13.0, 4.4))
+    rows = table.between("mu", 0.2, 1.0)
+    ratios = rows.values("force_ratio")
+    columns = {
+        "pressure": ("goodman", "pressure_error_reversal", 100.0, r"$L_1$ error of the pressure, %"),
+        "shear traction": ("goodman", "shear_error_reversal", 100.0, r"$L_1$ error of the shear, %"),
+        "shift of the contact": ("full", "patch_shift_reversal", 1.0, "middle over half-width, full coupling"),
+    }
+    for ax, (title, (coupling, column, scale, label)) in zip(axes, columns.items()):
+        for place, i in enumerate(np.unique(np.linspace(0, len(ratios) - 1, 4).round().astype(int))):
+            part = rows.where(coupling=coupling, force_ratio=ratios[i])
+            line(
+                ax,
+                part["beta"] * part["mu"],
+                scale * np.abs(part[column]),
+                place,
+                rf"$\tilde Q={ratios[i]:g}$",
+                linestyle="none",
+            )
+        ax.set(title=title, xlabel=r"$\beta\mu$", ylabel=label)
+    letter(axes)
+    axes[0].legend(fontsize=8.5)
+    caption = (
+        "What Goodman's approximation leaves out of the tractions, at -Q in the steady cycle, mu from 0.2 to 1: the product "
+        "beta mu tells it, but for the smallest forces, where the shear of the pressing remains."
+    )
+    names = [
+        "beta",
+        "mu",
+        "force_ratio",
+        "coupling",
+        "pressure_error_reversal",
+        "shear_error_reversal",
+        "patch_shift_reversal",
+    ]
+    return Drawn("traction_errors", caption, picture, rows.columns(names))
 
 
 def shakedown(table: Table) -> Drawn:
@@ -202,22 +267,45 @@ def threshold(table: Table) -> Drawn:
         for dashes, (mu, curve) in zip(("-", "--", ":"), rows.each("mu")):
             decoupled = analysis.mindlin_number(curve["force_ratio"]) * (mu / analysis.MU) ** 2
             part = np.maximum(curve["dissipation_number"] / decoupled, 1e-6)
-            line(axes[0], curve["force_ratio"], part, place, rf"$\beta={beta:g},\ \mu={mu:g}$", linestyle=dashes, markersize=2.5)
+            line(
+                axes[0],
+                curve["force_ratio"],
+                part,
+                place,
+                rf"$\beta={beta:g},\ \mu={mu:g}$",
+                linestyle=dashes,
+                markersize=2.5,
+            )
     for (beta, mu), found in analysis.thresholds(table).items():
-        place = table.values("beta").index(beta)
-        line(axes[1], analysis.edge_scale(beta, mu), found.patch_shift, place, rf"$\beta={beta:g},\ \mu={mu:g}$", linestyle="none")
-        axes[1].annotate(rf"$\mu={mu:g}$", (analysis.edge_scale(beta, mu), found.patch_shift), (5, -9), textcoords="offset points", fontsize=8)
-    reach = np.array([0.002, 0.06])
+        place, scale = table.values("beta").index(beta), analysis.edge_scale(beta, mu)
+        filling = {} if found.resolved else {"markerfacecolor": "white"}
+        line(axes[1], np.array([scale]), np.array([found.patch_shift]), place, linestyle="none", **filling)
+        axes[1].annotate(rf"$\mu={mu:g}$", (scale, found.patch_shift), (5, -9), textcoords="offset points", fontsize=8)
+    reach = np.array([0.003, 0.06])
     axes[1].loglog(reach, 2.5 * reach, color="0.5", linewidth=0.8, label="2.5 times")
-    axes[0].set(title="full coupling", xlabel=FORCE_RATIO, ylabel=r"$D/D_\mathrm{decoupled}$ (1e-6: or less)", xscale="log", yscale="log")
-    axes[1].set(title=r"where $D/D_\mathrm{decoupled}$ passes 0.001", xlabel=r"$2\,\exp(-\mathrm{arccot}(\mu)/\epsilon)$",
-                ylabel="shift of the contact over its half-width")
+    axes[1].legend(fontsize=8.5)
+    axes[0].set(
+        title="full coupling",
+        xlabel=FORCE_RATIO,
+        ylabel=r"$D/D_\mathrm{decoupled}$ (1e-6: or less)",
+        xscale="log",
+        yscale="log",
+    )
+    axes[0].set_xticks([0.02, 0.05, 0.1, 0.2, 0.3], ["0.02", "0.05", "0.1", "0.2", "0.3"])
+    axes[1].set_xticks([0.002, 0.005, 0.01, 0.02, 0.05], ["0.002", "0.005", "0.01", "0.02", "0.05"])
+    for ax in axes:
+        ax.tick_params(axis="x", which="minor", labelbottom=False)
+    axes[1].set(
+        title=r"where $D/D_\mathrm{decoupled}$ passes 0.001",
+        xlabel=r"$2\,\exp(-\mathrm{arccot}(\mu)/\epsilon)$",
+        ylabel="shift of the contact over its half-width",
+    )
     letter(axes)
     axes[0].legend(fontsize=8)
     caption = (
-        "Below a lateral force nothing slips any more with full coupling. A stuck edge carries pressure and shear as tan(eps ln(2a/r)), "
-        "2 pi eps = ln((1 + beta)/(1 - beta)): where the contact shifts by less than some 2.5 times the distance at which that is "
-        "1/mu, friction holds all of it."
+        "Below a lateral force nothing slips any more with full coupling. A stuck edge carries pressure and shear as "
+        "tan(eps ln(2a/r)), 2 pi eps = ln((1 + beta)/(1 - beta)): where the contact shifts by less than some 2.5 times the "
+        "distance at which that is 1/mu, friction holds all of it. Open: that distance is less than two intervals of the mesh."
     )
     names = ["beta", "mu", "force_ratio", "dissipation_number", "patch_shift_return"]
     return Drawn("threshold", caption, picture, table.columns(names))
@@ -242,7 +330,16 @@ def laws(table: Table) -> Drawn:
         "Other laws of friction, rigid disk in a hole, 75 nodes in contact. Where the coefficient falls, or bristles give way, "
         "Goodman and full decoupling no longer dissipate the same: the shear of the pressing matters."
     )
-    names = ["base", "force_ratio", "coupling", "linear_solves", "dissipation_number", "dissipation_ratio", "pressure_error_return", "shear_error_return"]
+    names = [
+        "base",
+        "force_ratio",
+        "coupling",
+        "linear_solves",
+        "dissipation_number",
+        "dissipation_ratio",
+        "pressure_error_return",
+        "shear_error_return",
+    ]
     return Drawn("laws", caption, picture, table.columns(names))
 
 
@@ -253,7 +350,13 @@ def stiffness(table: Table) -> Drawn:
     full = rows.where(coupling="full")
     for place, coupling in enumerate(COUPLINGS):
         curve = rows.where(coupling=coupling)
-        line(axes[0], curve["force_ratio"], curve["tangential_stiffness"] / full["tangential_stiffness"], place, COUPLINGS[coupling])
+        line(
+            axes[0],
+            curve["force_ratio"],
+            curve["tangential_stiffness"] / full["tangential_stiffness"],
+            place,
+            COUPLINGS[coupling],
+        )
         line(axes[1], curve["force_ratio"], curve["secant_stiffness"] / full["secant_stiffness"], place)
         line(axes[2], curve["force_ratio"], curve["loss_factor"], place)
     axes[0].set(title="stiffness after a reversal", xlabel=FORCE_RATIO, ylabel="over that of full coupling")
@@ -261,7 +364,8 @@ def stiffness(table: Table) -> Drawn:
     axes[2].set(title="loss factor", xlabel=FORCE_RATIO, ylabel=r"$D/(2\pi\,\frac{1}{2}Q U)$")
     letter(axes)
     axes[0].legend(fontsize=9)
-    caption = "What a model of a joint takes from a contact, rigid disk on an elastic half-plane, mu = 0.7, beta = 0.286."
+    caption = "What a model of a joint takes from a contact, rigid disk on an elastic half-plane, mu = 0.7, beta = 0.286. In "
+    caption += "two dimensions the displacements, and with them stiffness and loss factor, depend on the datum, R here."
     names = ["force_ratio", "coupling", "tangential_stiffness", "secant_stiffness", "loss_factor", "stiffness_number"]
     return Drawn("stiffness", caption, picture, rows.columns(names))
 
@@ -274,6 +378,7 @@ def draw_beyond(tables: Mapping[str, Table]) -> list[Drawn]:
         mismatch(tables["mismatch"]),
         error_map(tables["map"]),
         rule_of_thumb(tables["map"]),
+        traction_errors(tables["map"]),
         shakedown(tables["shakedown"]),
         threshold(tables["threshold"]),
         stiffness(tables["lateral_force"]),

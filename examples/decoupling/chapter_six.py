@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
-from matplotlib.figure import Figure
 
 import mfv
 from drawing import (
@@ -106,16 +106,19 @@ def record_of_steady(result: mfv.Result) -> int:
 def padded(columns: Mapping[str, np.ndarray]) -> dict[str, np.ndarray]:
     """Columns of one length, NaN where they end."""
     longest = max(map(len, columns.values()))
-    return {name: np.pad(values.astype(float), (0, longest - len(values)), constant_values=np.nan) for name, values in columns.items()}
+    return {
+        name: np.pad(values.astype(float), (0, longest - len(values)), constant_values=np.nan)
+        for name, values in columns.items()
+    }
 
 
-def by_body(ax: Axes, table: Table, x: str, y: str, scale: float = 1.0, **style: object) -> None:
+def by_body(ax: Axes, table: Table, x: str, y: str, scale: float = 1.0, **style: Any) -> None:
     """A line for each pair of bodies."""
     for place, (base, rows) in enumerate(table.each("base")):
         line(ax, rows[x], scale * rows[y], place, BODIES[stem(base)], **style)
 
 
-def by_body_and_coupling(ax: Axes, table: Table, x: str, y: str, **style: object) -> None:
+def by_body_and_coupling(ax: Axes, table: Table, x: str, y: str, **style: Any) -> None:
     """One colour a coupling; the bodies lie on one another."""
     for _, rows in table.each("base"):
         coupled(ax, rows, x, y, **style)
@@ -160,8 +163,11 @@ def figure_6_3(table: Table) -> Drawn:
         "curve without dimensions. Errors of the tractions by eq. 6.6."
     )
     names = ["base", x, "coupling", "cycle_dissipation", "dissipation_number", "dissipation_ratio"]
-    names += [f"{name}_{moment}" for name in ("stick_ratio", "patch_shift", "pressure_error", "shear_error")
-              for moment in ("loading", "reversal", "return")]
+    names += [
+        f"{name}_{moment}"
+        for name in ("stick_ratio", "patch_shift", "pressure_error", "shear_error")
+        for moment in ("loading", "reversal", "return")
+    ]
     return Drawn("figure_6_3", caption, picture, table.columns(names))
 
 
@@ -172,7 +178,7 @@ def finish_panels(axes: list[Axes], titles: Mapping[str, str], xlabel: str) -> N
     letter(axes)
 
 
-def one_each(ax: Axes, number: int, **more: object) -> None:
+def one_each(ax: Axes, number: int, **more: Any) -> None:
     """A legend with every label once."""
     handles = dict(zip(*reversed(ax.get_legend_handles_labels())))
     ax.legend(list(handles.values())[:number], list(handles)[:number], fontsize=8.5, **more)
@@ -203,8 +209,18 @@ def figure_6_4(table: Table) -> Drawn:
     one_each(axes[3], 2)
     bodies_legend(picture, axes[0])
     caption = "Figure 6.4: five bodies and their common limit over the coefficient of friction, Q = 0.99 mu P."
-    names = ["base", "mu", "coupling", "cycle_dissipation", "dissipation_number", "dissipation_ratio",
-             "pressure_error_loading", "shear_error_loading", "pressure_error_reversal", "shear_error_reversal"]
+    names = [
+        "base",
+        "mu",
+        "coupling",
+        "cycle_dissipation",
+        "dissipation_number",
+        "dissipation_ratio",
+        "pressure_error_loading",
+        "shear_error_loading",
+        "pressure_error_reversal",
+        "shear_error_reversal",
+    ]
     return Drawn("figure_6_4", caption, picture, table.columns(names))
 
 
@@ -225,9 +241,20 @@ def figure_6_5(table: Table) -> Drawn:
     }
     finish_panels(axes, titles, FRICTION)
     axes[1].legend(fontsize=9)
-    caption = "Figure 6.5: rigid disk in an elastic hole of twice its radius, five lateral forces over the coefficient of friction."
-    names = ["force_ratio", "mu", "coupling", "dissipation_number", "dissipation_ratio",
-             "pressure_error_loading", "shear_error_loading", "pressure_error_reversal", "shear_error_reversal"]
+    caption = (
+        "Figure 6.5: rigid disk in an elastic hole of twice its radius, five lateral forces over the coefficient of friction."
+    )
+    names = [
+        "force_ratio",
+        "mu",
+        "coupling",
+        "dissipation_number",
+        "dissipation_ratio",
+        "pressure_error_loading",
+        "shear_error_loading",
+        "pressure_error_reversal",
+        "shear_error_reversal",
+    ]
     return Drawn("figure_6_5", caption, picture, table.columns(names))
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -12,7 +13,15 @@ from matplotlib.figure import Figure
 from sweeps import COUPLINGS, Table
 
 #: Colours from Okabe and Ito, told apart by the colour-blind too, with a marker each.
-BLUE, ORANGE, GREEN, YELLOW, SKY, PINK, BLACK = "#0072B2", "#D55E00", "#009E73", "#E69F00", "#56B4E9", "#CC79A7", "#000000"
+BLUE, ORANGE, GREEN, YELLOW, SKY, PINK, BLACK = (
+    "#0072B2",
+    "#D55E00",
+    "#009E73",
+    "#E69F00",
+    "#56B4E9",
+    "#CC79A7",
+    "#000000",
+)
 CYCLE = ((BLUE, "o"), (ORANGE, "s"), (GREEN, "^"), (YELLOW, "v"), (PINK, "D"), (SKY, "x"), (BLACK, "P"))
 OF_COUPLING = dict(zip(COUPLINGS, CYCLE))
 
@@ -46,20 +55,20 @@ def stem(base: str) -> str:
     return base.rsplit("/", 1)[-1].removesuffix(".nml")
 
 
-def panels(rows: int, columns: int, size: tuple[float, float], **more: object) -> tuple[Figure, list[Axes]]:
+def panels(rows: int, columns: int, size: tuple[float, float], **more: Any) -> tuple[Figure, list[Axes]]:
     """A picture with panels, row by row."""
     picture = Figure(figsize=size, layout="constrained")
     return picture, list(np.atleast_1d(picture.subplots(rows, columns, **more)).ravel())
 
 
-def line(ax: Axes, x: np.ndarray, y: np.ndarray, place: int = 0, label: str | None = None, **style: object) -> None:
+def line(ax: Axes, x: np.ndarray, y: np.ndarray, place: int = 0, label: str | None = None, **style: Any) -> None:
     """Points joined by a line, by place in the cycle of colours and markers."""
     colour, marker = CYCLE[place % len(CYCLE)]
-    defaults = dict(color=colour, marker=marker, markersize=3.5, linewidth=1.0, label=label)
+    defaults: dict[str, Any] = dict(color=colour, marker=marker, markersize=3.5, linewidth=1.0, label=label)
     ax.plot(x, y, **(defaults | style))
 
 
-def coupled(ax: Axes, table: Table, x: str, y: str, **style: object) -> None:
+def coupled(ax: Axes, table: Table, x: str, y: str, **style: Any) -> None:
     """A line for each coupling of a table."""
     for coupling, rows in table.each("coupling"):
         place = list(COUPLINGS).index(coupling)

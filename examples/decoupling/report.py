@@ -19,8 +19,10 @@ from sweeps import COUPLINGS, Table, mean_of
 
 DPI = 110
 STYLE = """
-body { font-family: Georgia, serif; max-width: 75em; margin: 2em auto; padding: 0 1em; line-height: 1.4; color: #222; }
-table { border-collapse: collapse; font-size: 0.9em; } td, th { border: 1px solid #ccc; padding: 0.3em 0.5em; vertical-align: top; }
+body { font-family: Georgia, serif; max-width: 75em; margin: 2em auto; padding: 0 1em;
+  line-height: 1.4; color: #222; }
+table { border-collapse: collapse; font-size: 0.9em; } td, th { border: 1px solid #ccc; padding: 0.3em 0.5em;
+  vertical-align: top; }
 th { text-align: left; background: #eee; } img { max-width: 100%; height: auto; } figure { margin: 2em 0; }
 figcaption { font-size: 0.95em; color: #444; } .agrees { background: #e3f1ea; } .part { background: #fbf0d5; }
 .differs { background: #f6ddd2; } .not { background: #e4edf6; }
@@ -59,7 +61,9 @@ def write_statements(path: Path, statements: Sequence[Statement]) -> None:
 def markdown(statements: Sequence[Statement]) -> str:
     """The statements as a table of a Markdown page."""
     lines = ["| " + " | ".join(HEADINGS) + " |", "| --- " * len(HEADINGS) + "|"]
-    lines += ["| " + " | ".join(text.replace("|", r"\|").replace("~", r"\~") for text in astuple(row)) + " |" for row in statements]
+    lines += [
+        "| " + " | ".join(text.replace("|", r"\|").replace("~", r"\~") for text in astuple(row)) + " |" for row in statements
+    ]
     return "\n".join(lines) + "\n"
 
 
@@ -80,13 +84,19 @@ def cost_table(table: Table) -> str:
     for name in COUPLINGS:
         part = table.where(coupling=name)
         solves = mean_of(part, "linear_solves")
-        rows.append(f"<tr><td>{COUPLINGS[name]}</td><td>{mean_of(part, 'events'):.0f}</td><td>{solves:.0f}</td><td>{solves / full:.2f}</td></tr>")
+        rows.append(
+            f"<tr><td>{COUPLINGS[name]}</td><td>{mean_of(part, 'events'):.0f}</td><td>{solves:.0f}</td>"
+            f"<td>{solves / full:.2f}</td></tr>"
+        )
     return "<table>\n" + "\n".join(rows) + "\n</table>"
 
 
 def page(drawings: Sequence[Drawn], statements: Sequence[Statement], tables: Mapping[str, Table], quick: bool) -> str:
     """The whole page."""
-    counts = {verdict: sum(row.verdict == verdict for row in statements) for verdict in dict.fromkeys(row.verdict for row in statements)}
+    counts = {
+        verdict: sum(row.verdict == verdict for row in statements)
+        for verdict in dict.fromkeys(row.verdict for row in statements)
+    }
     cases = sum(map(len, tables.values()))
     residual = max(float(np.nanmax(table["largest_residual"])) for table in tables.values())
     text = [
@@ -95,7 +105,8 @@ def page(drawings: Sequence[Drawn], statements: Sequence[Statement], tables: Map
         f"<style>{STYLE}</style></head><body>",
         "<h1>Elastic decoupling: chapter 6 of the dissertation, computed again</h1>",
         f"<p>MFV {html.escape(mfv.__version__)}, {cases} cases, largest relative residual of any {residual:.0e}."
-        + (" A quick study: few values on every axis." if quick else "") + "</p>",
+        + (" A quick study: few values on every axis." if quick else "")
+        + "</p>",
         "<h2>Statement by statement</h2>",
         "<p>" + html.escape(", ".join(f"{verdict}: {count}" for verdict, count in counts.items())) + ".</p>",
         statements_table(statements),
@@ -107,6 +118,8 @@ def page(drawings: Sequence[Drawn], statements: Sequence[Statement], tables: Map
     for drawn in drawings:
         data = base64.b64encode(picture_bytes(drawn)).decode()
         caption = html.escape(drawn.caption)
-        text.append(f'<figure><img alt="{drawn.name}" src="data:image/png;base64,{data}"><figcaption>{caption} '
-                    f"Numbers: {drawn.name}.csv.</figcaption></figure>")
+        text.append(
+            f'<figure><img alt="{drawn.name}" src="data:image/png;base64,{data}"><figcaption>{caption} '
+            f"Numbers: {drawn.name}.csv.</figcaption></figure>"
+        )
     return "\n".join([*text, "</body></html>", ""])

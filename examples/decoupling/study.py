@@ -11,6 +11,7 @@ from __future__ import annotations
 import argparse
 from collections.abc import Sequence
 from pathlib import Path
+from typing import Any
 
 import matplotlib
 
@@ -23,8 +24,16 @@ from drawing import Drawn
 from statements import Statement, all_statements
 
 HERE = Path(__file__).resolve().parent
-STYLE = {"font.size": 10, "axes.linewidth": 0.6, "legend.frameon": False, "axes.formatter.use_mathtext": True,
-         "xtick.direction": "in", "ytick.direction": "in", "xtick.top": True, "ytick.right": True}
+STYLE: dict[Any, Any] = {
+    "font.size": 10,
+    "axes.linewidth": 0.6,
+    "legend.frameon": False,
+    "axes.formatter.use_mathtext": True,
+    "xtick.direction": "in",
+    "ytick.direction": "in",
+    "xtick.top": True,
+    "ytick.right": True,
+}
 
 
 def arguments() -> argparse.Namespace:
@@ -65,7 +74,9 @@ def main() -> None:
     for name in sweeps.NAMES:
         tables[name] = sweeps.run(name, folder, executable, options.quick)
         print(f"{name}: {len(tables[name])} cases", flush=True)
-    results = {str(row["coupling"]): mfv.read(folder / "cyclic.cases" / f"{row['case']:06d}.h5") for row in tables["cyclic"].rows}
+    results = {
+        str(row["coupling"]): mfv.read(folder / "cyclic.cases" / f"{row['case']:06d}.h5") for row in tables["cyclic"].rows
+    }
     with matplotlib.rc_context(STYLE):
         drawings = [*draw_chapter(tables, results), *draw_beyond(tables)]
         statements = all_statements(tables, results)

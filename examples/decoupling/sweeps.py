@@ -15,11 +15,23 @@ import numpy as np
 import mfv
 
 HERE = Path(__file__).resolve().parent
-NAMES = ("cyclic", "lateral_force", "friction", "ratios", "mindlin", "small_force", "mismatch", "map", "shakedown", "threshold", "laws")
+NAMES = (
+    "cyclic",
+    "lateral_force",
+    "friction",
+    "ratios",
+    "mindlin",
+    "small_force",
+    "mismatch",
+    "map",
+    "shakedown",
+    "threshold",
+    "laws",
+)
 COUPLINGS = {"full": "full coupling", "goodman": "Goodman", "none": "decoupled"}
 
-#: What a quick study leaves of an axis: so many values, meshes up to so many nodes.
-FEW, COARSE = 5, 400
+#: What a quick study leaves of an axis: so many values, and meshes of at most so many nodes; other cases have COARSE.
+FEW, OTHERWISE, LARGEST, COARSE = 4, {"small_force": 9, "laws": 1}, 195, 97
 
 
 class Table:
@@ -80,8 +92,8 @@ def run(name: str, folder: Path, executable: str, quick: bool) -> Table:
     sweep = HERE / f"{name}.nml"
     if quick:
         sweep = folder / f"{name}.nml"
-        sweep.write_text(quick_text((HERE / f"{name}.nml").read_text()))
-    done = subprocess.run([executable, str(sweep)], cwd=folder, capture_output=True, text=True)
+        sweep.write_text(quick_text((HERE / f"{name}.nml").read_text(), OTHERWISE.get(name, FEW)))
+    done = subprocess.run([executable, str(sweep)], cwd=folder, capture_output=True, text=True, check=False)
     if done.returncode != 0:
         raise RuntimeError(f"mfv_sweep {sweep} ended with {done.returncode}:\n{done.stdout}{done.stderr}")
     table = Table(np.asarray(mfv.read_table(folder / f"{name}.h5")))
@@ -91,19 +103,19 @@ def run(name: str, folder: Path, executable: str, quick: bool) -> Table:
     return table
 
 
-def quick_text(text: str) -> str:
-    """A sweep with fewer values, its cases named by their whole paths."""
+def quick_text(text: str, few: int) -> str:
+    """A sweep with fewer values and coarser meshes, its cases named by their whole paths."""
 
     def fewer(found: re.Match[str]) -> str:
         numbers = [number.strip() for number in found.group(2).split(",")]
-        if len(numbers) > FEW:
-            numbers = [numbers[round(i)] for i in np.linspace(0, len(numbers) - 1, FEW)]
-        return found.group(1) + ", ".join(numbers)
-
-    def coarser(found: re.Match[str]) -> str:
-        return found.group(1) + ", ".join(n for n in found.group(2).split(",") if int(n) <= COARSE)
+        if "mesh%nodes" in found.group(1):
+            numbers = list(dict.fromkeys(str(min(int(number), LARGEST)) for number in numbers))
+        elif len(numbers) > few:
+            numbers = [numbers[round(i)] for i in np.linspace(0, len(numbers) - 1, few)]
+        return found.group(1) + ", ".join(numbers) + " "
 
     text = text.replace("'cases/", f"'{HERE}/cases/")
-    text = re.sub(r"(name='nodes_of_mesh',\s*values=)([\d,\s]+)", coarser, text)
-    text = re.sub(r"((?<!nodes_of_mesh', )values=)([\d.,\s]+(?=/))", lambda found: fewer(found) + " ", text)
-    return re.sub(r"count=(\d+)", lambda found: f"count={min(int(found.group(1)), FEW)}", text)
+    text = re.sub(r"(&vary[^/=]*=[^/]*?values=)([\d.,\s]+(?=/))", fewer, text)
+    if "mesh%nodes" not in text:
+        text += f"&vary key='mesh%nodes', values={COARSE} /\n"
+    return re.sub(r"count=(\d+)", lambda found: f"count={min(int(found.group(1)), few)}", text)
