@@ -91,12 +91,14 @@ def cost_table(table: Table) -> str:
     return "<table>\n" + "\n".join(rows) + "\n</table>"
 
 
+def counted(statements: Sequence[Statement]) -> str:
+    """How many statements have which verdict."""
+    verdicts = [statement.verdict for statement in statements]
+    return ", ".join(f"{verdict}: {verdicts.count(verdict)}" for verdict in dict.fromkeys(verdicts)) + "."
+
+
 def page(drawings: Sequence[Drawn], statements: Sequence[Statement], tables: Mapping[str, Table], quick: bool) -> str:
     """The whole page."""
-    counts = {
-        verdict: sum(row.verdict == verdict for row in statements)
-        for verdict in dict.fromkeys(row.verdict for row in statements)
-    }
     cases = sum(map(len, tables.values()))
     residual = max(float(np.nanmax(table["largest_residual"])) for table in tables.values())
     text = [
@@ -108,7 +110,7 @@ def page(drawings: Sequence[Drawn], statements: Sequence[Statement], tables: Map
         + (" A quick study: few values on every axis." if quick else "")
         + "</p>",
         "<h2>Statement by statement</h2>",
-        "<p>" + html.escape(", ".join(f"{verdict}: {count}" for verdict, count in counts.items())) + ".</p>",
+        f"<p>{html.escape(counted(statements))}</p>",
         statements_table(statements),
         "<h2>What a case costs</h2>",
         "<p>Means over the cases of Figure 6.3, 150 nodes in contact, four cycles.</p>",

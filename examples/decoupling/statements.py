@@ -233,7 +233,7 @@ def dissipation_over_force(table: Table, small: Table) -> list[Statement]:
             "they over-predict by 20 % to 50 %",
             "20 to 50 %",
             f"{percent(ratios - 1.0)} over Q~ = {span(goodman['force_ratio'])}; 50 % at Q~ = {where_half(small):.3f}",
-            agreed(0.15 < ratios.min() - 1.0 < 0.22 and ratios.max() > 1.45),
+            agreed(0.18 < ratios.min() - 1.0 < 0.22 and 1.4 < ratios.max() < 1.6, PARTLY),
             "20 % is the level from Q~ = 0.4 on; the upper end is that of the smallest force taken, and has no limit there",
         ),
         Statement(
@@ -263,7 +263,7 @@ def slopes(small: Table) -> list[Statement]:
             part = rows.where(coupling=coupling).between("force_ratio", low, high)
             fits[coupling, low] = analysis.slope(part["force_ratio"], part["dissipation_number"])
     full = rows.where(coupling="full")
-    _, local = analysis.local_slopes(full["force_ratio"], full["dissipation_number"])
+    where, local = analysis.local_slopes(full["force_ratio"], full["dissipation_number"])
     exact = analysis.slope(np.array([0.05, 0.1, 0.2]), analysis.mindlin_number(np.array([0.05, 0.1, 0.2])))
     limit = analysis.slope(np.array([1e-3, 2e-3]), analysis.mindlin_number(np.array([1e-3, 2e-3])))
     return [
@@ -271,7 +271,7 @@ def slopes(small: Table) -> list[Statement]:
             "6.4",
             "with full coupling the slope of log D over log Q is roughly 3.15 at small forces",
             "3.15",
-            f"{fits['full', 0.05]:.2f} over Q~ = 0.05 to 0.2; local slopes {span(local)}, least between 0.1 and 0.15",
+            f"{fits['full', 0.05]:.2f} over Q~ = 0.05 to 0.2; local slopes {span(local)}, least at {where[local.argmin()]:.2f}",
             agreed(abs(fits["full", 0.05] - 3.15) < 0.03),
             "there is no limit to find: the local slope falls to 3.22 and rises again below Q~ = 0.1 (meshes of 300 to 1200 "
             "nodes in contact agree); with fewer nodes slipping a fit may give anything. 3.15 is the decoupled slope "
@@ -348,7 +348,7 @@ def traction_errors(table: Table) -> list[Statement]:
             "the error of the pressure rises with the lateral force from 0 to 23 %",
             "0 to 23 %",
             percent(pressure),
-            agreed(abs(pressure.max() - 0.23) < 0.02),
+            agreed(abs(pressure.max() - 0.23) < 0.02 and pressure.min() < 0.02, PARTLY),
             f"at Q~ = 0 it is not 0: {100 * pressure.min():.0f} % remain from the pressing, the narrower contact",
         ),
         Statement(
@@ -358,7 +358,7 @@ def traction_errors(table: Table) -> list[Statement]:
             f"{100 * shear.max():.0f} % ({100 * first.max():.0f} % on first loading), then "
             f"{100 * last['shear_error_reversal'].mean():.0f} %",
             agreed(abs(shear.max() - 0.35) < 0.02, PARTLY),
-            "0.320 on meshes of 30 to 310 nodes in contact; over Goodman's own shear it would be 0.34",
+            "why 35 % is not known: 0.320 on meshes of 30 to 310 nodes in contact; over Goodman's own shear it would be 0.34",
         ),
         Statement(
             "6.4",
@@ -498,7 +498,7 @@ def five_forces(table: Table) -> list[Statement]:
             "the error of the shear of Goodman rises with mu to 35 %",
             "35 %",
             f"{100 * errors['loading']:.0f} % on loading, {100 * errors['reversal']:.0f} % on reversal",
-            agreed(abs(errors["loading"] - 0.35) < 0.025, PARTLY),
+            agreed(max(abs(error - 0.35) for error in errors.values()) < 0.025, PARTLY),
             "on first loading; more in the steady state",
         ),
         Statement(

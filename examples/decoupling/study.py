@@ -61,7 +61,7 @@ def publish(drawings: Sequence[Drawn], statements: Sequence[Statement]) -> None:
     for drawn in drawings:
         path = docs / f"decoupling_{drawn.name}.png" if drawn.in_docs else pictures / f"{drawn.name}.png"
         path.write_bytes(report.picture_bytes(drawn))
-    head = "# Statement by statement\n\nWritten by `study.py --publish`; do not edit.\n\n"
+    head = f"# Statement by statement\n\nWritten by `study.py --publish`; do not edit. {report.counted(statements)}\n\n"
     (HERE / "statements.md").write_text(head + report.markdown(statements), encoding="utf-8")
 
 
