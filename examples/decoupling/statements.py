@@ -159,8 +159,26 @@ def cycling(results: Mapping[str, mfv.Result]) -> list[Statement]:
     ]
 
 
-def loops(table: Table) -> list[Statement]:
+def steady_loop(result: mfv.Result) -> tuple[np.ndarray, np.ndarray]:
+    """Force over its amplitude, and shift less its linear part over the largest shift, on the way back of the last cycle."""
+    history = result.history
+    first, last = history.record[history.event_kind == mfv.EventKind.STEP_END][-3:-1]
+    way = (history.record >= first) & (history.record <= last)
+    force = history.tangential_force[way] / np.abs(history.tangential_force).max()
+    return force[::-1], history.nonlinear_shift[way][::-1] / np.abs(history.shift).max()
+
+
+def apart(one: mfv.Result, other: mfv.Result) -> float:
+    """Largest difference of two steady loops on the way back, their middles laid on one another, over their width."""
+    force = np.linspace(-1.0, 1.0, 401)
+    curves = [np.interp(force, *steady_loop(result)) for result in (one, other)]
+    centred = [curve - 0.5 * (curve[0] + curve[-1]) for curve in curves]
+    return float(np.abs(centred[0] - centred[1]).max() / np.ptp(centred[0]))
+
+
+def loops(table: Table, results: Mapping[str, mfv.Result]) -> list[Statement]:
     """Hysteresis."""
+    decoupled, full = (apart(results[name], results["none"]) for name in ("goodman", "full"))
     first = table["first_cycle_dissipation"] / table["cycle_dissipation"]
     steady = dict(zip(table["coupling"], table["dissipation_number"]))
     same = abs(steady["goodman"] / steady["none"] - 1.0)
@@ -176,10 +194,11 @@ def loops(table: Table) -> list[Statement]:
         ),
         Statement(
             "6.3",
-            "steady loops of Goodman and the decoupled contact dissipate the same",
+            "steady loops of Goodman and the decoupled contact are nearly identical and dissipate the same",
             "the same",
-            f"to {same:.0e}",
-            agreed(same < ROUND_OFF),
+            f"dissipation to {same:.0e}; loops laid on one another differ by {100 * decoupled:.2f} % of their width (full coupling: "
+            f"{100 * full:.0f} %)",
+            agreed(same < ROUND_OFF and decoupled < 0.01),
         ),
         Statement(
             "6.3",
@@ -204,7 +223,23 @@ def dissipation_over_force(table: Table, small: Table) -> list[Statement]:
     same = np.abs(goodman["dissipation_number"] / none["dissipation_number"] - 1.0).max()
     ratios = goodman["dissipation_ratio"]
     ratio_spread = analysis.bodies_spread(wide.where(coupling="goodman"), "dissipation_ratio", ["force_ratio"], ("half_plane",))
+    again = float(table["cycle_change"].max())
+    width = 2.0 * none["contact_half_width"]
     return [
+        Statement(
+            "6.4",
+            "P makes the contact 0.088 m wide for all bodies",
+            "0.088",
+            f"{span(width, '.4f')} m decoupled",
+            agreed(bool((np.abs(width - 0.088) < 1e-4).all())),
+        ),
+        Statement(
+            "6.3, 6.4",
+            "other bodies and forces too are steady after the first reversal: at least three of four cycles are",
+            "-",
+            f"tractions change by {again:.0e} of the largest over the last cycle, in {len(table)} cases",
+            agreed(again < ROUND_OFF),
+        ),
         Statement(
             "6.4",
             "without dimensions the dissipation of all bodies is one curve, whatever KR",
@@ -254,15 +289,18 @@ def where_half(small: Table) -> float:
     return float(np.exp(np.interp(-1.5, -ratio, np.log(full["force_ratio"]))))
 
 
+def slope_between(small: Table, nodes: int, coupling: str, low: float, high: float) -> float:
+    """Slope of log D over log Q on one mesh."""
+    rows = small.where(nodes_of_mesh=nodes, coupling=coupling).between("force_ratio", low, high)
+    return analysis.slope(rows["force_ratio"], rows["dissipation_number"])
+
+
 def slopes(small: Table) -> list[Statement]:
     """Slopes at small lateral forces, on the finest mesh."""
-    rows = small.where(nodes_of_mesh=small["nodes_of_mesh"].max())
-    fits = {}
-    for coupling in ("full", "none"):
-        for low, high in ((0.05, 0.2), (0.1, 0.5)):
-            part = rows.where(coupling=coupling).between("force_ratio", low, high)
-            fits[coupling, low] = analysis.slope(part["force_ratio"], part["dissipation_number"])
-    full = rows.where(coupling="full")
+    finest, coarse = small["nodes_of_mesh"].max(), 165
+    fits = {coupling: slope_between(small, finest, coupling, 0.05, 0.2) for coupling in ("full", "none")}
+    few = {coupling: slope_between(small, coarse, coupling, 0.07, 0.1) for coupling in ("full", "none")}
+    full = small.where(nodes_of_mesh=finest, coupling="full")
     where, local = analysis.local_slopes(full["force_ratio"], full["dissipation_number"])
     exact = analysis.slope(np.array([0.05, 0.1, 0.2]), analysis.mindlin_number(np.array([0.05, 0.1, 0.2])))
     limit = analysis.slope(np.array([1e-3, 2e-3]), analysis.mindlin_number(np.array([1e-3, 2e-3])))
@@ -271,19 +309,18 @@ def slopes(small: Table) -> list[Statement]:
             "6.4",
             "with full coupling the slope of log D over log Q is roughly 3.15 at small forces",
             "3.15",
-            f"{fits['full', 0.05]:.2f} over Q~ = 0.05 to 0.2; local slopes {span(local)}, least at {where[local.argmin()]:.2f}",
-            agreed(abs(fits["full", 0.05] - 3.15) < 0.03),
+            f"{fits['full']:.2f} over Q~ = 0.05 to 0.2; local slopes {span(local)}, least at {where[local.argmin()]:.2f}",
+            agreed(abs(fits["full"] - 3.15) < 0.03),
             "there is no limit to find: the local slope falls to 3.22 and rises again below Q~ = 0.1 (meshes of 300 to 1200 "
-            "nodes in contact agree); with fewer nodes slipping a fit may give anything. 3.15 is the decoupled slope "
-            "plus 0.15: "
-            f"that excess is {fits['full', 0.05] - fits['none', 0.05]:.2f} here",
+            "nodes in contact agree). With 150 nodes in contact, of which 6 to 9 slip, it is "
+            f"{few['full']:.2f} between 0.07 and 0.1, and {few['none']:.2f} decoupled: the printed 3.15 and 3.0 may be of such a mesh",
         ),
         Statement(
             "6.4",
             "with Goodman or full decoupling the slope is close to 3.0",
             "3.0",
-            f"{fits['none', 0.05]:.2f} over 0.05 to 0.2; closed form {exact:.2f}, {limit:.3f} at Q~ = 0.001",
-            agreed(abs(fits["none", 0.05] - 3.0) < 0.1),
+            f"{fits['none']:.2f} over 0.05 to 0.2; closed form {exact:.2f}, {limit:.3f} at Q~ = 0.001",
+            agreed(abs(fits["none"] - 3.0) < 0.1),
         ),
     ]
 
@@ -657,7 +694,7 @@ def all_statements(tables: Mapping[str, Table], results: Mapping[str, mfv.Result
         *dependence_on_history(tables["shakedown"]),
         *pressing(results),
         *cycling(results),
-        *loops(tables["cyclic"]),
+        *loops(tables["cyclic"], results),
         *dissipation_over_force(tables["lateral_force"], tables["small_force"]),
         *stick_ratios(tables["lateral_force"]),
         *traction_errors(tables["lateral_force"]),
