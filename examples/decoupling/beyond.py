@@ -235,7 +235,7 @@ def traction_errors(table: Table) -> Drawn:
         "shear_error_reversal",
         "patch_shift_reversal",
     ]
-    return Drawn("traction_errors", caption, picture, rows.columns(names))
+    return Drawn("traction_errors", caption, picture, rows.columns(names), in_docs=True)
 
 
 def shakedown(table: Table) -> Drawn:

@@ -26,6 +26,7 @@ NAMES = (
     "map",
     "shakedown",
     "threshold",
+    "shapes",
     "laws",
 )
 COUPLINGS = {"full": "full coupling", "goodman": "Goodman", "none": "decoupled"}
