@@ -15,6 +15,7 @@ from pathlib import Path
 
 import h5py
 import numpy as np
+import pandas  # xarray brings it
 import pytest
 
 import mfv
@@ -537,6 +538,9 @@ def test_table_in_python(study, tmp_path):
         assert line["outcome"] == row["outcome"]
         np.testing.assert_array_equal(float(line["shift"]), row["shift"])
     assert table[table["status"] == 0].units == table.units
+    frame = pandas.DataFrame(table)
+    assert list(frame.columns) == list(table.columns) and list(frame["outcome"]) == list(table["outcome"])
+    assert frame["shift"].to_numpy().tobytes() == table["shift"].tobytes()
     (tmp_path / "no.h5").write_text("no table")
     for path in (tmp_path / "no.h5", tmp_path / "missing.h5"):
         assert subprocess.run([*command[:-1], str(path)], capture_output=True).returncode == INPUT
