@@ -238,6 +238,7 @@ contains
       pending = pack(wanted, records(wanted)%number == 0)
       if (size(pending) < size(wanted)) write (output_unit, '(a)') to_text(size(wanted) - size(pending))//' of '// &
          to_text(size(wanted))//' cases were there'
+      flush (output_unit)
       call solve_cases(sweep, pending, threads_for(options, ranks), ranks, journal, records, error)
       code = 0
       if (allocated(error)) then
