@@ -44,7 +44,8 @@ def hertz(nodes: int, variant: float) -> dict[str, float]:
     result = solved(CYLINDER, nodes, force=8.0e-4 * (1 + 0.3 * variant), mu=0.0)
     a = result.reference.contact_half_width
     return {"Hertz: pressure": error(result.state.pressure, result.reference.pressure),
-            "Hertz: half-width": abs(result.summary.contact_half_width / a - 1)}
+            "Hertz: half-width": abs(result.summary.contact_half_width / a - 1),
+            "Hertz: half-width, edges between nodes": abs(result.summary.edge_half_width / a - 1)}
 
 
 def flat_punch(nodes: int, variant: float) -> dict[str, float]:
@@ -61,7 +62,8 @@ def spence(nodes: int, variant: float) -> dict[str, float]:
     result = solved(CYLINDER, nodes, mu=mu, friction=True)
     ratio = mfv.reference.spence_stick_ratio(mu, result.scene.dundurs_beta)
     return {"Spence: shear": error(result.state.shear, result.reference.shear),
-            "Spence: stick ratio": abs(result.summary.stick_ratio - ratio)}
+            "Spence: stick ratio": abs(result.summary.stick_ratio - ratio),
+            "Spence: stick ratio, edges between nodes": abs(result.summary.edge_stick_ratio - ratio)}
 
 
 def mindlin(nodes: int, variant: float) -> dict[str, float]:
@@ -72,6 +74,7 @@ def mindlin(nodes: int, variant: float) -> dict[str, float]:
     exact = mfv.reference.mindlin_dissipation(q, p, result.reference.contact_half_width, 0.25, mu)
     return {"Mindlin: shear": error(result.state.shear, result.reference.shear),
             "Mindlin: stick ratio": abs(first.stick_ratio - mfv.reference.mindlin_stick_ratio(q, p, mu)),
+            "Mindlin: stick ratio, edges between nodes": abs(first.edge_stick_ratio - mfv.reference.mindlin_stick_ratio(q, p, mu)),
             "Mindlin: shift": abs(result.history["shift"][-1] / result.reference["shift"][-1] - 1),
             "Mindlin: dissipation of a cycle": abs((cycled.dissipation - first.dissipation) / exact - 1)}
 
@@ -89,7 +92,7 @@ def draw(meshes: list[int], table: dict[str, list[float]], path: str) -> None:
 
     picture = Figure(figsize=(7, 4.6), layout="constrained")
     ax = picture.add_subplot()
-    for (name, errors), marker in zip(table.items(), "osv^D<>phX*"):
+    for (name, errors), marker in zip(table.items(), "osv^D<>phX*d8P"):
         ax.loglog(meshes, errors, marker=marker, markersize=5, linewidth=1.2, label=name)
     reach = np.array([meshes[0], meshes[-1]])
     ax.loglog(reach, 0.5 * table["Hertz: pressure"][0] * reach[0] / reach, "k--", linewidth=1, label="first order")

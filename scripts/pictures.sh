@@ -11,6 +11,8 @@ for example in mindlin disk_on_plane disk_in_hole two_cylinders pin_in_bore; do
   "$bin/mfv_run" "$root/examples/$example.nml" >/dev/null
   draw "$example.h5" -o "$pictures/$example.png"
 done
+"$bin/mfv_run" "$root/examples/shear_cycles.nml" >/dev/null
+draw shear_cycles.h5 --cycles -o "$pictures/shear_cycles.png"
 for example in two_cylinders pin_in_bore; do
   "$bin/mfv_stress" "$example.h5" >/dev/null
   draw "$example.h5" --stress von_mises -o "$pictures/${example}_stress.png"

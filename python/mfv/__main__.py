@@ -68,6 +68,11 @@ def _parser() -> argparse.ArgumentParser:
         metavar="NAME",
         help="contours of a stress inside a body in place of the panels: von_mises, sigma_xx, sigma_yy, sigma_xy, ...",
     )
+    plot.add_argument(
+        "--cycles",
+        action="store_true",
+        help="the cycles in place of the panels: hysteresis loop, its non-linear part, where the last one dissipates",
+    )
     plot.add_argument("--body", choices=("lower", "upper"), default="lower", help="which body, with --stress")
     plot.set_defaults(command=_plot)
 
@@ -90,9 +95,13 @@ def _plot(options: argparse.Namespace) -> None:
     result = read(options.file)
     if options.stress:
         picture = plot.stress_figure(result, options.stress, options.body, options.step)
+    elif options.cycles:
+        picture = plot.cycles_figure(result)
     else:
         picture = plot.figure(result, options.step)
     name = f"{options.file.stem}_{options.stress}_{options.body}" if options.stress else options.file.stem
+    if options.cycles:
+        name += "_cycles"
     output = options.output or options.file.with_name(f"{name}.png")
     picture.savefig(output, dpi=200)
     print(output)
@@ -117,6 +126,7 @@ def _description(result: Result) -> str:
     blocks = [
         attributes,
         ["summary", *_lines(result.summary)],
+        *([["observables", *_lines(result.observables)]] if result.observables else []),
         ["certificate", *_lines(result.certificate)],
         *([["error estimate", *_bars(result.error_estimate)]] if result.error_estimate else []),
         ["closed form", *(f"  {line}" for line in sources)] if sources else ["closed form: none"],

@@ -93,6 +93,46 @@ def figure(result: Result, step: int | None = None) -> Figure:
     return picture
 
 
+def cycles_figure(result: Result) -> Figure:
+    """A picture of the cycles of a result: hysteresis loop; its non-linear part; where the last cycle dissipates.
+
+    Raises ValueError where there are no cycles.
+    """
+    if not result.cycles:
+        raise ValueError("there are no cycles in this result: a step with cycles=... makes them")
+    panels = [panel for panel, is_there in _cycle_panels(result) if is_there]
+    with matplotlib.rc_context(STYLE):
+        picture = Figure()
+        axes = np.atleast_1d(picture.subplots(1, len(panels)))
+        for panel, ax, letter in zip(panels, axes, "abc"):
+            panel(result, ax)
+            ax.set_title(f"({letter})")
+        picture.suptitle(_heading(result, None), fontsize=12, parse_math=False)
+        _add_legend_and_caption(picture, _cycle_caption(result))
+    return picture
+
+
+def _cycle_panels(result: Result) -> list[tuple[Any, bool]]:
+    """What can be drawn of cycles, and whether this result has it."""
+    return [
+        (loop, "shift" in result.history),
+        (nonlinear_loop, "nonlinear_shift" in result.history),
+        (friction_work, "friction_work" in result.cycles),
+    ]
+
+
+def _cycle_caption(result: Result) -> str:
+    """How many cycles, what the last one dissipates and how much it still changes."""
+    seen, unit = result.observables, result.observables.unit("cycle_dissipation")
+    parts = [
+        f"{result.cycles.cycle.size} cycles",
+        f"the last dissipates {seen.cycle_dissipation:.4g}{f' {unit}' if _is_named(unit) else ''}",
+        f"loss factor {seen.loss_factor:.3g}" if "loss_factor" in seen else "",
+        f"tractions change by {seen.cycle_change:.1e} over it",
+    ]
+    return " \N{MIDDLE DOT} ".join(part for part in parts if part)
+
+
 def stress_figure(result: Result, name: str = "von_mises", body: str = "lower", step: int | None = None) -> Figure:
     """A picture of a stress inside a body: contours over the largest pressure, axes over the contact half-width.
 
@@ -235,6 +275,25 @@ def loop(result: Result, ax: Axes, step: int | None = None) -> None:
     ax.set_ylabel(_label("tangential force", "Q", history.unit("tangential_force")))
     ax.locator_params(axis="x", nbins=5)
     ax.margins(0.12)
+
+
+def nonlinear_loop(result: Result, ax: Axes, step: int | None = None) -> None:
+    """Tangential force over the non-linear part of the shift: what slip adds to a contact where all sticks."""
+    history = result.history
+    ax.plot(history.nonlinear_shift, history.tangential_force, color=NUMBERS, linewidth=0.8)
+    _mark_step_ends(ax, result, step, "nonlinear_shift")
+    ax.set_xlabel(_label("non-linear shift", "U - Q/k", history.unit("nonlinear_shift")))
+    ax.set_ylabel(_label("tangential force", "Q", history.unit("tangential_force")))
+    ax.locator_params(axis="x", nbins=4)
+    ax.margins(0.12)
+
+
+def friction_work(result: Result, ax: Axes, step: int | None = None) -> None:
+    """Energy that the last cycle dissipates per unit of surface, over x."""
+    cycles = result.cycles
+    ax.plot(result.mesh.x, cycles.friction_work, color=NUMBERS, linewidth=0.8, **_points(result.mesh.x.size))
+    ax.set_ylabel(_label("dissipated per cycle and surface", "d", cycles.unit("friction_work")))
+    _frame_contact(ax, result, result.at(step))
 
 
 def turning(result: Result, ax: Axes, step: int | None = None) -> None:

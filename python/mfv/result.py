@@ -15,7 +15,10 @@ Values = Any
 """What a quantity is: an array of float64 or int32, or one such number."""
 
 #: Groups that a result can be without; they are then empty.
-OPTIONAL_GROUPS = ("history", "reference", "error_estimate")
+OPTIONAL_GROUPS = ("history", "reference", "error_estimate", "observables", "cycles")
+
+#: Groups with coordinates of their own; elsewhere coordinates are repeated.
+COORDINATES = {"mesh": ("x",), "history": ("record",), "error_estimate": ("companion_nodes",), "cycles": ("cycle",)}
 
 #: Where mfv_stress puts its groups.
 STRESS = "stress/"
@@ -85,6 +88,8 @@ class Result:
     history: Group
     reference: Group
     error_estimate: Group
+    observables: Group
+    cycles: Group
     compliance: Group
     steps: list[Group]
     stresses: dict[str, Group]
@@ -174,7 +179,7 @@ def read(path: str | os.PathLike[str]) -> Result:
 
 
 def _groups(file: h5py.File) -> dict[str, dict[str, Field]]:
-    """All groups that have datasets, by path. Coordinates are in mesh and history alone, not where they are repeated."""
+    """All groups that have datasets, by path. Coordinates are in groups of their own alone, not where they are repeated."""
     groups: dict[str, dict[str, Field]] = {}
 
     def add(group: h5py.Group) -> None:
@@ -182,7 +187,7 @@ def _groups(file: h5py.File) -> dict[str, dict[str, Field]]:
         for name, item in group.items():
             if isinstance(item, h5py.Group):
                 add(item)
-            elif path in ("mesh", "history", "error_estimate") or path.startswith(STRESS) or not item.is_scale:
+            elif path in COORDINATES and name in COORDINATES[path] or path.startswith(STRESS) or not item.is_scale:
                 groups.setdefault(path, {})[name] = _field(item)
 
     add(file)

@@ -12,7 +12,7 @@ module mfv_contact_state
       type(contact_fields_type) :: fields
       !> Statuses, see mfv_node_status, shape (nodes).
       integer, allocatable :: status(:)
-      !> Slip at which a stuck node holds, length, shape (nodes).
+      !> Slip at which a stuck node holds, or a slipping one last held, length, shape (nodes).
       real(wp), allocatable :: stuck_slip(:)
       !> Sign of the last slip rate, 0 when there was none, shape (nodes).
       integer, allocatable :: slip_direction(:)
@@ -49,7 +49,8 @@ contains
       allocate (state%stuck_slip(nodes), state%slipped(nodes), state%excess(nodes), state%friction_work(nodes), source=0.0_wp)
    end function new_contact_state
 
-   !> Give the nodes of `mask` the new statuses; a node that sticks holds at the slip it has.
+   !> Give the nodes of `mask` the new statuses; a node that sticks holds at the slip it has, one that slips as it touches has held
+   !> there.
    pure subroutine set_status(self, mask, status)
       class(contact_state_type), intent(inout) :: self
       logical, intent(in) :: mask(:)
@@ -59,7 +60,8 @@ contains
 
       do i = 1, size(mask)
          if (.not. mask(i)) cycle
-         if (status(i) == node_stick .and. self%status(i) /= node_stick) &
+         if (status(i) == node_stick .and. self%status(i) /= node_stick .or. &
+             slips(status(i)) .and. any(self%status(i) == [node_open, node_frictionless])) &
             self%stuck_slip(i) = self%fields%tangential(i) - self%fields%shift
          self%status(i) = status(i)
       end do

@@ -5,8 +5,10 @@
 !> (Hertz; Cattaneo and Mindlin, dissertation eqs. 3.1, 3.7). The root is the square root but for full coupling of slipping
 !> nodes: there p goes with the power 1/2 + l towards +x and 1/2 - l towards -x, tan(pi l) = beta tau/p, tau/p that of the
 !> slipping nodes (the exponent of a sliding contact: Johnson 1985, section 8.1; Comninou 1977 at the end of a stick zone,
-!> from the other side). So the traction raised to the inverse power is nearly a straight line, which a parabola through a few
-!> nodes follows to its zero. The outermost nodes, which carry the error of the discretisation, are left out.
+!> from the other side). Where a stick zone grows, what lacks has come about bit by bit behind its edge, and goes with a power
+!> larger by one (integrate the root; so do the closed forms of Spence): the straighter of the two tells. So the traction raised
+!> to the inverse power is nearly a straight line, which a parabola through a few nodes follows to its zero. The outermost node,
+!> which carries the error of the discretisation, is left out.
 module mfv_zone_edges
    use mfv_compliance, only: block_wt
    use mfv_contact_model, only: contact_model_type
@@ -141,7 +143,7 @@ contains
       do i = 0, nodes - 1
          values(i) = state%fields%pressure(last - side*i)
       end do
-      edge = edge + side*model%interval()*distance_to_zero(straightened(values(:nodes - 1), power), 2, 2)
+      edge = edge + side*model%interval()*distance_to_zero(straightened(values(:nodes - 1), power), .false.)
    end function contact_edge
 
    !> Edge of a zone that holds, on `side` (-1 left, 1 right), length from the pole: that of the contact where the next node is
@@ -151,8 +153,9 @@ contains
       type(contact_state_type), intent(in) :: state
       type(zone_type), intent(in) :: zone
       integer, intent(in) :: side
-      real(wp) :: values(0:3), power, direction
+      real(wp) :: values(0:6), power, direction
       integer :: last, nodes, next, i
+      logical :: grown
 
       last = merge(zone%last, zone%first, side > 0)
       next = min(max(last + side, 1), size(state%status))
@@ -179,7 +182,9 @@ contains
       do i = 0, nodes - 1
          values(i) = lack(last - side*i)
       end do
-      edge = edge + side*model%interval()*distance_to_zero(straightened(values(:nodes - 1), power), 1, 1)
+      grown = bend(straightened(values(:nodes - 1), power + 1.0_wp)) < bend(straightened(values(:nodes - 1), power))
+      if (grown) power = power + 1.0_wp
+      edge = edge + side*model%interval()*distance_to_zero(straightened(values(:nodes - 1), power), grown)
 
    contains
 
@@ -198,6 +203,16 @@ contains
          lack = model%static_friction(node)*state%fields%pressure(node) - direction*state%fields%shear(node)
       end function lack
    end function stick_edge
+
+   !> How far from a straight line the second to fourth of some values are, in parts of their change; large where there are fewer or
+   !> where they do not grow.
+   pure real(wp) function bend(values)
+      real(wp), intent(in) :: values(0:)
+
+      bend = huge(1.0_wp)
+      if (size(values) < 4) return
+      if (values(3) > values(1)) bend = abs(values(1) - 2.0_wp*values(2) + values(3))/(values(3) - values(1))
+   end function bend
 
    !> The edge of a stick zone whose nodes hold at their limit, as in a cycle that repeats the tractions of one before: tractions do
    !> not tell it, but what the nodes beyond it have slipped since they last held, which grows with the power 3/2 of the distance
@@ -259,40 +274,73 @@ contains
       if (model%compliance%has_block(block_wt)) lean = atan(model%scene%dundurs_beta()*ratio)/pi
    end function lean
 
-   !> Where nearly straight values, the outermost first, are zero, in intervals outwards from half an interval beyond the first one:
-   !> a parabola through three nodes, the first `left_out` left out and `apart` from each other, or nearer to the edge where
-   !> there are fewer nodes; a line through two; 0 where these lead nowhere within one interval.
-   pure real(wp) function distance_to_zero(values, left_out, apart) result(distance)
+   !> Where nearly straight values, the outermost first, are zero, in intervals outwards from half an interval beyond the first
+   !> one. The second to fourth node tell, the outermost one carrying the largest error; where the third, fifth and seventh say
+   !> nearly the same (near edges of other zones they do not), these tell better. The tractions of a zone that has `grown` node by
+   !> node are ragged: there the second to seventh tell together. Where there are only two or three nodes, a line through the
+   !> outermost; 0 where all this leads nowhere within one interval.
+   pure real(wp) function distance_to_zero(values, grown) result(distance)
       real(wp), intent(in) :: values(0:)
-      integer, intent(in) :: left_out, apart
-      logical :: found
+      logical, intent(in) :: grown
+      real(wp), parameter :: nearly = 0.3_wp
+      real(wp) :: farther
+      logical :: found, agree
 
       found = .false.
       distance = 0.0_wp
-      if (size(values) > left_out + 2*apart) call find_zero(values, left_out, apart, distance, found)
-      if (.not. found .and. size(values) > 3) call find_zero(values, 1, 1, distance, found)
-      if (.not. found .and. size(values) > 1) then
-         if (values(1) > values(0)) distance = values(0)/(values(1) - values(0)) - 0.5_wp
-         found = values(1) > values(0) .and. abs(distance) <= 1.0_wp
+      if (grown .and. size(values) > 6) call find_zero_of_many(values(1:6), distance, found)
+      if (found) return
+      if (size(values) > 3) call find_zero_of_three(values, 1, 1, distance, found)
+      if (found .and. size(values) > 6) then
+         call find_zero_of_three(values, 2, 2, farther, agree)
+         if (agree .and. abs(farther - distance) <= nearly) distance = farther
       end if
-      if (.not. found) distance = 0.0_wp
+      if (found) return
+      distance = 0.0_wp
+      if (size(values) < 2) return
+      if (values(1) > values(0)) distance = values(0)/(values(1) - values(0)) - 0.5_wp
+      if (abs(distance) > 1.0_wp) distance = 0.0_wp
    end function distance_to_zero
 
-   !> Zero of the parabola through the values `first`, `first` + `apart` and `first` + 2 `apart`, the one nearest to the edge;
-   !> `found`: it is within one interval.
-   pure subroutine find_zero(values, first, apart, distance, found)
+   !> The same for the parabola through the values `first`, `first` + `apart` and `first` + 2 `apart`.
+   pure subroutine find_zero_of_three(values, first, apart, distance, found)
       real(wp), intent(in) :: values(0:)
       integer, intent(in) :: first, apart
       real(wp), intent(out) :: distance
       logical, intent(out) :: found
-      real(wp) :: near, slope, bend, discriminant
+      real(wp) :: bend
+
+      bend = (values(first + 2*apart) - 2.0_wp*values(first + apart) + values(first))/(2.0_wp*apart**2)
+      call find_zero(values(first), (values(first + apart) - values(first))/apart - apart*bend, bend, first, distance, found)
+   end subroutine find_zero_of_three
+
+   !> The same for the parabola that is nearest to six values, the first one interval inwards from the outermost node: by the
+   !> orthogonal polynomials of six equidistant points.
+   pure subroutine find_zero_of_many(values, distance, found)
+      real(wp), intent(in) :: values(6)
+      real(wp), intent(out) :: distance
+      logical, intent(out) :: found
+      real(wp), parameter :: line(6) = [-2.5_wp, -1.5_wp, -0.5_wp, 0.5_wp, 1.5_wp, 2.5_wp], &
+                             parabola(6) = line**2 - 35.0_wp/12.0_wp
+      real(wp) :: mean, slope, bend
+
+      mean = sum(values)/6
+      slope = sum(line*values)/sum(line**2)
+      bend = sum(parabola*values)/sum(parabola**2)
+      call find_zero(mean + slope*line(1) + bend*parabola(1), slope + 2.0_wp*bend*line(1), bend, 1, distance, found)
+   end subroutine find_zero_of_many
+
+   !> Zero of the parabola near + slope*t + bend*t^2, t intervals inwards from node `first` (0: the outermost), the one nearest to
+   !> the edge; `distance` as in distance_to_zero. `found`: it is within one interval.
+   pure subroutine find_zero(near, slope, bend, first, distance, found)
+      real(wp), intent(in) :: near, slope, bend
+      integer, intent(in) :: first
+      real(wp), intent(out) :: distance
+      logical, intent(out) :: found
+      real(wp) :: discriminant
 
       distance = 0.0_wp
       found = .false.
-      ! values = near + slope*t + bend*t^2, t intervals inwards from the first of the three.
-      near = values(first)
-      bend = (values(first + 2*apart) - 2.0_wp*values(first + apart) + near)/(2.0_wp*apart**2)
-      slope = (values(first + apart) - near)/apart - apart*bend
       discriminant = slope**2 - 4.0_wp*bend*near
       if (.not. (slope > 0.0_wp .and. discriminant > 0.0_wp)) return
       distance = 2.0_wp*near/(slope + sqrt(discriminant)) - first - 0.5_wp

@@ -245,6 +245,8 @@ contains
                               'them', error)
       else if (.not. scene%friction%acts()) then
          call reader%complain('step', number, 'force_ratio', "needs a &friction law with a coefficient above 0", error)
+      else if (.not. reader%logical_value('step', number, 'friction')) then
+         call reader%complain('step', number, 'force_ratio', 'means nothing in a step without friction', error)
       else if (last == 0) then
          call reader%complain('step', number, 'force_ratio', 'needs a normal_force, in this step or one before it', error)
       else if (scene%steps(last)%normal_control /= control_force) then

@@ -339,7 +339,7 @@ contains
          call add_real(fields, 'slip', modelled(simulation, state%fields%slip()), along_nodes, units%length, &
                        'slip s = u - U of the lower surface against the upper body (not modelled without friction)')
          call add_whole(fields, 'status', state%status, along_nodes, 'contact status of the nodes', node_status_names)
-         call add_real(fields, 'friction_work', state%friction_work, along_nodes, units%force, &
+         if (model%tangential) call add_real(fields, 'friction_work', state%friction_work, along_nodes, units%force, &
                        'energy dissipated so far per unit of surface')
       end associate
    end subroutine add_state

@@ -32,15 +32,20 @@ contains
       text = ''
       associate (model => simulation%contact%model)
          call add_line(text, 'outcome', status_outcome(simulation%outcome)//': '//simulation%message)
-         call add_line(text, 'contact half-width', amount(fields, 'contact_half_width'))
+         words = ''
+         if (field_named(fields, 'edge_half_width') > 0) words = amount(fields, 'edge_half_width')//' between nodes, '
+         call add_line(text, 'contact half-width', words//amount(fields, 'contact_half_width')//' as nodes count it')
          call add_line(text, 'nodes', to_text(model%nodes())//', in contact '//amount(fields, 'contact_nodes')// &
                        ', stuck '//amount(fields, 'stick_nodes')//', slipping '//amount(fields, 'slip_nodes'))
-         if (model%tangential) call add_line(text, 'stick ratio', amount(fields, 'stick_ratio'))
+         words = ''
+         if (field_named(fields, 'edge_stick_ratio') > 0) words = amount(fields, 'edge_stick_ratio')//' between nodes, '
+         if (model%tangential) call add_line(text, 'stick ratio', words//amount(fields, 'stick_ratio')//' as nodes count it')
          call add_line(text, 'normal force', amount(fields, 'normal_force')//', approach '//amount(fields, 'approach'))
          if (model%tangential) then
             call add_line(text, 'tangential force', amount(fields, 'tangential_force')//', shift '//amount(fields, 'shift'))
             call add_line(text, 'dissipation', amount(fields, 'dissipation'))
          end if
+         if (simulation%cycle_count > 0) call add_last_cycle(text, case, simulation)
          if (model%rotational) &
             call add_line(text, 'moment', amount(fields, 'moment')//', rotation '//amount(fields, 'rotation'))
          words = ''
@@ -57,6 +62,23 @@ contains
          if (model%added > 0) call add_line(text, 'mesh', 'grew by '//to_text(model%added)//' nodes at either end')
       end associate
    end subroutine summarize
+
+   !> What the last cycle was like.
+   subroutine add_last_cycle(text, case, simulation)
+      character(:), allocatable, intent(inout) :: text
+      type(case_type), intent(in) :: case
+      type(simulation_type), intent(in) :: simulation
+      type(field_type), allocatable :: fields(:)
+      character(:), allocatable :: words
+
+      call group_fields(case, simulation, 'observables', fields)
+      if (field_named(fields, 'cycle_dissipation') == 0) return
+      words = 'dissipation '//amount(fields, 'cycle_dissipation')
+      if (field_named(fields, 'loss_factor') > 0) words = words//', loss factor '//amount(fields, 'loss_factor')
+      if (field_named(fields, 'tangential_stiffness') > 0) &
+         words = words//', stiffness '//amount(fields, 'tangential_stiffness')
+      call add_line(text, 'last cycle', words//', tractions change by '//amount(fields, 'cycle_change'))
+   end subroutine add_last_cycle
 
    !> Which blocks the scene needed, the memory of what they are made from, and the time that took.
    subroutine add_compliance(text, model)

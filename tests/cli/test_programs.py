@@ -66,7 +66,7 @@ def test_file_opens_without_help(tmp_path):
     mfv_run(ROOT / "examples/mindlin.nml", cwd=tmp_path)
     path = tmp_path / "mindlin.h5"
     with h5py.File(path) as result:
-        names = {"pressure", "shear", "gap", "slip", "normal_displacement", "tangential_displacement", "status", "x"}
+        names = {"pressure", "shear", "gap", "slip", "normal_displacement", "tangential_displacement", "status", "friction_work", "x"}
         assert set(result["state"]) == names
         assert names < set(result["steps/0001"]) and len(result["steps"]) == 6
         history = {"normal_force", "tangential_force", "approach", "shift", "contact_nodes", "stick_nodes", "dissipation",
@@ -372,7 +372,7 @@ def test_mesh_study_converges(tmp_path):
                          capture_output=True, text=True, timeout=300)
     assert run.returncode == 0, run.stderr
     orders = {row[1].strip(): float(row[-2]) for row in (line.split("|") for line in run.stdout.splitlines()[2:])}
-    assert len(orders) == 10 and min(orders.values()) > 0.6, run.stdout
+    assert len(orders) == 13 and min(orders.values()) > 0.6, run.stdout
     assert orders["Mindlin: shift"] > 1.5 and orders["Mindlin: dissipation of a cycle"] > 1.5
     assert (tmp_path / "study.png").stat().st_size > 10000
 

@@ -516,6 +516,51 @@ def test_unusable_input_ends_with_one_line_and_code_2(tmp_path: Path, capsys: py
         assert complaint in printed.err and printed.err.count("\n") == 1 and printed.out == ""
 
 
+CYCLES = """
+&scene coupling='full', title='loop' /
+&body shape='half_plane', shear_modulus=1.0, poisson_ratio=0.0 /
+&body shape='disk', radius=0.25, rigid=.true. /
+&mesh nodes=61, half_width=0.0127 /
+&friction law='coulomb', mu=0.7 /
+&step normal_force=0.5e-3 /
+&step force_ratio=0.65 /
+&step force_ratio=-0.65, cycles=3 /
+"""
+
+
+def area(force: np.ndarray, displacement: np.ndarray) -> float:
+    """Work of a force on a displacement; both are linear between records."""
+    return float(np.sum(0.5 * (force[1:] + force[:-1]) * np.diff(displacement)))
+
+
+def test_cycles_of_a_result_and_their_picture(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    result = mfv.run(text=CYCLES, output=tmp_path / "x.h5")
+    read = mfv.read(tmp_path / "x.h5")
+    for cycles, seen in ((result.cycles, result.observables), (read.cycles, read.observables)):
+        assert list(cycles.cycle) == [1, 2, 3] and cycles.dissipation.size == 3
+        assert seen.cycle_dissipation == cycles.dissipation[-1] < cycles.dissipation[0]
+        assert seen.force_number == pytest.approx(0.65)
+    # The loop has the area that is dissipated, with its linear part and without: the work of Q on U over the last cycle, P on
+    # the approach aside.
+    history = read.history
+    ends = np.flatnonzero(history.event_kind == mfv.EventKind.STEP_END)
+    last = slice(ends[-3], ends[-1] + 1)
+    areas = [area(history.tangential_force[last], history[name][last]) for name in ("shift", "nonlinear_shift")]
+    lift = area(history.normal_force[last], history.approach[last])
+    assert areas[0] == pytest.approx(areas[1], rel=1e-9)
+    assert areas[0] + lift == pytest.approx(read.cycles.dissipation[-1], rel=1e-9)
+    work = read.cycles.friction_work
+    assert np.dot(work, read.mesh.width) == pytest.approx(read.cycles.dissipation[-1], rel=1e-9)
+
+    assert command_line.main(["plot", str(tmp_path / "x.h5"), "--cycles"]) == 0
+    assert (tmp_path / "x_cycles.png").stat().st_size > 10000
+    assert command_line.main(["info", str(tmp_path / "x.h5")]) == 0
+    assert "loss_factor" in capsys.readouterr().out
+    mfv.run(text=CYCLES.replace(", cycles=3", ""), output=tmp_path / "y.h5")
+    assert command_line.main(["plot", str(tmp_path / "y.h5"), "--cycles"]) == 2
+    assert "there are no cycles in this result" in capsys.readouterr().err
+
+
 @pytest.mark.parametrize("arguments", [[], ["draw"], ["plot"], ["plot", "x.h5", "--step", "two"]])
 def test_a_wrong_command_line_ends_with_code_2(arguments: list[str]) -> None:
     with pytest.raises(SystemExit) as caught:
