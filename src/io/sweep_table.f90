@@ -34,8 +34,8 @@ module mfv_sweep_table
 
 contains
 
-   !> Write the table of a sweep with the records that are there to its file. Error MFV_FILE_ERROR; what was there before is then
-   !> still there.
+   !> Write the table of a sweep with the records that are there to its file. Error MFV_FILE_ERROR; what was there before is
+   !> then still there.
    subroutine write_table(sweep, records, error)
       type(sweep_type), intent(in) :: sweep
       type(record_type), intent(in) :: records(:)
