@@ -8,7 +8,7 @@ module mfv_sweep_keys
    public :: sweep_catalogue
 
    !> Values that one axis can have.
-   real(wp), parameter :: most_values = 1.0e6_wp
+   real(wp), parameter :: most_values = 1.0e5_wp
 
 contains
 
