@@ -15,9 +15,9 @@ module mfv_pause
 
 contains
 
-   !> Sleep for 0.15 ms: little of a case, and little work to look that often.
+   !> Sleep for 0.2 ms: little of a case, and little work to look that often.
    subroutine pause_briefly()
-      integer(c_int), parameter :: microseconds = 150
+      integer(c_int), parameter :: microseconds = 200
       integer(c_int) :: code
 
       code = c_usleep(microseconds)

@@ -114,8 +114,8 @@ contains
       if (code == 0 .and. is_interrupted()) code = status_exit_code(MFV_INTERRUPTED)
    end subroutine follow
 
-   !> Read the sweep and what there is of it. `is_complete`: there is nothing to do, and the user has been told so. `parts`: paths
-   !> of the journals of parts of this sweep.
+   !> Read the sweep and what there is of it. `is_complete`: there is nothing to do, and the user has been told so. `parts`:
+   !> paths of the journals of parts of this sweep.
    subroutine prepare(path, options, sweep, journal, records, parts, is_complete, error)
       character(*), intent(in) :: path
       type(sweep_options_type), intent(in) :: options
@@ -138,7 +138,8 @@ contains
       call find_table(sweep, state)
       is_complete = state == same_table .and. .not. options%again
       if (is_complete) then
-         write (output_unit, '(a)') sweep%result_path//' is complete: '//to_text(sweep%cases())//' cases; --again solves them anew'
+         write (output_unit, '(a)') sweep%result_path//' is complete: '//to_text(sweep%cases())// &
+            ' cases; --again solves them anew'
          call drop_journal(sweep)
          return
       end if
@@ -184,7 +185,8 @@ contains
       if (options%parts > 0) ending = '.part-'//to_text(options%part)//'-of-'//to_text(options%parts)//'.journal'
    end function ending_of
 
-   !> The journals of parts of this sweep, and their records; with `again` they are not read. Those of another input are left alone.
+   !> The journals of parts of this sweep, and their records; with `again` they are not read. Those of another input are left
+   !> alone.
    subroutine gather_parts(sweep, options, parts, records, error)
       type(sweep_type), intent(in) :: sweep
       type(sweep_options_type), intent(in) :: options
@@ -231,44 +233,72 @@ contains
       integer, intent(out) :: code
       type(error_type), allocatable :: error
       integer, allocatable :: pending(:), wanted(:)
-      integer :: i, state
+      integer :: i
 
       ! Every so many cases belong to a part: each has some of the hard ones.
       wanted = [(i, i=max(options%part, 1), size(records), max(options%parts, 1))]
       pending = pack(wanted, records(wanted)%number == 0)
       if (size(pending) < size(wanted)) write (output_unit, '(a)') to_text(size(wanted) - size(pending))//' of '// &
          to_text(size(wanted))//' cases were there'
+      flush (output_unit)
       call solve_cases(sweep, pending, threads_for(options, ranks), ranks, journal, records, error)
       code = 0
       if (allocated(error)) then
          call close_journal(journal)
       else if (any(records(wanted)%number == 0)) then
-         call close_journal(journal)
          code = status_exit_code(MFV_INTERRUPTED)
-         call find_table(sweep, state)
-         if (options%parts == 0 .and. (state == no_table .or. state == part_table)) call write_table(sweep, records, error)
-         write (error_unit, '(a)') 'interrupted: '//to_text(count(records(wanted)%number > 0))//' of '//to_text(size(wanted))// &
-            ' cases are kept in '//journal%path//'; the same command goes on'
+         call leave(sweep, options, size(wanted), journal, records, error)
       else if (options%parts > 0) then
          call close_journal(journal)
          write (output_unit, '(a)') 'part '//to_text(options%part)//' of '//to_text(options%parts)//': '// &
             to_text(size(wanted))//' cases in '//journal%path//'; mfv_sweep '//sweep%source//' gathers the parts'
       else
-         call write_table(sweep, records, error)
-         if (allocated(error)) then
-            call close_journal(journal)
-         else
-            do i = 1, size(parts)
-               call delete_path(parts(i)%text)
-            end do
-            call delete_journal(journal)
-            call summarize(sweep, records)
-         end if
+         call finish(sweep, journal, records, parts, error)
       end if
       if (.not. allocated(error)) return
       write (error_unit, '(a)') error%message
       code = status_exit_code(error%status)
    end subroutine complete
+
+   !> After an interrupt: keep the journal, and write a table of the rows so far where no complete one is in the way. `wanted`: how
+   !> many cases there should have been.
+   subroutine leave(sweep, options, wanted, journal, records, error)
+      type(sweep_type), intent(in) :: sweep
+      type(sweep_options_type), intent(in) :: options
+      integer, intent(in) :: wanted
+      type(journal_type), intent(inout) :: journal
+      type(record_type), intent(in) :: records(:)
+      type(error_type), allocatable, intent(out) :: error
+      integer :: state
+
+      call close_journal(journal)
+      write (error_unit, '(a)') 'interrupted: '//to_text(count(records%number > 0))//' of '//to_text(wanted)// &
+         ' cases are kept in '//journal%path//'; the same command goes on'
+      if (options%parts > 0) return
+      call find_table(sweep, state)
+      if (state == no_table .or. state == part_table) call write_table(sweep, records, error)
+   end subroutine leave
+
+   !> Write the table; only then the journals are needed no more.
+   subroutine finish(sweep, journal, records, parts, error)
+      type(sweep_type), intent(in) :: sweep
+      type(journal_type), intent(inout) :: journal
+      type(record_type), intent(in) :: records(:)
+      type(string_type), intent(in) :: parts(:)
+      type(error_type), allocatable, intent(out) :: error
+      integer :: i
+
+      call write_table(sweep, records, error)
+      if (allocated(error)) then
+         call close_journal(journal)
+         return
+      end if
+      do i = 1, size(parts)
+         call delete_path(parts(i)%text)
+      end do
+      call delete_journal(journal)
+      call summarize(sweep, records)
+   end subroutine finish
 
    !> Counts by outcome, the largest residual, where the table is.
    subroutine summarize(sweep, records)
@@ -292,9 +322,11 @@ contains
          write (output_unit, '(a)') 'first input error   '//sweep%source//': case '//to_text(i)//' ('//words//'): '// &
             records(i)%message
       end if
-      if (any(records%outcome /= MFV_INPUT_ERROR)) write (output_unit, '(a)') 'certificate         largest relative residual '// &
+      if (any(records%outcome /= MFV_INPUT_ERROR)) &
+         write (output_unit, '(a)') 'certificate         largest relative residual '// &
          to_text(maxval(records%largest_residual, mask=records%outcome /= MFV_INPUT_ERROR))
-      write (output_unit, '(a)') 'table               '//sweep%result_path//" (Python: mfv.read_table('"//sweep%result_path//"'))"
+      write (output_unit, '(a)') 'table               '//sweep%result_path//" (Python: mfv.read_table('"// &
+         sweep%result_path//"'))"
    end subroutine summarize
 
    !> How many threads solve in this process: as the user says, by option or OMP_NUM_THREADS; else one for each processor of a

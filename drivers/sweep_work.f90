@@ -64,7 +64,7 @@ contains
       manager%left(0) = .true.
       manager%started = seconds_now()
       manager%visible = is_terminal()
-      call new_team(own + 1, team)
+      call new_team(2*own, team)
       call omp_set_dynamic(.false.)
       !$omp parallel num_threads(own + 1) default(shared)
       if (omp_get_thread_num() == 0) then
@@ -184,19 +184,20 @@ contains
       records(record%number) = record
    end subroutine keep_record
 
-   !> Give cases to all who can begin one at once; and one to spare to each while there are plenty.
+   !> Give cases to all who can begin one at once; and one to spare for each thread while there are plenty, so that none waits.
    subroutine hand_out(manager, team)
       type(manager_type), intent(inout) :: manager
       type(team_type), intent(inout), target :: team
       integer(int8), parameter :: nothing(0) = [integer(int8) ::]
       integer, parameter :: plenty = 3
-      integer :: round, rank, spare, next
+      integer :: round, rank, most, next
 
-      do round = 1, maxval(manager%threads) + 1
+      do round = 1, 2*maxval(manager%threads)
          do rank = 0, size(manager%threads) - 1
             if (manager%handed_out == size(manager%pending)) return
-            spare = merge(1, 0, size(manager%pending) - manager%handed_out > plenty*sum(manager%threads))
-            if (manager%threads(rank) == 0 .or. manager%given(rank) >= manager%threads(rank) + spare) cycle
+            most = manager%threads(rank)
+            if (size(manager%pending) - manager%handed_out > plenty*sum(manager%threads)) most = 2*most
+            if (manager%given(rank) >= most) cycle
             manager%handed_out = manager%handed_out + 1
             manager%given(rank) = manager%given(rank) + 1
             next = manager%pending(manager%handed_out)
@@ -246,7 +247,7 @@ contains
       integer, intent(in) :: threads
       type(team_type), target :: team
 
-      call new_team(threads + 1, team)
+      call new_team(2*threads, team)
       call omp_set_dynamic(.false.)
       !$omp parallel num_threads(threads + 1) default(shared)
       if (omp_get_thread_num() == 0) then

@@ -1,6 +1,8 @@
 #!/bin/sh
 # Installs what is missing, builds MFV and runs every test. Safe to repeat. Arguments: presets (release unless told).
 . "$(dirname "$0")/common.sh"
+# The debug preset is built with MPI, so that mfv_sweep is tested with it too; the others without.
+packages="$packages openmpi-bin libopenmpi-dev"
 install_missing
 python_environment test
 for preset in "${@:-release}"; do

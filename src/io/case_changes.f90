@@ -14,8 +14,8 @@ module mfv_case_changes
 
 contains
 
-   !> Put a value, as it would be written, into a key of the `number`-th group of a name, in place of what is there for it or for a
-   !> key that it stands for; key and group are added where they are not there.
+   !> Put a value, as it would be written, into a key of the `number`-th group of a name, in place of what is there for it or
+   !> for a key that it stands for; key and group are added where they are not there.
    subroutine set_value(groups, group, number, key, value, is_quoted)
       type(group_type), allocatable, intent(inout) :: groups(:)
       character(*), intent(in) :: group, key, value
@@ -58,9 +58,9 @@ contains
       end do
    end function stands_for
 
-   !> Give both bodies materials with Dundurs' parameter `beta`, from -1/2 to 1/2, positive where the lower body couples more, and
-   !> the mutual compliance A, length^2/force, the sum of (kappa + 1)/(4 G): Poisson's ratio 0, that is kappa = 3 in plane strain
-   !> and plane stress, 1/G_1 = A (1 + 2 beta)/2 and 1/G_2 = A (1 - 2 beta)/2 (dissertation eq. 6.1). A body without flexibility
+   !> Give both bodies materials with Dundurs' parameter `beta`, from -1/2 to 1/2, positive where the lower body couples more,
+   !> and the mutual compliance A, length^2/force, the sum of (kappa + 1)/(4 G): Poisson's ratio 0, that is kappa = 3 in plane
+   !> strain and plane stress, 1/G_1 = A (1 + 2 beta)/2 and 1/G_2 = A (1 - 2 beta)/2 (dissertation eq. 6.1). A body without flexibility
    !> becomes rigid.
    subroutine set_dundurs_beta(groups, beta, compliance)
       type(group_type), allocatable, intent(inout) :: groups(:)

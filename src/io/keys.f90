@@ -132,7 +132,8 @@ contains
       case (kind_logical)
          text = '.true. or .false.'
       case (kind_text)
-         text = "a text between quotes"
+         text = 'a text between quotes'
+         if (key%is_list) text = 'one or more texts between quotes'
       case (kind_integer)
          text = 'a whole number from '//to_text(nint(key%lower))//' to '//to_text(nint(key%upper))
       case (kind_any)

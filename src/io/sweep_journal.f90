@@ -22,9 +22,9 @@ module mfv_sweep_journal
 
 contains
 
-   !> Open the journal at `path` for a sweep with a checksum and a number of cases, made where it is not there. What it has is in
-   !> `records`, shape (cases), by number. `again`: whether it is emptied. Error MFV_FILE_ERROR: it cannot be written, or another
-   !> process has it; MFV_INPUT_ERROR: it is of another input, or no journal.
+   !> Open the journal at `path` for a sweep with a checksum and a number of cases, made where it is not there. What it has is
+   !> in `records`, shape (cases), by number. `again`: whether it is emptied. Error MFV_FILE_ERROR: it cannot be written, or
+   !> another process has it; MFV_INPUT_ERROR: it is of another input, or no journal.
    subroutine open_journal(path, checksum, again, journal, records, error)
       character(*), intent(in) :: path
       integer(int64), intent(in) :: checksum

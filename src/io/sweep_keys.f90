@@ -8,7 +8,7 @@ module mfv_sweep_keys
    public :: sweep_catalogue
 
    !> Values that one axis can have.
-   real(wp), parameter :: most_values = 1.0e6_wp
+   real(wp), parameter :: most_values = 1.0e5_wp
 
 contains
 
@@ -52,8 +52,8 @@ contains
       call add_real_key(keys, 'vary', 'from', '', 'in place of values: the first of a row of numbers')
       call add_real_key(keys, 'vary', 'to', '', 'its last')
       call add_integer_key(keys, 'vary', 'count', '', 'how many there are', 1.0_wp, most_values)
-      call add_choice_key(keys, 'vary', 'spacing', 'linear', 'linear log', 'whether neighbours have the same distance or the '// &
-                          'same ratio')
+      call add_choice_key(keys, 'vary', 'spacing', 'linear', 'linear log', 'whether neighbours have the same distance '// &
+                          'or the same ratio')
       call add_text_key(keys, 'vary', 'name', '', 'name of the column in the table; left out: the first key as written')
    end subroutine add_vary_keys
 

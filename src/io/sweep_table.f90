@@ -1,7 +1,7 @@
 !> The table of a sweep: one HDF5 file with the compound dataset /table, a row a case. The same bytes whoever computed the rows,
 !> in whatever order: no times, no dates, no names of machines are in it. docs/sweep.md describes it.
 module mfv_sweep_table
-   use, intrinsic :: ieee_arithmetic, only: ieee_quiet_nan, ieee_value
+   use, intrinsic :: ieee_arithmetic, only: ieee_is_finite, ieee_quiet_nan, ieee_value
    use, intrinsic :: iso_c_binding, only: c_loc
    use, intrinsic :: iso_fortran_env, only: int32, int64, int8
    use hdf5
@@ -34,8 +34,8 @@ module mfv_sweep_table
 
 contains
 
-   !> Write the table of a sweep with the records that are there to its file. Error MFV_FILE_ERROR; what was there before is then
-   !> still there.
+   !> Write the table of a sweep with the records that are there to its file. Error MFV_FILE_ERROR; what was there before is
+   !> then still there.
    subroutine write_table(sweep, records, error)
       type(sweep_type), intent(in) :: sweep
       type(record_type), intent(in) :: records(:)
@@ -419,6 +419,7 @@ contains
       if (reference%number == 0) return
       do i = 1, observable_count
          if (observable_name(i) /= 'cycle_dissipation') cycle
+         if (.not. (ieee_is_finite(record%observables(i)) .and. ieee_is_finite(reference%observables(i)))) return
          if (abs(reference%observables(i)) > 0.0_wp) ratio = record%observables(i)/reference%observables(i)
       end do
    end function dissipation_ratio
