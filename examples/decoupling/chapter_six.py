@@ -160,7 +160,8 @@ def figure_6_3(table: Table) -> Drawn:
     axes[8].legend(*handles, loc="center", fontsize=11, title="panels a, b, d, g")
     caption = (
         r"Figure 6.3: five bodies and their common limit over the lateral force, mu = 0.7. What differs by KR in (a) is one "
-        "curve without dimensions. Errors of the tractions by eq. 6.6."
+        "curve without dimensions. Below Q~ = 0.1 few of the 150 nodes slip: (d) is to 10 % there. "
+        "Errors of the tractions by eq. 6.6."
     )
     names = ["base", x, "coupling", "cycle_dissipation", "dissipation_number", "dissipation_ratio"]
     names += [

@@ -224,6 +224,7 @@ def dissipation_over_force(table: Table, small: Table) -> list[Statement]:
     ratios = goodman["dissipation_ratio"]
     ratio_spread = analysis.bodies_spread(wide.where(coupling="goodman"), "dissipation_ratio", ["force_ratio"], ("half_plane",))
     again = float(table["cycle_change"].max())
+    smallest_force, smallest = over_prediction(small)
     width = 2.0 * none["contact_half_width"]
     return [
         Statement(
@@ -267,9 +268,11 @@ def dissipation_over_force(table: Table, small: Table) -> list[Statement]:
             "6.4",
             "they over-predict by 20 % to 50 %",
             "20 to 50 %",
-            f"{percent(ratios - 1.0)} over Q~ = {span(goodman['force_ratio'])}; 50 % at Q~ = {where_half(small):.3f}",
-            agreed(0.18 < ratios.min() - 1.0 < 0.22 and 1.4 < ratios.max() < 1.6, PARTLY),
-            "20 % is the level from Q~ = 0.4 on; the upper end is that of the smallest force taken, and has no limit there",
+            f"{100 * (ratios.min() - 1):.0f} to {100 * (smallest.max() - 1):.0f} % over Q~ = {smallest_force:g} to 0.99; "
+            f"50 % at Q~ = {where_half(small):.3f}",
+            agreed(0.18 < ratios.min() - 1.0 < 0.22 and 1.4 < smallest.max() < 1.6, PARTLY),
+            "20 % is the level from Q~ = 0.4 on; the upper end is that of the smallest force taken (here on 1200 nodes in "
+            "contact), and has no limit there",
         ),
         Statement(
             "6.4",
@@ -281,12 +284,18 @@ def dissipation_over_force(table: Table, small: Table) -> list[Statement]:
     ]
 
 
+def over_prediction(small: Table) -> tuple[float, np.ndarray]:
+    """The smallest lateral force ratio, and D_decoupled/D_full over all of them, finest mesh."""
+    rows = small.where(nodes_of_mesh=small["nodes_of_mesh"].max())
+    full, none = rows.where(coupling="full"), rows.where(coupling="none")
+    return float(full["force_ratio"].min()), none["dissipation_number"] / full["dissipation_number"]
+
+
 def where_half(small: Table) -> float:
     """Lateral force ratio at which the decoupled contact dissipates half as much again, finest mesh."""
-    rows = small.where(nodes_of_mesh=small["nodes_of_mesh"].max()).between("force_ratio", 0.03, 0.6)
-    full, none = rows.where(coupling="full"), rows.where(coupling="none")
-    ratio = none["dissipation_number"] / full["dissipation_number"]
-    return float(np.exp(np.interp(-1.5, -ratio, np.log(full["force_ratio"]))))
+    rows = small.between("force_ratio", 0.03, 0.6)
+    _, ratio = over_prediction(rows)
+    return float(np.exp(np.interp(-1.5, -ratio, np.log(rows.values("force_ratio")))))
 
 
 def slope_between(small: Table, nodes: int, coupling: str, low: float, high: float) -> float:
