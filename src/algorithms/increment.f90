@@ -98,6 +98,8 @@ contains
       class(contact_path_type), intent(in) :: path
       real(wp), intent(in) :: round_off, longest
       type(increment_type), intent(inout) :: increment
+      ! What nothing leads to is this far away, in units of the load parameter: twice as far is a number still.
+      real(wp), parameter :: never = 0.25_wp*huge(1.0_wp)
       type(corners_type) :: corners
       real(wp) :: first
 
@@ -110,7 +112,7 @@ contains
          call find_violations(path%model, path%state%status, corners, path%state%fields, increment%response%rate, &
                               max(round_off, path%system%noise), increment%violations)
       end if
-      first = minval(increment%violations%step)
+      first = min(minval(increment%violations%step), never)
       increment%step = min(first, longest)
       increment%reach = first*(1.0_wp + tie_of(path)) + no_step_of(path)
       increment%ends_in_event = first*(1.0_wp - tie_of(path)) - no_step_of(path) <= longest
