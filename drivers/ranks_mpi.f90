@@ -10,9 +10,9 @@ module mfv_ranks
    !> Whether there can be several processes.
    logical, parameter :: has_ranks = .true.
    integer, parameter :: bytes_of_number = storage_size(1)/8
-   !> Variables of the environment that launchers set: Open MPI, PMIx, PMI (MPICH, Intel MPI), MVAPICH, PALS, Slurm.
-   character(*), parameter :: launcher_variables(7) = [character(24) :: 'OMPI_COMM_WORLD_SIZE', 'PMIX_RANK', 'PMI_RANK', &
-                                                       'PMI_SIZE', 'MV2_COMM_WORLD_SIZE', 'PALS_RANKID', 'SLURM_PROCID']
+   !> Variables of the environment that launchers set: Open MPI, PMIx (srun too), PMI (MPICH, Intel MPI, srun), MVAPICH, PALS.
+   character(*), parameter :: launcher_variables(6) = [character(24) :: 'OMPI_COMM_WORLD_SIZE', 'PMIX_RANK', 'PMI_RANK', &
+                                                       'PMI_SIZE', 'MV2_COMM_WORLD_SIZE', 'PALS_RANKID']
 
    !> Whether MPI is in use; a program's state, not the library's.
    logical :: joined = .false.
