@@ -92,11 +92,14 @@ contains
       type(team_type), intent(inout), target :: team
       type(sweep_type), intent(in) :: sweep
       logical :: worked, over
+      integer :: rests
 
+      rests = 0
       do
          call work_once(team, sweep, worked, over)
          if (over) return
-         if (.not. worked) call pause_briefly()
+         if (worked) rests = 0
+         if (.not. worked) call pause_briefly(rests)
       end do
    end subroutine work
 

@@ -87,7 +87,9 @@ contains
       type(record_type), intent(inout) :: records(:)
       type(error_type), allocatable, intent(inout) :: error
       logical :: busy, worked, over
+      integer :: rests
 
+      rests = 0
       do
          busy = .false.
          call collect_own(manager, team, journal, records, error, busy)
@@ -108,7 +110,8 @@ contains
          end if
          worked = .false.
          if (alone) call work_once(team, sweep, worked, over)
-         if (.not. (busy .or. worked)) call pause_briefly()
+         if (busy .or. worked) rests = 0
+         if (.not. (busy .or. worked)) call pause_briefly(rests)
       end do
    end subroutine manage
 
@@ -270,7 +273,9 @@ contains
       type(error_type), allocatable :: error
       integer(int8), allocatable :: bytes(:)
       logical :: busy, is_there, is_over, has_told, worked, over
+      integer :: rests
 
+      rests = 0
       is_over = .false.
       has_told = .false.
       call send_message(0, message_threads, merge(1, threads, alone), nothing)
@@ -303,7 +308,8 @@ contains
          end if
          worked = .false.
          if (alone) call work_once(team, sweep, worked, over)
-         if (.not. (busy .or. worked)) call pause_briefly()
+         if (busy .or. worked) rests = 0
+         if (.not. (busy .or. worked)) call pause_briefly(rests)
       end do
       call send_message(0, message_left, 0, nothing)
    end subroutine serve

@@ -656,6 +656,7 @@ contains
 
       if (simulation%cycle_count == 0) return
       stiffness = simulation%cycles(simulation%cycle_count)%return%stiffness_on_leaving
+      if (ieee_is_nan(stiffness)) return
       if (.not. abs(stiffness) > 0.0_wp) return
       associate (r => simulation%contact%history%record(:simulation%contact%history%records))
          call add_real(fields, 'nonlinear_shift', r%shift - r%tangential_force/stiffness, along_records, units%length, &
