@@ -2,7 +2,7 @@
  *
  * A case is created from a namelist text or file (docs/namelist.md), run or advanced step by step, and asked for its
  * fields by the same paths as in the result file (docs/file-format.md), "state/pressure" for one; the scales that the
- * file repeats in every group are "mesh/x" and "history/record" alone. Units: any consistent set; forces and energies
+ * file repeats in every group are "mesh/x", "history/record" and "cycles/cycle" alone. Units: any consistent set; forces and energies
  * per unit thickness. Every call returns a status; mfv_message tells more. The library never prints, never stops the
  * process and has no global state: handles are independent of each other, one thread a handle at a time (mfv_write in
  * two threads at once needs an HDF5 that is thread-safe, as Debian's is). Texts go out through the caller's buffer with

@@ -84,7 +84,7 @@ def _with_text(rows: np.ndarray) -> np.ndarray:
         name: np.char.decode(rows[name], "utf-8") if rows.dtype[name].kind == "S" else rows[name]
         for name in rows.dtype.names
     }
-    text = np.empty(rows.shape, [(name, column.dtype) for name, column in columns.items()])
+    text = np.empty(rows.shape, np.dtype([(name, column.dtype) for name, column in columns.items()]))
     for name, column in columns.items():
         text[name] = column
     return text
