@@ -245,24 +245,14 @@ contains
       integer(hid_t), intent(in) :: object
       character(*), intent(in) :: name, text
       character(len=:, kind=c_char), allocatable, target :: terminated
-      type(c_ptr), target :: pointer_to_text
-      integer(hid_t) :: text_type, space, attribute
+      type(c_ptr) :: pointers(1)
+      integer(hid_t) :: space
       integer :: code
 
       terminated = text//c_null_char
-      pointer_to_text = c_loc(terminated)
-      call h5tcopy_f(H5T_STRING, text_type, code)
-      call h5tset_cset_f(text_type, H5T_CSET_UTF8_F, code)
+      pointers = c_loc(terminated)
       call h5screate_f(H5S_SCALAR_F, space, code)
-      call h5acreate_f(object, name, text_type, space, attribute, code)
-      call note(writer, code)
-      if (code == 0) then
-         call h5awrite_f(attribute, text_type, c_loc(pointer_to_text), code)
-         call note(writer, code)
-         call h5aclose_f(attribute, code)
-      end if
-      call h5sclose_f(space, code)
-      call h5tclose_f(text_type, code)
+      call write_terminated(writer, object, name, space, pointers)
    end subroutine write_text
 
    !> An attribute of several texts, as write_text has one.
@@ -272,8 +262,8 @@ contains
       character(*), intent(in) :: name
       type(string_type), intent(in) :: texts(:)
       character(kind=c_char), allocatable, target :: letters(:)
-      type(c_ptr), target :: pointers(size(texts))
-      integer(hid_t) :: text_type, space, attribute
+      type(c_ptr) :: pointers(size(texts))
+      integer(hid_t) :: space
       integer :: code, i, j, at
 
       allocate (letters(sum([(len(texts(i)%text) + 1, i=1, size(texts))])))
@@ -286,9 +276,21 @@ contains
          at = at + len(texts(i)%text) + 1
          letters(at) = c_null_char
       end do
+      call h5screate_simple_f(1, [size(texts, kind=hsize_t)], space, code)
+      call write_terminated(writer, object, name, space, pointers)
+   end subroutine write_texts
+
+   !> An attribute of null-terminated texts at the addresses `pointers`, of the extent of `space`, which is closed.
+   subroutine write_terminated(writer, object, name, space, pointers)
+      type(writer_type), intent(inout) :: writer
+      integer(hid_t), intent(in) :: object, space
+      character(*), intent(in) :: name
+      type(c_ptr), intent(in), target :: pointers(:)
+      integer(hid_t) :: text_type, attribute
+      integer :: code
+
       call h5tcopy_f(H5T_STRING, text_type, code)
       call h5tset_cset_f(text_type, H5T_CSET_UTF8_F, code)
-      call h5screate_simple_f(1, [size(texts, kind=hsize_t)], space, code)
       call h5acreate_f(object, name, text_type, space, attribute, code)
       call note(writer, code)
       if (code == 0) then
@@ -298,7 +300,7 @@ contains
       end if
       call h5sclose_f(space, code)
       call h5tclose_f(text_type, code)
-   end subroutine write_texts
+   end subroutine write_terminated
 
    !> An attribute that is a whole number.
    subroutine write_whole(writer, object, name, value)

@@ -1,6 +1,5 @@
 """mfv_run as a user runs it: examples, messages, exit codes, files that are whole or not there, and the documents."""
 import os
-import pty
 import re
 import signal
 import subprocess
@@ -12,6 +11,8 @@ import h5py
 import numpy as np
 import pytest
 import xarray
+
+from terminal import shown_on_a_terminal
 
 ROOT = Path(__file__).resolve().parents[2]
 PROGRAM = os.environ.get("MFV_RUN", str(ROOT / "build/release/bin/mfv_run"))
@@ -349,20 +350,7 @@ def test_progress_shows_on_a_terminal_only(tmp_path):
                      "&step tangential_force=2e-4, cycles=2 / &solver linear_solver='dgesv' /")  # slow enough to be seen
     case(tmp_path, text)
     assert mfv_run("case.nml", cwd=tmp_path).stderr == ""
-    master, slave = pty.openpty()
-    run = subprocess.Popen([PROGRAM, "--estimate", "case.nml"], cwd=tmp_path, stdout=subprocess.PIPE, stderr=slave)
-    os.close(slave)
-    seen = b""
-    while True:
-        try:
-            part = os.read(master, 1000)
-        except OSError:
-            break
-        if not part:
-            break
-        seen += part
-    run.communicate(timeout=60)
-    os.close(master)
+    seen = shown_on_a_terminal([PROGRAM, "--estimate", "case.nml"], cwd=tmp_path)
     assert re.search(rb"\r  \d+ %, part \d of 5", seen)
     assert re.search(rb"\r  coarser meshes: \d+ %, part \d+ of 15", seen)
 

@@ -2,7 +2,6 @@
 import csv
 import hashlib
 import os
-import pty
 import random
 import re
 import shutil
@@ -19,6 +18,7 @@ import pandas  # xarray brings it
 import pytest
 
 import mfv
+from terminal import shown_on_a_terminal
 
 ROOT = Path(__file__).resolve().parents[2]
 MFV_RUN = os.environ.get("MFV_RUN", str(ROOT / "build/release/bin/mfv_run"))
@@ -497,21 +497,7 @@ def test_values_that_the_case_refuses_are_named(tmp_path):
 
 def test_progress_shows_on_a_terminal_only(tmp_path):
     cases = long_study(tmp_path, count=100)
-    master, slave = pty.openpty()
-    run = subprocess.Popen([MFV_SWEEP, "--threads", "1", "study.nml"], cwd=tmp_path, stdout=subprocess.PIPE, stderr=slave,
-                           env=os.environ | AS_ROOT)
-    os.close(slave)
-    seen = b""
-    while True:
-        try:
-            part = os.read(master, 1000)
-        except OSError:
-            break
-        if not part:
-            break
-        seen += part
-    run.communicate(timeout=60)
-    os.close(master)
+    seen = shown_on_a_terminal([MFV_SWEEP, "--threads", "1", "study.nml"], cwd=tmp_path, env=os.environ | AS_ROOT)
     assert re.search(rb"\r  cases \d+ of %d, 0 early ends, \d+:\d\d left" % cases, seen)
 
 
