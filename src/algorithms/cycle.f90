@@ -20,8 +20,8 @@ module mfv_cycle
    end type turning_point_type
 
    type :: cycle_type
-      !> Step of the load history, and number in it.
-      integer :: step = 0, number = 0
+      !> Step of the load history, number in it, and number over all steps.
+      integer :: step = 0, number = 0, overall = 0
       !> Where it began, its far end, and where it ended.
       type(turning_point_type) :: start, reversal, return
       !> Largest change of a traction from its start to its end, in parts of the largest traction so far.
@@ -32,6 +32,7 @@ module mfv_cycle
       procedure :: dissipation
       procedure :: force_amplitude
       procedure :: shift_amplitude
+      procedure, private :: is_sheared
       procedure :: secant_stiffness
       procedure :: loss_factor
    end type cycle_type
@@ -75,23 +76,35 @@ contains
       shift_amplitude = 0.5_wp*abs(self%return%shift - self%reversal%shift)
    end function shift_amplitude
 
-   !> Tangential force over shift from end to end, force/length^2; NaN where the shift does not change.
+   !> Whether tangential force and shift both change, by more than round-off of what they are.
+   elemental logical function is_sheared(self)
+      class(cycle_type), intent(in) :: self
+      real(wp), parameter :: round_off = 1.0e-10_wp
+
+      is_sheared = self%shift_amplitude() > round_off*max(abs(self%return%shift), abs(self%reversal%shift)) .and. &
+                   self%force_amplitude() > round_off*max(abs(self%return%tangential_force), &
+                                                          abs(self%reversal%tangential_force))
+   end function is_sheared
+
+   !> Tangential force over shift from end to end, force/length^2; NaN where one of them does not change.
    elemental real(wp) function secant_stiffness(self)
       class(cycle_type), intent(in) :: self
 
       secant_stiffness = ieee_value(1.0_wp, ieee_quiet_nan)
-      if (self%shift_amplitude() > 0.0_wp) secant_stiffness = self%force_amplitude()/self%shift_amplitude()
+      if (self%is_sheared()) secant_stiffness = self%force_amplitude()/self%shift_amplitude()
    end function secant_stiffness
 
    !> Loss factor: dissipation over 2 pi times the energy force_amplitude shift_amplitude/2 of the linear spring that has the
-   !> secant stiffness. NaN where that is none.
+   !> secant stiffness. NaN where that is none, and where the normal force changes too: the dissipation is then not the area of
+   !> the loop of tangential force and shift.
    elemental real(wp) function loss_factor(self)
       class(cycle_type), intent(in) :: self
-      real(wp) :: energy
+      real(wp), parameter :: round_off = 1.0e-9_wp
 
       loss_factor = ieee_value(1.0_wp, ieee_quiet_nan)
-      energy = 0.5_wp*self%force_amplitude()*self%shift_amplitude()
-      if (energy > 0.0_wp) loss_factor = self%dissipation()/(2.0_wp*pi*energy)
+      if (.not. self%is_sheared()) return
+      if (abs(self%return%normal_force - self%reversal%normal_force) > round_off*self%return%normal_force) return
+      loss_factor = self%dissipation()/(pi*self%force_amplitude()*self%shift_amplitude())
    end function loss_factor
 
    !> Append a cycle to the first `number` ones of a list that doubles where it is full; where `last_only`, it takes their place.

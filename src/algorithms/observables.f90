@@ -32,7 +32,7 @@ module mfv_observables
                               'traction', 'traction', '1', 'energy', 'energy', '1', 'force', 'length', &
                               'traction', 'traction', '1', '1', '1', '1', '1', '1', &
                               '1', '1', '1', '1', '1', '1', '1', '1']
-   character(*), parameter :: meanings(observable_count) = [character(82) :: &
+   character(*), parameter :: meanings(observable_count) = [character(91) :: &
                               'normal force P per unit thickness at the end', &
                               'tangential force Q per unit thickness at the end', &
                               'approach of the upper body at the end', &
@@ -51,7 +51,7 @@ module mfv_observables
                               'half of what the shift changes by in the last cycle', &
                               'tangential force over shift right after the last reversal', &
                               'tangential force over shift from end to end of the last cycle', &
-                              'cycle_dissipation over 2 pi times the elastic energy of the secant stiffness', &
+                              'cycle_dissipation over 2 pi times the elastic energy of the secant stiffness, at constant P', &
                               'stick ratio where the cycles begin', &
                               'stick ratio at the far end of the last cycle', &
                               'stick ratio at the end of the last cycle', &
@@ -115,10 +115,16 @@ contains
    subroutine observables_of(simulation, values)
       type(simulation_type), intent(in) :: simulation
       real(wp), intent(out) :: values(observable_count)
+      type(contact_state_type) :: state
+      type(zone_edges_type) :: loading
 
       values = ieee_value(1.0_wp, ieee_quiet_nan)
       call add_present(simulation, values)
-      if (simulation%marks(mark_loading)%step == 0 .or. simulation%cycle_count == 0) return
+      if (simulation%marks(mark_loading)%step == 0) return
+      state = simulation%padded(simulation%marks(mark_loading))
+      call find_zone_edges(simulation%contact%model, state, loading)
+      call add_moment(loading, 'loading', values)
+      if (simulation%cycle_count == 0) return
       associate (cycle => simulation%cycles(simulation%cycle_count))
          ! Not those of a step before, where the last step with cycles ended in its first one.
          if (cycle%step == simulation%marks(mark_loading)%step) call add_cycle(simulation, cycle, values)
@@ -157,8 +163,6 @@ contains
       type(simulation_type), intent(in) :: simulation
       type(cycle_type), intent(in) :: cycle
       real(wp), intent(inout) :: values(:)
-      type(contact_state_type) :: state
-      type(zone_edges_type) :: loading
 
       call put(values, 'cycles', real(cycle%number, wp))
       call put(values, 'cycle_dissipation', cycle%dissipation())
@@ -169,9 +173,6 @@ contains
       call put(values, 'tangential_stiffness', cycle%return%stiffness_on_leaving)
       call put(values, 'secant_stiffness', cycle%secant_stiffness())
       call put(values, 'loss_factor', cycle%loss_factor())
-      state = simulation%padded(simulation%marks(mark_loading))
-      call find_zone_edges(simulation%contact%model, state, loading)
-      call add_moment(loading, 'loading', values)
       call add_moment(cycle%reversal%edges, 'reversal', values)
       call add_moment(cycle%return%edges, 'return', values)
       call add_numbers(simulation, cycle, values)
@@ -226,7 +227,7 @@ contains
 
       associate (mark => simulation%marks(moment_marks(number)))
          tractions%interval = simulation%contact%model%interval()
-         if (mark%step == 0) then
+         if (mark%step == 0 .or. (number /= 1 .and. mark%reversal == 0)) then
             allocate (tractions%pressure(0), tractions%shear(0))
          else
             tractions%pressure = mark%state%fields%pressure

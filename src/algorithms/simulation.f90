@@ -20,14 +20,16 @@ module mfv_simulation
    implicit none
    private
    public :: simulation_type, new_simulation, snapshot_type, history_events, history_steps, history_none
-   public :: mark_count, mark_loading, mark_reversal, mark_return, mark_cycle_start
+   public :: mark_loading, mark_reversal, mark_return, mark_cycle_start
 
    !> What the load history keeps: a record an event, a record a step end, nothing.
    integer, parameter :: history_events = 1, history_steps = 2, history_none = 3
 
-   !> States that the last step with cycles leaves: where the step began, the far end of its last whole cycle, the end of that,
-   !> and its start.
-   integer, parameter :: mark_loading = 1, mark_reversal = 2, mark_return = 3, mark_cycle_start = 4, mark_count = 4
+   !> States that the last step with cycles leaves: where the step began, the far end of its last whole cycle, the end of that
+   !> (with `reversal` 0 while there is none: where the step began), and its start.
+   integer, parameter :: mark_loading = 1, mark_reversal = 2, mark_return = 3, mark_cycle_start = 4
+   !> The far end of the cycle that is not whole yet; and how many marks there are.
+   integer, parameter :: mark_pending = 5, mark_count = 5
 
    !> The state at the end of a step, or of one reversal of a step with cycles.
    type :: snapshot_type
@@ -46,6 +48,8 @@ module mfv_simulation
       !> Whole cycles so far, the first `cycle_count` entries in use; without a load history the last one only.
       type(cycle_type), allocatable :: cycles(:)
       integer :: cycle_count = 0
+      !> Whole cycles of all steps so far.
+      integer :: cycles_done = 0
       !> See mark_loading and so on; `step` is 0 where there is none.
       type(snapshot_type) :: marks(mark_count)
       !> How it ended (see mfv_status): MFV_COMPLETE while nothing has gone wrong, and why in words.
@@ -189,13 +193,16 @@ contains
       type(contact_state_type) :: before
 
       if (mod(leg, 2) == 1) then
-         cycle%start = cycle%return
-         self%marks(mark_cycle_start) = self%marks(mark_return)
          cycle%reversal = new_turning_point(self%contact%model, self%contact%state, self%contact%first_stiffness)
-         call self%set_mark(mark_reversal, leg)
+         call self%set_mark(mark_pending, leg)
          return
       end if
+      self%cycles_done = self%cycles_done + 1
       cycle%number = leg/2
+      cycle%overall = self%cycles_done
+      cycle%start = cycle%return
+      self%marks(mark_cycle_start) = self%marks(mark_return)
+      self%marks(mark_reversal) = self%marks(mark_pending)
       cycle%return = new_turning_point(self%contact%model, self%contact%state, self%contact%first_stiffness)
       before = self%padded(self%marks(mark_cycle_start))
       cycle%change = self%change_since(before)

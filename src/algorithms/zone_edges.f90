@@ -82,9 +82,11 @@ contains
       edges%contact = size(zones) > 0
       call find_zones(held(state), zones)
       do i = 1, size(zones)
-         left = stick_edge(model, state, zones(i), -1)
-         right = stick_edge(model, state, zones(i), 1)
-         edges%stick_length = edges%stick_length + (right - left)
+         ! What sticks is in contact, wherever the tractions of a few nodes may point.
+         left = max(stick_edge(model, state, zones(i), -1), contact_edge(model, state, whole_contact(state, zones(i)%first), -1))
+         right = min(stick_edge(model, state, zones(i), 1), contact_edge(model, state, whole_contact(state, zones(i)%last), 1))
+         right = max(left, right)
+         edges%stick_length = min(edges%stick_length + (right - left), edges%contact_length)
          if (i == 1) edges%stick_left = left
          edges%stick_right = right
       end do
@@ -100,6 +102,8 @@ contains
       real(wp) :: slipped(size(state%status))
 
       slipped = 0.0_wp
+      held = .false.
+      if (.not. any(holds(state%status))) return
       where (slips(state%status)) slipped = abs(state%fields%tangential - state%fields%shift - state%stuck_slip)
       held = holds(state%status) .or. (slips(state%status) .and. slipped <= nothing*maxval(slipped))
    end function held

@@ -237,7 +237,7 @@ contains
       integer :: last
 
       if (.not. reader%has('step', number, 'force_ratio')) return
-      ! A step with cycles ends where it began.
+      ! A step with cycles ends where it began. (Of this step itself the cycles are read later, and do not count.)
       last = findloc(scene%steps(:number)%normal_control /= control_keep .and. scene%steps(:number)%cycles == 0, .true., &
                      dim=1, back=.true.)
       if (scene%steps(number)%tangential_control /= control_keep) then
@@ -248,7 +248,8 @@ contains
       else if (.not. reader%logical_value('step', number, 'friction')) then
          call reader%complain('step', number, 'force_ratio', 'means nothing in a step without friction', error)
       else if (last == 0) then
-         call reader%complain('step', number, 'force_ratio', 'needs a normal_force, in this step or one before it', error)
+         call reader%complain('step', number, 'force_ratio', 'needs a normal_force, in this step or in one before it '// &
+                              'without cycles', error)
       else if (scene%steps(last)%normal_control /= control_force) then
          call reader%complain('step', number, 'force_ratio', 'needs a normal_force, but step '//to_text(last)// &
                               ' names an approach', error)

@@ -501,11 +501,9 @@ contains
       integer, parameter :: along = along_cycles
       type(cycle_type), allocatable :: c(:)
       type(contact_state_type) :: before, after
-      integer :: i, first
 
       c = simulation%cycles(:simulation%cycle_count)
-      first = merge(1, c(1)%number, simulation%keep_history /= history_none)
-      call add_whole(fields, 'cycle', [(first + i - 1, i=1, size(c))], along, 'number of the cycle')
+      call add_whole(fields, 'cycle', c%overall, along, 'number of the cycle, over all steps')
       call add_whole(fields, 'step', c%step, along, 'number of its step')
       call add_real(fields, 'dissipation', c%dissipation(), along, units%energy, 'energy dissipated in the cycle per unit '// &
                     'thickness')
@@ -519,7 +517,7 @@ contains
       call add_real(fields, 'secant_stiffness', c%secant_stiffness(), along, units%traction, 'tangential force over shift '// &
                     'from end to end')
       call add_real(fields, 'loss_factor', c%loss_factor(), along, '1', 'dissipation over 2 pi times the elastic energy of '// &
-                    'the secant stiffness')
+                    'the secant stiffness, at constant normal force')
       call add_real(fields, 'stick_ratio_reversal', c%reversal%edges%stick_ratio(), along, '1', 'stick ratio at the far end')
       call add_real(fields, 'stick_ratio_return', c%return%edges%stick_ratio(), along, '1', 'stick ratio at the end')
       call add_real(fields, 'contact_centre_reversal', c%reversal%edges%centre(), along, units%length, 'middle of the '// &
