@@ -136,12 +136,9 @@ contains
          return
       end if
       call find_table(sweep, state)
-      is_complete = state == same_table .and. .not. options%again
-      if (is_complete) then
-         write (output_unit, '(a)') sweep%result_path//' is complete: '//to_text(sweep%cases())// &
-            ' cases; --again solves them anew'
-         call drop_journal(sweep)
-         return
+      if (state == same_table .and. .not. options%again) then
+         call leave_complete_alone(sweep, options, is_complete, error)
+         if (allocated(error) .or. is_complete) return
       end if
       allocate (records(sweep%cases()))
       call open_journal(journal_path(sweep, options), sweep%checksum, options%again, journal, records, error)
@@ -152,20 +149,47 @@ contains
       if (.not. allocated(error) .and. sweep%keeps_states) call make_directory(sweep%states_folder())
    end subroutine prepare
 
-   !> Delete the journal of a sweep that is complete: a process that ended between the table and this has left it.
-   subroutine drop_journal(sweep)
+   !> Where the table is complete: whether there is nothing to do, and the user has been told so. There is where --again has
+   !> begun anew, so that there is a journal of this sweep without all its cases, or one of a part. A journal with all cases, which
+   !> a process that ended between the table and its journal has left, is deleted.
+   subroutine leave_complete_alone(sweep, options, is_complete, error)
       type(sweep_type), intent(in) :: sweep
-      type(record_type) :: records(0)
-      type(error_type), allocatable :: error
-      character(:), allocatable :: path
-      logical :: found
+      type(sweep_options_type), intent(in) :: options
+      logical, intent(out) :: is_complete
+      type(error_type), allocatable, intent(out) :: error
+      type(record_type), allocatable :: records(:)
+      type(string_type), allocatable :: paths(:)
+      logical :: has_journal, found
+      integer :: i
 
-      path = journal_path(sweep, sweep_options_type())
+      is_complete = .false.
+      allocate (records(sweep%cases()))
+      call look_into(sweep, journal_path(sweep, options), records, has_journal, error)
+      if (allocated(error)) return
+      if (has_journal .and. (options%parts > 0 .or. any(records%number == 0))) return
+      if (options%parts == 0) then
+         call list_part_journals(sweep, paths)
+         do i = 1, size(paths)
+            call look_into(sweep, paths(i)%text, records, found, error)
+            if (allocated(error) .or. found) return
+         end do
+      end if
+      is_complete = .true.
+      if (has_journal) call delete_path(journal_path(sweep, options))
+      write (output_unit, '(a)') sweep%result_path//' is complete: '//to_text(sweep%cases())//' cases; --again solves them anew'
+   end subroutine leave_complete_alone
+
+   !> Add what a journal has to `records`. `found`: whether it is there, and of this sweep.
+   subroutine look_into(sweep, path, records, found, error)
+      type(sweep_type), intent(in) :: sweep
+      character(*), intent(in) :: path
+      type(record_type), intent(inout) :: records(:)
+      logical, intent(out) :: found
+      type(error_type), allocatable, intent(out) :: error
+
       inquire (file=path, exist=found)
-      if (.not. found) return
-      call gather_journal(path, sweep%checksum, records, found, error)
-      if (found .and. .not. allocated(error)) call delete_path(path)
-   end subroutine drop_journal
+      if (found) call gather_journal(path, sweep%checksum, records, found, error)
+   end subroutine look_into
 
    !> Where the journal of a run is.
    function journal_path(sweep, options) result(path)
@@ -195,16 +219,10 @@ contains
       type(error_type), allocatable, intent(out) :: error
       type(string_type), allocatable :: paths(:)
       type(record_type), allocatable :: dropped(:)
-      type(c_ptr) :: names
-      character(kind=c_char), pointer :: letters(:)
       logical :: found
       integer :: i
 
-      names = c_matching_files(sweep%result_path//'.part-'//c_null_char, '.journal'//c_null_char)
-      if (.not. c_associated(names)) return
-      call c_f_pointer(names, letters, [1])
-      paths = split_lines(from_c(letters))
-      call c_free(names)
+      call list_part_journals(sweep, paths)
       do i = 1, size(paths)
          if (options%again) then
             allocate (dropped(size(records)))
@@ -221,6 +239,21 @@ contains
          end if
       end do
    end subroutine gather_parts
+
+   !> Paths of journals of parts, whatever is in them.
+   subroutine list_part_journals(sweep, paths)
+      type(sweep_type), intent(in) :: sweep
+      type(string_type), allocatable, intent(out) :: paths(:)
+      type(c_ptr) :: names
+      character(kind=c_char), pointer :: letters(:)
+
+      allocate (paths(0))
+      names = c_matching_files(sweep%result_path//'.part-'//c_null_char, '.journal'//c_null_char)
+      if (.not. c_associated(names)) return
+      call c_f_pointer(names, letters, [1])
+      paths = split_lines(from_c(letters))
+      call c_free(names)
+   end subroutine list_part_journals
 
    !> Solve what is missing, and finish as far as one can. `code`: the exit code.
    subroutine complete(sweep, options, ranks, journal, records, parts, code)
@@ -273,7 +306,8 @@ contains
 
       call close_journal(journal)
       write (error_unit, '(a)') 'interrupted: '//to_text(count(records%number > 0))//' of '//to_text(wanted)// &
-         ' cases are kept in '//journal%path//'; the same command goes on'
+         ' cases are kept in '//journal%path//'; the same command'// &
+         trim(merge(' without --again', '                ', options%again))//' goes on'
       if (options%parts > 0) return
       call find_table(sweep, state)
       if (state == no_table .or. state == part_table) call write_table(sweep, records, error)

@@ -333,6 +333,54 @@ def test_a_finished_sweep_is_left_alone(study, tmp_path):
     assert digest(tmp_path / "study.h5") == digest(study / "study.h5")
 
 
+def test_again_that_is_interrupted_is_continued(tmp_path):
+    cases = long_study(tmp_path, count=60)
+    journal = tmp_path / "study.h5.journal"
+    assert mfv_sweep("study.nml", cwd=tmp_path).returncode == COMPLETE
+    whole = digest(tmp_path / "study.h5")
+    run = start("--again", "--threads", 1, "study.nml", cwd=tmp_path)
+    assert wait_for_records(journal, 5, run)
+    run.send_signal(signal.SIGINT)
+    _, errors = run.communicate(timeout=60)
+    assert run.returncode == INTERRUPTED
+    assert "are kept in study.h5.journal; the same command without --again goes on" in errors
+    kept = numbers_in(journal)
+    assert digest(tmp_path / "study.h5") == whole
+    complete = journal.read_bytes()
+    run = mfv_sweep("study.nml", cwd=tmp_path)
+    assert run.returncode == COMPLETE and run.stdout.startswith(f"{len(kept)} of {cases} cases were there"), run.stdout
+    assert digest(tmp_path / "study.h5") == whole and not journal.exists()
+    # One of another input is not continued, and not deleted.
+    damaged = bytearray(complete)
+    damaged[25] ^= 1
+    journal.write_bytes(damaged)
+    assert "is complete" in mfv_sweep("study.nml", cwd=tmp_path).stdout and journal.read_bytes() == damaged
+
+
+def test_a_whole_journal_beside_a_complete_table_is_deleted(study, tmp_path):
+    write(tmp_path)
+    assert mfv_sweep("--part", "1/1", "study.nml", cwd=tmp_path).returncode == COMPLETE
+    (tmp_path / "study.h5.part-1-of-1.journal").rename(tmp_path / "study.h5.journal")
+    shutil.copy2(study / "study.h5", tmp_path)
+    before = unchanging(tmp_path / "study.h5")
+    assert "is complete" in mfv_sweep("study.nml", cwd=tmp_path).stdout
+    assert not (tmp_path / "study.h5.journal").exists() and unchanging(tmp_path / "study.h5") == before
+
+
+def test_parts_over_a_complete_table(study, tmp_path):
+    write(tmp_path)
+    shutil.copy2(study / "study.h5", tmp_path)
+    before = unchanging(tmp_path / "study.h5")
+    assert "is complete" in mfv_sweep("--part", "1/3", "study.nml", cwd=tmp_path).stdout
+    assert mfv_sweep("--again", "--part", "1/3", "study.nml", cwd=tmp_path).returncode == COMPLETE
+    assert "6 of 6 cases were there" in mfv_sweep("--part", "1/3", "study.nml", cwd=tmp_path).stdout
+    assert unchanging(tmp_path / "study.h5") == before
+    run = mfv_sweep("study.nml", cwd=tmp_path)
+    assert run.returncode == COMPLETE and f"6 of {CASES} cases were there" in run.stdout, run.stdout
+    assert unchanging(tmp_path / "study.h5") != before and digest(tmp_path / "study.h5") == digest(study / "study.h5")
+    assert not list(tmp_path.glob("*.journal"))
+
+
 def test_another_input(study, tmp_path):
     long_study(tmp_path)
     shutil.copy(study / "study.h5", tmp_path)
