@@ -89,6 +89,7 @@ contains
          write (error_unit, '(a)') error%message
       else if (.not. is_complete) then
          call complete(sweep, options, ranks, journal, records, parts, code)
+         call share_number(code)
       end if
    end subroutine lead
 
@@ -104,14 +105,9 @@ contains
       call share_number(code)
       if (code /= go_on) return
       call read_sweep_file(path, sweep, error)
-      code = 0
-      if (allocated(error)) then
-         write (error_unit, '(a)') error%message
-         code = status_exit_code(error%status)
-         call request_interrupt()
-      end if
-      call assist(sweep, threads_for(options, ranks))
-      if (code == 0 .and. is_interrupted()) code = status_exit_code(MFV_INTERRUPTED)
+      call assist(sweep, threads_for(options, ranks), error)
+      ! The code of rank 0, which has heard of all errors: a launcher takes that of any rank for the code of the run.
+      call share_number(code)
    end subroutine follow
 
    !> Read the sweep and what there is of it. `is_complete`: there is nothing to do, and the user has been told so. `parts`:

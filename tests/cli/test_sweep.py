@@ -233,6 +233,31 @@ def test_ranks_killed_and_continued(tmp_path):
     assert digest(tmp_path / "study.h5") == digest(undisturbed / "study.h5")
 
 
+def without_place_for_states(folder):
+    """A sweep whose whole results cannot be written: there is a file in place of their folder."""
+    write(folder, STUDY.replace("reference='full'", "states='all'"))
+    (folder / "study.cases").write_text("")
+
+
+def check_file_error(run):
+    assert run.returncode == FILE, run.stdout + run.stderr
+    assert len(re.findall(r"study\.cases/0000\d\d\.h5 cannot be written", run.stderr)) == 1, run.stderr
+    assert "interrupted" not in run.stderr
+
+
+@pytest.mark.parametrize("threads", [1, 3])
+def test_file_errors_have_their_code_and_message(threads, tmp_path):
+    without_place_for_states(tmp_path)
+    check_file_error(mfv_sweep("--threads", threads, "study.nml", cwd=tmp_path))
+
+
+@needs_mpi
+@pytest.mark.parametrize("number, threads", [(2, 1), (4, 2)])
+def test_file_errors_of_ranks_have_their_code_and_message(number, threads, tmp_path):
+    without_place_for_states(tmp_path)
+    check_file_error(mfv_sweep("--threads", threads, "study.nml", cwd=tmp_path, launcher=ranks(number)))
+
+
 @needs_mpi
 def test_input_errors_of_ranks_come_once(tmp_path):
     write(tmp_path, STUDY.replace("mu'", "mo'"))
