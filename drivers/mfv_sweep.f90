@@ -10,6 +10,7 @@ program mfv_sweep
    use mfv_sweep_keys, only: sweep_catalogue
    use mfv_sweep_plan, only: sweep_type
    use mfv_sweep_reader, only: read_sweep_file
+   use mfv_sweep_table, only: check_place
    use mfv_terminal
    use mfv_version, only: library_version
    implicit none
@@ -130,6 +131,7 @@ contains
       integer :: place
 
       call read_sweep_file(sweep_path, sweep, error)
+      if (.not. allocated(error)) call check_place(sweep, error)
       if (allocated(error)) call fail(error)
       write (output_unit, '(a)') sweep%source//' is valid: '//to_text(sweep%cases())//' cases, into '//sweep%result_path
       do place = 1, size(sweep%axes)

@@ -3,7 +3,6 @@ module mfv_run_sweep
    use, intrinsic :: iso_c_binding
    use, intrinsic :: iso_fortran_env, only: error_unit, output_unit
    use mfv_error, only: error_type
-   use mfv_hdf5_writer, only: check_writable
    use mfv_locked_file, only: delete_path, make_directory
    use mfv_one_thread, only: use_one_thread
    use mfv_ranks
@@ -126,11 +125,8 @@ contains
       is_complete = .false.
       call read_sweep_file(path, sweep, error)
       if (allocated(error)) return
-      call check_writable(sweep%result_path, error)
-      if (allocated(error)) then
-         error%message = path//": &sweep file='"//sweep%result_path//"': "//error%message
-         return
-      end if
+      call check_place(sweep, error)
+      if (allocated(error)) return
       call find_table(sweep, state)
       if (state == same_table .and. .not. options%again) then
          call leave_complete_alone(sweep, options, is_complete, error)

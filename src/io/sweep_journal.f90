@@ -107,7 +107,7 @@ contains
       length = min(size(bytes), header_length)
       if (any(bytes(:length) /= expected(:length)) .and. .not. again) &
          call set_error(error, MFV_INPUT_ERROR, path//': this journal is of another input (the sweep, a base case, a file '// &
-                        'that they name, or the version has changed); --again starts anew and drops it')
+                        'that they name, the version, or the list of observables has changed); --again starts anew and drops it')
    end subroutine check_header
 
    !> Whether bytes begin as the journal of a sweep with this checksum.

@@ -11,10 +11,12 @@ module mfv_sweep_reader
    use mfv_keys
    use mfv_kinds, only: wp
    use mfv_namelist, only: entry_type, parse_namelists
+   use mfv_observables, only: observable_count, observable_name
    use mfv_strings, only: lower_case, quoted, to_text
    use mfv_sweep_columns, only: column_type, list_columns
    use mfv_sweep_keys, only: sweep_catalogue
    use mfv_sweep_plan
+   use mfv_sweep_record, only: record_layout
    use mfv_text_file, only: directory_of, read_text
    use mfv_version, only: library_version
    implicit none
@@ -578,13 +580,15 @@ contains
       end if
    end subroutine check_places
 
-   !> The checksum of all that decides the results: the version, the texts, and the files that they name.
+   !> The checksum of all that decides the results: the version, what a record consists of, the texts, and the files that they
+   !> name.
    subroutine find_checksum(sweep, error)
       type(sweep_type), intent(inout) :: sweep
       type(error_type), allocatable, intent(out) :: error
       integer :: i, j, k
 
       call add_text_to_checksum(library_version, sweep%checksum)
+      call add_layout(sweep%checksum)
       call add_text_to_checksum(sweep%text, sweep%checksum)
       do i = 1, size(sweep%bases)
          call add_text_to_checksum(sweep%bases(i)%text, sweep%checksum)
@@ -601,6 +605,17 @@ contains
          if (allocated(error)) return
       end do
    end subroutine find_checksum
+
+   !> Add what a record consists of: another build of the same version may have other observables.
+   subroutine add_layout(checksum)
+      integer(int64), intent(inout) :: checksum
+      integer :: i
+
+      call add_text_to_checksum('layout '//to_text(record_layout)//', observables '//to_text(observable_count), checksum)
+      do i = 1, observable_count
+         call add_text_to_checksum(observable_name(i), checksum)
+      end do
+   end subroutine add_layout
 
    !> The files that values of axes name, beside one base.
    subroutine add_files_of_axes(sweep, base, error)

@@ -18,7 +18,7 @@ module mfv_sweep_table
    use mfv_version, only: library_version
    implicit none
    private
-   public :: write_table, find_table, no_table, other_table, part_table, same_table, table_checksum, states_name
+   public :: write_table, find_table, check_place, no_table, other_table, part_table, same_table, table_checksum, states_name
 
    !> What is at the place of a table: nothing that counts; something of another sweep or no table; an incomplete table; the
    !> complete table of this sweep.
@@ -58,6 +58,42 @@ contains
       call finish_file(sweep%result_path, writer)
       if (writer%code /= 0) call set_error(error, MFV_FILE_ERROR, sweep%result_path//': the table could not be written')
    end subroutine write_table
+
+   !> Whether the table can be written to its place. Error MFV_INPUT_ERROR where not, or where there is a file that is no table
+   !> of a sweep: the result of a case, for one, is not replaced.
+   subroutine check_place(sweep, error)
+      type(sweep_type), intent(in) :: sweep
+      type(error_type), allocatable, intent(out) :: error
+      logical :: is_there, is_table
+
+      call check_writable(sweep%result_path, error)
+      if (.not. allocated(error)) then
+         inquire (file=sweep%result_path, exist=is_there)
+         is_table = .true.
+         if (is_there) call look_for_table(sweep%result_path, is_table)
+         if (.not. is_table) call set_error(error, MFV_INPUT_ERROR, sweep%result_path//' is there and is no table of '// &
+                                            'mfv_sweep (no /table, or no input_checksum); it is not replaced: name another '// &
+                                            'file, or move this one away')
+      end if
+      if (allocated(error)) error%message = sweep%source//": &sweep file='"//sweep%result_path//"': "//error%message
+   end subroutine check_place
+
+   !> Whether an HDF5 file is a table of a sweep, of this one or another.
+   subroutine look_for_table(path, is_table)
+      character(*), intent(in) :: path
+      logical, intent(out) :: is_table
+      character(:), allocatable :: checksum
+      type(error_type), allocatable :: error
+      integer(hid_t) :: file
+
+      is_table = .false.
+      call open_to_read(path, file, error)
+      if (allocated(error)) return
+      is_table = has(file, 'table')
+      if (is_table) call read_text_attribute(file, 'input_checksum', checksum, error)
+      is_table = is_table .and. .not. allocated(error)
+      call close_read(file)
+   end subroutine look_for_table
 
    !> What is at the place of a sweep's table.
    subroutine find_table(sweep, state)

@@ -454,6 +454,23 @@ def test_other_files_are_not_replaced(tmp_path):
     assert (tmp_path / "study.h5.journal").read_text() == "my diary\n"
 
 
+def test_results_of_cases_are_not_replaced(tmp_path):
+    write(tmp_path)
+    subprocess.run([MFV_RUN, "base.nml"], cwd=tmp_path, capture_output=True)
+    (tmp_path / "base.h5").rename(tmp_path / "study.h5")
+    before = unchanging(tmp_path / "study.h5")
+    for option in ([], ["--again"], ["--check"], ["--part", "1/2"]):
+        run = mfv_sweep(*option, "study.nml", cwd=tmp_path)
+        assert run.returncode == INPUT and run.stdout == ""
+        assert "study.nml: &sweep file='study.h5': study.h5 is there and is no table of mfv_sweep" in run.stderr
+        assert "name another file, or move this one away" in run.stderr
+    assert unchanging(tmp_path / "study.h5") == before
+    assert not list(tmp_path.glob("*.journal"))
+    write(tmp_path, STUDY.replace("reference", "file='no/folder.h5', reference"))
+    run = mfv_sweep("--check", "study.nml", cwd=tmp_path)
+    assert run.returncode == INPUT and "study.nml: &sweep file='no/folder.h5': no/folder.h5 cannot be written" in run.stderr
+
+
 def test_parts_are_gathered(study, tmp_path):
     write(tmp_path)
     for part in (1, 3, 4):
