@@ -193,6 +193,52 @@ def test_reference_is_full_coupling(study):
         np.testing.assert_allclose(table[f"{name}_error_loading"][1], abs(goodman - full).sum() / abs(full).sum(), rtol=1e-12)
 
 
+def crc64(data):
+    """The checksum of the program xz, bit by bit."""
+    rest = (1 << 64) - 1
+    for byte in data:
+        rest ^= byte
+        for _ in range(8):
+            rest = rest >> 1 ^ (0xC96C5795D7870F42 if rest & 1 else 0)
+    return rest ^ (1 << 64) - 1
+
+
+def change_observable(journal, number, place, value):
+    """Another value of an observable of a case in a journal."""
+    assert crc64(b"123456789") == 0x995DC9BBDF1939FA
+    data = bytearray(journal.read_bytes())
+    at = data.index(b"\n") + 1
+    while struct.unpack_from("<i", data, at + 4)[0] != number:
+        at += 4 + struct.unpack_from("<i", data, at)[0] + 8
+    (length,) = struct.unpack_from("<i", data, at)
+    struct.pack_into("<d", data, at + 4 + 8 * 4 + 8 + 8 * place, value)
+    struct.pack_into("<Q", data, at + 4 + length, crc64(data[at:at + 4 + length]))
+    journal.write_bytes(data)
+
+
+@pytest.mark.parametrize("number, cycles, others", [(2, 5.0, []), (2, np.nan, []), (1, 5.0, [2, 3])])
+def test_no_comparison_of_other_cycles(number, cycles, others, study, tmp_path):
+    write(tmp_path)
+    assert mfv_sweep("--part", "1/1", "study.nml", cwd=tmp_path).returncode == COMPLETE
+    before = mfv.read_table(study / "study.h5")
+    assert before["cycles"][0] == before["cycles"][1] == 1
+    columns = list(before.columns)
+    change_observable(tmp_path / "study.h5.part-1-of-1.journal", number,
+                      columns.index("cycles") - columns.index("largest_residual") - 1, cycles)
+    assert mfv_sweep("study.nml", cwd=tmp_path).stdout.startswith(f"{CASES} of {CASES} cases were there")
+    table = mfv.read_table(tmp_path / "study.h5")
+    np.testing.assert_equal(table["cycles"][number - 1], cycles)
+    compared = ["dissipation_ratio"] + [f"{field}_error_{moment}" for field in ("pressure", "shear")
+                                        for moment in ("loading", "reversal", "return")]
+    other = np.isin(table["case"], others or [number])
+    for name in compared:
+        if name.endswith("loading"):
+            np.testing.assert_array_equal(table[name], before[name])
+        else:
+            assert all(np.isnan(table[name][other])) and not any(np.isnan(before[name][other])), name
+            np.testing.assert_array_equal(table[name][~other], before[name][~other])
+
+
 def test_same_bytes_by_threads_and_at_another_time(study, tmp_path):
     write(tmp_path)
     time.sleep(1.1)  # HDF5 would keep the time in seconds
