@@ -1,7 +1,7 @@
 !> What mfv_sweep does with a sweep: solve what is not there yet, and write the table when all is there.
 module mfv_run_sweep
    use, intrinsic :: iso_c_binding
-   use, intrinsic :: iso_fortran_env, only: error_unit, output_unit
+   use, intrinsic :: iso_fortran_env, only: error_unit, int64, output_unit
    use mfv_error, only: error_type
    use mfv_locked_file, only: delete_path, make_directory
    use mfv_one_thread, only: use_one_thread
@@ -210,18 +210,20 @@ contains
       type(record_type), intent(inout) :: records(:)
       type(error_type), allocatable, intent(out) :: error
       type(string_type), allocatable :: paths(:)
-      type(record_type), allocatable :: dropped(:)
+      type(record_type), allocatable :: unwanted(:)
+      integer(int64) :: dropped
       logical :: found
       integer :: i
 
       call list_part_journals(sweep, paths)
       do i = 1, size(paths)
          if (options%again) then
-            allocate (dropped(size(records)))
-            call gather_journal(paths(i)%text, sweep%checksum, dropped, found, error)
-            deallocate (dropped)
+            allocate (unwanted(size(records)))
+            call gather_journal(paths(i)%text, sweep%checksum, unwanted, found, error)
+            deallocate (unwanted)
          else
-            call gather_journal(paths(i)%text, sweep%checksum, records, found, error)
+            call gather_journal(paths(i)%text, sweep%checksum, records, found, error, dropped)
+            if (dropped > 0) call tell_of_dropped(paths(i)%text, dropped)
          end if
          if (allocated(error)) return
          if (found) then
@@ -231,6 +233,14 @@ contains
          end if
       end do
    end subroutine gather_parts
+
+   !> Say that a journal was not whole.
+   subroutine tell_of_dropped(path, bytes)
+      character(*), intent(in) :: path
+      integer(int64), intent(in) :: bytes
+
+      write (error_unit, '(2a,i0,a)') path, ': ', bytes, ' bytes at the end of the journal were not whole and are dropped'
+   end subroutine tell_of_dropped
 
    !> Paths of journals of parts, whatever is in them.
    subroutine list_part_journals(sweep, paths)
@@ -265,6 +275,7 @@ contains
       pending = pack(wanted, records(wanted)%number == 0)
       if (size(pending) < size(wanted)) write (output_unit, '(a)') to_text(size(wanted) - size(pending))//' of '// &
          to_text(size(wanted))//' cases were there'
+      if (journal%dropped > 0) call tell_of_dropped(journal%path, journal%dropped)
       flush (output_unit)
       call solve_cases(sweep, pending, threads_for(options, ranks), ranks, journal, records, error)
       code = 0

@@ -356,7 +356,38 @@ def test_end_of_the_journal_that_is_not_whole(study, tmp_path):
         run = start("study.nml", cwd=tmp_path)
         output, errors = run.communicate(timeout=60)
         assert f"{len(whole) - 1} of {cases} cases were there" in output, (output, errors)
+        assert re.search(r"^study\.h5\.journal: \d+ bytes at the end of the journal were not whole and are dropped$", errors, re.M)
         (tmp_path / "study.h5").unlink()
+
+
+def test_records_behind_a_broken_one_are_dropped_and_counted(study, tmp_path):
+    write(tmp_path)
+    for path, arguments in (("study.h5.journal", []), ("study.h5.part-1-of-1.journal", ["--again"])):
+        assert mfv_sweep(*arguments, "--part", "1/1", "study.nml", cwd=tmp_path).returncode == COMPLETE
+        (tmp_path / "study.h5.part-1-of-1.journal").rename(tmp_path / path)
+        data = bytearray((tmp_path / path).read_bytes())
+        first = data.index(b"\n") + 1
+        second = first + 4 + struct.unpack_from("<i", data, first)[0] + 8
+        data[second + 20] ^= 1
+        (tmp_path / path).write_bytes(data)
+        run = mfv_sweep("study.nml", cwd=tmp_path)
+        assert run.returncode == COMPLETE and f"1 of {CASES} cases were there" in run.stdout
+        assert run.stderr == f"{path}: {len(data) - second} bytes at the end of the journal were not whole and are dropped\n"
+        assert digest(tmp_path / "study.h5") == digest(study / "study.h5")
+
+
+@pytest.mark.skipif(not shutil.which("cc"), reason="no C compiler")
+@pytest.mark.parametrize("number, words", [("ENOLCK", "the file system cannot lock files"), ("EOPNOTSUPP", "the file system cannot lock files"),
+                                           ("EAGAIN", "another process is at work on this sweep"),
+                                           ("EACCES", "another process is at work on this sweep")])
+def test_locks_that_fail(number, words, tmp_path):
+    write(tmp_path)
+    (tmp_path / "lock.c").write_text(f"#include <errno.h>\nint lockf(int file, int command, long length) "
+                                     f"{{ errno = {number}; return -1; }}\n")
+    subprocess.run(["cc", "-w", "-shared", "-fPIC", "-o", "lock.so", "lock.c"], cwd=tmp_path, check=True)
+    run = subprocess.run([MFV_SWEEP, "study.nml"], cwd=tmp_path, capture_output=True, text=True,
+                         env=os.environ | AS_ROOT | {"LD_PRELOAD": str(tmp_path / "lock.so")})
+    assert run.returncode == FILE and f"study.h5.journal: {words}" in run.stderr, run.stderr
 
 
 def test_a_second_process_is_refused(tmp_path):
