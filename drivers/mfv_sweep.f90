@@ -153,7 +153,7 @@ contains
       type(group_type), allocatable :: groups(:)
       character(:), allocatable :: words
 
-      call read_sweep_file(sweep_path, sweep, error)
+      call read_sweep_file(sweep_path, sweep, error, tries_values=.false.)
       if (allocated(error)) call fail(error)
       if (case_number > sweep%cases()) call refuse('mfv_sweep', usage, '--case '//to_text(case_number)//': there are '// &
                                                    to_text(sweep%cases())//' cases')

@@ -103,7 +103,8 @@ contains
 
       call share_number(code)
       if (code /= go_on) return
-      call read_sweep_file(path, sweep, error)
+      ! Rank 0 has tried the values.
+      call read_sweep_file(path, sweep, error, tries_values=.false.)
       call assist(sweep, threads_for(options, ranks), error)
       ! The code of rank 0, which has heard of all errors: a launcher takes that of any rank for the code of the run.
       call share_number(code)

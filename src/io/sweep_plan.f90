@@ -37,6 +37,8 @@ module mfv_sweep_plan
       type(string_type), allocatable :: values(:)
       logical, allocatable :: is_quoted(:)
       real(wp), allocatable :: numbers(:)
+      !> Whether the values are a row of numbers, from one to another.
+      logical :: is_row = .false.
       integer :: column = column_real
       !> Line of the sweep.
       integer :: line = 0

@@ -28,29 +28,35 @@ module mfv_sweep_reader
 
 contains
 
-   !> The sweep in a file. Error MFV_INPUT_ERROR.
-   subroutine read_sweep_file(path, sweep, error)
+   !> The sweep in a file. `tries_values`: see read_sweep_text. Error MFV_INPUT_ERROR.
+   subroutine read_sweep_file(path, sweep, error, tries_values)
       character(*), intent(in) :: path
       type(sweep_type), intent(out) :: sweep
       type(error_type), allocatable, intent(out) :: error
+      logical, intent(in), optional :: tries_values
       character(:), allocatable :: text, name
 
       call read_text(path, text, error)
       if (allocated(error)) return
-      call read_sweep_text(text, path, sweep, error)
+      call read_sweep_text(text, path, sweep, error, tries_values)
       if (allocated(error)) return
       name = path(index(path, '/', back=.true.) + 1:)
       if (index(name, '.', back=.true.) > 1) name = name(:index(name, '.', back=.true.) - 1)
       if (sweep%result_path == '') sweep%result_path = name//'.h5'
    end subroutine read_sweep_file
 
-   !> The sweep in a text. `source`: its name for messages; the base cases are looked for beside it. Error MFV_INPUT_ERROR.
-   subroutine read_sweep_text(text, source, sweep, error)
+   !> The sweep in a text. `source`: its name for messages; the base cases are looked for beside it. `tries_values`:
+   !> whether the values are tried in cases, which takes time where there are many; they are unless told. Error MFV_INPUT_ERROR.
+   subroutine read_sweep_text(text, source, sweep, error, tries_values)
       character(*), intent(in) :: text, source
       type(sweep_type), intent(out) :: sweep
       type(error_type), allocatable, intent(out) :: error
+      logical, intent(in), optional :: tries_values
       type(reader_type) :: reader
+      logical :: is_tried
 
+      is_tried = .true.
+      if (present(tries_values)) is_tried = tries_values
       reader%source = source
       reader%directory = directory_of(source)
       reader%catalogue = sweep_catalogue()
@@ -65,7 +71,7 @@ contains
       if (.not. allocated(error)) call check_count(reader, sweep, error)
       if (.not. allocated(error)) call find_reference(reader, sweep, error)
       if (.not. allocated(error)) call check_columns(reader, sweep, error)
-      if (.not. allocated(error)) call check_values(reader, sweep, error)
+      if (is_tried .and. .not. allocated(error)) call check_values(reader, sweep, error)
       if (.not. allocated(error)) call find_checksum(sweep, error)
    end subroutine read_sweep_text
 
@@ -343,6 +349,7 @@ contains
          call reader%complain('vary', number, 'spacing', 'needs from and to above 0, or both below', error)
          return
       end if
+      axis%is_row = .true.
       allocate (axis%values(n))
       allocate (axis%is_quoted(n))
       axis%is_quoted = .false.
@@ -534,11 +541,12 @@ contains
       end do
    end subroutine check_columns
 
-   !> Every base and every value with the first values of the others must make a valid case.
+   !> Every base and every value with the first values of the others must make a valid case; of long rows some values are tried.
    subroutine check_values(reader, sweep, error)
       type(reader_type), intent(in) :: reader
       type(sweep_type), intent(in) :: sweep
       type(error_type), allocatable, intent(out) :: error
+      integer, allocatable :: tried(:)
       integer :: places(1 + size(sweep%axes)), i, j
 
       do i = 1, size(sweep%bases)
@@ -550,14 +558,35 @@ contains
       do i = 1, size(sweep%axes)
          if (sweep%paired .and. i > 1) exit
          places = 1
-         do j = 2, size(sweep%axes(i)%values)
-            places(1 + i) = j
-            if (sweep%paired) places(2:) = j
+         call choose_tried(sweep, i, tried)
+         do j = 1, size(tried)
+            places(1 + i) = tried(j)
+            if (sweep%paired) places(2:) = tried(j)
             call check_places(reader, sweep, places, i, error)
             if (allocated(error)) return
          end do
       end do
    end subroutine check_values
+
+   !> Places on axis `number` that are tried, but for the first, which all axes share: all of them, or, of a long row of numbers, the
+   !> last and some in between. Lists that are written out are tried as a whole, and so is what is paired with one.
+   subroutine choose_tried(sweep, number, tried)
+      type(sweep_type), intent(in) :: sweep
+      integer, intent(in) :: number
+      integer, allocatable, intent(out) :: tried(:)
+      integer, parameter :: long = 1000, between = 200
+      logical :: is_row
+      integer :: i, n
+
+      n = size(sweep%axes(number)%values)
+      is_row = sweep%axes(number)%is_row
+      if (sweep%paired) is_row = all(sweep%axes%is_row)
+      if (is_row .and. n > long) then
+         tried = [(1 + nint(real(n - 1, wp)*i/(between + 1)), i=1, between + 1)]
+      else
+         tried = [(i, i=2, n)]
+      end if
+   end subroutine choose_tried
 
    !> The case at some places must be valid; `axis`: the one whose value is looked at, 0 for none.
    subroutine check_places(reader, sweep, places, axis, error)

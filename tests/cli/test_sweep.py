@@ -662,6 +662,13 @@ def test_values_that_the_case_refuses_are_named(tmp_path):
     assert "study.nml:3: &vary 1: case 2 (base='base.nml', friction%mu=0): base.nml:8: &step 2 tangential_force=2.8e-4: " in run.stderr
 
 
+def test_a_case_is_printed_though_others_cannot_be_used(tmp_path):
+    write(tmp_path, "&sweep base='base.nml' /\n&vary key='friction%mu', values=0.3, 0 /\n")
+    for number, mu in ((1, "0.3"), (2, "0")):
+        run = mfv_sweep("--case", number, "study.nml", cwd=tmp_path)
+        assert run.returncode == COMPLETE and f"mu={mu}" in run.stdout.replace(" ", ""), run.stdout
+
+
 def test_progress_shows_on_a_terminal_only(tmp_path):
     cases = long_study(tmp_path, count=100)
     seen = shown_on_a_terminal([MFV_SWEEP, "--threads", "1", "study.nml"], cwd=tmp_path, env=os.environ | AS_ROOT)
