@@ -143,8 +143,8 @@ contains
    end subroutine prepare
 
    !> Where the table is complete: whether there is nothing to do, and the user has been told so. There is where --again has
-   !> begun anew, so that there is a journal of this sweep without all its cases, or one of a part. A journal with all cases, which
-   !> a process that ended between the table and its journal has left, is deleted.
+   !> begun anew, so that there is a journal of this sweep without all its cases, or one of a part. A journal with all cases,
+   !> which a process that ended between the table and its journal has left, is deleted.
    subroutine leave_complete_alone(sweep, options, is_complete, error)
       type(sweep_type), intent(in) :: sweep
       type(sweep_options_type), intent(in) :: options

@@ -246,8 +246,8 @@ contains
       flush (error_unit)
    end subroutine show_progress
 
-   !> The other ranks: solve what rank 0 sends, with `threads` threads, and send the records back. `error`: why this rank cannot;
-   !> rank 0 is told, and all end.
+   !> The other ranks: solve what rank 0 sends, with `threads` threads, and send the records back. `error`: why this rank
+   !> cannot; rank 0 is told, and all end.
    subroutine assist(sweep, threads, error)
       type(sweep_type), intent(in) :: sweep
       integer, intent(in) :: threads
@@ -313,7 +313,8 @@ contains
       call send_message(0, message_left, 0, nothing)
    end subroutine serve
 
-   !> Send rank 0 what the own threads have done. `busy`: set where there was something; `error`: why a result could not be kept.
+   !> Send rank 0 what the own threads have done. `busy`: set where there was something; `error`: why a result could not be
+   !> kept.
    subroutine send_records(team, busy, error)
       type(team_type), intent(inout), target :: team
       logical, intent(inout) :: busy

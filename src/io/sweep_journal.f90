@@ -58,8 +58,8 @@ contains
       if (code /= 0) call set_error(error, MFV_FILE_ERROR, path//': the journal cannot be written')
    end subroutine open_journal
 
-   !> Add what another journal of the same sweep has to `records`. `found`: whether it is one of the same input; `dropped`: bytes
-   !> at its end that are not whole. Error MFV_FILE_ERROR where another process has it.
+   !> Add what another journal of the same sweep has to `records`. `found`: whether it is one of the same input; `dropped`:
+   !> bytes at its end that are not whole. Error MFV_FILE_ERROR where another process has it.
    subroutine gather_journal(path, checksum, records, found, error, dropped)
       character(*), intent(in) :: path
       integer(int64), intent(in) :: checksum
@@ -92,9 +92,9 @@ contains
       call open_locked(path, journal%file, outcome)
       if (outcome == not_opened) call set_error(error, MFV_FILE_ERROR, path//': the journal cannot be opened')
       if (outcome == in_use) call set_error(error, MFV_FILE_ERROR, path//': another process is at work on this sweep')
-      if (outcome == cannot_lock) call set_error(error, MFV_FILE_ERROR, path//': the file system cannot lock files; without a '// &
-                                                 'lock two processes could spoil the journal: let &sweep file= name a place '// &
-                                                 'on another one')
+      if (outcome == cannot_lock) &
+         call set_error(error, MFV_FILE_ERROR, path//': the file system cannot lock files; without a lock two processes could '// &
+                        'spoil the journal: let &sweep file= name a place on another one')
    end subroutine open_path
 
    !> Error MFV_INPUT_ERROR where the bytes are no journal, or, unless `again`, one of another input.
@@ -116,7 +116,8 @@ contains
       length = min(size(bytes), header_length)
       if (any(bytes(:length) /= expected(:length)) .and. .not. again) &
          call set_error(error, MFV_INPUT_ERROR, path//': this journal is of another input (the sweep, a base case, a file '// &
-                        'that they name, the version, or the list of observables has changed); --again starts anew and drops it')
+                        'that they name, the version, or the list of observables has changed); --again starts anew and '// &
+                        'drops it')
    end subroutine check_header
 
    !> Whether bytes begin as the journal of a sweep with this checksum.

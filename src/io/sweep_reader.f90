@@ -13,7 +13,7 @@ module mfv_sweep_reader
    use mfv_namelist, only: entry_type, parse_namelists
    use mfv_observables, only: observable_count, observable_name
    use mfv_strings, only: lower_case, quoted, to_text
-   use mfv_sweep_columns, only: column_type, list_columns
+   use mfv_sweep_columns, only: column_type, from_axis, list_columns
    use mfv_sweep_keys, only: sweep_catalogue
    use mfv_sweep_plan
    use mfv_sweep_record, only: record_layout
@@ -175,6 +175,7 @@ contains
       allocate (axis%targets(size(entry%values)))
       do i = 1, size(axis%targets)
          call read_target(entry%values(i)%text, sweep, axis%targets(i), why)
+         if (why == '') call find_clash_of_materials(sweep%axes(:number - 1), axis%targets(:i - 1), axis%targets(i), why)
          if (why == '' .and. is_varied(sweep%axes(:number - 1), axis%targets(:i - 1), axis%targets(i))) &
             why = quoted(entry%values(i)%text)//': is varied already'
          if (why /= '') then
@@ -275,6 +276,47 @@ contains
       end do
    end subroutine check_target
 
+   !> Dundurs' parameter decides the materials of both bodies: `why` names a key of a material that is varied beside it, empty
+   !> where there is none.
+   subroutine find_clash_of_materials(axes, targets, target, why)
+      type(axis_type), intent(in) :: axes(:)
+      type(target_type), intent(in) :: targets(:), target
+      character(:), allocatable, intent(out) :: why
+      integer :: i
+
+      why = ''
+      call find_clash_among(targets, target, why)
+      do i = 1, size(axes)
+         if (why == '') call find_clash_among(axes(i)%targets, target, why)
+      end do
+   end subroutine find_clash_of_materials
+
+   !> The same, among the keys of one axis.
+   subroutine find_clash_among(targets, target, why)
+      type(target_type), intent(in) :: targets(:), target
+      character(:), allocatable, intent(inout) :: why
+      character(:), allocatable :: name
+      integer :: i
+
+      do i = 1, size(targets)
+         name = ''
+         if (target%key == dundurs_key .and. is_of_material(targets(i))) call name_target(targets(i), name)
+         if (targets(i)%key == dundurs_key .and. is_of_material(target)) call name_target(target, name)
+         if (name == '') cycle
+         why = quoted(name)//' and '//quoted(dundurs_key)//' cannot be varied in one sweep: '//dundurs_key//' decides the '// &
+               'materials of both bodies'
+         return
+      end do
+   end subroutine find_clash_among
+
+   !> Whether a key is one of a material that Dundurs' parameter replaces.
+   pure logical function is_of_material(target)
+      type(target_type), intent(in) :: target
+
+      is_of_material = target%group == 'body' .and. (target%key == 'shear_modulus' .or. target%key == 'youngs_modulus' .or. &
+                                                     target%key == 'poisson_ratio' .or. target%key == 'rigid')
+   end function is_of_material
+
    !> Whether a key, or one that it stands for, is among those before it, of the same axis or of others.
    pure logical function is_varied(axes, targets, target)
       type(axis_type), intent(in) :: axes(:)
@@ -331,13 +373,13 @@ contains
       end if
    end subroutine read_values
 
-   !> A row of numbers, whole ones where every key wants such.
+   !> A row of numbers, whole ones where every key takes such; then no two may become one.
    subroutine make_row(reader, number, axis, error)
       type(reader_type), intent(in) :: reader
       integer, intent(in) :: number
       type(axis_type), intent(inout) :: axis
       type(error_type), allocatable, intent(out) :: error
-      real(wp) :: first, last, value, part
+      real(wp) :: first, last, value, previous, part
       integer :: i, n
       logical :: is_log
 
@@ -353,13 +395,21 @@ contains
       allocate (axis%values(n))
       allocate (axis%is_quoted(n))
       axis%is_quoted = .false.
+      value = first
       do i = 1, n
+         previous = value
          part = real(i - 1, wp)/max(n - 1, 1)
          value = first + part*(last - first)
          if (is_log) value = first*(last/first)**part
          if (i == n .and. n > 1) value = last
-         if (axis%targets(1)%is_whole .and. abs(value) < huge(1)) then
+         if (all(axis%targets%is_whole) .and. max(abs(first), abs(last)) < huge(1)) then
             axis%values(i)%text = to_text(nint(value))
+            if (i > 1 .and. nint(value) == nint(previous)) then
+               call reader%complain('vary', number, 'count', to_text(previous)//' and '//to_text(value)//' both become '// &
+                                    to_text(nint(value))//', for '//axis%targets(1)%key//' takes whole numbers; give '// &
+                                    'fewer, or values=...', error)
+               return
+            end if
          else
             call write_number(value, axis%values(i)%text)
          end if
@@ -383,6 +433,8 @@ contains
       do i = 1, size(axis%targets)
          call key_of(catalogue, axis%targets(i), key)
          if (i == 1) call name_column(key, axis)
+         ! A row for other keys too is not of whole numbers.
+         if (axis%is_row .and. axis%column == column_whole .and. key%kind == kind_real) axis%column = column_real
          if (abs(axis%targets(i)%factor - 1.0_wp) > 0.0_wp .and. key%kind /= kind_real .and. key%kind /= kind_integer) then
             call reader%complain('vary', number, 'factor', key%name//' is no number', error)
             return
@@ -528,15 +580,24 @@ contains
       type(sweep_type), intent(in) :: sweep
       type(error_type), allocatable, intent(out) :: error
       type(column_type), allocatable :: columns(:)
-      character(:), allocatable :: name
+      character(:), allocatable :: name, why
       integer :: i, j
 
       call list_columns(sweep, columns)
       do i = 1, size(sweep%axes)
          name = sweep%axes(i)%name
-         if (name /= '' .and. verify(name, ' ') == 1 .and. count([(columns(j)%name == name, j=1, size(columns))]) == 1) cycle
-         call fail(reader, sweep%axes(i)%line, '&vary '//to_text(i)//' name='//quoted(name)//': another column of the table '// &
-                   'has this name, or it is none; give another name', error)
+         why = ''
+         if (name == '' .or. verify(name, ' ') /= 1) why = 'must not be empty, nor begin with a blank'
+         do j = 1, size(columns)
+            if (why /= '' .or. columns(j)%name /= name) cycle
+            if (columns(j)%source /= from_axis) then
+               why = 'every table has a column '//name//' ('//columns(j)%meaning//'); give another name'
+            else if (columns(j)%number < i) then
+               why = 'the column of &vary '//to_text(columns(j)%number)//' has this name; give another name'
+            end if
+         end do
+         if (why == '') cycle
+         call fail(reader, sweep%axes(i)%line, '&vary '//to_text(i)//' name='//quoted(name)//': '//why, error)
          return
       end do
    end subroutine check_columns
@@ -568,8 +629,8 @@ contains
       end do
    end subroutine check_values
 
-   !> Places on axis `number` that are tried, but for the first, which all axes share: all of them, or, of a long row of numbers, the
-   !> last and some in between. Lists that are written out are tried as a whole, and so is what is paired with one.
+   !> Places on axis `number` that are tried, but for the first, which all axes share: all of them, or, of a long row of
+   !> numbers, the last and some in between. Lists that are written out are tried as a whole, and so is what is paired with one.
    subroutine choose_tried(sweep, number, tried)
       type(sweep_type), intent(in) :: sweep
       integer, intent(in) :: number

@@ -433,8 +433,8 @@ contains
       end select
    end subroutine find_text
 
-   !> L1 errors of the tractions of case `number` against a reference, NaN where one of them is not there, or, but for the moment
-   !> where the cycles begin, where they do not have the same number of whole cycles: that would compare different moments.
+   !> L1 errors of the tractions of case `number` against a reference, NaN where one of them is not there, or, but for the
+   !> moment where the cycles begin, where they do not have the same number of whole cycles: that would compare different moments.
    subroutine compare(records, reference, number, errors)
       type(record_type), intent(in) :: records(:)
       integer, intent(in) :: reference, number

@@ -643,7 +643,7 @@ def test_several_bases_and_pairs(tmp_path):
     (("spacing='log'", "spacing='logg'"), 3, "must be 'linear' or 'log'"),
     (("count=3, ", ""), 3, "count is missing"),
     (("'full', 'goodman', 'none'", "'goodman', 'none'"), 1, "reference='full': needs a &vary of key='scene%coupling'"),
-    (("name='Q'", "name='outcome'"), 3, "another column of the table has this name"),
+    (("name='Q'", "name='outcome'"), 3, "&vary 2 name='outcome': every table has a column outcome (how the case ended)"),
     (("factor=1, -1", "factor=1"), 3, "must have one value a key, 2, not 1"),
     (("reference='full'", "combine='paired'"), 1, "&vary 2 has 3 values, &vary 1 has 2"),
 ])
