@@ -31,8 +31,8 @@ program mfv_sweep
       "         from=0.5e-4, to=2.5e-4, count=10, spacing='linear', name='Q' /"//line_feed// &
       "  &vary  key='scene%coupling', values='full', 'goodman', 'none' /"//line_feed//line_feed// &
       'The table is the dataset /table of the file, one row a case. What has been solved is kept in a journal beside it: after'// &
-      line_feed//'Ctrl-C, or worse, the same command goes on. OMP_NUM_THREADS or --threads: how many cases at a time; all'// &
-      line_feed//'processors unless told. With MPI: mpirun -n 64 mfv_sweep SWEEP.nml.'//line_feed//line_feed// &
+      line_feed//'Ctrl-C, or worse, the same command (without --again) goes on. OMP_NUM_THREADS or --threads: how many cases at'// &
+      line_feed//'a time; all processors unless told. With MPI: mpirun -n 64 mfv_sweep SWEEP.nml.'//line_feed//line_feed// &
       'Exit codes: 0 all cases are done, early ends among them; 2 the input cannot be used; 4 a file could not be read or'// &
       line_feed//'written; 130 interrupted, the cases so far are kept.'//line_feed//line_feed// &
       "Load the table with: python -m mfv table study.h5, or mfv.read_table('study.h5')"
