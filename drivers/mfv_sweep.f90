@@ -10,6 +10,7 @@ program mfv_sweep
    use mfv_sweep_keys, only: sweep_catalogue
    use mfv_sweep_plan, only: sweep_type
    use mfv_sweep_reader, only: read_sweep_file
+   use mfv_sweep_table, only: check_place
    use mfv_terminal
    use mfv_version, only: library_version
    implicit none
@@ -30,8 +31,8 @@ program mfv_sweep
       "         from=0.5e-4, to=2.5e-4, count=10, spacing='linear', name='Q' /"//line_feed// &
       "  &vary  key='scene%coupling', values='full', 'goodman', 'none' /"//line_feed//line_feed// &
       'The table is the dataset /table of the file, one row a case. What has been solved is kept in a journal beside it: after'// &
-      line_feed//'Ctrl-C, or worse, the same command goes on. OMP_NUM_THREADS or --threads: how many cases at a time; all'// &
-      line_feed//'processors unless told. With MPI: mpirun -n 64 mfv_sweep SWEEP.nml.'//line_feed//line_feed// &
+      line_feed//'Ctrl-C, or worse, the same command (without --again) goes on. OMP_NUM_THREADS or --threads: how many cases at'// &
+      line_feed//'a time; all processors unless told. With MPI: mpirun -n 64 mfv_sweep SWEEP.nml.'//line_feed//line_feed// &
       'Exit codes: 0 all cases are done, early ends among them; 2 the input cannot be used; 4 a file could not be read or'// &
       line_feed//'written; 130 interrupted, the cases so far are kept.'//line_feed//line_feed// &
       "Load the table with: python -m mfv table study.h5, or mfv.read_table('study.h5')"
@@ -130,6 +131,7 @@ contains
       integer :: place
 
       call read_sweep_file(sweep_path, sweep, error)
+      if (.not. allocated(error)) call check_place(sweep, error)
       if (allocated(error)) call fail(error)
       write (output_unit, '(a)') sweep%source//' is valid: '//to_text(sweep%cases())//' cases, into '//sweep%result_path
       do place = 1, size(sweep%axes)
@@ -151,7 +153,7 @@ contains
       type(group_type), allocatable :: groups(:)
       character(:), allocatable :: words
 
-      call read_sweep_file(sweep_path, sweep, error)
+      call read_sweep_file(sweep_path, sweep, error, tries_values=.false.)
       if (allocated(error)) call fail(error)
       if (case_number > sweep%cases()) call refuse('mfv_sweep', usage, '--case '//to_text(case_number)//': there are '// &
                                                    to_text(sweep%cases())//' cases')

@@ -1,9 +1,8 @@
 !> What mfv_sweep does with a sweep: solve what is not there yet, and write the table when all is there.
 module mfv_run_sweep
    use, intrinsic :: iso_c_binding
-   use, intrinsic :: iso_fortran_env, only: error_unit, output_unit
+   use, intrinsic :: iso_fortran_env, only: error_unit, int64, output_unit
    use mfv_error, only: error_type
-   use mfv_hdf5_writer, only: check_writable
    use mfv_locked_file, only: delete_path, make_directory
    use mfv_one_thread, only: use_one_thread
    use mfv_ranks
@@ -89,6 +88,7 @@ contains
          write (error_unit, '(a)') error%message
       else if (.not. is_complete) then
          call complete(sweep, options, ranks, journal, records, parts, code)
+         call share_number(code)
       end if
    end subroutine lead
 
@@ -103,15 +103,11 @@ contains
 
       call share_number(code)
       if (code /= go_on) return
-      call read_sweep_file(path, sweep, error)
-      code = 0
-      if (allocated(error)) then
-         write (error_unit, '(a)') error%message
-         code = status_exit_code(error%status)
-         call request_interrupt()
-      end if
-      call assist(sweep, threads_for(options, ranks))
-      if (code == 0 .and. is_interrupted()) code = status_exit_code(MFV_INTERRUPTED)
+      ! Rank 0 has tried the values.
+      call read_sweep_file(path, sweep, error, tries_values=.false.)
+      call assist(sweep, threads_for(options, ranks), error)
+      ! The code of rank 0, which has heard of all errors: a launcher takes that of any rank for the code of the run.
+      call share_number(code)
    end subroutine follow
 
    !> Read the sweep and what there is of it. `is_complete`: there is nothing to do, and the user has been told so. `parts`:
@@ -130,18 +126,12 @@ contains
       is_complete = .false.
       call read_sweep_file(path, sweep, error)
       if (allocated(error)) return
-      call check_writable(sweep%result_path, error)
-      if (allocated(error)) then
-         error%message = path//": &sweep file='"//sweep%result_path//"': "//error%message
-         return
-      end if
+      call check_place(sweep, error)
+      if (allocated(error)) return
       call find_table(sweep, state)
-      is_complete = state == same_table .and. .not. options%again
-      if (is_complete) then
-         write (output_unit, '(a)') sweep%result_path//' is complete: '//to_text(sweep%cases())// &
-            ' cases; --again solves them anew'
-         call drop_journal(sweep)
-         return
+      if (state == same_table .and. .not. options%again) then
+         call leave_complete_alone(sweep, options, is_complete, error)
+         if (allocated(error) .or. is_complete) return
       end if
       allocate (records(sweep%cases()))
       call open_journal(journal_path(sweep, options), sweep%checksum, options%again, journal, records, error)
@@ -152,20 +142,47 @@ contains
       if (.not. allocated(error) .and. sweep%keeps_states) call make_directory(sweep%states_folder())
    end subroutine prepare
 
-   !> Delete the journal of a sweep that is complete: a process that ended between the table and this has left it.
-   subroutine drop_journal(sweep)
+   !> Where the table is complete: whether there is nothing to do, and the user has been told so. There is where --again has
+   !> begun anew, so that there is a journal of this sweep without all its cases, or one of a part. A journal with all cases,
+   !> which a process that ended between the table and its journal has left, is deleted.
+   subroutine leave_complete_alone(sweep, options, is_complete, error)
       type(sweep_type), intent(in) :: sweep
-      type(record_type) :: records(0)
-      type(error_type), allocatable :: error
-      character(:), allocatable :: path
-      logical :: found
+      type(sweep_options_type), intent(in) :: options
+      logical, intent(out) :: is_complete
+      type(error_type), allocatable, intent(out) :: error
+      type(record_type), allocatable :: records(:)
+      type(string_type), allocatable :: paths(:)
+      logical :: has_journal, found
+      integer :: i
 
-      path = journal_path(sweep, sweep_options_type())
+      is_complete = .false.
+      allocate (records(sweep%cases()))
+      call look_into(sweep, journal_path(sweep, options), records, has_journal, error)
+      if (allocated(error)) return
+      if (has_journal .and. (options%parts > 0 .or. any(records%number == 0))) return
+      if (options%parts == 0) then
+         call list_part_journals(sweep, paths)
+         do i = 1, size(paths)
+            call look_into(sweep, paths(i)%text, records, found, error)
+            if (allocated(error) .or. found) return
+         end do
+      end if
+      is_complete = .true.
+      if (has_journal) call delete_path(journal_path(sweep, options))
+      write (output_unit, '(a)') sweep%result_path//' is complete: '//to_text(sweep%cases())//' cases; --again solves them anew'
+   end subroutine leave_complete_alone
+
+   !> Add what a journal has to `records`. `found`: whether it is there, and of this sweep.
+   subroutine look_into(sweep, path, records, found, error)
+      type(sweep_type), intent(in) :: sweep
+      character(*), intent(in) :: path
+      type(record_type), intent(inout) :: records(:)
+      logical, intent(out) :: found
+      type(error_type), allocatable, intent(out) :: error
+
       inquire (file=path, exist=found)
-      if (.not. found) return
-      call gather_journal(path, sweep%checksum, records, found, error)
-      if (found .and. .not. allocated(error)) call delete_path(path)
-   end subroutine drop_journal
+      if (found) call gather_journal(path, sweep%checksum, records, found, error)
+   end subroutine look_into
 
    !> Where the journal of a run is.
    function journal_path(sweep, options) result(path)
@@ -194,24 +211,20 @@ contains
       type(record_type), intent(inout) :: records(:)
       type(error_type), allocatable, intent(out) :: error
       type(string_type), allocatable :: paths(:)
-      type(record_type), allocatable :: dropped(:)
-      type(c_ptr) :: names
-      character(kind=c_char), pointer :: letters(:)
+      type(record_type), allocatable :: unwanted(:)
+      integer(int64) :: dropped
       logical :: found
       integer :: i
 
-      names = c_matching_files(sweep%result_path//'.part-'//c_null_char, '.journal'//c_null_char)
-      if (.not. c_associated(names)) return
-      call c_f_pointer(names, letters, [1])
-      paths = split_lines(from_c(letters))
-      call c_free(names)
+      call list_part_journals(sweep, paths)
       do i = 1, size(paths)
          if (options%again) then
-            allocate (dropped(size(records)))
-            call gather_journal(paths(i)%text, sweep%checksum, dropped, found, error)
-            deallocate (dropped)
+            allocate (unwanted(size(records)))
+            call gather_journal(paths(i)%text, sweep%checksum, unwanted, found, error)
+            deallocate (unwanted)
          else
-            call gather_journal(paths(i)%text, sweep%checksum, records, found, error)
+            call gather_journal(paths(i)%text, sweep%checksum, records, found, error, dropped)
+            if (dropped > 0) call tell_of_dropped(paths(i)%text, dropped)
          end if
          if (allocated(error)) return
          if (found) then
@@ -221,6 +234,29 @@ contains
          end if
       end do
    end subroutine gather_parts
+
+   !> Say that a journal was not whole.
+   subroutine tell_of_dropped(path, bytes)
+      character(*), intent(in) :: path
+      integer(int64), intent(in) :: bytes
+
+      write (error_unit, '(2a,i0,a)') path, ': ', bytes, ' bytes at the end of the journal were not whole and are dropped'
+   end subroutine tell_of_dropped
+
+   !> Paths of journals of parts, whatever is in them.
+   subroutine list_part_journals(sweep, paths)
+      type(sweep_type), intent(in) :: sweep
+      type(string_type), allocatable, intent(out) :: paths(:)
+      type(c_ptr) :: names
+      character(kind=c_char), pointer :: letters(:)
+
+      allocate (paths(0))
+      names = c_matching_files(sweep%result_path//'.part-'//c_null_char, '.journal'//c_null_char)
+      if (.not. c_associated(names)) return
+      call c_f_pointer(names, letters, [1])
+      paths = split_lines(from_c(letters))
+      call c_free(names)
+   end subroutine list_part_journals
 
    !> Solve what is missing, and finish as far as one can. `code`: the exit code.
    subroutine complete(sweep, options, ranks, journal, records, parts, code)
@@ -240,6 +276,7 @@ contains
       pending = pack(wanted, records(wanted)%number == 0)
       if (size(pending) < size(wanted)) write (output_unit, '(a)') to_text(size(wanted) - size(pending))//' of '// &
          to_text(size(wanted))//' cases were there'
+      if (journal%dropped > 0) call tell_of_dropped(journal%path, journal%dropped)
       flush (output_unit)
       call solve_cases(sweep, pending, threads_for(options, ranks), ranks, journal, records, error)
       code = 0
@@ -273,7 +310,8 @@ contains
 
       call close_journal(journal)
       write (error_unit, '(a)') 'interrupted: '//to_text(count(records%number > 0))//' of '//to_text(wanted)// &
-         ' cases are kept in '//journal%path//'; the same command goes on'
+         ' cases are kept in '//journal%path//'; the same command'// &
+         trim(merge(' without --again', '                ', options%again))//' goes on'
       if (options%parts > 0) return
       call find_table(sweep, state)
       if (state == no_table .or. state == part_table) call write_table(sweep, records, error)

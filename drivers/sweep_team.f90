@@ -111,13 +111,16 @@ contains
       integer(int8), allocatable :: bytes(:)
       type(error_type), allocatable :: error
       integer :: number
+      logical :: is_wrong
 
       call take_case(team, number, over)
       worked = number > 0
       if (.not. worked) return
       call solve_sweep_case(sweep, number, bytes, error)
-      if (allocated(error)) call request_interrupt()
+      is_wrong = allocated(error)
+      ! First the error, then the end: who sees that it is over finds out why.
       call hand_in(team, bytes, error)
+      if (is_wrong) call request_interrupt()
    end subroutine work_once
 
    !> The case that has waited longest, 0 for none.

@@ -103,16 +103,18 @@ contains
          end if
          call show_progress(manager, records)
          if (manager%has_told .and. all(manager%left) .and. .not. busy) then
-            if (manager%collected == size(manager%pending)) return
-            if (alone) return
+            if (manager%collected == size(manager%pending)) exit
+            if (alone) exit
             call dismiss(team)
-            if (is_idle(team)) return
+            if (is_idle(team)) exit
          end if
          worked = .false.
          if (alone) call work_once(team, sweep, worked, over)
          if (busy .or. worked) rests = 0
          if (.not. (busy .or. worked)) call pause_briefly(rests)
       end do
+      ! An error may have come in after the last look.
+      call collect_own(manager, team, journal, records, error, busy)
    end subroutine manage
 
    !> Fetch what the own threads have done.
@@ -244,17 +246,20 @@ contains
       flush (error_unit)
    end subroutine show_progress
 
-   !> The other ranks: solve what rank 0 sends, with `threads` threads, and send the records back.
-   subroutine assist(sweep, threads)
+   !> The other ranks: solve what rank 0 sends, with `threads` threads, and send the records back. `error`: why this rank
+   !> cannot; rank 0 is told, and all end.
+   subroutine assist(sweep, threads, error)
       type(sweep_type), intent(in) :: sweep
       integer, intent(in) :: threads
+      type(error_type), allocatable, intent(inout) :: error
       type(team_type), target :: team
 
+      if (allocated(error)) call request_interrupt()
       call new_team(2*threads, team)
       call omp_set_dynamic(.false.)
       !$omp parallel num_threads(threads + 1) default(shared)
       if (omp_get_thread_num() == 0) then
-         call serve(team, sweep, threads, omp_get_num_threads() == 1)
+         call serve(team, sweep, threads, omp_get_num_threads() == 1, error)
          call dismiss(team)
       else
          call work(team, sweep)
@@ -263,30 +268,25 @@ contains
    end subroutine assist
 
    !> The managing thread of another rank.
-   subroutine serve(team, sweep, threads, alone)
+   subroutine serve(team, sweep, threads, alone, error)
       type(team_type), intent(inout), target :: team
       type(sweep_type), intent(in) :: sweep
       integer, intent(in) :: threads
       logical, intent(in) :: alone
+      type(error_type), allocatable, intent(inout) :: error
       integer(int8), parameter :: nothing(0) = [integer(int8) ::]
       type(message_type) :: message
-      type(error_type), allocatable :: error
-      integer(int8), allocatable :: bytes(:)
-      logical :: busy, is_there, is_over, has_told, worked, over
+      logical :: busy, is_there, is_over, has_told, has_told_why, worked, over
       integer :: rests
 
       rests = 0
       is_over = .false.
       has_told = .false.
+      has_told_why = .false.
       call send_message(0, message_threads, merge(1, threads, alone), nothing)
       do
          busy = .false.
-         do
-            call take_record(team, bytes, error)
-            if (.not. allocated(bytes)) exit
-            busy = .true.
-            call send_message(0, message_record, 0, bytes)
-         end do
+         call send_records(team, busy, error)
          call receive_message(message, is_there)
          if (is_there) then
             busy = .true.
@@ -296,11 +296,7 @@ contains
          end if
          if (is_interrupted() .and. .not. has_told) then
             has_told = .true.
-            if (allocated(error)) then
-               call send_message(0, message_stop, error%status, bytes_of(error%message))
-            else
-               call send_message(0, message_stop, 0, nothing)
-            end if
+            call send_stop(error, has_told_why)
             call dismiss(team)
          end if
          if (is_over .and. .not. busy) then
@@ -311,8 +307,41 @@ contains
          if (busy .or. worked) rests = 0
          if (.not. (busy .or. worked)) call pause_briefly(rests)
       end do
+      ! An error may have come in after the last look.
+      call send_records(team, busy, error)
+      if (allocated(error) .and. .not. has_told_why) call send_stop(error, has_told_why)
       call send_message(0, message_left, 0, nothing)
    end subroutine serve
+
+   !> Send rank 0 what the own threads have done. `busy`: set where there was something; `error`: why a result could not be
+   !> kept.
+   subroutine send_records(team, busy, error)
+      type(team_type), intent(inout), target :: team
+      logical, intent(inout) :: busy
+      type(error_type), allocatable, intent(inout) :: error
+      integer(int8), allocatable :: bytes(:)
+
+      do
+         call take_record(team, bytes, error)
+         if (.not. allocated(bytes)) exit
+         busy = .true.
+         call send_message(0, message_record, 0, bytes)
+      end do
+   end subroutine send_records
+
+   !> Tell rank 0 to stop. `has_told_why`: whether there is an error that it now knows.
+   subroutine send_stop(error, has_told_why)
+      type(error_type), allocatable, intent(in) :: error
+      logical, intent(out) :: has_told_why
+      integer(int8), parameter :: nothing(0) = [integer(int8) ::]
+
+      has_told_why = allocated(error)
+      if (has_told_why) then
+         call send_message(0, message_stop, error%status, bytes_of(error%message))
+      else
+         call send_message(0, message_stop, 0, nothing)
+      end if
+   end subroutine send_stop
 
    !> A text as bytes.
    pure function bytes_of(text) result(bytes)

@@ -6,10 +6,10 @@ module mfv_locked_file
    implicit none
    private
    public :: locked_file_type, open_locked, read_bytes, append_bytes, sync_file, cut_file, close_file, delete_path, &
-             make_directory, opened, not_opened, in_use
+             make_directory, opened, not_opened, in_use, cannot_lock
 
    !> What open_locked comes to.
-   integer, parameter :: opened = 0, not_opened = 1, in_use = 2
+   integer, parameter :: opened = 0, not_opened = 1, in_use = 2, cannot_lock = 3
 
    type :: locked_file_type
       private
@@ -17,6 +17,8 @@ module mfv_locked_file
    end type locked_file_type
 
    integer(c_int), parameter :: try_lock = 2, from_start = 0, from_end = 2
+   !> What errno is on Linux where another process has the lock: EAGAIN or EACCES.
+   integer(c_int), parameter :: locked_by_another(2) = [11, 13]
 
    interface
       function c_fopen(path, mode) bind(C, name='fopen') result(stream)
@@ -87,6 +89,11 @@ module mfv_locked_file
          integer(c_int) :: code
       end function c_lockf
 
+      function c_errno_location() bind(C, name='__errno_location') result(place)
+         import :: c_ptr
+         type(c_ptr) :: place
+      end function c_errno_location
+
       function c_fsync(descriptor) bind(C, name='fsync') result(code)
          import :: c_int
          integer(c_int), value :: descriptor
@@ -109,8 +116,8 @@ module mfv_locked_file
 
 contains
 
-   !> Open a file to read and append, made where it is not there, and lock it. `outcome`: opened, not_opened, or in_use by
-   !> another process.
+   !> Open a file to read and append, made where it is not there, and lock it. `outcome`: opened, not_opened, in_use by
+   !> another process, or cannot_lock where the file system does not know locks.
    subroutine open_locked(path, file, outcome)
       character(*), intent(in) :: path
       type(locked_file_type), intent(out) :: file
@@ -120,12 +127,21 @@ contains
       outcome = not_opened
       file%stream = c_fopen(path//c_null_char, 'a+b'//c_null_char)
       if (.not. c_associated(file%stream)) return
-      outcome = in_use
+      outcome = opened
       code = c_fseek(file%stream, 0_c_long, from_start)
       if (code == 0) code = c_lockf(c_fileno(file%stream), try_lock, 0_c_long)
-      if (code == 0) outcome = opened
-      if (code /= 0) call close_file(file)
+      if (code == 0) return
+      outcome = merge(in_use, cannot_lock, any(last_error() == locked_by_another))
+      call close_file(file)
    end subroutine open_locked
+
+   !> The operating system's number of what went wrong last.
+   integer function last_error()
+      integer(c_int), pointer :: number
+
+      call c_f_pointer(c_errno_location(), number)
+      last_error = number
+   end function last_error
 
    !> All bytes of the file.
    subroutine read_bytes(file, bytes)

@@ -13,6 +13,8 @@ module mfv_sweep_journal
 
    type :: journal_type
       character(:), allocatable :: path
+      !> Bytes at its end that were not whole, and that have been cut off.
+      integer(int64) :: dropped = 0
       type(locked_file_type), private :: file
    end type journal_type
 
@@ -50,29 +52,33 @@ contains
          if (code == 0) call append_bytes(journal%file, header_of(checksum), code)
       else
          call read_records(bytes, records, whole)
-         if (whole < size(bytes, kind=int64)) call cut_file(journal%file, whole, code)
+         journal%dropped = size(bytes, kind=int64) - whole
+         if (journal%dropped > 0) call cut_file(journal%file, whole, code)
       end if
       if (code /= 0) call set_error(error, MFV_FILE_ERROR, path//': the journal cannot be written')
    end subroutine open_journal
 
-   !> Add what another journal of the same sweep has to `records`. `found`: whether it is one of the same input. Error
-   !> MFV_FILE_ERROR where another process has it.
-   subroutine gather_journal(path, checksum, records, found, error)
+   !> Add what another journal of the same sweep has to `records`. `found`: whether it is one of the same input; `dropped`:
+   !> bytes at its end that are not whole. Error MFV_FILE_ERROR where another process has it.
+   subroutine gather_journal(path, checksum, records, found, error, dropped)
       character(*), intent(in) :: path
       integer(int64), intent(in) :: checksum
       type(record_type), intent(inout) :: records(:)
       logical, intent(out) :: found
       type(error_type), allocatable, intent(out) :: error
+      integer(int64), intent(out), optional :: dropped
       type(journal_type) :: journal
       integer(int8), allocatable :: bytes(:)
       integer(int64) :: whole
 
       found = .false.
+      if (present(dropped)) dropped = 0
       call open_path(path, journal, error)
       if (allocated(error)) return
       call read_bytes(journal%file, bytes)
       found = is_header_of(bytes, checksum)
       if (found) call read_records(bytes, records, whole)
+      if (found .and. present(dropped)) dropped = size(bytes, kind=int64) - whole
       call close_file(journal%file)
    end subroutine gather_journal
 
@@ -86,6 +92,9 @@ contains
       call open_locked(path, journal%file, outcome)
       if (outcome == not_opened) call set_error(error, MFV_FILE_ERROR, path//': the journal cannot be opened')
       if (outcome == in_use) call set_error(error, MFV_FILE_ERROR, path//': another process is at work on this sweep')
+      if (outcome == cannot_lock) &
+         call set_error(error, MFV_FILE_ERROR, path//': the file system cannot lock files; without a lock two processes could '// &
+                        'spoil the journal: let &sweep file= name a place on another one')
    end subroutine open_path
 
    !> Error MFV_INPUT_ERROR where the bytes are no journal, or, unless `again`, one of another input.
@@ -107,7 +116,8 @@ contains
       length = min(size(bytes), header_length)
       if (any(bytes(:length) /= expected(:length)) .and. .not. again) &
          call set_error(error, MFV_INPUT_ERROR, path//': this journal is of another input (the sweep, a base case, a file '// &
-                        'that they name, or the version has changed); --again starts anew and drops it')
+                        'that they name, the version, or the list of observables has changed); --again starts anew and '// &
+                        'drops it')
    end subroutine check_header
 
    !> Whether bytes begin as the journal of a sweep with this checksum.

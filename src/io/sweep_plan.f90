@@ -37,6 +37,8 @@ module mfv_sweep_plan
       type(string_type), allocatable :: values(:)
       logical, allocatable :: is_quoted(:)
       real(wp), allocatable :: numbers(:)
+      !> Whether the values are a row of numbers, from one to another.
+      logical :: is_row = .false.
       integer :: column = column_real
       !> Line of the sweep.
       integer :: line = 0
@@ -234,7 +236,8 @@ contains
       real(wp) :: number
 
       value = axis%values(place)%text
-      if (.not. abs(target%factor - 1.0_wp) > 0.0_wp) return
+      ! The numbers of a row are whole where a key needs them; what is written out is to be right as it is.
+      if (.not. (abs(target%factor - 1.0_wp) > 0.0_wp .or. (axis%is_row .and. target%is_whole))) return
       number = target%factor*axis%numbers(place)
       if (target%is_whole .and. abs(number) < huge(1)) then
          value = to_text(nint(number))

@@ -11,10 +11,12 @@ module mfv_sweep_reader
    use mfv_keys
    use mfv_kinds, only: wp
    use mfv_namelist, only: entry_type, parse_namelists
+   use mfv_observables, only: observable_count, observable_name
    use mfv_strings, only: lower_case, quoted, to_text
-   use mfv_sweep_columns, only: column_type, list_columns
+   use mfv_sweep_columns, only: column_type, from_axis, list_columns
    use mfv_sweep_keys, only: sweep_catalogue
    use mfv_sweep_plan
+   use mfv_sweep_record, only: record_layout
    use mfv_text_file, only: directory_of, read_text
    use mfv_version, only: library_version
    implicit none
@@ -26,29 +28,35 @@ module mfv_sweep_reader
 
 contains
 
-   !> The sweep in a file. Error MFV_INPUT_ERROR.
-   subroutine read_sweep_file(path, sweep, error)
+   !> The sweep in a file. `tries_values`: see read_sweep_text. Error MFV_INPUT_ERROR.
+   subroutine read_sweep_file(path, sweep, error, tries_values)
       character(*), intent(in) :: path
       type(sweep_type), intent(out) :: sweep
       type(error_type), allocatable, intent(out) :: error
+      logical, intent(in), optional :: tries_values
       character(:), allocatable :: text, name
 
       call read_text(path, text, error)
       if (allocated(error)) return
-      call read_sweep_text(text, path, sweep, error)
+      call read_sweep_text(text, path, sweep, error, tries_values)
       if (allocated(error)) return
       name = path(index(path, '/', back=.true.) + 1:)
       if (index(name, '.', back=.true.) > 1) name = name(:index(name, '.', back=.true.) - 1)
       if (sweep%result_path == '') sweep%result_path = name//'.h5'
    end subroutine read_sweep_file
 
-   !> The sweep in a text. `source`: its name for messages; the base cases are looked for beside it. Error MFV_INPUT_ERROR.
-   subroutine read_sweep_text(text, source, sweep, error)
+   !> The sweep in a text. `source`: its name for messages; the base cases are looked for beside it. `tries_values`:
+   !> whether the values are tried in cases, which takes time where there are many; they are unless told. Error MFV_INPUT_ERROR.
+   subroutine read_sweep_text(text, source, sweep, error, tries_values)
       character(*), intent(in) :: text, source
       type(sweep_type), intent(out) :: sweep
       type(error_type), allocatable, intent(out) :: error
+      logical, intent(in), optional :: tries_values
       type(reader_type) :: reader
+      logical :: is_tried
 
+      is_tried = .true.
+      if (present(tries_values)) is_tried = tries_values
       reader%source = source
       reader%directory = directory_of(source)
       reader%catalogue = sweep_catalogue()
@@ -63,7 +71,7 @@ contains
       if (.not. allocated(error)) call check_count(reader, sweep, error)
       if (.not. allocated(error)) call find_reference(reader, sweep, error)
       if (.not. allocated(error)) call check_columns(reader, sweep, error)
-      if (.not. allocated(error)) call check_values(reader, sweep, error)
+      if (is_tried .and. .not. allocated(error)) call check_values(reader, sweep, error)
       if (.not. allocated(error)) call find_checksum(sweep, error)
    end subroutine read_sweep_text
 
@@ -167,6 +175,7 @@ contains
       allocate (axis%targets(size(entry%values)))
       do i = 1, size(axis%targets)
          call read_target(entry%values(i)%text, sweep, axis%targets(i), why)
+         if (why == '') call find_clash_of_materials(sweep%axes(:number - 1), axis%targets(:i - 1), axis%targets(i), why)
          if (why == '' .and. is_varied(sweep%axes(:number - 1), axis%targets(:i - 1), axis%targets(i))) &
             why = quoted(entry%values(i)%text)//': is varied already'
          if (why /= '') then
@@ -267,6 +276,47 @@ contains
       end do
    end subroutine check_target
 
+   !> Dundurs' parameter decides the materials of both bodies: `why` names a key of a material that is varied beside it, empty
+   !> where there is none.
+   subroutine find_clash_of_materials(axes, targets, target, why)
+      type(axis_type), intent(in) :: axes(:)
+      type(target_type), intent(in) :: targets(:), target
+      character(:), allocatable, intent(out) :: why
+      integer :: i
+
+      why = ''
+      call find_clash_among(targets, target, why)
+      do i = 1, size(axes)
+         if (why == '') call find_clash_among(axes(i)%targets, target, why)
+      end do
+   end subroutine find_clash_of_materials
+
+   !> The same, among the keys of one axis.
+   subroutine find_clash_among(targets, target, why)
+      type(target_type), intent(in) :: targets(:), target
+      character(:), allocatable, intent(inout) :: why
+      character(:), allocatable :: name
+      integer :: i
+
+      do i = 1, size(targets)
+         name = ''
+         if (target%key == dundurs_key .and. is_of_material(targets(i))) call name_target(targets(i), name)
+         if (targets(i)%key == dundurs_key .and. is_of_material(target)) call name_target(target, name)
+         if (name == '') cycle
+         why = quoted(name)//' and '//quoted(dundurs_key)//' cannot be varied in one sweep: '//dundurs_key//' decides the '// &
+               'materials of both bodies'
+         return
+      end do
+   end subroutine find_clash_among
+
+   !> Whether a key is one of a material that Dundurs' parameter replaces.
+   pure logical function is_of_material(target)
+      type(target_type), intent(in) :: target
+
+      is_of_material = target%group == 'body' .and. (target%key == 'shear_modulus' .or. target%key == 'youngs_modulus' .or. &
+                                                     target%key == 'poisson_ratio' .or. target%key == 'rigid')
+   end function is_of_material
+
    !> Whether a key, or one that it stands for, is among those before it, of the same axis or of others.
    pure logical function is_varied(axes, targets, target)
       type(axis_type), intent(in) :: axes(:)
@@ -323,13 +373,13 @@ contains
       end if
    end subroutine read_values
 
-   !> A row of numbers, whole ones where every key wants such.
+   !> A row of numbers, whole ones where every key takes such; then no two may become one.
    subroutine make_row(reader, number, axis, error)
       type(reader_type), intent(in) :: reader
       integer, intent(in) :: number
       type(axis_type), intent(inout) :: axis
       type(error_type), allocatable, intent(out) :: error
-      real(wp) :: first, last, value, part
+      real(wp) :: first, last, value, previous, part
       integer :: i, n
       logical :: is_log
 
@@ -341,16 +391,25 @@ contains
          call reader%complain('vary', number, 'spacing', 'needs from and to above 0, or both below', error)
          return
       end if
+      axis%is_row = .true.
       allocate (axis%values(n))
       allocate (axis%is_quoted(n))
       axis%is_quoted = .false.
+      value = first
       do i = 1, n
+         previous = value
          part = real(i - 1, wp)/max(n - 1, 1)
          value = first + part*(last - first)
          if (is_log) value = first*(last/first)**part
          if (i == n .and. n > 1) value = last
-         if (axis%targets(1)%is_whole .and. abs(value) < huge(1)) then
+         if (all(axis%targets%is_whole) .and. max(abs(first), abs(last)) < huge(1)) then
             axis%values(i)%text = to_text(nint(value))
+            if (i > 1 .and. nint(value) == nint(previous)) then
+               call reader%complain('vary', number, 'count', to_text(previous)//' and '//to_text(value)//' both become '// &
+                                    to_text(nint(value))//', for '//axis%targets(1)%key//' takes whole numbers; give '// &
+                                    'fewer, or values=...', error)
+               return
+            end if
          else
             call write_number(value, axis%values(i)%text)
          end if
@@ -374,6 +433,8 @@ contains
       do i = 1, size(axis%targets)
          call key_of(catalogue, axis%targets(i), key)
          if (i == 1) call name_column(key, axis)
+         ! A row for other keys too is not of whole numbers.
+         if (axis%is_row .and. axis%column == column_whole .and. key%kind == kind_real) axis%column = column_real
          if (abs(axis%targets(i)%factor - 1.0_wp) > 0.0_wp .and. key%kind /= kind_real .and. key%kind /= kind_integer) then
             call reader%complain('vary', number, 'factor', key%name//' is no number', error)
             return
@@ -519,24 +580,34 @@ contains
       type(sweep_type), intent(in) :: sweep
       type(error_type), allocatable, intent(out) :: error
       type(column_type), allocatable :: columns(:)
-      character(:), allocatable :: name
+      character(:), allocatable :: name, why
       integer :: i, j
 
       call list_columns(sweep, columns)
       do i = 1, size(sweep%axes)
          name = sweep%axes(i)%name
-         if (name /= '' .and. verify(name, ' ') == 1 .and. count([(columns(j)%name == name, j=1, size(columns))]) == 1) cycle
-         call fail(reader, sweep%axes(i)%line, '&vary '//to_text(i)//' name='//quoted(name)//': another column of the table '// &
-                   'has this name, or it is none; give another name', error)
+         why = ''
+         if (name == '' .or. verify(name, ' ') /= 1) why = 'must not be empty, nor begin with a blank'
+         do j = 1, size(columns)
+            if (why /= '' .or. columns(j)%name /= name) cycle
+            if (columns(j)%source /= from_axis) then
+               why = 'every table has a column '//name//' ('//columns(j)%meaning//'); give another name'
+            else if (columns(j)%number < i) then
+               why = 'the column of &vary '//to_text(columns(j)%number)//' has this name; give another name'
+            end if
+         end do
+         if (why == '') cycle
+         call fail(reader, sweep%axes(i)%line, '&vary '//to_text(i)//' name='//quoted(name)//': '//why, error)
          return
       end do
    end subroutine check_columns
 
-   !> Every base and every value with the first values of the others must make a valid case.
+   !> Every base and every value with the first values of the others must make a valid case; of long rows some values are tried.
    subroutine check_values(reader, sweep, error)
       type(reader_type), intent(in) :: reader
       type(sweep_type), intent(in) :: sweep
       type(error_type), allocatable, intent(out) :: error
+      integer, allocatable :: tried(:)
       integer :: places(1 + size(sweep%axes)), i, j
 
       do i = 1, size(sweep%bases)
@@ -548,14 +619,35 @@ contains
       do i = 1, size(sweep%axes)
          if (sweep%paired .and. i > 1) exit
          places = 1
-         do j = 2, size(sweep%axes(i)%values)
-            places(1 + i) = j
-            if (sweep%paired) places(2:) = j
+         call choose_tried(sweep, i, tried)
+         do j = 1, size(tried)
+            places(1 + i) = tried(j)
+            if (sweep%paired) places(2:) = tried(j)
             call check_places(reader, sweep, places, i, error)
             if (allocated(error)) return
          end do
       end do
    end subroutine check_values
+
+   !> Places on axis `number` that are tried, but for the first, which all axes share: all of them, or, of a long row of
+   !> numbers, the last and some in between. Lists that are written out are tried as a whole, and so is what is paired with one.
+   subroutine choose_tried(sweep, number, tried)
+      type(sweep_type), intent(in) :: sweep
+      integer, intent(in) :: number
+      integer, allocatable, intent(out) :: tried(:)
+      integer, parameter :: long = 1000, between = 200
+      logical :: is_row
+      integer :: i, n
+
+      n = size(sweep%axes(number)%values)
+      is_row = sweep%axes(number)%is_row
+      if (sweep%paired) is_row = all(sweep%axes%is_row)
+      if (is_row .and. n > long) then
+         tried = [(1 + nint(real(n - 1, wp)*i/(between + 1)), i=1, between + 1)]
+      else
+         tried = [(i, i=2, n)]
+      end if
+   end subroutine choose_tried
 
    !> The case at some places must be valid; `axis`: the one whose value is looked at, 0 for none.
    subroutine check_places(reader, sweep, places, axis, error)
@@ -578,13 +670,15 @@ contains
       end if
    end subroutine check_places
 
-   !> The checksum of all that decides the results: the version, the texts, and the files that they name.
+   !> The checksum of all that decides the results: the version, what a record consists of, the texts, and the files that they
+   !> name.
    subroutine find_checksum(sweep, error)
       type(sweep_type), intent(inout) :: sweep
       type(error_type), allocatable, intent(out) :: error
       integer :: i, j, k
 
       call add_text_to_checksum(library_version, sweep%checksum)
+      call add_layout(sweep%checksum)
       call add_text_to_checksum(sweep%text, sweep%checksum)
       do i = 1, size(sweep%bases)
          call add_text_to_checksum(sweep%bases(i)%text, sweep%checksum)
@@ -601,6 +695,17 @@ contains
          if (allocated(error)) return
       end do
    end subroutine find_checksum
+
+   !> Add what a record consists of: another build of the same version may have other observables.
+   subroutine add_layout(checksum)
+      integer(int64), intent(inout) :: checksum
+      integer :: i
+
+      call add_text_to_checksum('layout '//to_text(record_layout)//', observables '//to_text(observable_count), checksum)
+      do i = 1, observable_count
+         call add_text_to_checksum(observable_name(i), checksum)
+      end do
+   end subroutine add_layout
 
    !> The files that values of axes name, beside one base.
    subroutine add_files_of_axes(sweep, base, error)

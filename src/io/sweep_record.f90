@@ -8,7 +8,10 @@ module mfv_sweep_record
    use mfv_simulation, only: simulation_type
    implicit none
    private
-   public :: record_type, record_of, record_of_error, pack_record, unpack_record, record_number
+   public :: record_type, record_of, record_of_error, pack_record, unpack_record, record_number, record_layout
+
+   !> Number of the layout of the bytes of a record: to be raised whenever pack_record changes.
+   integer, parameter :: record_layout = 1
 
    type :: record_type
       !> Number of the case; 0: the case has not been computed.

@@ -18,7 +18,7 @@ module mfv_sweep_table
    use mfv_version, only: library_version
    implicit none
    private
-   public :: write_table, find_table, no_table, other_table, part_table, same_table, table_checksum, states_name
+   public :: write_table, find_table, check_place, no_table, other_table, part_table, same_table, table_checksum, states_name
 
    !> What is at the place of a table: nothing that counts; something of another sweep or no table; an incomplete table; the
    !> complete table of this sweep.
@@ -26,6 +26,8 @@ module mfv_sweep_table
    !> Bytes that a message may have.
    integer, parameter :: longest_message = 500
    integer, parameter :: bytes_of_real = 8, bytes_of_whole = 4
+   !> The first of the moments of mfv_observables: where the cycles begin.
+   integer, parameter :: moment_loading = 1
 
    !> Where a column is in a row.
    type :: layout_type
@@ -56,6 +58,42 @@ contains
       call finish_file(sweep%result_path, writer)
       if (writer%code /= 0) call set_error(error, MFV_FILE_ERROR, sweep%result_path//': the table could not be written')
    end subroutine write_table
+
+   !> Whether the table can be written to its place. Error MFV_INPUT_ERROR where not, or where there is a file that is no table
+   !> of a sweep: the result of a case, for one, is not replaced.
+   subroutine check_place(sweep, error)
+      type(sweep_type), intent(in) :: sweep
+      type(error_type), allocatable, intent(out) :: error
+      logical :: is_there, is_table
+
+      call check_writable(sweep%result_path, error)
+      if (.not. allocated(error)) then
+         inquire (file=sweep%result_path, exist=is_there)
+         is_table = .true.
+         if (is_there) call look_for_table(sweep%result_path, is_table)
+         if (.not. is_table) call set_error(error, MFV_INPUT_ERROR, sweep%result_path//' is there and is no table of '// &
+                                            'mfv_sweep (no /table, or no input_checksum); it is not replaced: name another '// &
+                                            'file, or move this one away')
+      end if
+      if (allocated(error)) error%message = sweep%source//": &sweep file='"//sweep%result_path//"': "//error%message
+   end subroutine check_place
+
+   !> Whether an HDF5 file is a table of a sweep, of this one or another.
+   subroutine look_for_table(path, is_table)
+      character(*), intent(in) :: path
+      logical, intent(out) :: is_table
+      character(:), allocatable :: checksum
+      type(error_type), allocatable :: error
+      integer(hid_t) :: file
+
+      is_table = .false.
+      call open_to_read(path, file, error)
+      if (allocated(error)) return
+      is_table = has(file, 'table')
+      if (is_table) call read_text_attribute(file, 'input_checksum', checksum, error)
+      is_table = is_table .and. .not. allocated(error)
+      call close_read(file)
+   end subroutine look_for_table
 
    !> What is at the place of a sweep's table.
    subroutine find_table(sweep, state)
@@ -395,7 +433,8 @@ contains
       end select
    end subroutine find_text
 
-   !> L1 errors of the tractions of case `number` against a reference, NaN where one of them is not there.
+   !> L1 errors of the tractions of case `number` against a reference, NaN where one of them is not there, or, but for the
+   !> moment where the cycles begin, where they do not have the same number of whole cycles: that would compare different moments.
    subroutine compare(records, reference, number, errors)
       type(record_type), intent(in) :: records(:)
       integer, intent(in) :: reference, number
@@ -408,20 +447,40 @@ contains
       do i = 1, moment_count
          call traction_errors(records(number)%tractions(i), records(reference)%tractions(i), errors(1, i), errors(2, i))
       end do
+      if (.not. has_same_cycles(records(number), records(reference))) &
+         errors(:, moment_loading + 1:) = ieee_value(1.0_wp, ieee_quiet_nan)
    end subroutine compare
 
-   !> Dissipation in the last cycle over that of a reference, NaN where there is none.
+   !> Whether two cases have the same number of whole cycles; not where one of them has none.
+   pure logical function has_same_cycles(one, other)
+      type(record_type), intent(in) :: one, other
+      real(wp) :: cycles(2)
+
+      cycles = [one%observables(place_of('cycles')), other%observables(place_of('cycles'))]
+      has_same_cycles = all(ieee_is_finite(cycles))
+      if (has_same_cycles) has_same_cycles = nint(cycles(1)) == nint(cycles(2))
+   end function has_same_cycles
+
+   !> Place of an observable.
+   pure integer function place_of(name) result(place)
+      character(*), intent(in) :: name
+
+      do place = 1, observable_count
+         if (observable_name(place) == name) return
+      end do
+   end function place_of
+
+   !> Dissipation in the last cycle over that of a reference, NaN where there is none, or where it is not the same cycle.
    real(wp) function dissipation_ratio(record, reference) result(ratio)
       type(record_type), intent(in) :: record, reference
       integer :: i
 
       ratio = ieee_value(1.0_wp, ieee_quiet_nan)
       if (reference%number == 0) return
-      do i = 1, observable_count
-         if (observable_name(i) /= 'cycle_dissipation') cycle
-         if (.not. (ieee_is_finite(record%observables(i)) .and. ieee_is_finite(reference%observables(i)))) return
-         if (abs(reference%observables(i)) > 0.0_wp) ratio = record%observables(i)/reference%observables(i)
-      end do
+      if (.not. has_same_cycles(record, reference)) return
+      i = place_of('cycle_dissipation')
+      if (.not. (ieee_is_finite(record%observables(i)) .and. ieee_is_finite(reference%observables(i)))) return
+      if (abs(reference%observables(i)) > 0.0_wp) ratio = record%observables(i)/reference%observables(i)
    end function dissipation_ratio
 
    !> Links to the whole results of the cases.

@@ -193,6 +193,52 @@ def test_reference_is_full_coupling(study):
         np.testing.assert_allclose(table[f"{name}_error_loading"][1], abs(goodman - full).sum() / abs(full).sum(), rtol=1e-12)
 
 
+def crc64(data):
+    """The checksum of the program xz, bit by bit."""
+    rest = (1 << 64) - 1
+    for byte in data:
+        rest ^= byte
+        for _ in range(8):
+            rest = rest >> 1 ^ (0xC96C5795D7870F42 if rest & 1 else 0)
+    return rest ^ (1 << 64) - 1
+
+
+def change_observable(journal, number, place, value):
+    """Another value of an observable of a case in a journal."""
+    assert crc64(b"123456789") == 0x995DC9BBDF1939FA
+    data = bytearray(journal.read_bytes())
+    at = data.index(b"\n") + 1
+    while struct.unpack_from("<i", data, at + 4)[0] != number:
+        at += 4 + struct.unpack_from("<i", data, at)[0] + 8
+    (length,) = struct.unpack_from("<i", data, at)
+    struct.pack_into("<d", data, at + 4 + 8 * 4 + 8 + 8 * place, value)
+    struct.pack_into("<Q", data, at + 4 + length, crc64(data[at:at + 4 + length]))
+    journal.write_bytes(data)
+
+
+@pytest.mark.parametrize("number, cycles, others", [(2, 5.0, []), (2, np.nan, []), (1, 5.0, [2, 3])])
+def test_no_comparison_of_other_cycles(number, cycles, others, study, tmp_path):
+    write(tmp_path)
+    assert mfv_sweep("--part", "1/1", "study.nml", cwd=tmp_path).returncode == COMPLETE
+    before = mfv.read_table(study / "study.h5")
+    assert before["cycles"][0] == before["cycles"][1] == 1
+    columns = list(before.columns)
+    change_observable(tmp_path / "study.h5.part-1-of-1.journal", number,
+                      columns.index("cycles") - columns.index("largest_residual") - 1, cycles)
+    assert mfv_sweep("study.nml", cwd=tmp_path).stdout.startswith(f"{CASES} of {CASES} cases were there")
+    table = mfv.read_table(tmp_path / "study.h5")
+    np.testing.assert_equal(table["cycles"][number - 1], cycles)
+    compared = ["dissipation_ratio"] + [f"{field}_error_{moment}" for field in ("pressure", "shear")
+                                        for moment in ("loading", "reversal", "return")]
+    other = np.isin(table["case"], others or [number])
+    for name in compared:
+        if name.endswith("loading"):
+            np.testing.assert_array_equal(table[name], before[name])
+        else:
+            assert all(np.isnan(table[name][other])) and not any(np.isnan(before[name][other])), name
+            np.testing.assert_array_equal(table[name][~other], before[name][~other])
+
+
 def test_same_bytes_by_threads_and_at_another_time(study, tmp_path):
     write(tmp_path)
     time.sleep(1.1)  # HDF5 would keep the time in seconds
@@ -231,6 +277,31 @@ def test_ranks_killed_and_continued(tmp_path):
     run = mfv_sweep("study.nml", cwd=tmp_path, launcher=ranks(2))
     assert run.returncode == COMPLETE and re.match(rf"\d+ of {cases} cases were there", run.stdout), run.stdout + run.stderr
     assert digest(tmp_path / "study.h5") == digest(undisturbed / "study.h5")
+
+
+def without_place_for_states(folder):
+    """A sweep whose whole results cannot be written: there is a file in place of their folder."""
+    write(folder, STUDY.replace("reference='full'", "states='all'"))
+    (folder / "study.cases").write_text("")
+
+
+def check_file_error(run):
+    assert run.returncode == FILE, run.stdout + run.stderr
+    assert len(re.findall(r"study\.cases/0000\d\d\.h5 cannot be written", run.stderr)) == 1, run.stderr
+    assert "interrupted" not in run.stderr
+
+
+@pytest.mark.parametrize("threads", [1, 3])
+def test_file_errors_have_their_code_and_message(threads, tmp_path):
+    without_place_for_states(tmp_path)
+    check_file_error(mfv_sweep("--threads", threads, "study.nml", cwd=tmp_path))
+
+
+@needs_mpi
+@pytest.mark.parametrize("number, threads", [(2, 1), (4, 2)])
+def test_file_errors_of_ranks_have_their_code_and_message(number, threads, tmp_path):
+    without_place_for_states(tmp_path)
+    check_file_error(mfv_sweep("--threads", threads, "study.nml", cwd=tmp_path, launcher=ranks(number)))
 
 
 @needs_mpi
@@ -285,7 +356,38 @@ def test_end_of_the_journal_that_is_not_whole(study, tmp_path):
         run = start("study.nml", cwd=tmp_path)
         output, errors = run.communicate(timeout=60)
         assert f"{len(whole) - 1} of {cases} cases were there" in output, (output, errors)
+        assert re.search(r"^study\.h5\.journal: \d+ bytes at the end of the journal were not whole and are dropped$", errors, re.M)
         (tmp_path / "study.h5").unlink()
+
+
+def test_records_behind_a_broken_one_are_dropped_and_counted(study, tmp_path):
+    write(tmp_path)
+    for path, arguments in (("study.h5.journal", []), ("study.h5.part-1-of-1.journal", ["--again"])):
+        assert mfv_sweep(*arguments, "--part", "1/1", "study.nml", cwd=tmp_path).returncode == COMPLETE
+        (tmp_path / "study.h5.part-1-of-1.journal").rename(tmp_path / path)
+        data = bytearray((tmp_path / path).read_bytes())
+        first = data.index(b"\n") + 1
+        second = first + 4 + struct.unpack_from("<i", data, first)[0] + 8
+        data[second + 20] ^= 1
+        (tmp_path / path).write_bytes(data)
+        run = mfv_sweep("study.nml", cwd=tmp_path)
+        assert run.returncode == COMPLETE and f"1 of {CASES} cases were there" in run.stdout
+        assert run.stderr == f"{path}: {len(data) - second} bytes at the end of the journal were not whole and are dropped\n"
+        assert digest(tmp_path / "study.h5") == digest(study / "study.h5")
+
+
+@pytest.mark.skipif(not shutil.which("cc"), reason="no C compiler")
+@pytest.mark.parametrize("number, words", [("ENOLCK", "the file system cannot lock files"), ("EOPNOTSUPP", "the file system cannot lock files"),
+                                           ("EAGAIN", "another process is at work on this sweep"),
+                                           ("EACCES", "another process is at work on this sweep")])
+def test_locks_that_fail(number, words, tmp_path):
+    write(tmp_path)
+    (tmp_path / "lock.c").write_text(f"#include <errno.h>\nint lockf(int file, int command, long length) "
+                                     f"{{ errno = {number}; return -1; }}\n")
+    subprocess.run(["cc", "-w", "-shared", "-fPIC", "-o", "lock.so", "lock.c"], cwd=tmp_path, check=True)
+    run = subprocess.run([MFV_SWEEP, "study.nml"], cwd=tmp_path, capture_output=True, text=True,
+                         env=os.environ | AS_ROOT | {"LD_PRELOAD": str(tmp_path / "lock.so")})
+    assert run.returncode == FILE and f"study.h5.journal: {words}" in run.stderr, run.stderr
 
 
 def test_a_second_process_is_refused(tmp_path):
@@ -331,6 +433,54 @@ def test_a_finished_sweep_is_left_alone(study, tmp_path):
     assert run.returncode == COMPLETE and "were there" not in run.stdout
     assert unchanging(tmp_path / "study.h5") != before
     assert digest(tmp_path / "study.h5") == digest(study / "study.h5")
+
+
+def test_again_that_is_interrupted_is_continued(tmp_path):
+    cases = long_study(tmp_path, count=60)
+    journal = tmp_path / "study.h5.journal"
+    assert mfv_sweep("study.nml", cwd=tmp_path).returncode == COMPLETE
+    whole = digest(tmp_path / "study.h5")
+    run = start("--again", "--threads", 1, "study.nml", cwd=tmp_path)
+    assert wait_for_records(journal, 5, run)
+    run.send_signal(signal.SIGINT)
+    _, errors = run.communicate(timeout=60)
+    assert run.returncode == INTERRUPTED
+    assert "are kept in study.h5.journal; the same command without --again goes on" in errors
+    kept = numbers_in(journal)
+    assert digest(tmp_path / "study.h5") == whole
+    complete = journal.read_bytes()
+    run = mfv_sweep("study.nml", cwd=tmp_path)
+    assert run.returncode == COMPLETE and run.stdout.startswith(f"{len(kept)} of {cases} cases were there"), run.stdout
+    assert digest(tmp_path / "study.h5") == whole and not journal.exists()
+    # One of another input is not continued, and not deleted.
+    damaged = bytearray(complete)
+    damaged[25] ^= 1
+    journal.write_bytes(damaged)
+    assert "is complete" in mfv_sweep("study.nml", cwd=tmp_path).stdout and journal.read_bytes() == damaged
+
+
+def test_a_whole_journal_beside_a_complete_table_is_deleted(study, tmp_path):
+    write(tmp_path)
+    assert mfv_sweep("--part", "1/1", "study.nml", cwd=tmp_path).returncode == COMPLETE
+    (tmp_path / "study.h5.part-1-of-1.journal").rename(tmp_path / "study.h5.journal")
+    shutil.copy2(study / "study.h5", tmp_path)
+    before = unchanging(tmp_path / "study.h5")
+    assert "is complete" in mfv_sweep("study.nml", cwd=tmp_path).stdout
+    assert not (tmp_path / "study.h5.journal").exists() and unchanging(tmp_path / "study.h5") == before
+
+
+def test_parts_over_a_complete_table(study, tmp_path):
+    write(tmp_path)
+    shutil.copy2(study / "study.h5", tmp_path)
+    before = unchanging(tmp_path / "study.h5")
+    assert "is complete" in mfv_sweep("--part", "1/3", "study.nml", cwd=tmp_path).stdout
+    assert mfv_sweep("--again", "--part", "1/3", "study.nml", cwd=tmp_path).returncode == COMPLETE
+    assert "6 of 6 cases were there" in mfv_sweep("--part", "1/3", "study.nml", cwd=tmp_path).stdout
+    assert unchanging(tmp_path / "study.h5") == before
+    run = mfv_sweep("study.nml", cwd=tmp_path)
+    assert run.returncode == COMPLETE and f"6 of {CASES} cases were there" in run.stdout, run.stdout
+    assert unchanging(tmp_path / "study.h5") != before and digest(tmp_path / "study.h5") == digest(study / "study.h5")
+    assert not list(tmp_path.glob("*.journal"))
 
 
 def test_another_input(study, tmp_path):
@@ -379,6 +529,23 @@ def test_other_files_are_not_replaced(tmp_path):
         run = mfv_sweep(*again, "study.nml", cwd=tmp_path)
         assert run.returncode == INPUT and "is no journal of mfv_sweep; it is not replaced" in run.stderr
     assert (tmp_path / "study.h5.journal").read_text() == "my diary\n"
+
+
+def test_results_of_cases_are_not_replaced(tmp_path):
+    write(tmp_path)
+    subprocess.run([MFV_RUN, "base.nml"], cwd=tmp_path, capture_output=True)
+    (tmp_path / "base.h5").rename(tmp_path / "study.h5")
+    before = unchanging(tmp_path / "study.h5")
+    for option in ([], ["--again"], ["--check"], ["--part", "1/2"]):
+        run = mfv_sweep(*option, "study.nml", cwd=tmp_path)
+        assert run.returncode == INPUT and run.stdout == ""
+        assert "study.nml: &sweep file='study.h5': study.h5 is there and is no table of mfv_sweep" in run.stderr
+        assert "name another file, or move this one away" in run.stderr
+    assert unchanging(tmp_path / "study.h5") == before
+    assert not list(tmp_path.glob("*.journal"))
+    write(tmp_path, STUDY.replace("reference", "file='no/folder.h5', reference"))
+    run = mfv_sweep("--check", "study.nml", cwd=tmp_path)
+    assert run.returncode == INPUT and "study.nml: &sweep file='no/folder.h5': no/folder.h5 cannot be written" in run.stderr
 
 
 def test_parts_are_gathered(study, tmp_path):
@@ -476,7 +643,7 @@ def test_several_bases_and_pairs(tmp_path):
     (("spacing='log'", "spacing='logg'"), 3, "must be 'linear' or 'log'"),
     (("count=3, ", ""), 3, "count is missing"),
     (("'full', 'goodman', 'none'", "'goodman', 'none'"), 1, "reference='full': needs a &vary of key='scene%coupling'"),
-    (("name='Q'", "name='outcome'"), 3, "another column of the table has this name"),
+    (("name='Q'", "name='outcome'"), 3, "&vary 2 name='outcome': every table has a column outcome (how the case ended)"),
     (("factor=1, -1", "factor=1"), 3, "must have one value a key, 2, not 1"),
     (("reference='full'", "combine='paired'"), 1, "&vary 2 has 3 values, &vary 1 has 2"),
 ])
@@ -493,6 +660,13 @@ def test_values_that_the_case_refuses_are_named(tmp_path):
     run = mfv_sweep("study.nml", cwd=tmp_path)
     assert run.returncode == INPUT
     assert "study.nml:3: &vary 1: case 2 (base='base.nml', friction%mu=0): base.nml:8: &step 2 tangential_force=2.8e-4: " in run.stderr
+
+
+def test_a_case_is_printed_though_others_cannot_be_used(tmp_path):
+    write(tmp_path, "&sweep base='base.nml' /\n&vary key='friction%mu', values=0.3, 0 /\n")
+    for number, mu in ((1, "0.3"), (2, "0")):
+        run = mfv_sweep("--case", number, "study.nml", cwd=tmp_path)
+        assert run.returncode == COMPLETE and f"mu={mu}" in run.stdout.replace(" ", ""), run.stdout
 
 
 def test_progress_shows_on_a_terminal_only(tmp_path):
