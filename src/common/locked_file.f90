@@ -16,9 +16,9 @@ module mfv_locked_file
       type(c_ptr) :: stream = c_null_ptr
    end type locked_file_type
 
-   integer(c_int), parameter :: try_lock = 2, from_start = 0, from_end = 2
-   !> What errno is on Linux where another process has the lock: EAGAIN or EACCES.
-   integer(c_int), parameter :: locked_by_another(2) = [11, 13]
+   integer(c_int), parameter :: from_start = 0, from_end = 2
+   !> See try_lock.c.
+   integer(c_int), parameter :: locked_by_another = 1
 
    interface
       function c_fopen(path, mode) bind(C, name='fopen') result(stream)
@@ -82,17 +82,11 @@ module mfv_locked_file
          integer(c_int) :: code
       end function c_ftruncate
 
-      function c_lockf(descriptor, command, length) bind(C, name='lockf') result(code)
-         import :: c_int, c_long
-         integer(c_int), value :: descriptor, command
-         integer(c_long), value :: length
+      function c_try_lock(descriptor) bind(C, name='mfv_try_lock') result(code)
+         import :: c_int
+         integer(c_int), value :: descriptor
          integer(c_int) :: code
-      end function c_lockf
-
-      function c_errno_location() bind(C, name='__errno_location') result(place)
-         import :: c_ptr
-         type(c_ptr) :: place
-      end function c_errno_location
+      end function c_try_lock
 
       function c_fsync(descriptor) bind(C, name='fsync') result(code)
          import :: c_int
@@ -129,19 +123,11 @@ contains
       if (.not. c_associated(file%stream)) return
       outcome = opened
       code = c_fseek(file%stream, 0_c_long, from_start)
-      if (code == 0) code = c_lockf(c_fileno(file%stream), try_lock, 0_c_long)
+      if (code == 0) code = c_try_lock(c_fileno(file%stream))
       if (code == 0) return
-      outcome = merge(in_use, cannot_lock, any(last_error() == locked_by_another))
+      outcome = merge(in_use, cannot_lock, code == locked_by_another)
       call close_file(file)
    end subroutine open_locked
-
-   !> The operating system's number of what went wrong last.
-   integer function last_error()
-      integer(c_int), pointer :: number
-
-      call c_f_pointer(c_errno_location(), number)
-      last_error = number
-   end function last_error
 
    !> All bytes of the file.
    subroutine read_bytes(file, bytes)
