@@ -740,7 +740,8 @@ def beyond(tables: Mapping[str, Table]) -> list[Statement]:
             f"beta mu: near gross sliding the error of the pressure is "
             f"{span(strong[0]['pressure_error_reversal'] / product)} beta mu, "
             f"that of the shear {span(strong[0]['shear_error_reversal'] / product)} beta mu, the shift of the contact "
-            f"{span(np.abs(strong[1]['patch_shift_reversal']) / product)} beta mu half-widths (mu from 0.2 on). At Q~ = {weak['force_ratio'].min():g} the error of the pressure is "
+            f"{span(np.abs(strong[1]['patch_shift_reversal']) / product)} beta mu half-widths (mu from 0.2 on). "
+            f"At Q~ = {weak['force_ratio'].min():g} the error of the pressure is "
             f"{span(weak['pressure_error_reversal'] / (weak['beta'] * weak['mu']))} beta mu, or "
             f"{span(weak['pressure_error_reversal'] / weak['beta'] ** 2)} beta^2 (beta from 0.1 on); shear, all Q~: "
             f"{span(traction_error / traction_product)} beta mu",
