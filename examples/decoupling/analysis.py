@@ -100,6 +100,10 @@ class Rule:
         """D_Goodman/D_full by the rule."""
         return np.asarray(np.exp(terms(beta, mu) @ self.coefficients))
 
+    def misses(self, rows: Table) -> np.ndarray:
+        """What it misses of ln(D_Goodman/D_full), in parts of that."""
+        return np.asarray(terms(rows["beta"], rows["mu"]) @ self.coefficients / np.log(rows["dissipation_ratio"]) - 1.0)
+
 
 def terms(beta: np.ndarray, mu: np.ndarray) -> np.ndarray:
     """The terms of the rule, a column each."""

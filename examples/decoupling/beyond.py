@@ -114,10 +114,17 @@ def mismatch(table: Table) -> Drawn:
     return Drawn("mismatch", caption, picture, table.columns(names))
 
 
-def error_map(table: Table) -> Drawn:
-    """Over-prediction of the dissipation by Goodman's approximation over beta and mu, for some lateral forces."""
-    rows = table.where(coupling="goodman")
-    ratios = rows.values("force_ratio")
+def error_map(table: Table, fine: Table) -> Drawn:
+    """Over-prediction of the dissipation by Goodman's approximation over beta and mu, for some lateral forces.
+
+    The forces that `fine` has, where few nodes slip, are taken from there.
+    """
+    names = ["beta", "mu", "force_ratio", "nodes", "dissipation_ratio"]
+    names += [f"{name}_{moment}" for name in ("pressure_error", "shear_error") for moment in ("loading", "reversal")]
+    smaller, larger = fine.where(coupling="goodman"), table.where(coupling="goodman")
+    larger = larger.between("force_ratio", smaller["force_ratio"].max() + 1e-3, 1.0)
+    rows = Table(np.concatenate([part.rows[names] for part in (smaller, larger)]))
+    ratios = np.unique(rows["force_ratio"])
     shown = [ratios[i] for i in np.unique(np.linspace(0, len(ratios) - 1, 6).round().astype(int))]
     picture, axes = panels(2, 3, (11.5, 7.0), sharex=True, sharey=True)
     levels = np.array([0.5, 1, 2, 5, 10, 20, 50, 100, 200, 500, 1000])
@@ -134,10 +141,9 @@ def error_map(table: Table) -> Drawn:
     bar.set_label("dissipation of a cycle over-predicted by Goodman's approximation")
     caption = (
         "By how much Goodman's approximation (and full decoupling, which has the same dissipation) over-predicts the "
-        "dissipation of a steady cycle. Two disks of one radius, pressed with friction."
+        "dissipation of a steady cycle. Two disks of one radius, pressed with friction. Meshes of "
+        f"{larger['nodes'].max()} nodes, {smaller['nodes'].max()} at Q~ = {smaller['force_ratio'].max():g}, where few slip."
     )
-    names = ["beta", "mu", "force_ratio", "dissipation_ratio"]
-    names += [f"{name}_{moment}" for name in ("pressure_error", "shear_error") for moment in ("loading", "reversal")]
     return Drawn("map", caption, picture, rows.columns(names), in_docs=True)
 
 
@@ -376,7 +382,7 @@ def draw_beyond(tables: Mapping[str, Table]) -> list[Drawn]:
         mindlin(tables["mindlin"]),
         small_force(tables["small_force"]),
         mismatch(tables["mismatch"]),
-        error_map(tables["map"]),
+        error_map(tables["map"], tables["map_fine"]),
         rule_of_thumb(tables["map"]),
         traction_errors(tables["map"]),
         shakedown(tables["shakedown"]),

@@ -107,13 +107,14 @@ def page(drawings: Sequence[Drawn], statements: Sequence[Statement], tables: Map
         f"<style>{STYLE}</style></head><body>",
         "<h1>Elastic decoupling: chapter 6 of the dissertation, computed again</h1>",
         f"<p>MFV {html.escape(mfv.__version__)}, {cases} cases, largest relative residual of any {residual:.0e}."
-        + (" A quick study: few values on every axis." if quick else "")
+        + (" A quick study: few values on every axis, coarse meshes, no remarks; its numbers are not those of the whole one."
+            if quick else "")
         + "</p>",
         "<h2>Statement by statement</h2>",
         f"<p>{html.escape(counted(statements))}</p>",
         statements_table(statements),
         "<h2>What a case costs</h2>",
-        "<p>Means over the cases of Figure 6.3, 150 nodes in contact, four cycles.</p>",
+        f"<p>Means over the cases of Figure 6.3, meshes of {tables['lateral_force']['nodes'].max()} nodes, four cycles.</p>",
         cost_table(tables["lateral_force"]),
         "<h2>Pictures</h2>",
     ]

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from pathlib import Path
 
 import numpy as np
 
@@ -15,6 +16,7 @@ from sweeps import COUPLINGS, Table
 AGREES, PARTLY, DIFFERS, BEYOND = "agrees", "agrees in part", "differs", "not in the text"
 #: What is zero to round-off, in parts of the largest traction.
 ROUND_OFF = 1e-9
+CASES = Path(__file__).resolve().parent / "cases"
 
 
 @dataclass
@@ -528,7 +530,7 @@ def five_forces(table: Table) -> list[Statement]:
             "-",
             f"mu = 0.7: {span(goodman.where(mu=nearest(goodman, 'mu', 0.7))['dissipation_ratio'])} for Q~ from 0.3 on; all mu: "
             f"{span(ratios)}",
-            AGREES,
+            agreed(ratios.argmin() in high_force_low_friction(goodman)),
             "none: 14 % is at small mu and high Q~, 50 % at mu = 0.7 and Q~ = 0.07, which the five forces leave out",
         ),
         Statement(
@@ -558,6 +560,11 @@ def five_forces(table: Table) -> list[Statement]:
     ]
 
 
+def high_force_low_friction(table: Table) -> np.ndarray:
+    """Rows near gross sliding with a coefficient of friction of the lower half."""
+    return np.flatnonzero((table["force_ratio"] > 0.9) & (table["mu"] < np.median(table["mu"])))
+
+
 def nearest(table: Table, column: str, value: float) -> float:
     """The value of a column nearest to one."""
     entries = np.array(table.values(column))
@@ -581,7 +588,7 @@ def dependence_on_history(table: Table) -> list[Statement]:
     return [
         Statement(
             "6.1",
-            "coupling is required for the steady state to depend on what went before (shakedown)",
+            "coupling is required to have a shakedown; tested here: does the steady state depend on what went before?",
             "-",
             "steady dissipation over five beginnings differs by "
             + "; ".join(
@@ -591,16 +598,41 @@ def dependence_on_history(table: Table) -> list[Statement]:
                 for name, values in spread.items()
             ),
             agreed(min(spread["full"]) > 0.05 and max(spread["goodman"] + spread["none"]) < 1e-6),
-            "Goodman's coupling is not enough: the effect of shear on pressure is what does it",
+            "of five beginnings under a constant normal force only the effect of shear on pressure leaves a trace: the verdict "
+            "is on that. Shakedown as such, slip that ceases, is another matter: see the flat punch",
         ),
         Statement(
             "6.1",
-            "shakedown: at beta = 0.5, mu = 0.7 a small cyclic force ends without slip",
+            "rounded bodies, beta = 0.5, mu = 0.7: a small cyclic force ends without slip",
             "-",
             f"Q~ = {strong['force_ratio'][0]:g}: D/(P^2 A) at most {nothing:.0e}, decoupled {plain:.0e}",
             BEYOND if nothing < 1e-4 * plain else DIFFERS,
         ),
     ]
+
+
+def flat_punch() -> Statement:
+    """Slip that ceases without an effect of shear on pressure."""
+    text = (CASES / "flat_punch.nml").read_text(encoding="utf-8")
+    cycles = {name: cycle_dissipations(mfv.run(text=text.replace("'goodman'", f"'{name}'"))) for name in COUPLINGS}
+    later = max(np.abs(cycles[name][1:]).max() / cycles[name][0] for name in ("full", "goodman"))
+    return Statement(
+        "6.1",
+        "flat punch, mu = 0.3, Q = 0.5 mu P: does slip cease (shakedown) under Goodman's approximation too?",
+        "-",
+        "dissipation of the first cycle, J/m: "
+        + ", ".join(f"{COUPLINGS[name]} {energies[0]:.3g}" for name, energies in cycles.items())
+        + f"; of each later one at most {later:.0e} of that",
+        BEYOND,
+        "it does: the shear of the pressing is redistributed once. Where shear does not change the pressure the frictional "
+        "Melan theorem holds (Klarbring, Ciavarella, Barber 2007)",
+    )
+
+
+def cycle_dissipations(result: mfv.Result) -> np.ndarray:
+    """Of each cycle from the first arrival at Q on."""
+    history = result.history
+    return np.diff(history.dissipation[history.event_kind == mfv.EventKind.STEP_END][1::2])
 
 
 def shapes_alone(table: Table) -> Statement:
@@ -648,7 +680,13 @@ def beyond(tables: Mapping[str, Table]) -> list[Statement]:
     ]
     strong[1] = strong[1].between("mu", 0.2, 1.0)
     product = strong[0]["beta"] * strong[0]["mu"]
+    of_shear = goodman.between("mu", 0.2, 1.0).between("beta", 0.1, 0.5)
+    traction_error, traction_product = of_shear["shear_error_reversal"], of_shear["beta"] * of_shear["mu"]
     over = goodman["dissipation_ratio"] - 1.0
+    weak = goodman.where(force_ratio=goodman["force_ratio"].min()).between("mu", 0.2, 1.0).between("beta", 0.1, 0.5)
+    meant = goodman.between("beta", 0.0, rule.beta_limit).between("force_ratio", rule.ratio_limit, 1.0)
+    strong_mismatch, weak_mismatch = meant.between("beta", 0.2, 1.0), meant.between("beta", 0.0, 0.15)
+    per_square = np.log(meant["dissipation_ratio"]) / meant["beta"] ** 2
     return [
         Statement(
             "beyond",
@@ -675,8 +713,10 @@ def beyond(tables: Mapping[str, Table]) -> list[Statement]:
             "6.6",
             "the decouplings almost always over-predict the dissipation",
             "-",
-            f"from {100 * over.min():.1f} % on in all of {len(goodman)} cases of the map; without limit where nothing slips",
-            agreed(bool((over > -0.003).all())),
+            f"more than full coupling in {np.count_nonzero(over > 0.0)} of {len(over)} cases of the map, from "
+            f"{100 * over.min():.1f} % on",
+            AGREES if (over > 0.0).all() else agreed(bool(np.mean(over > 0.0) > 0.9), PARTLY),
+            "without limit where nothing slips",
         ),
         Statement(
             "beyond",
@@ -700,25 +740,53 @@ def beyond(tables: Mapping[str, Table]) -> list[Statement]:
             f"beta mu: near gross sliding the error of the pressure is "
             f"{span(strong[0]['pressure_error_reversal'] / product)} beta mu, "
             f"that of the shear {span(strong[0]['shear_error_reversal'] / product)} beta mu, the shift of the contact "
-            f"{span(np.abs(strong[1]['patch_shift_reversal']) / product)} beta mu half-widths (mu from 0.2 on)",
+            f"{span(np.abs(strong[1]['patch_shift_reversal']) / product)} beta mu half-widths (mu from 0.2 on). "
+            f"At Q~ = {weak['force_ratio'].min():g} the error of the pressure is "
+            f"{span(weak['pressure_error_reversal'] / (weak['beta'] * weak['mu']))} beta mu, or "
+            f"{span(weak['pressure_error_reversal'] / weak['beta'] ** 2)} beta^2 (beta from 0.1 on); shear, all Q~: "
+            f"{span(traction_error / traction_product)} beta mu",
             BEYOND,
+            "the pressure starts from an error of the pressing, which beta mu does not tell",
         ),
         Statement(
             "beyond",
             "rule of thumb",
             "-",
             f"ln(D_Goodman/D_full) = beta^2 ({c0:.2f} + {c1:.2f} mu^2), |beta| <= {rule.beta_limit:g}, "
-            f"Q~ >= {rule.ratio_limit:g}, to {rule.largest_miss:.3f}",
+            f"Q~ >= {rule.ratio_limit:g}, to {rule.largest_miss:.3f}; of that logarithm it misses "
+            f"{percent(rule.misses(strong_mismatch))} from beta = 0.2 on, {percent(rule.misses(weak_mismatch))} below. "
+            f"The logarithm is {span(per_square)} beta^2",
             BEYOND,
+            "below beta = 0.2 the rule is no correction: it may miss more than there is",
         ),
     ]
 
 
-def all_statements(tables: Mapping[str, Table], results: Mapping[str, mfv.Result]) -> list[Statement]:
-    """In the order of the text."""
-    return [
+def fine_map(coarse: Table, fine: Table) -> Statement:
+    """What the mesh of the map leaves open where few nodes slip."""
+    rows = fine.where(coupling="goodman", mu=nearest(fine, "mu", 0.3))
+    force = float(rows["force_ratio"][0])
+    same = coarse.where(coupling="goodman", mu=rows["mu"][0], force_ratio=nearest(coarse, "force_ratio", force))
+    listed = [
+        f"beta = {beta:g}: {100 * (one - 1):.1f} and {100 * (two - 1):.1f} %"
+        for beta, one, two in zip(rows["beta"], same["dissipation_ratio"], rows["dissipation_ratio"])
+    ]
+    return Statement(
+        "beyond",
+        f"over-prediction at Q~ = {force:g}, mu = {rows['mu'][0]:g}, on the mesh of the map and on a fine one",
+        "-",
+        f"{same['nodes'].max()} and {rows['nodes'].max()} nodes: " + "; ".join(listed),
+        BEYOND,
+        "the coarse one is not fine enough there below beta = 0.2; the picture has the fine one",
+    )
+
+
+def all_statements(tables: Mapping[str, Table], results: Mapping[str, mfv.Result], quick: bool) -> list[Statement]:
+    """In the order of the text. The remarks are on the whole study: a quick one is without them."""
+    statements = [
         shapes_alone(tables["shapes"]),
         *dependence_on_history(tables["shakedown"]),
+        flat_punch(),
         *pressing(results),
         *cycling(results),
         *loops(tables["cyclic"], results),
@@ -729,3 +797,6 @@ def all_statements(tables: Mapping[str, Table], results: Mapping[str, mfv.Result
         *five_forces(tables["ratios"]),
         *beyond(tables),
     ]
+    if not quick:
+        statements.append(fine_map(tables["map"], tables["map_fine"]))
+    return [replace(statement, why="") for statement in statements] if quick else statements

@@ -40,7 +40,7 @@ def arguments() -> argparse.Namespace:
     """What the user asks for."""
     parser = argparse.ArgumentParser(description="chapter 6 of the dissertation, computed again")
     parser.add_argument("--output", type=Path, default=Path("decoupling"), help="folder of tables and report (decoupling)")
-    parser.add_argument("--quick", action="store_true", help="few values on every axis: half a minute")
+    parser.add_argument("--quick", action="store_true", help="few values on every axis, coarse meshes: half a minute")
     parser.add_argument("--program", help="path of mfv_sweep (else MFV_SWEEP, build/release/bin, or the PATH)")
     parser.add_argument("--publish", action="store_true", help="renew the pictures and statements in examples/ and docs/ too")
     return parser.parse_args()
@@ -79,7 +79,7 @@ def main() -> None:
     }
     with matplotlib.rc_context(STYLE):
         drawings = [*draw_chapter(tables, results), *draw_beyond(tables)]
-        statements = all_statements(tables, results)
+        statements = all_statements(tables, results, options.quick)
         write(folder, drawings, statements, report.page(drawings, statements, tables, options.quick))
         if options.publish:
             publish(drawings, statements)

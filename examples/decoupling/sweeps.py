@@ -24,6 +24,7 @@ NAMES = (
     "small_force",
     "mismatch",
     "map",
+    "map_fine",
     "shakedown",
     "threshold",
     "shapes",

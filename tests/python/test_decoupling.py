@@ -105,7 +105,7 @@ def test_every_figure_has_its_numbers(folder):
 
 
 def test_no_statement_is_without_a_verdict(folder):
-    """Each has one of four, and where it differs a reason."""
+    """Each has one of four."""
     with (folder / "numbers.csv").open(newline="") as stream:
         statements = list(csv.DictReader(stream))
     verdicts = {statement["verdict"] for statement in statements}
@@ -215,6 +215,23 @@ def test_only_full_coupling_remembers(folder):
         part = rows(whole, coupling=coupling, beta=0.5, force_ratio=0.2)["dissipation_number"]
         assert (np.ptp(part) > 0.2 * part.mean()) == remembers
         assert remembers or np.ptp(part) < 1e-9 * part.mean()
+
+
+def test_flat_punch_shakes_down():
+    """Slip of the first cycle only, with Goodman's approximation as with full coupling; decoupled none at all."""
+    text = (STUDY.parent / "cases" / "flat_punch.nml").read_text(encoding="utf-8")
+    for coupling, slips in (("full", True), ("goodman", True), ("none", False)):
+        history = mfv.run(text=text.replace("'goodman'", f"'{coupling}'")).history
+        ends = history.dissipation[history.event_kind == mfv.EventKind.STEP_END]
+        first, *later = np.diff(ends[1::2])
+        assert (first > 0.2 * ends.max()) == slips
+        assert len(later) == 3 and np.abs(later).max() <= 1e-9 * max(first, 1e-3)
+
+
+def test_a_quick_study_has_no_remarks(folder):
+    """They are on the numbers of the whole one."""
+    with (folder / "numbers.csv").open(newline="") as stream:
+        assert not any(statement["why"] for statement in csv.DictReader(stream))
 
 
 def test_small_forces_slip_nothing(folder):
