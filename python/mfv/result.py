@@ -168,14 +168,19 @@ def counts(loads: Group) -> str:
 def read(path: str | os.PathLike[str]) -> Result:
     """The result in a file. Raises OSError, NotAResult."""
     path = os.fspath(path)
-    with open(path, "rb"):  # a missing file and the like are Python's to report
-        pass
-    if not h5py.is_hdf5(path):
-        raise NotAResult(None, f"{path}: not a result file of MFV (not even HDF5)")
-    with h5py.File(path, "r") as file:
+    with open_hdf5(path, "result file of MFV") as file:
         if "mfv_version" not in file.attrs or "state" not in file:
             raise NotAResult(None, f"{path}: not a result file of MFV, though it is HDF5")
         return Result(_groups(file), {name: str(value) for name, value in file.attrs.items()})
+
+
+def open_hdf5(path: str, expected: str) -> h5py.File:
+    """An HDF5 file to read; `expected`: what it should be, for the message. Raises OSError, NotAResult."""
+    with open(path, "rb"):  # a missing file and the like are Python's to report
+        pass
+    if not h5py.is_hdf5(path):
+        raise NotAResult(None, f"{path}: not a {expected} (not even HDF5)")
+    return h5py.File(path, "r")
 
 
 def _groups(file: h5py.File) -> dict[str, dict[str, Field]]:

@@ -7,10 +7,10 @@ import os
 import sys
 from typing import Any
 
-import h5py
 import numpy as np
 
 from .errors import NotAResult
+from .result import open_hdf5
 
 
 class Table(np.ndarray):
@@ -60,11 +60,7 @@ class Table(np.ndarray):
 def read_table(path: str | os.PathLike[str]) -> Table:
     """The table in a file of mfv_sweep. Raises OSError, NotAResult."""
     path = os.fspath(path)
-    with open(path, "rb"):  # a missing file and the like are Python's to report
-        pass
-    if not h5py.is_hdf5(path):
-        raise NotAResult(None, f"{path}: not a table of mfv_sweep (not even HDF5)")
-    with h5py.File(path, "r") as file:
+    with open_hdf5(path, "table of mfv_sweep") as file:
         if "table" not in file or "input_checksum" not in file.attrs:
             raise NotAResult(None, f"{path}: not a table of mfv_sweep, though it is HDF5")
         dataset = file["table"]

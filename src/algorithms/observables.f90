@@ -10,8 +10,8 @@ module mfv_observables
    use mfv_zone_edges, only: find_zone_edges, zone_edges_type
    implicit none
    private
-   public :: observable_count, observable_name, observable_unit, observable_meaning, observables_of, moment_count, &
-             moment_name, tractions_type, observed_tractions, traction_errors
+   public :: observable_count, observable_name, observable_unit, observable_meaning, observable_place, observables_of
+   public :: moment_count, moment_loading, moment_name, tractions_type, observed_tractions, traction_errors
 
    !> Number of observables.
    integer, parameter :: observable_count = 32
@@ -27,11 +27,13 @@ module mfv_observables
                               'patch_shift_return', 'half_width_number', 'pressure_number', &
                               'shear_number', 'force_number', 'shift_number', &
                               'dissipation_number', 'stiffness_number']
-   character(*), parameter :: units(observable_count) = [character(8) :: &
-                              'force', 'force', 'length', 'length', 'energy', 'length', 'length', '1', &
-                              'traction', 'traction', '1', 'energy', 'energy', '1', 'force', 'length', &
-                              'traction', 'traction', '1', '1', '1', '1', '1', '1', &
-                              '1', '1', '1', '1', '1', '1', '1', '1']
+   character(*), parameter :: units(observable_count) = [character(14) :: &
+                              'force/length', 'force/length', 'length', 'length', 'force', 'length', &
+                              'length', '1', 'force/length^2', 'force/length^2', '1', 'force', &
+                              'force', '1', 'force/length', 'length', 'force/length^2', 'force/length^2', &
+                              '1', '1', '1', '1', '1', '1', &
+                              '1', '1', '1', '1', '1', '1', &
+                              '1', '1']
    character(*), parameter :: meanings(observable_count) = [character(91) :: &
                               'normal force P per unit thickness at the end', &
                               'tangential force Q per unit thickness at the end', &
@@ -66,7 +68,7 @@ module mfv_observables
                               'cycle_dissipation over P^2 A, A = sum of (kappa + 1)/(4 G) (eq. 6.5)', &
                               'tangential_stiffness times A']
    !> Moments of the load history whose tractions are compared: where the cycles begin; the far end of the last cycle; its end.
-   integer, parameter :: moment_count = 3
+   integer, parameter :: moment_loading = 1, moment_count = 3
    integer, parameter :: moment_marks(moment_count) = [mark_loading, mark_reversal, mark_return]
    character(*), parameter :: moment_names(moment_count) = [character(8) :: 'loading', 'reversal', 'return']
 
@@ -86,8 +88,7 @@ contains
       name = names(number)
    end function observable_name
 
-   !> Its unit: length, force (of P and Q, per unit thickness: force/length), traction (force/length^2; a stiffness has the same),
-   !> energy (per unit thickness: force), or 1.
+   !> Its unit in terms of length and force (energies are per unit thickness), or 1.
    pure function observable_unit(number) result(unit)
       integer, intent(in) :: number
       character(len=len_trim(units(number))) :: unit
@@ -102,6 +103,15 @@ contains
 
       meaning = meanings(number)
    end function observable_meaning
+
+   !> Number of the observable of a name, which must be one.
+   pure integer function observable_place(name) result(place)
+      character(*), intent(in) :: name
+
+      do place = 1, observable_count
+         if (names(place) == name) return
+      end do
+   end function observable_place
 
    !> Name of moment `number`.
    pure function moment_name(number) result(name)
@@ -212,11 +222,8 @@ contains
       real(wp), intent(inout) :: values(:)
       character(*), intent(in) :: name
       real(wp), intent(in) :: value
-      integer :: i
 
-      do i = 1, observable_count
-         if (names(i) == name) values(i) = value
-      end do
+      values(observable_place(name)) = value
    end subroutine put
 
    !> The tractions of a simulation at moment `number`; without nodes where there was no such moment.
@@ -227,7 +234,7 @@ contains
 
       associate (mark => simulation%marks(moment_marks(number)))
          tractions%interval = simulation%contact%model%interval()
-         if (mark%step == 0 .or. (number /= 1 .and. mark%reversal == 0)) then
+         if (mark%step == 0 .or. (number /= moment_loading .and. mark%reversal == 0)) then
             allocate (tractions%pressure(0), tractions%shear(0))
          else
             tractions%pressure = mark%state%fields%pressure

@@ -1,11 +1,11 @@
 !> Changes to the groups of a case: a value in place of another, and materials for a value of Dundurs' parameter.
 module mfv_case_changes
    use mfv_kinds, only: wp
-   use mfv_namelist, only: append_entry, append_group, entry_type, group_type
-   use mfv_strings, only: string_type, to_text
+   use mfv_namelist, only: append_entry, append_group, entry_type, group_type, place_of_group
+   use mfv_strings, only: to_text
    implicit none
    private
-   public :: set_value, set_dundurs_beta, count_of, write_number, stands_for
+   public :: set_value, set_dundurs_beta, write_number, stands_for
 
    !> Keys of one group of which a case has one at most: a value for one takes the place of the others.
    character(*), parameter :: alternatives(5) = [character(40) :: 'tangential_force force_ratio shift', &
@@ -25,7 +25,7 @@ contains
       type(entry_type) :: entry
       integer :: place, i
 
-      place = place_of(groups, group, number)
+      place = place_of_group(groups, group, number)
       if (place == 0) then
          new%name = group
          allocate (new%entries(0))
@@ -91,7 +91,7 @@ contains
       type(entry_type), allocatable :: old(:), left(:)
       integer :: place, i
 
-      place = place_of(groups, group, number)
+      place = place_of_group(groups, group, number)
       if (place == 0) return
       call move_alloc(groups(place)%entries, old)
       allocate (left(0))
@@ -100,33 +100,6 @@ contains
       end do
       call move_alloc(left, groups(place)%entries)
    end subroutine remove_keys
-
-   !> Place of the `number`-th group of a name, 0 for none.
-   pure integer function place_of(groups, name, number) result(place)
-      type(group_type), intent(in) :: groups(:)
-      character(*), intent(in) :: name
-      integer, intent(in) :: number
-      integer :: seen
-
-      seen = 0
-      do place = 1, size(groups)
-         if (groups(place)%name == name) seen = seen + 1
-         if (groups(place)%name == name .and. seen == number) return
-      end do
-      place = 0
-   end function place_of
-
-   !> Number of groups of a name.
-   pure integer function count_of(groups, name)
-      type(group_type), intent(in) :: groups(:)
-      character(*), intent(in) :: name
-      integer :: i
-
-      count_of = 0
-      do i = 1, size(groups)
-         if (groups(i)%name == name) count_of = count_of + 1
-      end do
-   end function count_of
 
    !> The shortest text that is read as this number.
    pure subroutine write_number(value, text)

@@ -1,6 +1,5 @@
 !> From the text of a case to a valid scene, or to a message that names file, line, group, key, value and what is right.
 module mfv_case_reader
-   use mfv_body, only: shape_matrix
    use mfv_body_reader
    use mfv_case, only: case_type
    use mfv_case_keys, only: case_catalogue
@@ -16,7 +15,7 @@ module mfv_case_reader
    use mfv_scene
    use mfv_simulation, only: history_events, history_none, history_steps
    use mfv_strings, only: to_text
-   use mfv_text_file, only: directory_of, read_text
+   use mfv_text_file, only: directory_of, read_text, stem_of
    implicit none
    private
    public :: read_case_file, read_case_text, read_case_groups
@@ -29,15 +28,13 @@ contains
       type(case_type), intent(out) :: case
       type(error_type), allocatable, intent(out) :: error
       logical, intent(in), optional :: without_steps
-      character(:), allocatable :: text, name
+      character(:), allocatable :: text
 
       call read_text(path, text, error)
       if (allocated(error)) return
       call read_case_text(text, path, case, error, without_steps)
       if (allocated(error)) return
-      name = path(index(path, '/', back=.true.) + 1:)
-      if (index(name, '.', back=.true.) > 1) name = name(:index(name, '.', back=.true.) - 1)
-      if (case%result_path == '') case%result_path = name//'.h5'
+      if (case%result_path == '') case%result_path = stem_of(path)//'.h5'
    end subroutine read_case_file
 
    !> The case in a text. `source`: its name for messages; files it names are looked for beside it. `without_steps`:

@@ -12,7 +12,7 @@ module mfv_hdf5_writer
    implicit none
    private
    public :: writer_type, check_writable, create_file, copy_and_open, finish_file, create_group, write_dataset, write_values, &
-             write_text, write_texts, write_whole, note
+             write_text, write_texts, write_whole, write_hdf5_version, note
 
    !> An open file.
    type :: writer_type
@@ -301,6 +301,15 @@ contains
       call h5sclose_f(space, code)
       call h5tclose_f(text_type, code)
    end subroutine write_terminated
+
+   !> The version of HDF5 that writes, as an attribute of the file.
+   subroutine write_hdf5_version(writer)
+      type(writer_type), intent(inout) :: writer
+      integer :: major, minor, release, code
+
+      call h5get_libversion_f(major, minor, release, code)
+      call write_text(writer, writer%file, 'hdf5_version', to_text(major)//'.'//to_text(minor)//'.'//to_text(release))
+   end subroutine write_hdf5_version
 
    !> An attribute that is a whole number.
    subroutine write_whole(writer, object, name, value)

@@ -5,9 +5,10 @@ module mfv_key_reader
    use mfv_error, only: error_type, set_error
    use mfv_keys
    use mfv_kinds, only: wp
-   use mfv_namelist, only: entry_type, group_type, write_entry
+   use mfv_namelist, only: entry_type, group_type, groups_of_name, place_of_group, write_entry
    use mfv_status, only: MFV_INPUT_ERROR
-   use mfv_strings, only: list_of_words, lower_case, nearest_name, quoted, string_type, to_text
+   use mfv_strings, only: list_of_words, lower_case, nearest_name, string_type, to_text
+   use mfv_text_file, only: path_beside
    implicit none
    private
    public :: reader_type, check_groups, check_entries, find_fault, read_number, logical_code, count_groups, line_of, find_file, &
@@ -165,7 +166,7 @@ contains
       character(:), allocatable, intent(out) :: path
 
       path = reader%text_value(group, number, name)
-      if (path(1:min(1, len(path))) /= '/') path = reader%directory//path
+      path = path_beside(reader%directory, path)
    end subroutine find_file
 
    !> The entry of a key in the `number`-th group of a name; `found` false where it is not written.
@@ -175,18 +176,15 @@ contains
       integer, intent(in) :: number
       type(entry_type), intent(out) :: entry
       logical, intent(out) :: found
-      integer :: i, j, seen
+      integer :: place, i
 
       found = .false.
-      seen = 0
-      do i = 1, size(self%groups)
-         if (self%groups(i)%name == group) seen = seen + 1
-         if (self%groups(i)%name /= group .or. seen /= number) cycle
-         do j = 1, size(self%groups(i)%entries)
-            found = self%groups(i)%entries(j)%key == name
-            if (found) entry = self%groups(i)%entries(j)
-            if (found) return
-         end do
+      place = place_of_group(self%groups, group, number)
+      if (place == 0) return
+      do i = 1, size(self%groups(place)%entries)
+         found = self%groups(place)%entries(i)%key == name
+         if (found) entry = self%groups(place)%entries(i)
+         if (found) return
       end do
    end subroutine entry_of
 
@@ -352,12 +350,8 @@ contains
    pure integer function count_groups(reader, name)
       type(reader_type), intent(in) :: reader
       character(*), intent(in) :: name
-      integer :: i
 
-      count_groups = 0
-      do i = 1, size(reader%groups)
-         if (reader%groups(i)%name == name) count_groups = count_groups + 1
-      end do
+      count_groups = groups_of_name(reader%groups, name)
    end function count_groups
 
    !> Line of the `number`-th group of a name, 0 for none.
@@ -365,14 +359,11 @@ contains
       type(reader_type), intent(in) :: reader
       character(*), intent(in) :: name
       integer, intent(in) :: number
-      integer :: i, seen
+      integer :: place
 
       line_of = 0
-      seen = 0
-      do i = 1, size(reader%groups)
-         if (reader%groups(i)%name == name) seen = seen + 1
-         if (reader%groups(i)%name == name .and. seen == number) line_of = reader%groups(i)%line
-      end do
+      place = place_of_group(reader%groups, name, number)
+      if (place > 0) line_of = reader%groups(place)%line
    end function line_of
 
    pure logical function any_equal(words, text)

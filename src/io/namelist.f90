@@ -9,7 +9,8 @@ module mfv_namelist
    use mfv_strings, only: add_text, lower_case, string_type, to_text
    implicit none
    private
-   public :: entry_type, group_type, parse_namelists, write_entry, write_namelists, append_group, append_entry
+   public :: entry_type, group_type, parse_namelists, write_entry, write_namelists, append_group, append_entry, &
+             place_of_group, groups_of_name
 
    !> One key with its value as written.
    type :: entry_type
@@ -143,6 +144,33 @@ contains
       call move_alloc(from%is_quoted, to%is_quoted)
       to%line = from%line
    end subroutine move_entry
+
+   !> Place of the `number`-th group of a name, 0 for none.
+   pure integer function place_of_group(groups, name, number) result(place)
+      type(group_type), intent(in) :: groups(:)
+      character(*), intent(in) :: name
+      integer, intent(in) :: number
+      integer :: seen
+
+      seen = 0
+      do place = 1, size(groups)
+         if (groups(place)%name == name) seen = seen + 1
+         if (groups(place)%name == name .and. seen == number) return
+      end do
+      place = 0
+   end function place_of_group
+
+   !> Number of groups of a name.
+   pure integer function groups_of_name(groups, name)
+      type(group_type), intent(in) :: groups(:)
+      character(*), intent(in) :: name
+      integer :: i
+
+      groups_of_name = 0
+      do i = 1, size(groups)
+         if (groups(i)%name == name) groups_of_name = groups_of_name + 1
+      end do
+   end function groups_of_name
 
    !> One key=value.
    subroutine read_entry(cursor, group, entry, error)

@@ -24,7 +24,7 @@ module mfv_result_fields
    private
    public :: field_type, result_groups, group_fields, field_named, step_group, along_nodes, along_records, &
              along_companions, along_cycles, along_nothing, scale_count
-   public :: result_attributes, units_type, name_units, unit_label, labelled_unit
+   public :: result_attributes, labelled_unit
 
    !> What the values of a field run along.
    integer, parameter :: along_nothing = 0, along_nodes = 1, along_records = 2, along_companions = 3, along_cycles = 4, &
@@ -468,30 +468,10 @@ contains
       call observables_of(simulation, values)
       do i = 1, observable_count
          if (ieee_is_nan(values(i))) cycle
-         call add_scalar(fields, observable_name(i), values(i), trim(unit_label(units, observable_unit(i))), &
+         call add_scalar(fields, observable_name(i), values(i), labelled_unit(observable_unit(i), units%length, units%energy), &
                          observable_meaning(i))
       end do
    end subroutine add_observables
-
-   !> Label of a unit that is named by its sort: length, force, traction, energy or 1; padded with blanks.
-   pure function unit_label(units, sort) result(label)
-      type(units_type), intent(in) :: units
-      character(*), intent(in) :: sort
-      character(len=max(len(units%length), len(units%force), len(units%traction), len(units%energy), 1)) :: label
-
-      select case (sort)
-      case ('length')
-         label = units%length
-      case ('force')
-         label = units%force
-      case ('traction')
-         label = units%traction
-      case ('energy')
-         label = units%energy
-      case default
-         label = '1'
-      end select
-   end function unit_label
 
    !> The cycles, one by one; and where the last one dissipated.
    subroutine add_cycles(fields, simulation, units)

@@ -10,7 +10,7 @@ module mfv_result_file
    use mfv_result_fields
    use mfv_simulation, only: simulation_type
    use mfv_status, only: MFV_FILE_ERROR
-   use mfv_strings, only: string_type, to_text
+   use mfv_strings, only: string_type
    implicit none
    private
    public :: write_result
@@ -48,14 +48,13 @@ contains
       type(simulation_type), intent(in) :: simulation
       type(string_type), intent(in) :: warnings(:)
       type(string_type), allocatable :: names(:), texts(:)
-      integer :: i, major, minor, release, code
+      integer :: i
 
       call result_attributes(case, simulation, warnings, names, texts)
       do i = 1, size(names)
          call write_text(writer, writer%file, names(i)%text, texts(i)%text)
       end do
-      call h5get_libversion_f(major, minor, release, code)
-      call write_text(writer, writer%file, 'hdf5_version', to_text(major)//'.'//to_text(minor)//'.'//to_text(release))
+      call write_hdf5_version(writer)
    end subroutine write_attributes
 
    !> All groups with their datasets.

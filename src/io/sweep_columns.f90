@@ -1,7 +1,7 @@
 !> The columns of a sweep's table: the one list of their names, units and meanings, in order.
 module mfv_sweep_columns
    use mfv_observables
-   use mfv_result_fields, only: labelled_unit, name_units, unit_label, units_type
+   use mfv_result_fields, only: labelled_unit
    use mfv_sweep_plan
    implicit none
    private
@@ -28,10 +28,8 @@ contains
    subroutine list_columns(sweep, columns)
       type(sweep_type), intent(in) :: sweep
       type(column_type), allocatable, intent(out) :: columns(:)
-      type(units_type) :: units
       integer :: i
 
-      call name_units(sweep%length_unit, sweep%force_unit, units)
       allocate (columns(0))
       call add(columns, 'case', column_whole, '1', 'number of the case', from_case)
       call add(columns, 'base', column_text, '1', 'base case', from_base)
@@ -51,7 +49,7 @@ contains
       call add(columns, 'largest_residual', column_real, '1', 'largest relative residual of the certificate', from_residual)
       do i = 1, observable_count
          call add(columns, observable_name(i), column_real, &
-                  trim(unit_label(units, observable_unit(i))), observable_meaning(i), from_observable, i)
+                  labelled_unit(observable_unit(i), sweep%length_unit, sweep%force_unit), observable_meaning(i), from_observable, i)
       end do
       if (sweep%has_reference) call add_errors(columns)
    end subroutine list_columns

@@ -2,7 +2,7 @@
 module mfv_sweep_reader
    use, intrinsic :: iso_fortran_env, only: int64
    use mfv_case, only: case_type
-   use mfv_case_changes, only: count_of, stands_for, write_number
+   use mfv_case_changes, only: stands_for, write_number
    use mfv_case_keys, only: case_catalogue
    use mfv_case_reader, only: read_case_groups
    use mfv_checksum, only: add_text_to_checksum
@@ -10,14 +10,14 @@ module mfv_sweep_reader
    use mfv_key_reader
    use mfv_keys
    use mfv_kinds, only: wp
-   use mfv_namelist, only: entry_type, parse_namelists
+   use mfv_namelist, only: entry_type, groups_of_name, parse_namelists
    use mfv_observables, only: observable_count, observable_name
    use mfv_strings, only: lower_case, quoted, to_text
    use mfv_sweep_columns, only: column_type, from_axis, list_columns
    use mfv_sweep_keys, only: sweep_catalogue
    use mfv_sweep_plan
    use mfv_sweep_record, only: record_layout
-   use mfv_text_file, only: directory_of, read_text
+   use mfv_text_file, only: directory_of, path_beside, read_text, stem_of
    use mfv_version, only: library_version
    implicit none
    private
@@ -34,15 +34,13 @@ contains
       type(sweep_type), intent(out) :: sweep
       type(error_type), allocatable, intent(out) :: error
       logical, intent(in), optional :: tries_values
-      character(:), allocatable :: text, name
+      character(:), allocatable :: text
 
       call read_text(path, text, error)
       if (allocated(error)) return
       call read_sweep_text(text, path, sweep, error, tries_values)
       if (allocated(error)) return
-      name = path(index(path, '/', back=.true.) + 1:)
-      if (index(name, '.', back=.true.) > 1) name = name(:index(name, '.', back=.true.) - 1)
-      if (sweep%result_path == '') sweep%result_path = name//'.h5'
+      if (sweep%result_path == '') sweep%result_path = stem_of(path)//'.h5'
    end subroutine read_sweep_file
 
    !> The sweep in a text. `source`: its name for messages; the base cases are looked for beside it. `tries_values`:
@@ -130,8 +128,7 @@ contains
       type(error_type), allocatable, intent(out) :: error
       character(:), allocatable :: path
 
-      path = reader%directory//name
-      if (name(1:min(1, len(name))) == '/') path = name
+      path = path_beside(reader%directory, name)
       base%name = name
       base%directory = directory_of(path)
       call read_text(path, base%text, error)
@@ -268,7 +265,7 @@ contains
       end if
       if (why /= '' .or. .not. catalogue%repeats(target%group)) return
       do i = 1, size(sweep%bases)
-         there = count_of(sweep%bases(i)%groups, target%group)
+         there = groups_of_name(sweep%bases(i)%groups, target%group)
          if (target%number >= 1 .and. target%number <= there) cycle
          why = 'there is no &'//target%group//' '//to_text(target%number)//' in '//sweep%bases(i)%name//', which has '// &
                to_text(there)
@@ -494,10 +491,12 @@ contains
    subroutine name_target(target, name)
       type(target_type), intent(in) :: target
       character(:), allocatable, intent(out) :: name
+      type(catalogue_type) :: catalogue
 
       name = target%key
       if (target%group /= '') name = target%group//'%'//target%key
-      if (any(target%group == ['body', 'step'])) name = target%group//'('//to_text(target%number)//')%'//target%key
+      catalogue = case_catalogue()
+      if (catalogue%repeats(target%group)) name = target%group//'('//to_text(target%number)//')%'//target%key
    end subroutine name_target
 
    !> The key of the case, or Dundurs' parameter as if it were one.
@@ -740,8 +739,7 @@ contains
       type(error_type), allocatable, intent(out) :: error
       character(:), allocatable :: path, bytes
 
-      path = base%directory//name
-      if (name(1:min(1, len(name))) == '/') path = name
+      path = path_beside(base%directory, name)
       call read_text(path, bytes, error)
       if (.not. allocated(error)) call add_text_to_checksum(bytes, checksum)
    end subroutine add_file

@@ -26,8 +26,6 @@ module mfv_sweep_table
    !> Bytes that a message may have.
    integer, parameter :: longest_message = 500
    integer, parameter :: bytes_of_real = 8, bytes_of_whole = 4
-   !> The first of the moments of mfv_observables: where the cycles begin.
-   integer, parameter :: moment_loading = 1
 
    !> Where a column is in a row.
    type :: layout_type
@@ -154,7 +152,7 @@ contains
       type(sweep_type), intent(in) :: sweep
       type(record_type), intent(in) :: records(:)
       character(:), allocatable :: outcome
-      integer :: i, j, number, major, minor, release, code
+      integer :: i, j, number
 
       call write_text(writer, writer%file, 'title', 'Sweep over cases of frictional contact')
       call write_text(writer, writer%file, 'input', sweep%text)
@@ -166,8 +164,7 @@ contains
       call write_text(writer, writer%file, 'length_unit', sweep%length_unit)
       call write_text(writer, writer%file, 'force_unit', sweep%force_unit)
       call write_text(writer, writer%file, 'mfv_version', library_version)
-      call h5get_libversion_f(major, minor, release, code)
-      call write_text(writer, writer%file, 'hdf5_version', to_text(major)//'.'//to_text(minor)//'.'//to_text(release))
+      call write_hdf5_version(writer)
       number = count(records%number > 0)
       call write_whole(writer, writer%file, 'complete', merge(1, 0, number == size(records)))
       call write_whole(writer, writer%file, 'cases', size(records))
@@ -456,19 +453,10 @@ contains
       type(record_type), intent(in) :: one, other
       real(wp) :: cycles(2)
 
-      cycles = [one%observables(place_of('cycles')), other%observables(place_of('cycles'))]
+      cycles = [one%observables(observable_place('cycles')), other%observables(observable_place('cycles'))]
       has_same_cycles = all(ieee_is_finite(cycles))
       if (has_same_cycles) has_same_cycles = nint(cycles(1)) == nint(cycles(2))
    end function has_same_cycles
-
-   !> Place of an observable.
-   pure integer function place_of(name) result(place)
-      character(*), intent(in) :: name
-
-      do place = 1, observable_count
-         if (observable_name(place) == name) return
-      end do
-   end function place_of
 
    !> Dissipation in the last cycle over that of a reference, NaN where there is none, or where it is not the same cycle.
    real(wp) function dissipation_ratio(record, reference) result(ratio)
@@ -478,7 +466,7 @@ contains
       ratio = ieee_value(1.0_wp, ieee_quiet_nan)
       if (reference%number == 0) return
       if (.not. has_same_cycles(record, reference)) return
-      i = place_of('cycle_dissipation')
+      i = observable_place('cycle_dissipation')
       if (.not. (ieee_is_finite(record%observables(i)) .and. ieee_is_finite(reference%observables(i)))) return
       if (abs(reference%observables(i)) > 0.0_wp) ratio = record%observables(i)/reference%observables(i)
    end function dissipation_ratio

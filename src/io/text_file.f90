@@ -7,7 +7,7 @@ module mfv_text_file
    use mfv_strings, only: from_c, string_type
    implicit none
    private
-   public :: read_text, split_lines, directory_of, find_working_directory, path_from
+   public :: read_text, split_lines, directory_of, stem_of, find_working_directory, path_from, path_beside
 
    interface
       function c_getcwd(buffer, size) bind(C, name='getcwd') result(path)
@@ -74,6 +74,24 @@ contains
       directory = path
    end function directory_of
 
+   !> The name of a file without its directory and without what follows its last dot, unless it begins with that.
+   pure function stem_of(path) result(stem)
+      character(*), intent(in) :: path
+      character(len=length_of_stem(path)) :: stem
+
+      stem = path(index(path, '/', back=.true.) + 1:)
+   end function stem_of
+
+   pure integer function length_of_stem(path) result(length)
+      character(*), intent(in) :: path
+      integer :: first, dot
+
+      first = index(path, '/', back=.true.) + 1
+      dot = index(path(first:), '.', back=.true.)
+      length = len(path) - first + 1
+      if (dot > 1) length = dot - 1
+   end function length_of_stem
+
    !> The directory the process works in, empty where it cannot be told.
    subroutine find_working_directory(path)
       character(:), allocatable, intent(out) :: path
@@ -93,6 +111,15 @@ contains
       whole = path
       if (given_within(directory, path)) whole = directory//'/'//path
    end function path_from
+
+   !> A path that a text in `directory` names; the directory with its final slash, or empty, as directory_of gives it.
+   pure function path_beside(directory, path) result(whole)
+      character(*), intent(in) :: directory, path
+      character(len=len(path) + merge(len(directory), 0, given_within(directory, path))) :: whole
+
+      whole = path
+      if (given_within(directory, path)) whole = directory//path
+   end function path_beside
 
    !> Whether a path has to be looked for in a directory: there is one, and the path does not begin at the root.
    pure logical function given_within(directory, path)
