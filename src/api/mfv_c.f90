@@ -133,7 +133,7 @@ contains
       allocate (self)
       self%mark = valid_mark
       self%case = case
-      self%simulation = new_simulation(case%scene, case%keep_history, case%keep_reversals)
+      self%simulation = new_simulation(case%scene, case%keep_history, case%keep_states)
       self%message = self%simulation%message
       handle = c_loc(self)
       status = MFV_COMPLETE
