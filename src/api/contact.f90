@@ -24,9 +24,11 @@ module mfv_contact
    use mfv_validity, only: validity_warnings
    implicit none
    private
-   public :: contact_type, loads_type, read_contact, read_contact_text, new_contact, body_lower, body_upper
+   public :: contact_type, loads_type, read_contact, read_contact_text, new_contact, step_to, body_lower, body_upper
 
    integer, parameter :: body_lower = 0, body_upper = 1
+   !> What step_to makes of a force and a displacement for one direction.
+   integer, parameter :: control_both = -1
 
    !> Loads and motions of a state: forces [force/length], moment and dissipation [force], lengths, radians; and counts.
    type :: loads_type
@@ -146,18 +148,59 @@ contains
       call self%simulation%advance(absolute, observer=observer)
    end subroutine advance
 
+   !> A step to the targets that are there: normal_force or approach, tangential_force or shift, moment or rotation; units and the rest
+   !> as in step_type.
+   pure function step_to(normal_force, approach, tangential_force, shift, moment, rotation, friction, cycles, steady_tolerance) &
+      result(step)
+      real(wp), intent(in), optional :: normal_force, approach, tangential_force, shift, moment, rotation, steady_tolerance
+      logical, intent(in), optional :: friction
+      integer, intent(in), optional :: cycles
+      type(step_type) :: step
+
+      call choose(normal_force, approach, step%normal_control, step%normal_target)
+      call choose(tangential_force, shift, step%tangential_control, step%tangential_target)
+      call choose(moment, rotation, step%rotational_control, step%rotational_target)
+      if (present(friction)) step%friction = friction
+      if (present(cycles)) step%cycles = cycles
+      if (present(steady_tolerance)) step%steady_tolerance = steady_tolerance
+   end function step_to
+
+   !> What a step does with one direction.
+   pure subroutine choose(force, displacement, control, target)
+      real(wp), intent(in), optional :: force, displacement
+      integer, intent(inout) :: control
+      real(wp), intent(inout) :: target
+
+      if (present(force)) then
+         control = control_force
+         target = force
+      end if
+      if (.not. present(displacement)) return
+      control = merge(control_both, control_displacement, present(force))
+      target = displacement
+   end subroutine choose
+
    !> Add the loads of a state to the targets of a step.
    pure subroutine add_present(state, step)
       type(contact_state_type), intent(in) :: state
       type(step_type), intent(inout) :: step
 
       associate (f => state%fields)
-         step%normal_target = step%normal_target + merge(f%normal_force, f%approach, step%normal_control == control_force)
-         step%tangential_target = step%tangential_target + merge(f%tangential_force, f%shift, &
-                                                                 step%tangential_control == control_force)
-         step%rotational_target = step%rotational_target + merge(f%moment, f%rotation, step%rotational_control == control_force)
+         call add_load(f%normal_force, f%approach, step%normal_control, step%normal_target)
+         call add_load(f%tangential_force, f%shift, step%tangential_control, step%tangential_target)
+         call add_load(f%moment, f%rotation, step%rotational_control, step%rotational_target)
       end associate
    end subroutine add_present
+
+   !> Add the load that a step controls to its target.
+   pure subroutine add_load(force, displacement, control, target)
+      real(wp), intent(in) :: force, displacement
+      integer, intent(in) :: control
+      real(wp), intent(inout) :: target
+
+      if (control == control_force) target = target + force
+      if (control == control_displacement) target = target + displacement
+   end subroutine add_load
 
    !> What is wrong with a step: error MFV_BAD_ARGUMENT.
    subroutine check_step(step, error)
@@ -165,7 +208,9 @@ contains
       type(error_type), allocatable, intent(out) :: error
       integer, parameter :: controls(3) = [control_keep, control_force, control_displacement]
 
-      if (.not. any(step%normal_control == controls) .or. .not. any(step%tangential_control == controls) .or. &
+      if (any([step%normal_control, step%tangential_control, step%rotational_control] == control_both)) then
+         call set_error(error, MFV_BAD_ARGUMENT, 'a step leads the force or the displacement of a direction, not both')
+      else if (.not. any(step%normal_control == controls) .or. .not. any(step%tangential_control == controls) .or. &
           .not. any(step%rotational_control == controls)) then
          call set_error(error, MFV_BAD_ARGUMENT, 'a control must be MFV_KEEP, MFV_FORCE or MFV_DISPLACEMENT')
       else if (.not. (ieee_is_finite(step%normal_target) .and. ieee_is_finite(step%tangential_target) .and. &
@@ -235,10 +280,10 @@ contains
       if (.not. allocated(error)) call self%forget()
    end subroutine come_back
 
-   !> Paths of all fields there are now, such as state/pressure: those of the result file.
+   !> Paths of all fields there are now, such as state/pressure: those of the result file. They hold until the state changes.
    subroutine field_paths(self, paths)
-      class(contact_type), intent(inout) :: self
-      type(string_type), allocatable, intent(out) :: paths(:)
+      class(contact_type), intent(inout), target :: self
+      type(string_type), pointer, intent(out) :: paths(:)
       type(string_type), allocatable :: groups(:)
       type(field_type), allocatable :: fields(:)
       integer :: i, j
@@ -252,7 +297,7 @@ contains
             end do
          end do
       end if
-      paths = self%paths
+      paths => self%paths
    end subroutine field_paths
 
    !> The field at a path. The group it is in is kept, for the next field of it; the pointer holds until another group is asked for
@@ -350,17 +395,17 @@ contains
       if (.not. allocated(error)) value = values(1)
    end subroutine get_integer
 
-   !> Names and texts of the attributes of the result: title, outcome, input and so on.
+   !> Names and texts of the attributes of the result: title, outcome, input and so on. They hold until the state changes.
    subroutine attributes(self, names, texts)
-      class(contact_type), intent(inout) :: self
-      type(string_type), allocatable, intent(out) :: names(:), texts(:)
+      class(contact_type), intent(inout), target :: self
+      type(string_type), pointer, intent(out) :: names(:), texts(:)
 
       if (.not. allocated(self%attribute_names)) then
          call find_warnings(self)
          call result_attributes(self%case, self%simulation, self%warnings, self%attribute_names, self%attribute_texts)
       end if
-      names = self%attribute_names
-      texts = self%attribute_texts
+      names => self%attribute_names
+      texts => self%attribute_texts
    end subroutine attributes
 
    !> Have the warnings at hand: they may take a search for the largest stress.

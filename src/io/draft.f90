@@ -34,6 +34,7 @@ module mfv_draft
       generic :: set => set_real, set_reals, set_integer, set_logical, set_text
       !> Data in memory in place of a file that a key names, see mfv_case_data: values of shape (rows) or (rows, columns).
       generic :: set_data => set_column, set_matrix
+      procedure :: keep_fault
       procedure :: write_text
       procedure :: make_case
       procedure, private :: set_real, set_reals, set_integer, set_logical, set_text, set_column, set_matrix, set_written, find_group
@@ -122,10 +123,18 @@ contains
       if (.not. allocated(fault)) return
       if (present(error)) then
          error = fault
-      else if (.not. allocated(self%fault)) then
-         self%fault = fault
+      else
+         call self%keep_fault(fault)
       end if
    end subroutine tell
+
+   !> Keep a fault for make_case to tell, unless there is one already.
+   subroutine keep_fault(self, fault)
+      class(draft_type), intent(inout) :: self
+      type(error_type), intent(in) :: fault
+
+      if (.not. allocated(self%fault)) self%fault = fault
+   end subroutine keep_fault
 
    subroutine set_real(self, name, value, error)
       class(draft_type), intent(inout) :: self
