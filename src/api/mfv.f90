@@ -23,11 +23,11 @@ module mfv
                               node_creep_left
    use mfv_observer, only: observer_type
    use mfv_reference_flat_punch, only: flat_punch_pressure
-   use mfv_reference_hertz, only: hertz_half_width, hertz_pressure
-   use mfv_reference_mindlin, only: mindlin_dissipation, mindlin_shear, mindlin_stick_ratio
+   use mfv_reference_hertz, only: hertz_half_width, hertz_force, hertz_pressure, hertz_approach
+   use mfv_reference_mindlin, only: mindlin_stick_ratio, mindlin_dissipation, mindlin_history_type, new_mindlin_history
    use mfv_reference_persson, only: persson_force
    use mfv_reference_spence, only: spence_cylinder_shear, spence_flat_punch_shear, spence_stick_ratio
-   use mfv_reference_yield, only: yield_contact_arc
+   use mfv_reference_yield, only: contact_arc_at_yield
    use mfv_scene, only: step_type, control_keep, control_force, control_displacement
    use mfv_status
    use mfv_strings, only: string_type
