@@ -44,7 +44,7 @@ def test_everything_is_of_the_wheel_or_of_the_base_system(binary):
     needed = subprocess.run(["/usr/bin/ldd", binary], capture_output=True, text=True, check=True).stdout.splitlines()
     assert len(needed) > 5
     strangers = [
-        line for line in needed if not BASE.match(Path(line.split()[0]).name) and f"=> {SITE}/" not in line.replace("mfv/lib/../../", "")
+        line for line in needed if not BASE.match(Path(line.split()[0]).name) and f"=> {SITE}/" not in line
     ]
     assert strangers == []
 
@@ -64,12 +64,12 @@ def test_library_and_h5py_share_a_process(tmp_path):
 @pytest.mark.parametrize("program", PROGRAMS)
 def test_programs_are_commands(program):
     run = subprocess.run([program, "--version"], capture_output=True, text=True, check=True)
-    assert run.stdout == f"{program} {mfv.__version__}\n"
+    assert run.stdout.split()[:2] == [program, mfv.__version__]
 
 
 def test_a_case_from_the_command_line(tmp_path):
-    run = subprocess.run(["mfv_run", EXAMPLES / "disk_on_plane.nml"], cwd=tmp_path, capture_output=True, text=True, check=True)
+    run = subprocess.run(["mfv_run", EXAMPLES / "mindlin.nml"], cwd=tmp_path, capture_output=True, text=True, check=True)
     assert "complete" in run.stdout
-    subprocess.run(["mfv_stress", "disk_on_plane.h5"], cwd=tmp_path, capture_output=True, check=True)
-    assert mfv.read(tmp_path / "disk_on_plane.h5").certificate.largest < 1e-10
+    subprocess.run(["mfv_stress", "mindlin.h5"], cwd=tmp_path, capture_output=True, check=True)
+    assert mfv.read(tmp_path / "mindlin.h5").certificate.largest < 1e-10
     assert subprocess.run(["mfv_run", "no/such.nml"], cwd=tmp_path, capture_output=True).returncode == 2
