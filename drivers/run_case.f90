@@ -51,7 +51,7 @@ contains
       end if
       call use_one_thread()
       started = seconds_now()
-      simulation = new_simulation(case%scene, case%keep_history, case%keep_reversals)
+      simulation = new_simulation(case%scene, case%keep_history, case%keep_states)
       call catch_interrupts()
       call observer%start()
       call simulation%run(observer)
