@@ -3,6 +3,8 @@
 . "$(dirname "$0")/common.sh"
 # The debug preset is built with MPI, so that mfv_sweep is tested with it too; the others without.
 packages="$packages openmpi-bin libopenmpi-dev"
+# The manual pages are looked at by both programs that show such pages.
+packages="$packages mandoc groff-base"
 install_missing
 python_environment test
 for preset in "${@:-release}"; do
