@@ -1,5 +1,6 @@
 """Sphinx's settings for the site. scripts/docs.sh stages the pages in build/docs/source (docs/site/stage.py) and builds them."""
 
+import importlib.util
 import sys
 from pathlib import Path
 
@@ -11,7 +12,7 @@ author = "The MFV developers"
 version = release = (ROOT / "VERSION").read_text().strip()
 html_title = f"MFV {release}"
 
-extensions = ["myst_parser", "sphinx.ext.autodoc", "sphinx_design", "sphinx_copybutton", "mathml", "docstrings"]
+extensions = ["myst_parser", "sphinx.ext.autodoc", "sphinx_design", "sphinx_copybutton", "sphinx.ext.mathjax", "docstrings"]
 myst_enable_extensions = ["dollarmath", "colon_fence"]
 myst_fence_as_directive = ["math"]
 myst_heading_anchors = 4
@@ -32,10 +33,14 @@ python_maximum_signature_line_length = 90
 default_role = "code"
 
 html_theme = "furo"
-html_math_renderer = "mathml"
-html_static_path = [str(ROOT / "docs/site/static")]
+# MathJax in one file, with its fonts, from the package that brings it along: no network is needed.
+MATHJAX = Path(importlib.util.find_spec("sphinx-mathjax-offline").submodule_search_locations[0], "static/mathjax/tex-svg.js")
+mathjax_path = MATHJAX.name
+html_static_path = [str(ROOT / "docs/site/static"), str(MATHJAX)]
 html_css_files = ["site.css"]
 html_show_sphinx = False
+html_show_copyright = False
+smartquotes = False
 html_copy_source = False
 html_theme_options = {"navigation_with_keys": True}
 pygments_style = "friendly"

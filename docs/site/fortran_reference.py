@@ -238,4 +238,4 @@ def _literal(text: str) -> str:
 
 def _first_sentence(comment: list[str]) -> str:
     words = " ".join(" ".join(comment).split("  ")[0].split())
-    return _literal(re.split(r"(?<=[\w)])[.:;] ", words, maxsplit=1)[0].rstrip("."))
+    return _literal(re.split(r"(?<=[\w)])(?<!\beq)(?<!\bsection)[.:;] ", words, maxsplit=1)[0].rstrip("."))

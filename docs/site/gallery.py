@@ -14,10 +14,12 @@ import matplotlib.image
 
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt
+from matplotlib.figure import Figure
 
 import mfv
 
 THUMBNAIL_WIDTH = 480
+GRID = ["::::{grid} 1 2 2 3", ":gutter: 3", ""]
 
 
 @dataclass
@@ -37,30 +39,36 @@ class Entry:
 
 
 def write_gallery(root: Path, programs: Path, folder: Path, show: object = print) -> dict[Path, str]:
-    """Write gallery/index.md and a page for every example below `folder`, the source of the site.
+    """Write gallery/index.md and a page for every example below `folder`, the source of the site, in a folder for each sort.
 
     root: the repository; programs: folder of mfv_run and mfv_sweep; show: told of every case that is solved.
     Returns the page of each example file, both relative: files to the repository, pages to the source.
     """
-    pages = folder / "gallery"
-    pages.mkdir(parents=True)
+    gallery = folder / "gallery"
+    places = {name: gallery / name for name in ("examples", "scripts", "dissertation", "decoupling")}
+    for place in places.values():
+        place.mkdir(parents=True)
     sections = [
-        ("Examples", "Solved and drawn while this site was built.", _solved(root, programs, pages, show)),
-        ("Scripts", "Python programs that solve many cases.", _scripts(root, pages)),
-        ("Figures of the dissertation", "Drawn by `examples/dissertation/draw.py`.", _dissertation(root, pages)),
+        ("Examples", "Solved and drawn while this site was built.", "examples", _solved(root, programs, places["examples"], show)),
+        ("Scripts", "Python programs that solve many cases.", "scripts", _scripts(root, places["scripts"])),
+        ("Figures of the dissertation", "Drawn by `examples/dissertation/draw.py`.", "dissertation",
+         _dissertation(root, places["dissertation"])),
     ]
     lines = ["# Gallery", ""]
-    for heading, words, entries in sections:
-        lines += [f"## {heading}", "", words, "", "::::{grid} 1 2 2 3", ":gutter: 3", ""]
+    made = {}
+    for heading, words, place, entries in sections:
+        lines += [f"## {heading}", "", words, "", *GRID]
         for entry in entries:
-            lines += _card(entry, pages)
-            (pages / f"{entry.name}.md").write_text(_page(root, entry))
+            lines += _card(entry, places[place])
+            # The side bar has room for the examples; the others are found from here.
+            mark = "" if place == "examples" else "---\norphan: true\n---\n\n"
+            (places[place] / f"{entry.name}.md").write_text(mark + _page(root, entry))
+            made[entry.source.relative_to(root)] = f"gallery/{place}/{entry.name}.md"
         lines += ["::::", ""]
-    lines += _decoupling(root, pages)
-    everything = [entry for _, _, entries in sections for entry in entries]
-    lines += ["```{toctree}", ":hidden:", "", *(entry.name for entry in everything), "```", ""]
-    (pages / "index.md").write_text("\n".join(lines))
-    return {entry.source.relative_to(root): f"gallery/{entry.name}.md" for entry in everything}
+    lines += _decoupling(root, places["decoupling"])
+    lines += ["```{toctree}", ":hidden:", "", *(f"examples/{entry.name}" for entry in sections[0][3]), "```", ""]
+    (gallery / "index.md").write_text("\n".join(lines))
+    return made
 
 
 def _solved(root: Path, programs: Path, pages: Path, show: object) -> list[Entry]:
@@ -75,16 +83,35 @@ def _solved(root: Path, programs: Path, pages: Path, show: object) -> list[Entry
             raise RuntimeError(f"{source}: {program} ended with exit code {run.returncode}: {run.stderr}")
         result = re.search(r"^(?:result|table) +(\S+\.h5)", run.stdout, re.MULTILINE)[1]
         picture = f"{source.stem}.png"
-        figure = _table_figure(pages / result) if is_sweep else mfv.plot.figure(mfv.read(pages / result))
-        figure.savefig(pages / picture, dpi=110)
-        plt.close(figure)
+        if is_sweep:
+            _save(_table_figure(pages / result), pages / picture)
+            _thumbnail(pages / picture)
+        else:
+            solved = mfv.read(pages / result)
+            _save(mfv.plot.figure(solved), pages / picture)
+            _save(_small_figure(solved), _place_of_thumbnail(pages / picture))
+        (pages / result).unlink()
         command = f"python -m mfv table {result}" if is_sweep else f"python -m mfv plot {result} -o {picture}"
         title, sentence = _words(text, source.stem)
         entries.append(Entry(source, title, sentence, f"{program} {source.name}\n{command}", picture, run.stdout))
     return entries
 
 
-def _table_figure(path: Path) -> plt.Figure:
+def _save(figure: Figure, path: Path) -> None:
+    figure.savefig(path, dpi=110)
+    plt.close(figure)
+
+
+def _small_figure(result: mfv.Result) -> Figure:
+    """The traction that a case is about: shear where there is any, else pressure."""
+    figure, axes = plt.subplots(figsize=(4.4, 3.0), layout="constrained")
+    draw = mfv.plot.shear if "shear" in result.state and result.state.shear.any() else mfv.plot.pressure
+    draw(result, axes)
+    axes.set_title("")
+    return figure
+
+
+def _table_figure(path: Path) -> Figure:
     """Dissipation of a cycle in a table over its last varied number, a curve for each combination of the others."""
     table = mfv.read_table(path)
     names = list(table.dtype.names)
@@ -131,14 +158,15 @@ def _dissertation(root: Path, pages: Path) -> list[Entry]:
 
 
 def _decoupling(root: Path, pages: Path) -> list[str]:
-    """The section of the decoupling study: its pictures, which lead to its document."""
+    """The section of the decoupling study: its pictures, copied into `pages`, which lead to its document."""
     lines = ["## The decoupling study", "", "Chapter 6 of the dissertation computed again, some 4,600 cases:",
              "[what came out](../examples/decoupling/README.md), [statement by statement](../examples/decoupling/statements.md).",
-             "", "::::{grid} 1 2 2 3", ":gutter: 3", ""]
+             "", *GRID]
     for picture in sorted((root / "examples/decoupling/pictures").glob("*.png")):
         shutil.copy(picture, pages)
         title = re.sub(r"^figure (\d+) (\d+)$", r"figure \1.\2", picture.stem.replace("_", " ")).capitalize()
-        lines += _framed(title, "", "../examples/decoupling/README", _thumbnail(pages / picture.name), title)
+        _thumbnail(pages / picture.name)
+        lines += _framed(title, "", "../examples/decoupling/README", f"{pages.name}/{picture.name}", title)
     return [*lines, "::::", ""]
 
 
@@ -155,20 +183,26 @@ def _first_sentence(words: str) -> str:
 
 
 def _card(entry: Entry, pages: Path) -> list[str]:
-    thumbnail = _thumbnail(pages / entry.picture) if entry.picture else ""
-    return _framed(entry.title, _literal(entry.sentence), entry.name, thumbnail, entry.title)
+    picture = pages / entry.picture
+    if entry.picture and not _place_of_thumbnail(picture).exists():
+        _thumbnail(picture)
+    shown = f"{pages.name}/{entry.picture}" if entry.picture else ""
+    return _framed(entry.title, _literal(entry.sentence), f"{pages.name}/{entry.name}", shown, entry.title)
 
 
-def _framed(title: str, words: str, link: str, thumbnail: str, alternative: str) -> list[str]:
-    picture = [f":img-top: {thumbnail}", f":img-alt: {alternative}"] if thumbnail else []
-    return [f":::{{grid-item-card}} {_literal(title)}", f":link: {link}", ":link-type: doc", *picture, "", words, ":::", ""]
+def _framed(title: str, words: str, link: str, picture: str, alternative: str) -> list[str]:
+    shown = [f":img-top: {_place_of_thumbnail(Path(picture))}", f":img-alt: {alternative}"] if picture else []
+    return [f":::{{grid-item-card}} {_literal(title)}", f":link: {link}", ":link-type: doc", *shown, "", words, ":::", ""]
 
 
-def _thumbnail(picture: Path) -> str:
-    name = f"thumbnail_{picture.name}"
+def _place_of_thumbnail(picture: Path) -> Path:
+    return picture.with_name(f"thumbnail_{picture.name}")
+
+
+def _thumbnail(picture: Path) -> None:
+    """A small copy of a picture beside it."""
     width = matplotlib.image.imread(picture).shape[1]
-    matplotlib.image.thumbnail(str(picture), str(picture.with_name(name)), scale=min(1.0, THUMBNAIL_WIDTH / width))
-    return name
+    matplotlib.image.thumbnail(str(picture), str(_place_of_thumbnail(picture)), scale=min(1.0, THUMBNAIL_WIDTH / width))
 
 
 def _page(root: Path, entry: Entry) -> str:

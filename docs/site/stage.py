@@ -31,7 +31,8 @@ CONTENTS = {
     "Start": ["docs/install", "docs/guide", "gallery/index", "docs/choosing"],
     "Reference": ["docs/namelist", "docs/sweep", "docs/file-format", "programs"],
     "Interfaces": ["docs/python-api", "python/index", "docs/c-api", "c", "docs/fortran-api", "fortran/index"],
-    "Background": ["docs/theory", "docs/verification", "docs/performance", "examples/decoupling/README"],
+    "Background": ["docs/theory", "docs/verification", "docs/performance",
+                   "The decoupling study <examples/decoupling/README>"],
     "Project": ["CHANGELOG"],
 }
 # Read in the repository only: what the site says by other pages.
@@ -71,6 +72,7 @@ class Site:
     def __init__(self, folder: Path, pages: dict[Path, str]) -> None:
         self.folder = folder
         self.pages = dict(pages)
+        self.made = set(pages.values())
         self.files: list[str] = []
 
     def stage(self, documents: list[Path]) -> None:
@@ -132,16 +134,20 @@ class Site:
         """The side bar: headings with their pages, then documents that no heading names, hidden."""
         lines, named = [], {"index"}
         for heading, pages in CONTENTS.items():
-            there = [page for page in pages if (self.folder / f"{page}.md").exists()]
-            named.update(there)
+            there = [page for page in pages if (self.folder / f"{_name(page)}.md").exists()]
+            named.update(map(_name, there))
             lines += ["", "```{toctree}", ":hidden:", f":caption: {heading}", "", *there, "```"]
-        gallery = [page for page in documents if page.startswith("gallery/")]
-        rest = [page for page in documents + self.files if page not in named and page not in gallery]
+        rest = [page for page in documents + self.files if page not in named and f"{page}.md" not in self.made]
         front = self.folder / "index.md"
         front.write_text(front.read_text() + "\n".join(lines) + "\n")
         for page in dict.fromkeys(rest):
             path = self.folder / f"{page}.md"
             path.write_text("---\norphan: true\n---\n\n" + path.read_text())
+
+
+def _name(entry: str) -> str:
+    """The page of an entry of the side bar, which may have a title before it."""
+    return entry.partition("<")[2].removesuffix(">") or entry
 
 
 def _around_code(text: str) -> list[str]:
