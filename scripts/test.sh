@@ -4,6 +4,8 @@
 # The debug preset is built with MPI, so that mfv_sweep is tested with it too; the others without. Users' programs are built in C++
 # and by pkg-config too.
 packages="$packages openmpi-bin libopenmpi-dev g++ pkgconf"
+# The manual pages are looked at by both programs that show such pages.
+packages="$packages mandoc groff-base"
 install_missing
 python_environment test
 for preset in "${@:-release}"; do
