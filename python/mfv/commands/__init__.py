@@ -3,22 +3,24 @@
 from __future__ import annotations
 
 import argparse
+import os
 import sys
 
 from .. import __version__
 from ..errors import MfvError
-from . import info, plot, table
+from . import compare, info, plot, table
 
 UNUSABLE = 2  # exit code, as that of mfv_run for input that cannot be used
 INTERRUPTED = 130  # exit code after Ctrl-C, as that of mfv_run
 
-COMMANDS = (plot, info, table)
+COMMANDS = (plot, info, compare, table)
 
 EXAMPLES = """\
 examples:
   mfv_run examples/mindlin.nml              write mindlin.h5
   python -m mfv info mindlin.h5             what is in it
   python -m mfv plot mindlin.h5             draw mindlin.png
+  python -m mfv compare goodman.h5 full.h5  two results side by side
   python -m mfv table study.h5 --csv study.csv
                                             the table of a sweep for a spreadsheet
 
@@ -30,14 +32,19 @@ def main(arguments: list[str] | None = None) -> int:
     """Run the command line; return the exit code."""
     options = _parser().parse_args(arguments)
     try:
-        options.command(options)
+        return options.command(options) or 0
+    except BrokenPipeError:  # whoever read the output has had enough
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        return UNUSABLE
     except (MfvError, OSError, ValueError) as error:
         print(f"mfv: {_with_file(str(error), options)}", file=sys.stderr)
+        return UNUSABLE
+    except ModuleNotFoundError as error:
+        print(f"mfv: this needs the Python package {error.name}, which is not there: pip install {error.name}", file=sys.stderr)
         return UNUSABLE
     except KeyboardInterrupt:
         print("mfv: interrupted", file=sys.stderr)
         return INTERRUPTED
-    return 0
 
 
 def _parser() -> argparse.ArgumentParser:

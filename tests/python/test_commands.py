@@ -1,0 +1,131 @@
+"""Commands of python -m mfv that make more than one picture: compare, animate, new."""
+
+from __future__ import annotations
+
+import csv
+import io
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import mfv
+from mfv import comparison_figure
+from mfv.commands import main
+from mfv.compare import compare, relative_difference
+
+PRESSED = """
+&scene title='{title}', coupling='{coupling}' /
+&body shape='half_plane', shear_modulus=1.0, poisson_ratio=0.3 /
+&body shape='disk', radius=0.25, rigid=.true. /
+&mesh nodes={nodes}, half_width=0.01225 /
+"""
+SHEARED = (
+    PRESSED
+    + """
+&friction law='coulomb', mu=0.7 /
+&step normal_force=1.0e-3, friction=.false. /
+&step tangential_force=2.8e-4 /
+&step tangential_force=-2.8e-4, cycles=1 /
+"""
+)
+MINDLIN = dict(title="it's a/b ! sheared", coupling="goodman", nodes=61)
+
+
+def solved(path: Path, text: str = SHEARED, **changes: object) -> mfv.Result:
+    """A result in a file."""
+    values = {key: str(value).replace("'", "''") for key, value in {**MINDLIN, **changes}.items()}
+    return mfv.run(text=text.format(**values), output=path)
+
+
+# --- compare ---
+
+
+def test_a_result_is_no_different_from_itself(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    solved(tmp_path / "a.h5")
+    same = compare(mfv.read(tmp_path / "a.h5"), mfv.read(tmp_path / "a.h5"))
+    assert same.largest_difference == 0.0 and same.settings == [] and same.inputs == [] and not same.interpolated
+    assert all(number.relative_difference == 0.0 or np.isnan(number.first) for number in same.numbers)
+    assert len(same.numbers) > 40
+    assert main(["compare", str(tmp_path / "a.h5"), str(tmp_path / "a.h5"), "--no-picture", "--tolerance", "0"]) == 0
+    assert "keys of the inputs that differ: none" in capsys.readouterr().out
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["a.h5"]
+
+
+def test_what_differs_is_told(tmp_path: Path) -> None:
+    first, second = solved(tmp_path / "a.h5"), solved(tmp_path / "b.h5", coupling="full")
+    found = compare(first, second)
+    assert ("coupling", "goodman", "full") in found.settings
+    assert found.inputs == [("scene%coupling", "goodman", "full")]
+    (shift,) = (number for number in found.numbers if (number.group, number.name) == ("summary", "shift"))
+    assert (shift.first, shift.second) == (first.summary.shift, second.summary.shift)
+    assert shift.relative_difference == pytest.approx(1.0 - second.summary.shift / first.summary.shift)
+    largest = np.max(np.abs(first.state.pressure - second.state.pressure))
+    assert found.tractions[0].largest_difference == pytest.approx(largest / second.state.pressure.max(), rel=1e-12)
+    assert found.largest_difference == pytest.approx(largest / second.state.pressure.max(), rel=1e-12)
+
+
+def test_tractions_on_other_meshes_are_interpolated() -> None:
+    coarse, fine = (mfv.run(text=SHEARED.format(**{**MINDLIN, "title": "", "nodes": nodes})) for nodes in (61, 183))
+    found = compare(coarse, fine)
+    assert found.interpolated and "interpolated linearly" in found.describe()
+    # Both hold at the nodes of the coarse mesh, which are among those of the fine one.
+    shared = np.max(np.abs(coarse.state.pressure - fine.state.pressure[1::3])) / fine.state.pressure.max()
+    assert shared <= found.tractions[0].largest_difference < 0.2
+    assert 0.0 < found.tractions[0].mean_square_difference < found.tractions[0].largest_difference
+
+
+def test_relative_differences() -> None:
+    assert relative_difference(0.0, 0.0) == relative_difference(np.inf, np.inf) == 0.0
+    assert relative_difference(1.0, 2.0) == relative_difference(2.0, 1.0) == 0.5
+    assert relative_difference(0.0, -3.0) == 1.0
+    assert np.isnan(relative_difference(1.0, np.nan))
+
+
+def test_compare_writes_picture_and_table(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    solved(tmp_path / "a.h5")
+    second = solved(tmp_path / "b.h5", coupling="full", nodes=81)
+    arguments = ["compare", str(tmp_path / "a.h5"), str(tmp_path / "b.h5")]
+    assert main([*arguments, "--tolerance", "1e-3", "--csv", str(tmp_path / "d.csv")]) == 1
+    assert capsys.readouterr().out.rstrip().endswith(str(tmp_path / "a_b.png"))
+    assert (tmp_path / "a_b.png").stat().st_size > 50000
+    text = (tmp_path / "d.csv").read_text()
+    rows = list(csv.DictReader(io.StringIO(text)))
+    (dissipation,) = (row for row in rows if row["group"] == "summary" and row["name"] == "dissipation")
+    assert float(dissipation["second"]) == second.summary.dissipation
+    assert {row["name"] for row in rows if row["group"] == "input"} == {"scene%coupling", "mesh%nodes"}
+    assert main([*arguments, "--no-picture", "--csv", "-"]) == 0
+    assert capsys.readouterr().out == text
+
+
+def test_the_picture_has_both_results_and_both_over_each_other(tmp_path: Path) -> None:
+    first, second = solved(tmp_path / "a.h5"), solved(tmp_path / "b.h5", coupling="full", nodes=81)
+    axes = comparison_figure.figure(compare(first, second)).axes
+    assert len(axes) == 9
+    one, other, difference = axes[2].lines
+    np.testing.assert_array_equal(one.get_ydata(), first.state.pressure)
+    np.testing.assert_array_equal(other.get_ydata(), second.state.pressure)
+    assert np.max(np.abs(difference.get_ydata())) == pytest.approx(
+        compare(first, second).tractions[0].largest_difference * max(first.state.pressure.max(), second.state.pressure.max())
+    )
+    assert len({ax.get_xlim() for ax in axes[:3]}) == len({ax.get_ylim() for ax in axes[6:]}) == 1
+    # A pressed and a sheared one; two that are only pressed.
+    pressed = mfv.run(text=PRESSED.format(**{**MINDLIN, "title": ""}) + "&step normal_force=1.0e-3 /")
+    assert [ax.axison for ax in comparison_figure.figure(compare(pressed, second)).axes[6:]] == [False, True, True]
+    assert len(comparison_figure.figure(compare(pressed, pressed)).axes) == 6
+
+
+def test_what_cannot_be_compared_is_named(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    solved(tmp_path / "a.h5")
+    (tmp_path / "b.h5").write_text("no HDF5\n")
+    good, bad = str(tmp_path / "a.h5"), str(tmp_path / "b.h5")
+    for arguments, complaint in (
+        ([good, bad], f"{bad}: not a result file"),
+        ([good, str(tmp_path / "c.h5")], "c.h5"),
+        ([good, good, "--step", "9"], f"{good}: there is no step 9"),
+        ([good, good, "-o", str(tmp_path / "nowhere" / "x.png")], "nowhere"),
+    ):
+        assert main(["compare", *arguments]) == 2
+        printed = capsys.readouterr().err
+        assert complaint in printed and printed.count("\n") == 1
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["a.h5", "b.h5"]
