@@ -4,15 +4,18 @@ from __future__ import annotations
 
 import csv
 import io
+import sys
 from pathlib import Path
 
 import numpy as np
 import pytest
+from PIL import Image
 
 import mfv
-from mfv import comparison_figure
+from mfv import animate, comparison_figure
 from mfv.commands import main
 from mfv.compare import compare, relative_difference
+from mfv.load_history import kept_states, thinned, with_states_between
 
 PRESSED = """
 &scene title='{title}', coupling='{coupling}' /
@@ -129,3 +132,131 @@ def test_what_cannot_be_compared_is_named(tmp_path: Path, capsys: pytest.Capture
         printed = capsys.readouterr().err
         assert complaint in printed and printed.count("\n") == 1
     assert sorted(path.name for path in tmp_path.iterdir()) == ["a.h5", "b.h5"]
+
+
+# --- states between those that a result keeps ---
+
+EXAMPLES = Path(__file__).resolve().parents[2] / "examples"
+
+
+@pytest.mark.parametrize(
+    ("name", "parts"),
+    [("mindlin", 6), ("steel_fretting", 6), ("pin_in_bore", 2), ("hertz", 1), ("shear_cycles", 10), ("cycles", 54)],
+)
+def test_states_on_the_way_lead_to_the_same_end(name: str, parts: int) -> None:
+    result = mfv.run(EXAMPLES / f"{name}.nml")
+    again, note = with_states_between(result, 2 * parts)
+    assert note == "" and len(again.steps) == 2 * parts
+    assert compare(result, again).largest_difference < 1e-9
+    if len(result.steps) == parts:  # every second state is one of the result's own
+        for kept, state in zip(result.steps, again.steps[1::2]):
+            np.testing.assert_allclose(state.pressure, kept.pressure, atol=1e-9 * kept.pressure.max())
+            np.testing.assert_allclose(state.shear, kept.shear, atol=1e-9 * kept.pressure.max())
+            assert state.tangential_force == pytest.approx(kept.tangential_force, abs=1e-9 * kept.normal_force)
+
+
+def test_states_on_the_way_are_half_way() -> None:
+    result = mfv.run(text=SHEARED.format(**{**MINDLIN, "title": ""}))
+    forces = [state.tangential_force for state in with_states_between(result, 8).result.steps]
+    np.testing.assert_allclose(forces, np.array([0, 0, 1.4, 2.8, 0, -2.8, 0, 2.8]) * 1e-4, atol=1e-15)
+
+
+def test_an_early_end_is_the_end_of_the_states() -> None:
+    result = mfv.run(text=SHEARED.format(**{**MINDLIN, "title": ""}) + "&step tangential_force=1e-3 /")
+    assert result.outcome == "gross sliding"
+    again, note = with_states_between(result, 50)
+    assert note == "" and again.outcome == "gross sliding"
+    np.testing.assert_array_equal(again.steps[-1].pressure, again.state.pressure)
+    assert again.steps[-1].tangential_force == pytest.approx(result.summary.tangential_force, rel=1e-9)
+    assert len(kept_states(result).steps) == len(result.steps) + 1
+
+
+def test_another_end_is_told_and_so_is_what_cannot_be_solved_again() -> None:
+    # Dahl's friction is solved to a tolerance of an increment, of which more states make more.
+    assert "ends elsewhere" in with_states_between(mfv.run(EXAMPLES / "dahl.nml"), 20).note
+    result = mfv.run(text=SHEARED.format(**{**MINDLIN, "title": ""}))
+    assert "want 8 states at least" in with_states_between(result, 7).note
+    result.attributes["input"] = result.attributes["input"].replace("shift", "").replace("disk", "disc")
+    again, note = with_states_between(result, 40)
+    assert "disc" in note and again.steps == result.steps
+    result.attributes["algorithm"] = "conventional"
+    assert "load steps" in with_states_between(result, 40).note
+
+
+def test_of_many_states_some_are_shown() -> None:
+    result = mfv.run(text=SHEARED.format(**{**MINDLIN, "title": ""}).replace("cycles=1", "cycles=20"))
+    few = thinned(result, 5).steps
+    assert len(few) == 5 and few[0] is result.steps[0] and few[-1] is result.steps[-1]
+    assert thinned(result, 100) is result
+    assert len(result.steps) == 42
+
+
+# --- animate ---
+
+
+def pictures(path: Path) -> list[np.ndarray]:
+    """The frames of a GIF."""
+    with Image.open(path) as image:
+        frames = []
+        for number in range(image.n_frames):
+            image.seek(number)
+            frames.append(np.asarray(image.convert("RGB")))
+        return frames
+
+
+def test_animate_writes_a_gif_that_moves(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    solved(tmp_path / "a.h5")
+    assert main(["animate", str(tmp_path / "a.h5"), "--frames", "8", "--rate", "4"]) == 0
+    printed = capsys.readouterr()
+    assert printed.out.strip() == str(tmp_path / "a.gif") and printed.err == ""
+    frames = pictures(tmp_path / "a.gif")
+    assert len(frames) == 8
+    assert all(np.any(one != other) for one, other in zip(frames, frames[1:]))
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["a.gif", "a.h5"]
+
+
+def test_animate_draws_the_states_of_the_file(tmp_path: Path) -> None:
+    result = solved(tmp_path / "a.h5")
+    moving = animate.movie(result)
+    assert moving.frames == len(result.steps)
+    for number, state in enumerate(result.steps):
+        moving.draw(number)
+        pressure, shear, curve = moving.picture.axes
+        (computed,) = (line for line in shear.lines if line.get_label() == "computed")
+        np.testing.assert_array_equal(computed.get_ydata(), state.shear)
+        assert curve.lines[-1].get_xydata().tolist() == [[state.shift, state.tangential_force]]
+        assert pressure.get_ylim()[1] >= max(other.pressure.max() for other in result.steps)
+
+
+@pytest.mark.parametrize(
+    ("text", "across"),
+    [
+        (PRESSED + "&step normal_force=1e-3 /\n&output history='none' /\n", "approach"),
+        ((EXAMPLES / "pin_in_bore.nml").read_text(), "rotation"),
+        (SHEARED + "&step tangential_force=1e-3 /\n", "shift"),
+    ],
+    ids=["frictionless without history", "turned", "sliding"],
+)
+def test_animate_draws_what_there_is(text: str, across: str, tmp_path: Path) -> None:
+    mfv.run(text=text.format(**{**MINDLIN, "title": ""}), output=tmp_path / "a.h5")
+    shown = kept_states(mfv.read(tmp_path / "a.h5"))
+    assert across in animate.movie(shown).picture.axes[2].get_xlabel()
+    assert main(["animate", str(tmp_path / "a.h5"), "--kept"]) == 0
+    assert len(pictures(tmp_path / "a.gif")) == len(shown.steps)
+
+
+def test_an_mp4_needs_ffmpeg_and_says_so(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    solved(tmp_path / "a.h5")
+    arguments = ["animate", str(tmp_path / "a.h5"), "--kept", "-o", str(tmp_path / "a.mp4")]
+    assert main(arguments) == 0
+    assert (tmp_path / "a.mp4").read_bytes()[4:8] == b"ftyp"
+    (tmp_path / "a.mp4").unlink()
+    monkeypatch.setattr("shutil.which", lambda name: None)
+    monkeypatch.setitem(sys.modules, "imageio_ffmpeg", None)
+    assert main(arguments) == 2
+    assert "write a GIF" in capsys.readouterr().err
+    assert main([*arguments[:-1], str(tmp_path / "a.avi")]) == 2
+    assert ".gif or .mp4" in capsys.readouterr().err
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["a.h5"]
