@@ -2,7 +2,8 @@
 # Installs what is missing, builds MFV and runs every test. Safe to repeat. Arguments: presets (release unless told).
 . "$(dirname "$0")/common.sh"
 # The debug preset is built with MPI, so that mfv_sweep is tested with it too; the others without.
-packages="$packages openmpi-bin libopenmpi-dev"
+# Pages of python -m mfv report are looked at in chromium.
+packages="$packages openmpi-bin libopenmpi-dev chromium"
 install_missing
 python_environment test
 for preset in "${@:-release}"; do

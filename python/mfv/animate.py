@@ -19,8 +19,8 @@ from matplotlib.layout_engine import ConstrainedLayoutEngine
 from matplotlib.patches import Patch
 
 from . import plot
-from .codes import NodeStatus
 from .result import Group, Result
+from .views import Curve, contact, curve_of
 
 #: What can be written, by the suffix of the file.
 SUFFIXES = (".gif", ".mp4")
@@ -33,20 +33,6 @@ HEIGHT, CAPTION, LEGEND = 4.1, 0.3, 0.27
 
 #: Margin of the axes, in parts of what they show.
 MARGIN = 0.06
-
-
-class Curve(NamedTuple):
-    """Which load is drawn over which displacement, and the labels of the axes."""
-
-    across: str
-    up: str
-    across_label: tuple[str, str]
-    up_label: tuple[str, str]
-
-
-TANGENTIAL = Curve("shift", "tangential_force", ("shift", "U"), ("tangential force", "Q"))
-ROTATIONAL = Curve("rotation", "moment", ("rotation", r"\varphi"), ("moment", "M"))
-NORMAL = Curve("approach", "normal_force", ("approach", "h"), ("normal force", "P"))
 
 
 class Movie(NamedTuple):
@@ -78,8 +64,8 @@ def movie(result: Result) -> Movie:
         if has_friction
         else (axes[1], plot.surfaces, _heights(result)),
     ]
-    framed = _contact(result)
-    curve = _curve(result)
+    framed = contact(result)
+    curve = curve_of(result)
     point = _draw_curve(result, axes[2], curve)
 
     def draw(number: int) -> None:
@@ -167,39 +153,16 @@ def _symmetric(largest: float) -> tuple[float, float]:
 
 def _heights(result: Result) -> tuple[float, float]:
     """The lowest and the highest point of both surfaces in view."""
-    left, right = _contact(result)
+    left, right = contact(result)
     in_view = (result.mesh.x >= left) & (result.mesh.x <= right)
     heights = np.concatenate([height[in_view] for state in result.steps for height in plot._heights(result, state)])
     return float(np.nanmin(heights)), float(np.nanmax(heights))
-
-
-def _contact(result: Result) -> tuple[float, float]:
-    """All that is in contact in any state and a quarter of its length on either side, as far as the mesh goes."""
-    touched = np.any([state.status != NodeStatus.OPEN for state in result.steps], axis=0)
-    x, half = result.mesh.x, 0.5 * result.mesh.interval
-    if not touched.any():
-        return float(x[0] - half), float(x[-1] + half)
-    left, right = x[touched][0] - half, x[touched][-1] + half
-    margin = 0.25 * (right - left)
-    return float(max(x[0] - half, left - margin)), float(min(x[-1] + half, right + margin))
 
 
 def _with_margin(limits: tuple[float, float]) -> tuple[float, float]:
     low, high = limits
     margin = MARGIN * (high - low)
     return (low - margin if low != 0.0 else 0.0), high + margin
-
-
-def _curve(result: Result) -> Curve:
-    """The load that tells most: the tangential force, else the moment, else the normal force."""
-
-    def moves(name: str) -> bool:
-        negligible = 1.0e-9 * _largest(result, "normal_force")
-        return all(name in state for state in result.steps) and any(abs(state[name]) > negligible for state in result.steps)
-
-    if plot._has_friction(result) and moves("tangential_force"):
-        return TANGENTIAL
-    return ROTATIONAL if moves("moment") and moves("rotation") else NORMAL
 
 
 def _draw_curve(result: Result, ax: Axes, curve: Curve) -> Any:

@@ -8,12 +8,12 @@ import sys
 
 from .. import __version__
 from ..errors import MfvError
-from . import animate, compare, info, plot, table
+from . import animate, compare, info, plot, report, table
 
 UNUSABLE = 2  # exit code, as that of mfv_run for input that cannot be used
 INTERRUPTED = 130  # exit code after Ctrl-C, as that of mfv_run
 
-COMMANDS = (plot, info, compare, animate, table)
+COMMANDS = (plot, info, compare, animate, report, table)
 
 EXAMPLES = """\
 examples:
@@ -22,6 +22,7 @@ examples:
   python -m mfv plot mindlin.h5             draw mindlin.png
   python -m mfv compare goodman.h5 full.h5  two results side by side
   python -m mfv animate mindlin.h5          the load history as mindlin.gif
+  python -m mfv report mindlin.h5           a web page of it, mindlin.html
   python -m mfv table study.h5 --csv study.csv
                                             the table of a sweep for a spreadsheet
 
