@@ -293,6 +293,7 @@ def _cycle_figures(result: Result, inside: slice) -> dict[str, Any]:
     if not cycles:
         return {}
     figure = _figure({"title": {"text": "cycle"}}, _axis("dissipation of a cycle", "", cycles.unit("dissipation")))
+    figure.update_yaxes(rangemode="tozero")
     figure.add_scatter(
         x=cycles.cycle.tolist(), y=_list(cycles.dissipation), name="dissipation", mode="lines+markers", line=NUMBERS
     )

@@ -44,6 +44,10 @@
   // The layout of a figure at a state: in the map a line where the state is, legends where there is more than one curve.
   function layoutAt(name, number) {
     const layout = { ...data.figures[name].layout };
+    if (document.documentElement.hasAttribute("data-printing")) {
+      const chart = document.getElementById(name);
+      [layout.width, layout.height] = [chart.clientWidth, chart.clientHeight];
+    }
     layout.showlegend = data.figures[name].data.length > 1;
     if (name === "map" && data.states.length > 1) {
       const band = { type: "rect", xref: "paper", x0: 0, x1: 1, y0: number - 0.5, y1: number + 0.5 };
@@ -92,8 +96,7 @@
   function setPrinting(isPrinting) {
     document.documentElement.toggleAttribute("data-printing", isPrinting);
     document.querySelectorAll("details").forEach((part) => { part.open = isPrinting; });
-    all.forEach((name) => Plotly.Plots.resize(name));
-    draw(all);
+    draw(all).then(() => { if (!isPrinting) all.forEach((name) => Plotly.Plots.resize(name)); });
   }
 
   slider.addEventListener("input", () => { stop(); draw(moved); });
