@@ -3,7 +3,10 @@
 from __future__ import annotations
 
 import csv
+import importlib.util
 import io
+import os
+import subprocess
 import sys
 from pathlib import Path
 
@@ -12,7 +15,7 @@ import pytest
 from PIL import Image
 
 import mfv
-from mfv import animate, comparison_figure
+from mfv import animate, comparison_figure, template
 from mfv.commands import main
 from mfv.compare import compare, relative_difference
 from mfv.load_history import kept_states, thinned, with_states_between
@@ -136,7 +139,8 @@ def test_what_cannot_be_compared_is_named(tmp_path: Path, capsys: pytest.Capture
 
 # --- states between those that a result keeps ---
 
-EXAMPLES = Path(__file__).resolve().parents[2] / "examples"
+PROJECT = Path(__file__).resolve().parents[2]
+EXAMPLES = PROJECT / "examples"
 
 
 @pytest.mark.parametrize(
@@ -260,3 +264,93 @@ def test_an_mp4_needs_ffmpeg_and_says_so(
     assert main([*arguments[:-1], str(tmp_path / "a.avi")]) == 2
     assert ".gif or .mp4" in capsys.readouterr().err
     assert sorted(path.name for path in tmp_path.iterdir()) == ["a.h5"]
+
+
+# --- new ---
+
+PROGRAMS = {name: Path(os.environ.get(name.upper(), PROJECT / "build" / "release" / "bin" / name)) for name in ("mfv_run", "mfv_sweep")}
+
+
+@pytest.mark.parametrize("name", template.names())
+def test_every_template_is_solved(name: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    path = tmp_path / "case.nml"
+    assert main(["new", name, "-o", str(path)]) == 0
+    printed = capsys.readouterr().out.splitlines()
+    assert printed[0] == str(path) and printed[-1].endswith(str(path))
+    assert sorted(printed[:-1]) == sorted(str(place) for place in tmp_path.iterdir())
+    program = printed[-1].split()[2]
+    ended = subprocess.run([PROGRAMS[program], path], cwd=tmp_path, capture_output=True, text=True)
+    assert ended.returncode == 0, ended.stderr
+    if program == "mfv_sweep":
+        table = mfv.read_table(tmp_path / "case.h5")
+        assert table.size == 24 and set(table["outcome"]) == {"complete"}
+    else:
+        result = mfv.read(tmp_path / "case.h5")
+        assert result.outcome == "complete" and result.certificate.largest < 1e-11
+        assert not result.attributes["warnings"].strip()
+        assert 0.0 < result.summary.stick_ratio < 1.0
+
+
+def test_comments_of_templates_are_those_of_the_catalogue() -> None:
+    specification = importlib.util.spec_from_file_location("templates", PROJECT / "scripts" / "templates.py")
+    scripts = importlib.util.module_from_spec(specification)
+    specification.loader.exec_module(scripts)
+    comments = {}
+    for name, program in PROGRAMS.items():
+        printed = subprocess.run([program, "--keys"], capture_output=True, text=True, check=True).stdout
+        comments.update(scripts.meanings_of(printed))
+    assert len(comments) > 50
+    for name in template.names():
+        text = template.text(name)
+        assert scripts.commented(text, comments) == text, f"{name}.nml: run scripts/templates.py"
+    # A comment that is wrong is put right, and what is written behind keys stays.
+    text = template.text("cylinder")
+    assert scripts.commented(text.replace("number of equal", "amount of"), comments) == text
+    with pytest.raises(KeyError):
+        scripts.commented("&mesh\n   knots = 3\n/\n", comments)
+
+
+def test_the_matrix_of_the_template_is_a_half_plane(tmp_path: Path) -> None:
+    assert main(["new", "matrix", "-o", str(tmp_path / "case.nml")]) == 0
+    given = mfv.run(tmp_path / "case.nml")
+    body = "shape = 'half_plane', shear_modulus = 1.0, poisson_ratio = 0.3 /"
+    text = template.text("matrix").replace("shape = 'matrix'", body + "\n&mesh nodes = 81, half_width = 0.0127")
+    known = mfv.run(text=text.replace("   file = 'matrix.h5'\n", ""))
+    assert compare(given, known).largest_difference < 1e-10
+    assert given.summary.approach == pytest.approx(known.summary.approach, rel=1e-3)
+
+
+def test_nothing_is_overwritten_unless_told(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    (tmp_path / "matrix.h5").write_text("mine\n")
+    arguments = ["new", "matrix", "-o", str(tmp_path / "case.nml")]
+    assert main(arguments) == 2
+    assert f"{tmp_path / 'matrix.h5'}: exists already" in capsys.readouterr().err
+    assert (tmp_path / "matrix.h5").read_text() == "mine\n" and len(list(tmp_path.iterdir())) == 1
+    assert main([*arguments, "--force"]) == 0
+    assert (tmp_path / "matrix.h5").read_bytes().startswith(b"\x89HDF")
+    # What a sweep needs may be there already, the same.
+    for template_name in ("cylinder", "sweep"):
+        assert main(["new", template_name, "-o", str(tmp_path / f"{template_name}.nml")]) == 0
+    assert main(["new", "sweep", "-o", str(tmp_path / "cylinder.nml")]) == 2
+    assert "give another" in capsys.readouterr().err
+
+
+def test_new_lists_templates_and_names_what_it_does_not_have(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    assert main(["new", "--list"]) == 0
+    assert [line.split()[0] for line in capsys.readouterr().out.splitlines()] == list(template.names())
+    assert main(["new", "cube"]) == 2
+    assert "there is no template cube; there is cylinder, " in capsys.readouterr().err
+    assert main(["new"]) == 0
+    assert [path.name for path in tmp_path.iterdir()] == ["cylinder.nml"]
+
+
+@pytest.mark.parametrize("command", ["new", "plot", "info", "compare", "animate", "report", "table"])
+def test_every_command_teaches(command: str, capsys: pytest.CaptureFixture[str]) -> None:
+    with pytest.raises(SystemExit) as caught:
+        main([command, "--help"])
+    assert caught.value.code == 0
+    printed = capsys.readouterr().out
+    assert f"python -m mfv {command}" in printed.split("examples:")[1] and len(printed) > 400

@@ -8,15 +8,16 @@ import sys
 
 from .. import __version__
 from ..errors import MfvError
-from . import animate, compare, info, plot, report, table
+from . import animate, compare, info, new, plot, report, table
 
 UNUSABLE = 2  # exit code, as that of mfv_run for input that cannot be used
 INTERRUPTED = 130  # exit code after Ctrl-C, as that of mfv_run
 
-COMMANDS = (plot, info, compare, animate, report, table)
+COMMANDS = (new, plot, info, compare, animate, report, table)
 
 EXAMPLES = """\
 examples:
+  python -m mfv new                         write a commented case, cylinder.nml
   mfv_run examples/mindlin.nml              write mindlin.h5
   python -m mfv info mindlin.h5             what is in it
   python -m mfv plot mindlin.h5             draw mindlin.png
@@ -52,7 +53,7 @@ def main(arguments: list[str] | None = None) -> int:
 def _parser() -> argparse.ArgumentParser:
     parser = argparse.ArgumentParser(
         prog="python -m mfv",
-        description="Look at result files of mfv_run and tables of mfv_sweep.",
+        description="Begin a case, look at result files of mfv_run and tables of mfv_sweep.",
         epilog=EXAMPLES,
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
