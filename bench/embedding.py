@@ -13,17 +13,16 @@ import argparse
 import os
 import sys
 import time
+from collections.abc import Callable
 from ctypes import byref, c_void_p, sizeof
 from pathlib import Path
-from typing import Callable
 
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 ROOT = Path(__file__).resolve().parents[1]
 sys.path.insert(0, str(ROOT / "python"))
 
-import numpy as np
-
 import mfv
+import numpy as np
 from mfv._library import Control, StepStructure, library
 
 #: Increments of a cycle, and the shift that they go to and fro between [length].

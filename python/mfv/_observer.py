@@ -113,7 +113,7 @@ class Observer:
             if self._bar is not None and self._bar.update(told.done - self._bar.n):
                 self._bar.set_postfix_str(f"{told.contact_nodes} in contact, {told.stick_nodes} stuck", refresh=False)
             return int(self.callback is not None and bool(self.callback(told)))
-        except BaseException as error:  # to be raised by `watch`: nothing can be raised through the library
+        except BaseException as error:  # noqa: BLE001 - to be raised by `watch`: nothing can be raised through the library
             self._raised = error
             return 1
 

@@ -2,16 +2,17 @@
 
 from __future__ import annotations
 
+import copy
 import ctypes
 import os
 import threading
 import weakref
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from contextlib import contextmanager
-from ctypes import POINTER, byref, c_double, c_int, c_int32, c_size_t, c_void_p, create_string_buffer
+from ctypes import POINTER, byref, c_int, c_int32, c_size_t, c_void_p, create_string_buffer
 from operator import index
 from types import TracebackType
-from typing import Any, Callable, NamedTuple
+from typing import TYPE_CHECKING, Any, Callable, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -33,6 +34,9 @@ from ._library import (
 from ._observer import Observer, Progress
 from .result import Field, Result, Values
 from .scene import Scene, created
+
+if TYPE_CHECKING:
+    from typing_extensions import Self
 
 #: HDF5, which writes the result files, is in general not safe to call from two threads at once.
 _writing = threading.Lock()
@@ -127,7 +131,8 @@ class Case:
         """A case of a scene, which may change or go afterwards. Raises InputError."""
         with scene._handle() as built:
             self._adopt(created("mfv_create", built))
-        self._scene: Scene | None = scene
+        #: What was run, where the text of the result does not have all of it.
+        self._scene: Scene | None = copy.deepcopy(scene) if scene.has_arrays else None
 
     @classmethod
     def from_file(cls, path: str | os.PathLike[str]) -> Case:
@@ -166,7 +171,7 @@ class Case:
         self._x = np.empty(0)
         self._has_many_nodes = self._count("mesh/x") >= MANY_NODES
 
-    def __enter__(self) -> Case:
+    def __enter__(self) -> Self:
         return self
 
     def __exit__(

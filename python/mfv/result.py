@@ -124,7 +124,8 @@ class Result:
         attributes: Mapping[str, str],
         source: Scene | None = None,
     ) -> None:
-        """`groups` by path, those of the steps as steps/0001 and so on. `source`: the scene that was run, where there is one."""
+        """`groups` by path, those of the steps as steps/0001 and so on. `source`: the scene that was run, where the input among
+        the attributes does not have all of it."""
         coordinates = {
             name: groups[path][name] for path, names in COORDINATES.items() if path in groups for name in names
         }

@@ -296,7 +296,7 @@ class Output(KeyGroup):
 
     file: str | os.PathLike[str] | None = None
     history: Literal["events", "steps", "none"] | None = None
-    states: Literal["reversals", "steps"] | None = None
+    states: Literal["reversals", "steps", "none"] | None = None
     error_estimate: bool | None = None
 
 
@@ -391,6 +391,11 @@ class Scene(KeyGroup):
         with self._handle() as handle:
             return _text_of_scene(handle)
 
+    @property
+    def has_arrays(self) -> bool:
+        """Whether arrays are part of it, which its text has not."""
+        return any(getattr(part, "data", None) is not None for part in (self.lower, self.upper, self.friction))
+
     def contact(self) -> Case:
         """A case of this scene, to be led step by step. Raises InputError."""
         from .case import Case
@@ -436,7 +441,7 @@ class Scene(KeyGroup):
                     file = keys.setdefault(_FILE_KEYS[type(part)], _NAMES_OF_DATA[group])
                     statuses += [_set_data(handle, file, dataset, values) for dataset, values in data.items()]
                 if isinstance(part, Step):
-                    keys = keys or {"friction": True}  # its default: a step in which nothing is named is a step all the same
+                    keys = keys or {"friction": True}  # its default: the library has to see a step in which nothing is named
                 statuses += _set_keys(handle, group, keys)
             if any(statuses):  # mfv_create tells of the first call that failed
                 created("mfv_create", handle)

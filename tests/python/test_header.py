@@ -6,9 +6,8 @@ import ctypes
 import re
 from pathlib import Path
 
-import pytest
-
 import mfv
+import pytest
 from mfv import _library
 
 HEADER = (Path(__file__).resolve().parents[2] / "include" / "mfv.h").read_text()
