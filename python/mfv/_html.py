@@ -8,11 +8,12 @@ from collections.abc import Collection, Iterable, Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-#: Colours of pressure and shear traction, those of mfv.plot; legible on light and dark pages.
-PRESSURE, SHEAR = "#0072B2", "#D55E00"
+#: Colours of pressure and shear traction: near those of mfv.plot, and legible on light and dark pages.
+PRESSURE, SHEAR = "#2A8FD0", "#D55E00"
 
-#: Size of the picture in pixels, with what is left free around the curves; points beyond so many are thinned out.
-WIDTH, HEIGHT, MARGIN, MOST_POINTS = 360, 150, 12, 400
+#: Size of the picture in pixels, what is left free around the curves and, for their names, below; points beyond so many are
+#: thinned out.
+WIDTH, HEIGHT, MARGIN, LEGEND, MOST_POINTS = 360, 150, 12, 18, 400
 
 CELL = "text-align:left; padding:1px 10px 1px 0; vertical-align:top"
 NUMBER = "text-align:right; padding:1px 10px 1px 0; vertical-align:top; font-variant-numeric:tabular-nums"
@@ -25,7 +26,7 @@ def table(rows: Iterable[Sequence[str]], caption: str = "", numbers: Collection[
         for row in rows
     ]
     head = f"<caption style='text-align:left; font-weight:bold'>{html.escape(caption)}</caption>" if caption else ""
-    return f"<table style='border-collapse:collapse; margin:4px 0'>{head}{''.join(lines)}</table>"
+    return f"<table style='border-collapse:collapse; margin:4px 0; color:inherit; font-size:inherit'>{head}{''.join(lines)}</table>"
 
 
 def block(*parts: str) -> str:
@@ -47,20 +48,17 @@ def tractions(x: NDArray[np.float64], pressure: NDArray[np.float64], shear: NDAr
     shown = slice(first, last, max(1, (last - first) // MOST_POINTS))
     across = _scaled(x[shown], x[first], x[last - 1], MARGIN, WIDTH - MARGIN)
     low, high = min(0.0, shear.min()), max(pressure.max(), shear.max())
-    curves = [
-        (values, colour, _scaled(values[shown], low, high, HEIGHT - MARGIN, MARGIN))
-        for values, colour in ((pressure, PRESSURE), (shear, SHEAR))
-        if np.any(values != 0.0)
-    ]
-    zero = _scaled(np.zeros(1), low, high, HEIGHT - MARGIN, MARGIN)[0]
-    lines = [_line(across[[0, -1]], np.array([zero, zero]), "currentColor", 0.5)]
-    lines += [_line(across, up, colour, 1.5) for _, colour, up in curves]
-    return (
-        f"<svg role='img' width='{WIDTH}' height='{HEIGHT}' viewBox='0 0 {WIDTH} {HEIGHT}' "
-        f"xmlns='http://www.w3.org/2000/svg'><title>Pressure (blue) and shear traction (orange) over x</title>"
-        + "".join(lines)
-        + "</svg>"
-    )
+    bottom, height = HEIGHT - MARGIN, HEIGHT + LEGEND
+    zero = _scaled(np.zeros(2), low, high, bottom, MARGIN)
+    parts = [_line(across[[0, -1]], zero, "currentColor", 0.5)]
+    place = MARGIN
+    for name, values, colour in (("pressure", pressure, PRESSURE), ("shear traction", shear, SHEAR)):
+        if np.any(values != 0.0):
+            parts.append(_line(across, _scaled(values[shown], low, high, bottom, MARGIN), colour, 1.5))
+            parts.append(f"<text x='{place}' y='{height - 5}' font-size='12' fill='{colour}'>{name}</text>")
+            place += WIDTH // 4
+    size = f"width='{WIDTH}' height='{height}' viewBox='0 0 {WIDTH} {height}'"
+    return f"<svg role='img' xmlns='http://www.w3.org/2000/svg' {size}>{''.join(parts)}</svg>"
 
 
 def _cell(text: str, column: int, is_number: bool) -> str:

@@ -419,10 +419,10 @@ class Scene(KeyGroup):
     __hash__ = None
 
     def _repr_html_(self) -> str:
-        parts = [part for _, part in self._parts()]
-        rows = [(name, _shown(value)) for name, value in self.keys().items()]
-        shown = [_html.table(rows, self.title or "Scene")] if rows else []
-        return _html.block(*shown, *(part._repr_html_() for part in parts))
+        parts = [(name.replace("body(1)", "lower").replace("body(2)", "upper"), part) for name, part in self._parts()]
+        rows = [(name, _shown(value)) for name, value in self.keys().items() if name != "title"]
+        rows += [(name, f"{part!r}".partition("(")[2][:-1]) for name, part in parts]
+        return _html.table(rows, self.title or "Scene")
 
     def _parts(self) -> list[tuple[str, KeyGroup]]:
         """The groups of the namelist with their numbers, but &scene."""

@@ -252,6 +252,6 @@ def test_scenes_show_what_they_have() -> None:
     assert repr(scene).startswith("Scene(lower=Body(shape='half_plane'")
     assert repr(mfv.Body.profile([0.0, 1.0], [0.0, 1.0])).endswith("data={'x': array(2), 'height': array(2)})")
     shown = scene._repr_html_()
-    for word in ("&lt;b&gt;", "half_plane", "radius", "Friction", "normal_force", "goodman"):
+    for word in ("&lt;b&gt;", "half_plane", "radius", "friction", "normal_force", "goodman"):
         assert word in shown
     assert "<b>" not in shown and "<script" not in shown
