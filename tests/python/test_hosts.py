@@ -48,18 +48,18 @@ def test_two_contacts_in_series_follow_the_closed_form(host: ModuleType) -> None
     for top in (2.0e-4, 5.0e-4, 8.0e-4):
         force = series.shift_top(top)
         expected = sum(shift(force, mu, host.WEIGHT) for mu in (0.5, 0.7))
-        assert top == pytest.approx(expected, rel=1e-3)
+        assert top == pytest.approx(expected, rel=5e-4)
         for case, mu in ((series.lower, 0.5), (series.upper, 0.7)):
             loads = case.loads
             assert loads.tangential_force == pytest.approx(force, rel=1e-6)
             assert loads.normal_force == pytest.approx(host.WEIGHT, rel=1e-8)
             edges = case["summary/edge_stick_ratio"]
-            assert edges == pytest.approx(np.sqrt(1.0 - force / (mu * host.WEIGHT)), abs=0.01)
+            assert edges == pytest.approx(np.sqrt(1.0 - force / (mu * host.WEIGHT)), abs=2e-3)
     turned, at = force, top
     for top in (4.0e-4, -3.0e-4):  # unloading: twice the shift at half the change of the force (Masing)
         force = series.shift_top(top)
         expected = sum(2.0 * shift(0.5 * (turned - force), mu, host.WEIGHT) for mu in (0.5, 0.7))
-        assert at - top == pytest.approx(expected, rel=1e-3)
+        assert at - top == pytest.approx(expected, rel=5e-4)
 
 
 def test_the_tangent_saves_evaluations_and_leads_to_the_same_forces(host: ModuleType) -> None:
@@ -92,7 +92,7 @@ def test_a_mass_braked_by_friction_turns_where_the_energy_says(host: ModuleType)
     assert force == pytest.approx(0.8 * mu * weight, rel=1e-9)
     for turned in free.forces[1:]:
         expected = brentq(work, 0.5 * abs(force), abs(force) * (1 - 1e-6), args=(abs(force),), xtol=1e-12)
-        assert abs(turned) == pytest.approx(expected, rel=3e-3)
+        assert abs(turned) == pytest.approx(expected, rel=5e-4)
         assert turned * force < 0.0
         force = turned
     assert np.all(np.diff(free.time) > 0.0)
