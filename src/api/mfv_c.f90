@@ -120,7 +120,7 @@ contains
       integer(c_int) :: status
 
       status = MFV_BAD_ARGUMENT
-      if (.not. c_associated(feature)) return
+      if (.not. c_associated(feature) .or. .not. c_associated(there)) return
       call integer_out(0, there)
       if (text_in(feature) /= 'hdf5') return
       call integer_out(merge(1, 0, has_hdf5), there)
@@ -128,24 +128,27 @@ contains
    end function mfv_has_feature
 
    function mfv_scene_create(scene) result(status) bind(C, name='mfv_scene_create')
-      type(c_ptr), intent(out) :: scene
+      type(c_ptr), intent(out), optional :: scene
       integer(c_int) :: status
       type(draft_type) :: draft
 
+      status = MFV_BAD_ARGUMENT
+      if (.not. present(scene)) return
       call hand_out_scene(draft, scene)
       status = MFV_COMPLETE
    end function mfv_scene_create
 
    function mfv_scene_from_text(text, name, scene, message, message_size) result(status) bind(C, name='mfv_scene_from_text')
       type(c_ptr), value :: text, name, message
-      type(c_ptr), intent(out) :: scene
+      type(c_ptr), intent(out), optional :: scene
       integer(c_size_t), value :: message_size
       integer(c_int) :: status
       type(draft_type) :: draft
       type(error_type), allocatable :: error
 
-      scene = c_null_ptr
       status = MFV_BAD_ARGUMENT
+      if (.not. present(scene)) return
+      scene = c_null_ptr
       if (.not. c_associated(text)) return
       if (c_associated(name)) then
          call read_draft(text_in(text), text_in(name), draft, error)
@@ -317,56 +320,63 @@ contains
 
    function mfv_create(scene, handle, message, message_size) result(status) bind(C, name='mfv_create')
       type(c_ptr), value :: scene, message
-      type(c_ptr), intent(out) :: handle
+      type(c_ptr), intent(out), optional :: handle
       integer(c_size_t), value :: message_size
       integer(c_int) :: status
-      type(scene_handle_type), pointer :: self
-      type(contact_type) :: contact
+      type(scene_handle_type), pointer :: given
+      type(handle_type), pointer :: self
       type(error_type), allocatable :: error
 
+      status = MFV_BAD_ARGUMENT
+      if (.not. present(handle)) return
       handle = c_null_ptr
-      call find_scene(scene, self, status)
+      call find_scene(scene, given, status)
       if (status /= MFV_COMPLETE) return
-      call new_contact(self%draft, contact, error)
+      allocate (self)
+      call new_contact(given%draft, self%contact, error)
       status = told(error, message, message_size)
-      if (status == MFV_COMPLETE) call hand_out(contact, handle)
+      call hand_out(self, status, handle)
    end function mfv_create
 
    function mfv_create_from_file(path, handle, message, message_size) result(status) bind(C, name='mfv_create_from_file')
       type(c_ptr), value :: path, message
-      type(c_ptr), intent(out) :: handle
+      type(c_ptr), intent(out), optional :: handle
       integer(c_size_t), value :: message_size
       integer(c_int) :: status
-      type(contact_type) :: contact
+      type(handle_type), pointer :: self
       type(error_type), allocatable :: error
 
-      handle = c_null_ptr
       status = MFV_BAD_ARGUMENT
+      if (.not. present(handle)) return
+      handle = c_null_ptr
       if (.not. c_associated(path)) return
-      call read_contact(text_in(path), contact, error)
+      allocate (self)
+      call read_contact(text_in(path), self%contact, error)
       status = told(error, message, message_size)
-      if (status == MFV_COMPLETE) call hand_out(contact, handle)
+      call hand_out(self, status, handle)
    end function mfv_create_from_file
 
    function mfv_create_from_text(text, name, handle, message, message_size) result(status) &
       bind(C, name='mfv_create_from_text')
       type(c_ptr), value :: text, name, message
-      type(c_ptr), intent(out) :: handle
+      type(c_ptr), intent(out), optional :: handle
       integer(c_size_t), value :: message_size
       integer(c_int) :: status
-      type(contact_type) :: contact
+      type(handle_type), pointer :: self
       type(error_type), allocatable :: error
 
-      handle = c_null_ptr
       status = MFV_BAD_ARGUMENT
+      if (.not. present(handle)) return
+      handle = c_null_ptr
       if (.not. c_associated(text)) return
+      allocate (self)
       if (c_associated(name)) then
-         call read_contact_text(text_in(text), text_in(name), contact, error)
+         call read_contact_text(text_in(text), text_in(name), self%contact, error)
       else
-         call read_contact_text(text_in(text), 'text', contact, error)
+         call read_contact_text(text_in(text), 'text', self%contact, error)
       end if
       status = told(error, message, message_size)
-      if (status == MFV_COMPLETE) call hand_out(contact, handle)
+      call hand_out(self, status, handle)
    end function mfv_create_from_text
 
    !> The status of an error, MFV_COMPLETE where there is none; its message goes to a buffer, which may be null.
@@ -385,28 +395,35 @@ contains
       end if
    end function told
 
-   !> A handle of a contact.
-   subroutine hand_out(contact, handle)
-      type(contact_type), intent(in) :: contact
-      type(c_ptr), intent(out) :: handle
-      type(handle_type), pointer :: self
+   !> Hand out an object whose contact was made; do away with it where `status` says that it was not.
+   subroutine hand_out(self, status, handle)
+      type(handle_type), pointer, intent(inout) :: self
+      integer(c_int), intent(in) :: status
+      type(c_ptr), intent(inout) :: handle
 
-      allocate (self)
-      self%mark = valid_mark
-      self%contact = contact
-      call contact%get_message(self%message)
-      handle = c_loc(self)
+      if (status == MFV_COMPLETE) then
+         self%mark = valid_mark
+         call self%contact%get_message(self%message)
+         handle = c_loc(self)
+      else
+         deallocate (self)
+      end if
    end subroutine hand_out
 
    function mfv_copy(handle, copy) result(status) bind(C, name='mfv_copy')
       type(c_ptr), value :: handle
-      type(c_ptr), intent(out) :: copy
+      type(c_ptr), intent(out), optional :: copy
       integer(c_int) :: status
-      type(handle_type), pointer :: self
+      type(handle_type), pointer :: self, other
 
+      status = MFV_BAD_ARGUMENT
+      if (.not. present(copy)) return
       copy = c_null_ptr
       call find(handle, self, status)
-      if (status == MFV_COMPLETE) call hand_out(self%contact, copy)
+      if (status /= MFV_COMPLETE) return
+      allocate (other)
+      other%contact = self%contact
+      call hand_out(other, status, copy)
    end function mfv_copy
 
    function mfv_free(handle) result(status) bind(C, name='mfv_free')
@@ -537,7 +554,7 @@ contains
       type(handle_type), pointer :: self
       real(c_double), pointer :: towards(:), by_rows(:, :)
       type(error_type), allocatable :: error
-      real(wp) :: found(motions, motions)
+      real(wp), allocatable :: found(:, :)
 
       call find(handle, self, status)
       if (status /= MFV_COMPLETE) return
@@ -545,6 +562,7 @@ contains
       if (motions /= 2 .and. motions /= 3) return
       status = refused(self, 'mfv_tangent: tangent is null')
       if (.not. c_associated(tangent)) return
+      allocate (found(motions, motions))
       if (c_associated(direction)) then
          call c_f_pointer(direction, towards, [motions])
          status = refused(self, 'mfv_tangent: the direction is not finite')
