@@ -2,7 +2,8 @@
  * (embedding_direct.f90), in one program.
  *
  *     embedding [REPEATS]                    times: the least of every increment over so many cycles, each way in turn (40)
- *     embedding direct|advance|loads CYCLES  one way only, in the first scene: for valgrind --tool=callgrind to count instructions
+ *     embedding direct|advance|loads SCENE   one way only, a cycle in scene 0, 1, ...: for callgrind to count instructions, such as
+ *                                            valgrind --tool=callgrind --toggle-collect=mfv_advance embedding advance 0
  *
  * 85 nodes in contact, Coulomb's friction, a cycle of the shift in small increments, as in embedding.py. Prints a Markdown table. */
 #include <math.h>
@@ -143,14 +144,11 @@ int main(int count, char **arguments) {
   static double taken[MOST_INCREMENTS];
   int contact_nodes;
   if (count == 3) {
-    const int cycles = atoi(arguments[2]), direct = strcmp(arguments[1], "direct") == 0;
-    const int way = strcmp(arguments[1], "loads") == 0 ? LOADS : ADVANCE;
-    for (int i = 0; i < cycles; ++i) {
-      if (direct)
-        cycle_direct(&scenes[0], taken);
-      else
-        cycle(&scenes[0], way, taken, &contact_nodes);
-    }
+    const int number = atoi(arguments[2]) % SCENES, way = strcmp(arguments[1], "loads") == 0 ? LOADS : ADVANCE;
+    if (strcmp(arguments[1], "direct") == 0)
+      cycle_direct(&scenes[number], taken);
+    else
+      cycle(&scenes[number], way, taken, &contact_nodes);
     return 0;
   }
   puts("| scene | nodes in contact | increments a cycle | directly, µs | mfv_advance, µs | more | with mfv_get_loads | "
