@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import Any
 
 import matplotlib
 import numpy as np
@@ -15,9 +16,9 @@ from . import plot
 from .compare import Comparison
 
 #: How the two are drawn over each other, and their difference.
-FIRST = dict(color=plot.NUMBERS, linewidth=1.0)
-SECOND = dict(color=plot.CLOSED_FORM, linewidth=1.0, linestyle=(0, (4, 2)))
-DIFFERENCE = dict(color=plot.SURFACE, linewidth=0.8)
+FIRST: dict[str, Any] = dict(color=plot.NUMBERS, linewidth=1.0)
+SECOND: dict[str, Any] = dict(color=plot.CLOSED_FORM, linewidth=1.0, linestyle=(0, (4, 2)))
+DIFFERENCE: dict[str, Any] = dict(color=plot.SURFACE, linewidth=0.8)
 
 
 def figure(comparison: Comparison, first: str = "first", second: str = "second") -> Figure:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import copy
+import functools
 import os
 from collections.abc import Callable, Iterable, Iterator
 from typing import Any, NamedTuple
@@ -115,7 +116,7 @@ def _divided(case: Case, parts: list[Part], divisions: int) -> Iterator[tuple[Pa
 
     for part in parts:
         for division in range(1, divisions + 1):
-            yield part, lambda part=part, division=division: loads(part, division)
+            yield part, functools.partial(loads, part, division)
 
 
 def _parts(result: Result) -> Iterator[Part]:

@@ -268,7 +268,9 @@ def test_an_mp4_needs_ffmpeg_and_says_so(
 
 # --- new ---
 
-PROGRAMS = {name: Path(os.environ.get(name.upper(), PROJECT / "build" / "release" / "bin" / name)) for name in ("mfv_run", "mfv_sweep")}
+PROGRAMS = {
+    name: Path(os.environ.get(name.upper(), PROJECT / "build" / "release" / "bin" / name)) for name in ("mfv_run", "mfv_sweep")
+}
 
 
 @pytest.mark.parametrize("name", template.names())
@@ -296,7 +298,7 @@ def test_comments_of_templates_are_those_of_the_catalogue() -> None:
     scripts = importlib.util.module_from_spec(specification)
     specification.loader.exec_module(scripts)
     comments = {}
-    for name, program in PROGRAMS.items():
+    for program in PROGRAMS.values():
         printed = subprocess.run([program, "--keys"], capture_output=True, text=True, check=True).stdout
         comments.update(scripts.meanings_of(printed))
     assert len(comments) > 50

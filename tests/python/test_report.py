@@ -21,7 +21,9 @@ from mfv.load_history import kept_states
 EXAMPLES = Path(__file__).resolve().parents[2] / "examples"
 
 #: The browser: what MFV_CHROMIUM says, else the first of the usual names on the PATH.
-CHROMIUM = os.environ.get("MFV_CHROMIUM") or shutil.which("chromium") or shutil.which("chromium-browser") or shutil.which("google-chrome")
+CHROMIUM = os.environ.get("MFV_CHROMIUM") or next(
+    filter(None, map(shutil.which, ("chromium", "chromium-browser", "google-chrome"))), None
+)
 
 #: A page that cannot be drawn fails after this time [ms].
 PATIENCE = 120_000
@@ -81,7 +83,8 @@ class Page:
     def drawn(self, chart: str) -> list[str]:
         """What the curves of a chart look like: their paths."""
         return self.tab.evaluate(
-            "(chart) => [...document.querySelectorAll(`#${chart} .scatterlayer path`)].map((path) => path.getAttribute('d'))", chart
+            "(chart) => [...document.querySelectorAll(`#${chart} .scatterlayer path`)].map((path) => path.getAttribute('d'))",
+            chart,
         )
 
     def move_to(self, state: int) -> None:
@@ -92,7 +95,9 @@ class Page:
     def wait_for_state(self, state: int) -> None:
         """Wait for the words of a state."""
         self.tab.wait_for_function(
-            "(start) => document.getElementById('words').textContent.startsWith(start)", arg=f"state {state} of", timeout=PATIENCE
+            "(start) => document.getElementById('words').textContent.startsWith(start)",
+            arg=f"state {state} of",
+            timeout=PATIENCE,
         )
 
     def places(self, selector: str) -> list[list[int]]:
@@ -207,8 +212,12 @@ def test_a_page_is_readable_light_dark_wide_and_narrow(browser: object, tmp_path
     path = written(SHEARED, tmp_path)[1]
     pictures = {}
     for scheme in ("light", "dark"):
+        page = Page(browser, path, viewport={"width": 1300, "height": 800}, color_scheme=scheme)
         for width in (1300, 390):
-            page = Page(browser, path, viewport={"width": width, "height": 800}, color_scheme=scheme)
+            page.tab.set_viewport_size({"width": width, "height": 800})
+            page.tab.wait_for_function(
+                "() => [...document.querySelectorAll('.main-svg')].every((one) => one.clientWidth <= innerWidth)", timeout=PATIENCE
+            )
             pictures[scheme, width] = picture = page.picture()
             assert picture.shape[1] == width  # nothing hangs over
             assert len(colours_of(picture)) > 200
@@ -217,7 +226,7 @@ def test_a_page_is_readable_light_dark_wide_and_narrow(browser: object, tmp_path
                 assert len(counts) > 20 and counts.max() < 0.98 * counts.sum()  # not blank
             named = page.tab.locator("[role=group]:not([aria-label]), button:not([aria-label]):not(:has-text('play'))")
             assert named.count() == 0
-            page.tab.close()
+        page.tab.close()
     for width in (1300, 390):
         assert pictures["light", width].mean() > 200 > 80 > pictures["dark", width].mean()
     # The colours follow the system while the page is open.
@@ -237,7 +246,7 @@ def test_states_between_can_be_asked_for(browser: object, tmp_path: Path) -> Non
     page = Page(browser, path)
     assert page.tab.locator("#state").get_attribute("max") == "30"
     np.testing.assert_allclose(page.curve("curve", "computed")[-1], result.summary.tangential_force, rtol=1e-6)
-    page.move_to(8)  # the contact has grown for three fifths of the first of six parts, five states each; then three in the second
+    page.move_to(8)  # five states press; three of the next five lead to three fifths of 2.8e-4
     assert "Q = 0.000168" in page.tab.inner_text("#words")
     assert page.charts()["cycles"] == 1 and page.complaints == []
     page.tab.close()

@@ -6,6 +6,7 @@ import argparse
 import sys
 from pathlib import Path
 
+from ..compare import Comparison, compare
 from ..result import read
 from .files import written
 
@@ -48,8 +49,6 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(options: argparse.Namespace) -> int:
     """Compare, print, draw; return the exit code. Raises OSError, NotAResult, ValueError."""
-    from ..compare import compare
-
     comparison = compare(read(options.file), read(options.other), options.step)
     if options.csv == "-":
         comparison.write_csv(sys.stdout)
@@ -64,7 +63,7 @@ def run(options: argparse.Namespace) -> int:
     return DIFFERENT if too_different else 0
 
 
-def _draw(comparison, options: argparse.Namespace) -> None:
+def _draw(comparison: Comparison, options: argparse.Namespace) -> None:
     """Write the picture, and say where it is unless the standard output is a table."""
     from ..comparison_figure import figure
 
