@@ -241,6 +241,23 @@ def test_a_page_is_readable_light_dark_wide_and_narrow(browser: object, tmp_path
 
 
 @needs_chromium
+def test_a_chart_can_be_saved_and_cannot_be_sent_away(browser: object, tmp_path: Path) -> None:
+    path = written(SHEARED, tmp_path)[1]
+    page = Page(browser, path)
+    buttons = page.tab.evaluate("() => [...document.querySelectorAll('#shear .modebar-btn')].map((one) => one.outerHTML)")
+    assert len(buttons) == 4 and not any("hare" in button or "loud" in button for button in buttons)
+    page.tab.hover("#shear")
+    with page.tab.expect_download(timeout=PATIENCE) as saved:
+        page.tab.locator("#shear .modebar-btn").first.click()
+    saved.value.save_as(tmp_path / "shear.png")
+    assert len(colours_of(np.asarray(Image.open(tmp_path / "shear.png").convert("RGB")))) > 20
+    # Whatever asks for something is refused by the page itself.
+    assert page.tab.evaluate("() => fetch('https://example.org/').then(() => 'sent', () => 'refused')") == "refused"
+    assert all(url.startswith(("file:", "data:", "blob:")) for url in page.requests)
+    page.tab.close()
+
+
+@needs_chromium
 def test_states_between_can_be_asked_for(browser: object, tmp_path: Path) -> None:
     result, path = written(SHEARED, tmp_path, "--states", "30")
     page = Page(browser, path)
