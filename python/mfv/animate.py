@@ -53,10 +53,17 @@ def movie(result: Result) -> Movie:
         picture.suptitle(result.title, fontsize=12, parse_math=False)
         zones = _zones(result) if has_friction else []
         below = CAPTION + (LEGEND if zones else 0.0)
-        picture.set_layout_engine(ConstrainedLayoutEngine(rect=(0.0, below / HEIGHT, 1.0, 1.0 - below / HEIGHT), w_pad=0.08))
+        picture.set_layout_engine(
+            ConstrainedLayoutEngine(rect=(0.0, below / HEIGHT, 1.0, 1.0 - below / HEIGHT), w_pad=0.08)
+        )
         caption = picture.text(0.5, 0.08 / HEIGHT, "", ha="center", fontsize=10, color="0.35", parse_math=False)
         if zones:
-            place: dict[str, Any] = dict(loc="upper center", bbox_to_anchor=(0.5, below / HEIGHT), borderaxespad=0.0, borderpad=0.0)
+            place: dict[str, Any] = {
+                "loc": "upper center",
+                "bbox_to_anchor": (0.5, below / HEIGHT),
+                "borderaxespad": 0.0,
+                "borderpad": 0.0,
+            }
             picture.legend(handles=zones, ncols=len(zones), fontsize=10, **place)
     panels = [
         (axes[0], plot.pressure, (0.0, _largest(result, "pressure"))),

@@ -28,7 +28,9 @@ CHROMIUM = os.environ.get("MFV_CHROMIUM") or next(
 #: A page that cannot be drawn fails after this time [ms].
 PATIENCE = 120_000
 
-needs_chromium = pytest.mark.skipif(not CHROMIUM, reason="there is no chromium on this machine (scripts/test.sh installs it)")
+needs_chromium = pytest.mark.skipif(
+    not CHROMIUM, reason="there is no chromium on this machine (scripts/test.sh installs it)"
+)
 
 BODIES = """
 &body shape='half_plane', shear_modulus=1.0, poisson_ratio=0.3 /
@@ -36,7 +38,9 @@ BODIES = """
 &mesh nodes=41, half_width=0.01225 /
 """
 TITLE = 'tan </script><b>bold</b> & "quoted"'
-PRESSED = "&scene length_unit='mm', force_unit='N' /" + BODIES + "&step normal_force=1.0e-3 /\n&output history='none' /\n"
+PRESSED = (
+    "&scene length_unit='mm', force_unit='N' /" + BODIES + "&step normal_force=1.0e-3 /\n&output history='none' /\n"
+)
 SHEARED = (
     f"&scene title='{TITLE}', coupling='goodman' /"
     + BODIES
@@ -177,7 +181,10 @@ def test_the_slider_leads_through_the_states(browser: object, tmp_path: Path) ->
     for number in (len(steps), 1, 3):
         page.move_to(number)
         state = steps[number - 1]
-        for chart, trace, values in (("pressure", "pressure", state.pressure), ("shear", "shear traction", state.shear)):
+        for chart, trace, values in (
+            ("pressure", "pressure", state.pressure),
+            ("shear", "shear traction", state.shear),
+        ):
             x = page.curve(chart, trace, "x")
             shown = np.isclose(result.mesh.x[:, None], x, rtol=1e-6, atol=1e-9).any(axis=1)
             assert shown.sum() == x.size and np.all(state.status[~shown] == mfv.NodeStatus.OPEN)
@@ -216,7 +223,8 @@ def test_a_page_is_readable_light_dark_wide_and_narrow(browser: object, tmp_path
         for width in (1300, 390):
             page.tab.set_viewport_size({"width": width, "height": 800})
             page.tab.wait_for_function(
-                "() => [...document.querySelectorAll('.main-svg')].every((one) => one.clientWidth <= innerWidth)", timeout=PATIENCE
+                "() => [...document.querySelectorAll('.main-svg')].every((one) => one.clientWidth <= innerWidth)",
+                timeout=PATIENCE,
             )
             pictures[scheme, width] = picture = page.picture()
             assert picture.shape[1] == width  # nothing hangs over
@@ -228,11 +236,13 @@ def test_a_page_is_readable_light_dark_wide_and_narrow(browser: object, tmp_path
             assert named.count() == 0
         page.tab.close()
     for width in (1300, 390):
-        assert pictures["light", width].mean() > 200 > 80 > pictures["dark", width].mean()
+        assert pictures["light", width].mean() > 200.0 and pictures["dark", width].mean() < 80.0
     # The colours follow the system while the page is open.
     page = Page(browser, path, color_scheme="light")
     page.tab.emulate_media(color_scheme="dark")
-    page.tab.wait_for_function("() => document.getElementById('pressure').layout.font.color === '#e6e9ec'", timeout=PATIENCE)
+    page.tab.wait_for_function(
+        "() => document.getElementById('pressure').layout.font.color === '#e6e9ec'", timeout=PATIENCE
+    )
     # Paper is white, the folded is open, and nothing is cut off.
     paper = page.tab.pdf(prefer_css_page_size=True)
     assert paper.startswith(b"%PDF") and len(paper) > 50_000
@@ -244,7 +254,9 @@ def test_a_page_is_readable_light_dark_wide_and_narrow(browser: object, tmp_path
 def test_a_chart_can_be_saved_and_cannot_be_sent_away(browser: object, tmp_path: Path) -> None:
     path = written(SHEARED, tmp_path)[1]
     page = Page(browser, path)
-    buttons = page.tab.evaluate("() => [...document.querySelectorAll('#shear .modebar-btn')].map((one) => one.outerHTML)")
+    buttons = page.tab.evaluate(
+        "() => [...document.querySelectorAll('#shear .modebar-btn')].map((one) => one.outerHTML)"
+    )
     assert len(buttons) == 4 and not any("hare" in button or "loud" in button for button in buttons)
     page.tab.hover("#shear")
     with page.tab.expect_download(timeout=PATIENCE) as saved:
@@ -271,7 +283,7 @@ def test_states_between_can_be_asked_for(browser: object, tmp_path: Path) -> Non
 
 def test_a_page_is_one_file_without_addresses_to_load(tmp_path: Path) -> None:
     text = written(SHEARED, tmp_path)[1].read_text(encoding="utf-8")
-    before, library = text.split('<script type="application/json"')
+    before, _ = text.split('<script type="application/json"')
     for loaded in ("src=", "href=", "@import", "url("):
         assert loaded not in before
     assert "default-src 'none'" in before
