@@ -184,6 +184,10 @@ def test_another_end_is_told_and_so_is_what_cannot_be_solved_again() -> None:
     result.attributes["input"] = result.attributes["input"].replace("shift", "").replace("disk", "disc")
     again, note = with_states_between(result, 40)
     assert "disc" in note and again.steps == result.steps
+    without = mfv.run(text=SHEARED.format(**{**MINDLIN, "title": ""}) + "&output states='none' /\n")
+    assert without.steps == [] and len(with_states_between(without, 8).result.steps) == 8
+    steady = SHEARED.replace("cycles=1", "cycles=9, steady_tolerance=1e-6") + "&output states='none' /\n"
+    assert "steady" in with_states_between(mfv.run(text=steady.format(**{**MINDLIN, "title": ""})), 40).note
     result.attributes["algorithm"] = "conventional"
     assert "load steps" in with_states_between(result, 40).note
 
@@ -257,14 +261,15 @@ def test_an_mp4_needs_ffmpeg_and_says_so(
     arguments = ["animate", str(tmp_path / "a.h5"), "--kept", "-o", str(tmp_path / "a.mp4")]
     assert main(arguments) == 0
     assert (tmp_path / "a.mp4").read_bytes()[4:8] == b"ftyp"
-    (tmp_path / "a.mp4").unlink()
+    (tmp_path / "a.mp4").write_bytes(b"earlier")
     monkeypatch.setattr("shutil.which", lambda name: None)
     monkeypatch.setitem(sys.modules, "imageio_ffmpeg", None)
     assert main(arguments) == 2
     assert "write a GIF" in capsys.readouterr().err
     assert main([*arguments[:-1], str(tmp_path / "a.avi")]) == 2
     assert ".gif or .mp4" in capsys.readouterr().err
-    assert sorted(path.name for path in tmp_path.iterdir()) == ["a.h5"]
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["a.h5", "a.mp4"]
+    assert (tmp_path / "a.mp4").read_bytes() == b"earlier"
 
 
 # --- new ---
