@@ -4,9 +4,10 @@ is taken literally."""
 from __future__ import annotations
 
 import re
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
-from sphinx.application import Sphinx
+if TYPE_CHECKING:
+    from sphinx.application import Sphinx
 
 
 def take_literally(app: Sphinx, what: str, name: str, obj: object, options: object, lines: list[str]) -> None:

@@ -56,7 +56,6 @@ def write_fortran_reference(root: Path, folder: Path) -> None:
         lines += [f"## {WORDS_OF_FOLDERS.get(name, name.capitalize())}", "", "| module | what it is |", "| --- | --- |"]
         lines += [f"| [`{module.name}`]({module.name}.md) | {_first_sentence(module.words)} |" for module in folders[name]]
         lines.append("")
-    lines += ["```{toctree}", ":hidden:", "", *(module.name for module in modules), "```"]
     (pages / "index.md").write_text("\n".join(lines) + "\n")
 
 
@@ -196,7 +195,8 @@ def _indented(block: list[str]) -> list[str]:
 
 
 def _page(root: Path, module: Module, homes: dict[str, str]) -> str:
-    lines = [f"# {module.name}", "", *_words(module.words), "", f"`{module.path.relative_to(root)}`", ""]
+    # A hundred modules would fill the side bar of every page: they are found from the table.
+    lines = ["---", "orphan: true", "---", "", f"# {module.name}", "", "[Fortran modules](index.md)", "", *_words(module.words), "", f"`{module.path.relative_to(root)}`", ""]
     own = {name.lower() for entity in module.entities for name in entity.names}
     others = [name for name in module.public if name not in own]
     if others:

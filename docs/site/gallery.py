@@ -153,7 +153,7 @@ def _dissertation(root: Path, pages: Path) -> list[Entry]:
         picture = root / f"examples/dissertation/pictures/{source.stem}.png"
         shutil.copy(picture, pages)
         commands = f"python examples/dissertation/draw.py --help\nmfv_run examples/dissertation/{source.name}"
-        entries.append(Entry(source, title, re.sub(r"^Figure \d+\.\d+: ", "", sentence), commands, picture.name))
+        entries.append(Entry(source, title, sentence, commands, picture.name))
     return entries
 
 
@@ -173,13 +173,14 @@ def _decoupling(root: Path, pages: Path) -> list[str]:
 def _words(text: str, name: str) -> tuple[str, str]:
     """Title of a case, and the first sentence of the comment that it begins with."""
     comment = re.match(r"(?:!.*\n)*", text)[0]
-    words = " ".join(line.lstrip("! ") for line in comment.splitlines())
+    words = re.sub(r"^Figure \d+\.\d+: ", "", " ".join(line.lstrip("! ") for line in comment.splitlines()))
     title = re.search(r"\btitle *= *(['\"])(.*?)\1", text, re.IGNORECASE)
     return title[2] if title else name.replace("_", " ").capitalize(), _first_sentence(words)
 
 
 def _first_sentence(words: str) -> str:
-    return re.split(r"(?<=[\w)\]]\.) (?=[A-Z0-9&])", words, maxsplit=1)[0]
+    sentence = re.split(r"(?<=[\w)\]]\.)(?<!\beq\.)(?<!\beqs\.) (?=[A-Z0-9&])", words, maxsplit=1)[0]
+    return sentence[:1].upper() + sentence[1:]
 
 
 def _card(entry: Entry, pages: Path) -> list[str]:
