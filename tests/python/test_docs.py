@@ -1,4 +1,4 @@
-"""The documents: links that lead somewhere, and references that leave nothing out. The site itself is built by scripts/docs.sh."""
+"""The documents: links that lead somewhere, and references that leave nothing out. scripts/docs.sh builds the site."""
 
 import importlib
 import re
@@ -33,7 +33,8 @@ def test_links_of_the_documents_lead_somewhere():
 def test_broken_links_of_a_document_are_named(tmp_path, site):
     check_links = site("check_links")
     (tmp_path / "other.md").write_text("# A `code` heading\n\n## Twice\n\n## Twice\n\n```\n# no heading\n```\n")
-    text = ("# Here\n[a](#here) [b](other.md#a-code-heading) [c](other.md#twice-1) [d](https://example.org/) `[e](nowhere.md)`\n"
+    text = ("# Here\n[a](#here) [b](other.md#a-code-heading) [c](other.md#twice-1)\n"
+            "[d](https://example.org/) `[e](nowhere.md)`\n"
             "```\n[f](nowhere.md)\n```\n![g](nowhere.png) [h](other.md#no-heading) [i](#there) [![j](other.md)](gone.md)\n")
     (tmp_path / "one.md").write_text(text)
     broken, web = check_links.check(check_links.read_markdown([tmp_path / "one.md", tmp_path / "other.md"]))
@@ -46,8 +47,8 @@ def test_broken_links_of_a_document_are_named(tmp_path, site):
 def test_broken_links_of_a_site_are_named(tmp_path):
     (tmp_path / "folder").mkdir()
     (tmp_path / "folder/index.html").write_text('<h1 id="top-of-it">x</h1><a name="old">y</a>')
-    (tmp_path / "index.html").write_text('<a href="folder/#top-of-it">1</a> <a href="folder/index.html#old">2</a> <a href="#">3</a>'
-                                         '<a href="folder/index.html#new">4</a> <img src="gone.png"> <a href="https://example.org">5</a>')
+    links = ("folder/#top-of-it", "folder/index.html#old", "#", "folder/index.html#new", "https://example.org")
+    (tmp_path / "index.html").write_text("".join(f'<a href="{link}">x</a>' for link in links) + '<img src="gone.png">')
     checked = subprocess.run([sys.executable, CHECKER, tmp_path], capture_output=True, text=True)
     assert checked.returncode == 1
     assert "index.html#new: there is no such place" in checked.stderr and "gone.png: there is no such file" in checked.stderr
@@ -124,4 +125,5 @@ end module one
     assert entities["half"].words == ["Half of", "a number."]
     assert entities["half"].statements == ["pure real function half(number, other) result(value)",
                                            "   real, intent(in) :: number(size('!', 1):), other", "end function half"]
-    assert entities["point_type"].statements == ["type :: point_type", "contains", "   procedure :: move", "end type point_type"]
+    shown = ["type :: point_type", "contains", "   procedure :: move", "end type point_type"]
+    assert entities["point_type"].statements == shown
