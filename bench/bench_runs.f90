@@ -9,7 +9,7 @@ module bench_runs
    use mfv_kinds, only: wp
    use mfv_krylov_system, only: krylov_system_type
    use mfv_reduced_system, only: reduced_system_type
-   use mfv_simulation, only: history_none, new_simulation, simulation_type
+   use mfv_simulation, only: history_none, new_simulation, simulation_type, states_steps
    implicit none
    private
    public :: run_cases
@@ -75,7 +75,7 @@ contains
       integer :: i
 
       started = seconds_now()
-      entry%simulation = new_simulation(entry%case%scene, history_none, .false.)
+      entry%simulation = new_simulation(entry%case%scene, history_none, states_steps)
       before = counts_type()
       after = counts_type()
       associate (steps => entry%case%scene%steps)

@@ -6,10 +6,10 @@ module mfv_run_case
    use mfv_clock, only: seconds_now
    use mfv_discretisation_error, only: estimate_error, has_coarser_meshes
    use mfv_error, only: error_type, set_error
-   use mfv_hdf5_writer, only: check_writable
+   use mfv_features, only: has_hdf5, hdf5_is_left_out
    use mfv_kinds, only: wp
    use mfv_one_thread, only: use_one_thread
-   use mfv_result_file, only: write_result
+   use mfv_result_file, only: check_writable, write_result
    use mfv_simulation, only: new_simulation, simulation_type
    use mfv_status
    use mfv_strings, only: string_type
@@ -22,8 +22,8 @@ module mfv_run_case
 
 contains
 
-   !> Read the case in the file `path`, solve it, write its result and print the summary; the program then ends with the
-   !> exit code of the outcome. `algorithm`: in place of the case's own; `suffix` then comes to the name of the result file.
+   !> Read the case in the file `path`, solve it, write its result (where the library has HDF5) and print the summary; the program
+   !> then ends with the exit code of the outcome. `algorithm`: in place of the case's own; `suffix` then comes to the name of the result file.
    !> `estimate`: whether the discretisation error is estimated even where the case does not ask for it.
    subroutine run_case(path, algorithm, suffix, estimate)
       character(*), intent(in) :: path
@@ -44,14 +44,14 @@ contains
       if (present(suffix)) case%result_path = with_suffix(case%result_path, suffix)
       if (present(estimate)) call ask_for_estimate(case, estimate, error)
       if (allocated(error)) call fail(error)
-      call check_writable(case%result_path, error)
+      if (has_hdf5) call check_writable(case%result_path, error)
       if (allocated(error)) then
          error%message = path//": &output file='"//case%result_path//"': "//error%message
          call fail(error)
       end if
       call use_one_thread()
       started = seconds_now()
-      simulation = new_simulation(case%scene, case%keep_history, case%keep_reversals)
+      simulation = new_simulation(case%scene, case%keep_history, case%keep_states)
       call catch_interrupts()
       call observer%start()
       call simulation%run(observer)
@@ -63,11 +63,15 @@ contains
       if (simulation%outcome /= MFV_COMPLETE) call case%explain(simulation)
 
       call validity_warnings(simulation, warnings)
-      call write_result(case%result_path, case, simulation, warnings, error)
+      if (has_hdf5) call write_result(case%result_path, case, simulation, warnings, error)
       if (allocated(error)) call fail(error)
       call summarize(case, simulation, warnings, seconds_now() - started, text)
       write (output_unit, '(a)', advance='no') text
-      write (output_unit, '(a)') 'result              '//case%result_path
+      if (has_hdf5) then
+         write (output_unit, '(a)') 'result              '//case%result_path
+      else
+         write (output_unit, '(a)') 'result              no file: '//hdf5_is_left_out
+      end if
       if (simulation%outcome /= MFV_COMPLETE) write (error_unit, '(a)') simulation%message
       if (was_interrupted(simulation)) call end_program(status_exit_code(MFV_INTERRUPTED))
       call end_program(status_exit_code(simulation%outcome))

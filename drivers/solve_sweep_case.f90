@@ -45,7 +45,7 @@ contains
       if (allocated(input_error)) then
          call record_of_error(number, input_error, record)
       else
-         simulation = new_simulation(case%scene, case%keep_history, case%keep_reversals)
+         simulation = new_simulation(case%scene, case%keep_history, case%keep_states)
          call simulation%run(observer)
          if (simulation%outcome == MFV_INTERRUPTED) return
          if (simulation%outcome /= MFV_COMPLETE) call case%explain(simulation)

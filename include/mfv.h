@@ -1,12 +1,14 @@
 /* MFV: two-dimensional frictional elastic contact by the Method of First Violation. C interface.
  *
- * A case is created from a namelist text or file (docs/namelist.md), run or advanced step by step, and asked for its
- * fields by the same paths as in the result file (docs/file-format.md), "state/pressure" for one; the scales that the
- * file repeats in every group are "mesh/x", "history/record" and "cycles/cycle" alone. Units: any consistent set; forces and energies
- * per unit thickness. Every call returns a status; mfv_message tells more. The library never prints, never stops the
- * process and has no global state: handles are independent of each other, one thread a handle at a time (mfv_write in
- * two threads at once needs an HDF5 that is thread-safe, as Debian's is). Texts go out through the caller's buffer with
- * its size, cut where they do not fit, always null-terminated.
+ * A case is made from a scene that is built by calls, or from a namelist text or file (docs/namelist.md); run, or advanced
+ * step by step; and asked for its fields by the same paths as in the result file (docs/file-format.md), "state/pressure"
+ * for one; the scales that the file repeats in every group are "mesh/x", "history/record" and "cycles/cycle" alone.
+ *
+ * Units: any consistent set; forces and energies per unit thickness. Every call returns a status; mfv_message tells more.
+ * The library never prints, never stops the process and has no global state: handles are independent of each other, one
+ * thread a handle at a time (mfv_write in two threads at once needs an HDF5 that is thread-safe, as Debian's is). Texts go
+ * out through the caller's buffer with its size, cut where they do not fit, always null-terminated. Structures begin with
+ * their size: later versions may append members, and take the shorter ones of programs that do not know them.
  */
 #ifndef MFV_H
 #define MFV_H
@@ -29,8 +31,14 @@ typedef enum mfv_status {
 /* What a step does with the normal, the tangential or the rotational load. */
 enum { MFV_KEEP = 0, MFV_FORCE = 1, MFV_DISPLACEMENT = 2 };
 
+/* A scene that is being built: bodies, mesh, friction, solver, steps. Opaque. */
+typedef struct mfv_scene mfv_scene;
+
 /* A case with its state. Opaque. */
 typedef struct mfv_case mfv_case;
+
+/* A state that was kept, to come back to. Opaque. */
+typedef struct mfv_state mfv_state;
 
 /* One step: targets are reached linearly from the loads now. Set every member; start from MFV_STEP_INIT. */
 typedef struct mfv_step {
@@ -43,7 +51,7 @@ typedef struct mfv_step {
   int cycles;               /* 0: go to the targets; n: go there and back n times */
   double rotational_target; /* moment M [force] or rotation [radians], counterclockwise */
   int rotational_control;   /* MFV_KEEP, MFV_FORCE (moment) or MFV_DISPLACEMENT (rotation) */
-  int unused;               /* 0 */
+  int relative;             /* 1: targets are increments, added to the loads now */
   double steady_tolerance;  /* cycles end early when the state after two in a row is the same to within this part of the
                                largest traction; 0: never */
 } mfv_step;
@@ -52,14 +60,55 @@ typedef struct mfv_step {
 /* Version of the library, such as "0.1.0". Since 0.1.0. */
 int mfv_version(char *buffer, size_t size);
 
+/* Whether the library was built with a feature (*there: 1 or 0): "hdf5" result files and matrix bodies from files.
+ * MFV_BAD_ARGUMENT for a feature that no version has. Since 0.1.0. */
+int mfv_has_feature(const char *feature, int *there);
+
 /* Outcome of a status in words, and a clause that explains it. MFV_BAD_ARGUMENT for a code not in the list. Since 0.1.0. */
 int mfv_status_text(int status, char *outcome, size_t outcome_size, char *explanation, size_t explanation_size);
 
-/* Create a case from a namelist file, or from a text (`name`: what messages call it; files named in the text are looked
- * for beside it). It may have no &step when mfv_advance is to lead the loads. On failure *handle is NULL and `message`,
- * which may be NULL, tells why. Since 0.1.0. */
+/* An empty scene. Since 0.1.0. */
+int mfv_scene_create(mfv_scene **scene);
+
+/* A scene from a namelist text, to be changed by the calls below (`name`: what messages call it; files named in it are looked
+ * for beside it; may be NULL). On failure *scene is NULL and `message`, which may be NULL, tells why. Since 0.1.0. */
+int mfv_scene_from_text(const char *text, const char *name, mfv_scene **scene, char *message, size_t message_size);
+
+/* Give a key of docs/namelist.md a value. `key`: group and key, such as "friction%mu"; of groups that may come more than once
+ * with the number, from 1: "body(1)%shape" (below), "body(2)%radius" (above), "step(1)%normal_force". A key that is there
+ * gets the new value, also in place of one that it is an alternative to (shift for tangential_force). Keys, kinds, ranges and
+ * combinations are checked by mfv_create, with a message that names group, key, value and what is right; a call here fails
+ * for a null or malformed argument. Since 0.1.0. */
+int mfv_scene_set_text(mfv_scene *scene, const char *key, const char *value);
+int mfv_scene_set_real(mfv_scene *scene, const char *key, double value);
+int mfv_scene_set_reals(mfv_scene *scene, const char *key, const double *values, size_t count);
+int mfv_scene_set_integer(mfv_scene *scene, const char *key, int value);
+int mfv_scene_set_logical(mfv_scene *scene, const char *key, int value);
+
+/* Data in memory in place of a file that a key names: where the scene says file='NAME' or mu_file='NAME', and data are there
+ * for `file` = NAME, they are taken. Columns of a text file are datasets of that many rows and one column: "x" and "height" of
+ * a profile, "x" and "mu" (or "mu_static" and "mu_kinetic") of coefficients of friction; matrix bodies have the datasets of
+ * their HDF5 file: "x", "gap", "width", and "compliance" or "stiffness" (values[row*columns + column]). Values are copied. Since
+ * 0.1.0. */
+int mfv_scene_set_data(mfv_scene *scene, const char *file, const char *dataset, size_t rows, size_t columns,
+                       const double *values);
+
+/* The scene as a namelist text. `length`: its characters, without the terminating null. `buffer` and `length` may be NULL.
+ * Since 0.1.0. */
+int mfv_scene_text(const mfv_scene *scene, char *buffer, size_t size, size_t *length);
+
+/* Free a scene and set *scene to NULL. Safe on NULL. Since 0.1.0. */
+int mfv_scene_free(mfv_scene **scene);
+
+/* Create a case from a scene, which stays as it is and may be freed or changed afterwards; from a namelist file; or from a
+ * text (`name`: as in mfv_scene_from_text). It may have no &step when mfv_advance is to lead the loads. On failure *handle is
+ * NULL and `message`, which may be NULL, tells why. Since 0.1.0. */
+int mfv_create(const mfv_scene *scene, mfv_case **handle, char *message, size_t message_size);
 int mfv_create_from_file(const char *path, mfv_case **handle, char *message, size_t message_size);
 int mfv_create_from_text(const char *text, const char *name, mfv_case **handle, char *message, size_t message_size);
+
+/* A case of its own with the same scene, state and history. The observer does not go along. Since 0.1.0. */
+int mfv_copy(const mfv_case *handle, mfv_case **copy);
 
 /* Free a case and set *handle to NULL. Safe on NULL. Since 0.1.0. */
 int mfv_free(mfv_case **handle);
@@ -73,6 +122,60 @@ int mfv_advance(mfv_case *handle, const mfv_step *step);
 
 /* Message of the last call on this handle that failed, or of its outcome. Since 0.1.0. */
 int mfv_message(const mfv_case *handle, char *buffer, size_t size);
+
+/* Loads and motions of the present state. */
+typedef struct mfv_loads {
+  size_t size;             /* sizeof(mfv_loads) */
+  double normal_force;     /* P [force/length] */
+  double tangential_force; /* Q [force/length], on the lower body to the right */
+  double moment;           /* M [force], counterclockwise; 0 where rotation is not modelled */
+  double approach;         /* of the upper body [length] */
+  double shift;            /* of the upper body to the right [length] */
+  double rotation;         /* of the upper body [radians], counterclockwise */
+  double dissipation;      /* energy dissipated by friction so far [force] */
+  int contact_nodes, stick_nodes, slip_nodes;
+  int events;              /* loads so far at which nodes changed their status */
+  int linear_solves;       /* so far */
+  int unused;              /* 0 */
+} mfv_loads;
+#define MFV_LOADS_INIT {sizeof(mfv_loads), 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0, 0, 0, 0, 0, 0}
+
+/* Loads and motions now, without the cost of a field of "summary". Since 0.1.0. */
+int mfv_get_loads(const mfv_case *handle, mfv_loads *loads);
+
+/* Consistent tangent at the present state: tangent[i*motions + j] is the derivative of load i (normal force, tangential force,
+ * moment) with respect to motion j (approach, shift, rotation); motions: 2, or 3 with rotation. Contact and friction have
+ * corners: the tangent is the one of motions that go on towards `direction` (motions lengths, such as {0, 1} for a shift to
+ * the right; only its direction counts), or, where it is NULL, on the way that led here (which zones grow and slip stays as it
+ * is). The state does not change. MFV_BAD_ARGUMENT where the contact does not determine it. Since 0.1.0. */
+int mfv_tangent(mfv_case *handle, int motions, const double *direction, double *tangent);
+
+/* Keep the present state in *state (made where it is NULL, else its storage is used again), and come back to it: the case then
+ * goes on with the same digits as if nothing had been done in between, also after an early end. History, steps and cycles go
+ * back too. With history='none' and states='none' in &output any number of kept states can be gone to in any order, in this
+ * case and its copies; otherwise only to states on the way that led to the present one (others: MFV_BAD_ARGUMENT). A state may
+ * outlive the case that it is from. Since 0.1.0. */
+int mfv_save(const mfv_case *handle, mfv_state **state);
+int mfv_restore(mfv_case *handle, const mfv_state *state);
+
+/* Free a kept state and set *state to NULL. Safe on NULL. Since 0.1.0. */
+int mfv_state_free(mfv_state **state);
+
+/* What an observer is told after every increment of the load. */
+typedef struct mfv_progress {
+  size_t size;             /* sizeof(mfv_progress) of the library */
+  double fraction;         /* of this straight part of the load history */
+  int segment, segments;   /* number of this part, from 1, and how many there are */
+  int contact_nodes, stick_nodes;
+  double normal_force, tangential_force; /* [force/length] */
+  double approach, shift;  /* [length] */
+} mfv_progress;
+typedef int (*mfv_observer)(const mfv_progress *progress, void *user);
+
+/* From now on tell `observer` (NULL: nobody) of every increment, with `user`. It runs in the thread of mfv_run or mfv_advance, must
+ * not call functions of this handle, and ends the run by a value that is not 0: the outcome is then MFV_INTERRUPTED, with the
+ * last state in place. Since 0.1.0. */
+int mfv_observe(mfv_case *handle, mfv_observer observer, void *user);
 
 /* Number of fields of the case now, and the path of field `index` (from 0), such as "history/shift". Since 0.1.0. */
 int mfv_field_count(const mfv_case *handle, size_t *count);

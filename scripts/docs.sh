@@ -6,10 +6,11 @@ install_missing
 build release
 site=$root/build/docs
 venv=$site/venv
-if [ ! "$venv/done" -nt "$root/docs/requirements.txt" ]; then
+if [ ! "$venv/done" -nt "$root/pyproject.toml" ]; then
   say "Python packages of the site in build/docs/venv"
   [ -x "$venv/bin/python" ] || python3 -m venv "$venv"
-  "$venv/bin/python" -m pip install --quiet --disable-pip-version-check -r "$root/docs/requirements.txt"
+  "$venv/bin/python" "$root/scripts/requirements.py" docs >"$venv/requirements.txt"
+  "$venv/bin/python" -m pip install --quiet --disable-pip-version-check -r "$venv/requirements.txt"
   touch "$venv/done"
 fi
 export PYTHONDONTWRITEBYTECODE=1 MPLBACKEND=Agg OPENBLAS_NUM_THREADS=1

@@ -1,7 +1,8 @@
 """MFV: two-dimensional frictional elastic contact by the Method of First Violation.
 
-`run` solves a case in this process, `Case` leads one step by step, `read` reads a result file, `read_table` the table of a sweep, `stress` computes stresses
-inside the bodies, `plot` draws results, `reference` has the closed forms. Reading and drawing need no shared library.
+`Scene` with `Body`, `Mesh`, `Friction`, `Step`, `Solver` and `Output` says what is in contact and how it is loaded; `run` solves it, `Case`
+leads it step by step; `read` reads a result file, `read_table` the table of a sweep, `stress` computes stresses inside the bodies,
+`plot` draws results, `reference` has the closed forms. Reading and drawing need no shared library.
 """
 
 from __future__ import annotations
@@ -12,24 +13,38 @@ from pathlib import Path as _Path
 from types import ModuleType
 
 from . import errors, reference, stress
-from ._library import library_version
-from .case import Case, run
+from ._library import has_feature, library_version
+from ._observer import Progress
+from .case import Case, Loads, State, Trial, run
 from .codes import EventKind, NodeStatus
 from .errors import LibraryNotFound, MfvError, NotAResult
 from .result import Group, Result, read
+from .scene import Body, Friction, Mesh, Output, Scene, Solver, Step
 from .table import Table, read_table
 
 __all__ = [
+    "Body",
     "Case",
     "EventKind",
+    "Friction",
     "Group",
     "LibraryNotFound",
+    "Loads",
+    "Mesh",
     "MfvError",
     "NodeStatus",
     "NotAResult",
+    "Output",
+    "Progress",
     "Result",
+    "Scene",
+    "Solver",
+    "State",
+    "Step",
     "Table",
+    "Trial",
     "errors",
+    "has_feature",
     "library_version",
     "plot",
     "read",

@@ -12,10 +12,16 @@ from ctypes import POINTER, c_char_p, c_double, c_int, c_int32, c_size_t, c_void
 from enum import IntEnum
 from pathlib import Path
 
+import numpy as np
+from numpy.typing import NDArray
+
 from .errors import LibraryNotFound
 
 #: Room for a text that the library hands out; a longer one is cut.
 TEXT_SIZE = 16384
+
+#: The largest number that a C int holds.
+LARGEST_INTEGER = 2**31 - 1
 
 HOW_TO_BUILD = (
     "build it with 'cmake --preset release && cmake --build --preset release' in the source tree, "
@@ -31,7 +37,15 @@ class Control(IntEnum):
     DISPLACEMENT = 2
 
 
-class Step(ctypes.Structure):
+class Along(IntEnum):
+    """What the values of a field run along."""
+
+    NOTHING = 0
+    NODES = 1
+    RECORDS = 2
+
+
+class StepStructure(ctypes.Structure):
     """`mfv_step` of the header."""
 
     _fields_ = [
@@ -44,47 +58,101 @@ class Step(ctypes.Structure):
         ("cycles", c_int),
         ("rotational_target", c_double),
         ("rotational_control", c_int),
-        ("unused", c_int),
+        ("relative", c_int),
         ("steady_tolerance", c_double),
     ]
 
 
-_handle = c_void_p
+class LoadsStructure(ctypes.Structure):
+    """`mfv_loads` of the header."""
+
+    _fields_ = [
+        ("size", c_size_t),
+        ("normal_force", c_double),
+        ("tangential_force", c_double),
+        ("moment", c_double),
+        ("approach", c_double),
+        ("shift", c_double),
+        ("rotation", c_double),
+        ("dissipation", c_double),
+        ("contact_nodes", c_int),
+        ("stick_nodes", c_int),
+        ("slip_nodes", c_int),
+        ("events", c_int),
+        ("linear_solves", c_int),
+        ("unused", c_int),
+    ]
+
+
+class ProgressStructure(ctypes.Structure):
+    """`mfv_progress` of the header."""
+
+    _fields_ = [
+        ("size", c_size_t),
+        ("fraction", c_double),
+        ("segment", c_int),
+        ("segments", c_int),
+        ("contact_nodes", c_int),
+        ("stick_nodes", c_int),
+        ("normal_force", c_double),
+        ("tangential_force", c_double),
+        ("approach", c_double),
+        ("shift", c_double),
+    ]
+
+
+#: `mfv_observer` of the header.
+OBSERVER = ctypes.CFUNCTYPE(c_int, POINTER(ProgressStructure), c_void_p)
+
+_text, _length = c_char_p, POINTER(c_size_t)
+_scene = _handle = _state = c_void_p
 _handle_slot = POINTER(c_void_p)
 _array = POINTER(c_double)
 
 #: Result and arguments of every function of the header.
 SIGNATURES: dict[str, tuple[type, ...]] = {
-    "mfv_version": (c_int, c_char_p, c_size_t),
-    "mfv_status_text": (c_int, c_int, c_char_p, c_size_t, c_char_p, c_size_t),
-    "mfv_create_from_file": (c_int, c_char_p, _handle_slot, c_char_p, c_size_t),
-    "mfv_create_from_text": (c_int, c_char_p, c_char_p, _handle_slot, c_char_p, c_size_t),
+    "mfv_version": (c_int, _text, c_size_t),
+    "mfv_has_feature": (c_int, _text, POINTER(c_int)),
+    "mfv_status_text": (c_int, c_int, _text, c_size_t, _text, c_size_t),
+    "mfv_scene_create": (c_int, _handle_slot),
+    "mfv_scene_from_text": (c_int, _text, _text, _handle_slot, _text, c_size_t),
+    "mfv_scene_set_text": (c_int, _scene, _text, _text),
+    "mfv_scene_set_real": (c_int, _scene, _text, c_double),
+    "mfv_scene_set_reals": (c_int, _scene, _text, _array, c_size_t),
+    "mfv_scene_set_integer": (c_int, _scene, _text, c_int),
+    "mfv_scene_set_logical": (c_int, _scene, _text, c_int),
+    "mfv_scene_set_data": (c_int, _scene, _text, _text, c_size_t, c_size_t, _array),
+    "mfv_scene_text": (c_int, _scene, _text, c_size_t, _length),
+    "mfv_scene_free": (c_int, _handle_slot),
+    "mfv_create": (c_int, _scene, _handle_slot, _text, c_size_t),
+    "mfv_create_from_file": (c_int, _text, _handle_slot, _text, c_size_t),
+    "mfv_create_from_text": (c_int, _text, _text, _handle_slot, _text, c_size_t),
+    "mfv_copy": (c_int, _handle, _handle_slot),
     "mfv_free": (c_int, _handle_slot),
     "mfv_run": (c_int, _handle),
-    "mfv_advance": (c_int, _handle, POINTER(Step)),
-    "mfv_message": (c_int, _handle, c_char_p, c_size_t),
-    "mfv_field_count": (c_int, _handle, POINTER(c_size_t)),
-    "mfv_field_path": (c_int, _handle, c_size_t, c_char_p, c_size_t),
+    "mfv_advance": (c_int, _handle, POINTER(StepStructure)),
+    "mfv_message": (c_int, _handle, _text, c_size_t),
+    "mfv_get_loads": (c_int, _handle, POINTER(LoadsStructure)),
+    "mfv_tangent": (c_int, _handle, c_int, _array, _array),
+    "mfv_save": (c_int, _handle, _handle_slot),
+    "mfv_restore": (c_int, _handle, _state),
+    "mfv_state_free": (c_int, _handle_slot),
+    "mfv_observe": (c_int, _handle, OBSERVER, c_void_p),
+    "mfv_field_count": (c_int, _handle, _length),
+    "mfv_field_path": (c_int, _handle, c_size_t, _text, c_size_t),
     "mfv_field_info": (
         c_int,
-        _handle,
-        c_char_p,
-        POINTER(c_size_t),
-        POINTER(c_int),
-        POINTER(c_int),
-        c_char_p,
-        c_size_t,
-        c_char_p,
-        c_size_t,
+        *(_handle, _text, _length, POINTER(c_int), POINTER(c_int)),
+        *(_text, c_size_t, _text, c_size_t),
     ),
-    "mfv_attribute_name": (c_int, _handle, c_size_t, c_char_p, c_size_t),
-    "mfv_attribute": (c_int, _handle, c_char_p, c_char_p, c_size_t, POINTER(c_size_t)),
-    "mfv_copy_real": (c_int, _handle, c_char_p, POINTER(c_double), c_size_t),
-    "mfv_copy_integer": (c_int, _handle, c_char_p, POINTER(c_int32), c_size_t),
+    "mfv_attribute_name": (c_int, _handle, c_size_t, _text, c_size_t),
+    "mfv_attribute": (c_int, _handle, _text, _text, c_size_t, _length),
+    "mfv_copy_real": (c_int, _handle, _text, _array, c_size_t),
+    "mfv_copy_integer": (c_int, _handle, _text, POINTER(c_int32), c_size_t),
     "mfv_stress": (c_int, _handle, c_int, c_int, c_size_t, _array, _array, _array),
     "mfv_largest_von_mises": (c_int, _handle, c_int, c_int, _array),
     "mfv_stress_under": (c_int, _handle, c_int, c_size_t, *(_array,) * 4, c_size_t, *(_array,) * 4),
-    "mfv_write": (c_int, _handle, c_char_p),
+    "mfv_write": (c_int, _handle, _text),
     "mfv_hertz_half_width": (c_double,) + (c_double,) * 4,
     "mfv_hertz_pressure": (c_double,) + (c_double,) * 3,
     "mfv_flat_punch_pressure": (c_double,) + (c_double,) * 3,
@@ -130,9 +198,10 @@ def find_library() -> str:
 def _usual_places() -> Iterator[Path]:
     """In the package (an installed one), then in the builds of the source tree, the release first."""
     package = Path(__file__).resolve().parent
+    yield from sorted((package / "lib").glob("libmfv.*"))
     builds = package.parents[1] / "build"
-    directories = [package, builds / "release" / "lib", *sorted(builds.glob("*/lib"))]
-    return (directory / name for directory in directories for name in ("libmfv.so", "libmfv.dylib"))
+    for directory in [builds / "release" / "lib", *sorted(builds.glob("*/lib"))]:
+        yield from (directory / name for name in ("libmfv.so", "libmfv.dylib"))
 
 
 def text_buffer() -> ctypes.Array[ctypes.c_char]:
@@ -168,6 +237,22 @@ def statuses() -> tuple[tuple[int, str, str], ...]:
 def outcome_of(status: int) -> str:
     """The outcome of a status in words."""
     return statuses()[status][1]
+
+
+def has_feature(feature: str) -> bool:
+    """Whether the library was built with a feature, such as "hdf5": result files and matrix bodies from files.
+
+    Raises ValueError for a feature that no version has.
+    """
+    there = c_int()
+    if library().mfv_has_feature(text_for(feature), ctypes.byref(there)) != 0:
+        raise ValueError(f"the MFV library knows no feature '{feature}'")
+    return bool(there.value)
+
+
+def real_pointer(values: NDArray[np.float64]) -> ctypes._Pointer[c_double]:
+    """The numbers of a contiguous array where they are; the array must outlive the pointer's use."""
+    return values.ctypes.data_as(POINTER(c_double))
 
 
 def library_version() -> str:

@@ -1,67 +1,143 @@
-"""Running cases in this process through the C interface."""
+"""Cases in this process through the C interface: run, led step by step, tried and taken back."""
 
 from __future__ import annotations
 
+import copy
 import ctypes
 import os
 import threading
 import weakref
-from ctypes import POINTER, byref, c_double, c_int, c_int32, c_size_t, c_void_p, create_string_buffer
+from collections.abc import Iterator
+from contextlib import contextmanager
+from ctypes import POINTER, byref, c_int, c_int32, c_size_t, c_void_p, create_string_buffer
+from operator import index
 from types import TracebackType
+from typing import TYPE_CHECKING, Any, Callable, NamedTuple
 
 import numpy as np
+from numpy.typing import ArrayLike, NDArray
 
-from . import errors
-from ._library import Control, Step, library, outcome_of, text_buffer, text_for, text_of
+from . import _html, errors
+from ._library import (
+    LARGEST_INTEGER,
+    Along,
+    Control,
+    LoadsStructure,
+    StepStructure,
+    library,
+    outcome_of,
+    real_pointer,
+    text_buffer,
+    text_for,
+    text_of,
+)
+from ._observer import Observer, Progress
 from .result import Field, Result, Values
+from .scene import Scene, created
+
+if TYPE_CHECKING:
+    from typing_extensions import Self
 
 #: HDF5, which writes the result files, is in general not safe to call from two threads at once.
 _writing = threading.Lock()
 
+#: Nodes from which a single step may take long enough to be interrupted; it is then observed, which costs about 1 microsecond
+#: an increment.
+MANY_NODES = 400
+
+#: Dimensions of fields by what the library says they run along; the companions of an error estimate and cycles come after
+#: those of the header.
+_DIMENSIONS: tuple[tuple[str, ...], ...] = ((), ("x",), ("record",), ("companion_nodes",), ("cycle",))
+
+
+class Loads(NamedTuple):
+    """Loads and motions of the present state."""
+
+    normal_force: float  #: P [force/length]
+    tangential_force: float  #: Q [force/length], on the lower body to the right
+    moment: float  #: M [force], counterclockwise; 0 where rotation is not modelled
+    approach: float  #: of the upper body [length]
+    shift: float  #: of the upper body to the right [length]
+    rotation: float  #: of the upper body [radians], counterclockwise
+    dissipation: float  #: energy dissipated by friction so far [force]
+    contact_nodes: int
+    stick_nodes: int
+    slip_nodes: int
+    events: int  #: loads so far at which nodes changed their status
+    linear_solves: int  #: so far
+
 
 def run(
-    path: str | os.PathLike[str] | None = None,
+    case: Scene | str | os.PathLike[str] | None = None,
     *,
     text: str | None = None,
     output: str | os.PathLike[str] | None = None,
     check: bool = False,
+    progress: bool = False,
 ) -> Result:
     """Solve a case and return its result.
 
-    The case is the namelist file at `path` or the namelist `text`. `output`: where to write the result file; without it
-    none is written, whatever the &output group of the case says. A run that ends early is a result, with its `outcome`
+    `case`: a Scene or the path of a namelist file; or the namelist `text`. `output`: where to write the result file; without
+    it none is written, whatever the &output group of the case says. A run that ends early is a result, with its `outcome`
     and `message` and the state up to there; `check=True` raises the exception of the outcome instead, after writing.
+    `progress`: show a bar on a terminal or in a notebook, by tqdm.
     Raises InputError for a case that cannot be used, FileError when the result could not be written.
     """
-    if path is not None and text is None:
-        case = Case.from_file(path)
-    elif text is not None and path is None:
-        case = Case.from_text(text)
+    if (case is None) == (text is None):
+        raise TypeError("mfv.run takes a scene, the path of a case, or text=, one of them")
+    if text is not None:
+        made = Case.from_text(text)
+    elif isinstance(case, Scene):
+        made = Case(case)
     else:
-        raise TypeError("mfv.run takes the path of a case or text=, one of them")
-    with case:
-        case.run()
+        assert case is not None
+        made = Case.from_file(case)
+    with made:
+        made.run(progress=progress)
         if output is not None:
-            case.write(output)
-        case._raise_early_end(check)
-        return case.result()
+            made.write(output)
+        made._raise_early_end(check)
+        return made.result()
+
+
+class State:
+    """A state that was kept with `Case.save`. It may outlive its case; its storage is freed with it."""
+
+    def __init__(self) -> None:
+        """Not to be called: see `Case.save`."""
+        self._handle = c_void_p()
+        self._status = 0
+        weakref.finalize(self, library().mfv_state_free, byref(self._handle))
+
+
+class Trial:
+    """What `Case.trial` gives: unless it is accepted, the case goes back to where the `with` statement began."""
+
+    def __init__(self) -> None:
+        self.accepted = False
+
+    def accept(self) -> None:
+        """Let what was done stay, however the `with` statement ends."""
+        self.accepted = True
 
 
 class Case:
-    """A case with its state, to be run or led step by step. Use it in a `with` statement or `close` it."""
+    """A case with its state, to be run or led step by step. Use it in a `with` statement or `close` it.
 
-    def __init__(self, handle: c_void_p) -> None:
-        """Not to be called: see `from_file` and `from_text`."""
-        self._handle = handle
-        self._lock = threading.RLock()
-        self._free = weakref.finalize(self, library().mfv_free, byref(handle))
-        self._status = 0
-        self._message = self._library_message()
+    One thread at a time leads a case; others wait. Different cases run in different threads at once.
+    """
+
+    def __init__(self, scene: Scene) -> None:
+        """A case of a scene, which may change or go afterwards. Raises InputError."""
+        with scene._handle() as built:
+            self._adopt(created("mfv_create", built))
+        #: What was run, where the text of the result does not have all of it.
+        self._scene: Scene | None = copy.deepcopy(scene) if scene.has_arrays else None
 
     @classmethod
     def from_file(cls, path: str | os.PathLike[str]) -> Case:
         """The case in a namelist file. Raises InputError."""
-        return cls(_created("mfv_create_from_file", text_for(path)))
+        return cls._of_handle(created("mfv_create_from_file", text_for(path)))
 
     @classmethod
     def from_text(cls, text: str, name: str = "text") -> Case:
@@ -69,9 +145,33 @@ class Case:
 
         Raises InputError.
         """
-        return cls(_created("mfv_create_from_text", text_for(text), text_for(name)))
+        return cls._of_handle(created("mfv_create_from_text", text_for(text), text_for(name)))
 
-    def __enter__(self) -> Case:
+    @classmethod
+    def _of_handle(cls, handle: c_void_p) -> Case:
+        case = cls.__new__(cls)
+        case._adopt(handle)
+        case._scene = None
+        return case
+
+    def _adopt(self, handle: c_void_p) -> None:
+        """Take a handle over, with what every call needs at hand."""
+        self._handle = handle
+        self._lock = threading.RLock()
+        self._free = weakref.finalize(self, library().mfv_free, byref(handle))
+        self._status = 0
+        self._observer = Observer(handle)
+        self._advance = library().mfv_advance
+        self._get_loads = library().mfv_get_loads
+        self._step = StepStructure(size=ctypes.sizeof(StepStructure))
+        self._step_reference = byref(self._step)
+        self._loads = LoadsStructure(size=ctypes.sizeof(LoadsStructure))
+        self._loads_reference = byref(self._loads)
+        self._spare_states: list[State] = []
+        self._x = np.empty(0)
+        self._has_many_nodes = self._count("mesh/x") >= MANY_NODES
+
+    def __enter__(self) -> Self:
         return self
 
     def __exit__(
@@ -81,6 +181,27 @@ class Case:
 
     def __repr__(self) -> str:
         return f"<mfv.Case {self.outcome}: {self.message}>" if self._handle else "<mfv.Case closed>"
+
+    def _repr_html_(self) -> str:
+        if not self._handle:
+            return _html.table([("case", "closed")])
+        rows = [("outcome", f"{self.outcome}: {self.message}")]
+        rows += [(name.replace("_", " "), f"{value:.6g}") for name, value in self.loads._asdict().items()]
+        return _html.block(
+            _html.table(rows), _html.tractions(self.x, *(self[f"state/{name}"] for name in ("pressure", "shear")))
+        )
+
+    def __copy__(self) -> Case:
+        return self.copy()
+
+    def copy(self) -> Case:
+        """A case of its own with the same scene, state and history. Who observes this one does not observe the copy."""
+        handle = c_void_p()
+        with self._lock:
+            self._call("mfv_copy", byref(handle))
+            copied = Case._of_handle(handle)
+            copied._scene, copied._status = self._scene, self._status
+        return copied
 
     def close(self) -> None:
         """Free the case; using it afterwards raises BadHandle. Closing twice does no harm."""
@@ -95,14 +216,17 @@ class Case:
     @property
     def message(self) -> str:
         """What was reached, or why not."""
-        return self._message
+        return self._attribute("message")
 
-    def run(self, *, check: bool = False) -> str:
+    def run(self, *, check: bool = False, progress: bool = False) -> str:
         """Run the steps of the case that have not been run; return the outcome.
 
-        `check`: raise the exception of an outcome that is not 'complete'.
+        `check`: raise the exception of an outcome that is not 'complete'. `progress`: show a bar on a terminal or in a
+        notebook, by tqdm. KeyboardInterrupt, and what an observer raises, end the run with the outcome 'interrupted' and the
+        state up to there, and are raised here.
         """
-        return self._lead(check, "mfv_run")
+        with self._lock, self._observer.bar(progress):
+            return self._lead(check, True, library().mfv_run, self._handle)
 
     def advance(
         self,
@@ -113,6 +237,7 @@ class Case:
         shift: float | None = None,
         moment: float | None = None,
         rotation: float | None = None,
+        relative: bool = False,
         friction: bool = True,
         cycles: int = 0,
         steady_tolerance: float = 0.0,
@@ -122,27 +247,110 @@ class Case:
 
         Targets are reached linearly from the loads now; a load without a target keeps what it has. Give `normal_force`
         [force/length] or `approach` [length], `tangential_force` or `shift` likewise, `moment` [force] or `rotation`
-        [radians]. `friction`: whether it acts during this step. `cycles`: go to the targets and back this many times,
-        ending early when two cycles in a row end with the same tractions to within `steady_tolerance` times the
-        largest one (0: never). `check`: as for `run`.
+        [radians]. `relative`: targets are increments, added to the loads now. `friction`: whether it acts during this step.
+        `cycles`: go to the targets and back this many times, ending early when two cycles in a row end with the same
+        tractions to within `steady_tolerance` times the largest one (0: never). `check`: as for `run`.
         Raises BadArgument.
         """
-        normal_control, normal_target = _control("normal_force", normal_force, "approach", approach)
-        tangential_control, tangential_target = _control("tangential_force", tangential_force, "shift", shift)
-        rotational_control, rotational_target = _control("moment", moment, "rotation", rotation)
-        step = Step(
-            size=ctypes.sizeof(Step),
-            normal_target=normal_target,
-            tangential_target=tangential_target,
-            normal_control=normal_control,
-            tangential_control=tangential_control,
-            friction=bool(friction),
-            cycles=cycles,
-            rotational_target=rotational_target,
-            rotational_control=rotational_control,
-            steady_tolerance=steady_tolerance,
-        )
-        return self._lead(check, "mfv_advance", byref(step))
+        with self._lock:
+            step = self._step
+            step.normal_control, step.normal_target = _control("normal_force", normal_force, "approach", approach)
+            step.tangential_control, step.tangential_target = _control(
+                "tangential_force", tangential_force, "shift", shift
+            )
+            step.rotational_control, step.rotational_target = _control("moment", moment, "rotation", rotation)
+            step.relative = 1 if relative else 0
+            step.friction = 1 if friction else 0
+            step.cycles = min(index(cycles), LARGEST_INTEGER) if cycles else 0
+            step.steady_tolerance = steady_tolerance
+            watched = self._has_many_nodes or cycles > 0
+            return self._lead(check, watched, self._advance, self._handle, self._step_reference)
+
+    @property
+    def loads(self) -> Loads:
+        """Loads and motions now, without the cost of a field. Raises BadHandle."""
+        with self._lock:
+            if self._observer.is_leading:
+                self._observer.refuse_while_leading()
+            self._check(self._get_loads(self._handle, self._loads_reference))
+            loads = self._loads
+            return Loads(
+                loads.normal_force,
+                loads.tangential_force,
+                loads.moment,
+                loads.approach,
+                loads.shift,
+                loads.rotation,
+                loads.dissipation,
+                loads.contact_nodes,
+                loads.stick_nodes,
+                loads.slip_nodes,
+                loads.events,
+                loads.linear_solves,
+            )
+
+    def tangent(self, direction: ArrayLike | None = None, *, motions: int = 2) -> NDArray[np.float64]:
+        """Consistent tangent at the present state: an array (motions, motions), derivatives of normal force, tangential force
+        (and moment) with respect to approach, shift (and rotation).
+
+        Contact and friction have corners: the tangent is the one of motions that go on towards `direction` (motions lengths,
+        such as (0, 1) for a shift to the right), or, without one, on the way that led here. `motions`: 2, or 3 with rotation.
+        Raises BadArgument where the contact does not determine it.
+        """
+        towards = None
+        if direction is not None:
+            values = np.ascontiguousarray(direction, dtype=np.float64)
+            if values.shape != (motions,):
+                raise ValueError(f"the direction must have {motions} numbers, not the shape {values.shape}")
+            towards = real_pointer(values)
+        tangent = np.empty((motions, motions))
+        self._call("mfv_tangent", motions, towards, real_pointer(tangent))
+        return tangent
+
+    def save(self, state: State | None = None) -> State:
+        """Keep the present state, to come back to it with `restore`. `state`: one whose storage is to be used again."""
+        kept = State() if state is None else state
+        with self._lock:
+            self._call("mfv_save", byref(kept._handle))
+            kept._status = self._status
+        return kept
+
+    def restore(self, state: State) -> None:
+        """Come back to a state of this case or a copy: it goes on with the same digits as if nothing had been done in between.
+
+        With history='none' and states='none' in &output any number of states can be gone to in any order; otherwise only to
+        states on the way that led to the present one. Raises BadArgument.
+        """
+        with self._lock:
+            self._call("mfv_restore", state._handle)
+            self._status = state._status
+
+    @contextmanager
+    def trial(self) -> Iterator[Trial]:
+        """Try steps and take them back: at the end of the `with` statement the case is where it was at its beginning, also
+        after an exception, unless `accept` was called on what it gives.
+
+            with case.trial() as trial:
+                case.advance(shift=1e-4)
+                if case.loads.tangential_force < limit:
+                    trial.accept()
+        """
+        trial = Trial()
+        before = self.save(self._spare_states.pop() if self._spare_states else None)
+        try:
+            yield trial
+        finally:
+            if not trial.accepted:
+                self.restore(before)
+            self._spare_states.append(before)
+
+    def observe(self, callback: Callable[[Progress], object] | None) -> None:
+        """From now on call `callback` (None: nobody) with the Progress after every increment of the load, in the thread that
+        leads the case; it must not use this case. A true value from it ends the run with the outcome 'interrupted', and so
+        does an exception, which is then raised by `run` or `advance`.
+        """
+        with self._lock:
+            self._observer.callback = callback
 
     def fields(self) -> list[str]:
         """Paths of the fields that the case has now, such as 'state/pressure'."""
@@ -162,6 +370,27 @@ class Case:
         except errors.BadArgument as error:
             raise KeyError(str(error)) from None
 
+    def values(self, path: str, out: NDArray[Any]) -> NDArray[Any]:
+        """Copy the values of the field at a path into `out`, a contiguous array of float64 or int32 with the field's size,
+        and return it: nothing is allocated. Raises ValueError, BadArgument.
+        """
+        if not (out.flags.c_contiguous and out.flags.writeable) or out.dtype not in (np.float64, np.int32):
+            raise ValueError("out must be a contiguous, writable array of float64 or int32")
+        if out.dtype == np.float64:
+            self._call("mfv_copy_real", text_for(path), real_pointer(out), out.size)
+        else:
+            self._call("mfv_copy_integer", text_for(path), out.ctypes.data_as(POINTER(c_int32)), out.size)
+        return out
+
+    @property
+    def x(self) -> NDArray[np.float64]:
+        """Positions of the nodes, read-only; the same array until the mesh grows."""
+        with self._lock:
+            if self._count("mesh/x") != self._x.size:
+                self._x = np.asarray(self["mesh/x"])
+                self._x.flags.writeable = False
+            return self._x
+
     def result(self) -> Result:
         """Everything there is now, copied; it does not change when the case goes on."""
         groups: dict[str, dict[str, Field]] = {}
@@ -170,7 +399,7 @@ class Case:
                 group, name = path.rsplit("/", 1)
                 groups.setdefault(group, {})[name] = self._field(path)
             attributes = {name: self._attribute(name) for name in self._attribute_names()}
-        return Result(groups, attributes)
+        return Result(groups, attributes, self._scene)
 
     def write(self, path: str | os.PathLike[str] | None = None) -> None:
         """Write the result file to `path`, or where the &output group of the case says. Raises FileError."""
@@ -185,14 +414,15 @@ class Case:
         with self._lock:
             numbers = byref(count), byref(is_integer), byref(along)
             self._call("mfv_field_info", name, *numbers, unit, len(unit), description, len(description))
-            values: Values
-            if is_integer:
-                values = np.empty(count.value, dtype=np.int32)
-                self._call("mfv_copy_integer", name, values.ctypes.data_as(POINTER(c_int32)), count.value)
-            else:
-                values = np.empty(count.value, dtype=np.float64)
-                self._call("mfv_copy_real", name, values.ctypes.data_as(POINTER(c_double)), count.value)
-        return Field(values if along else values[0], text_of(unit), text_of(description))
+            values: Values = self.values(path, np.empty(count.value, np.int32 if is_integer else np.float64))
+        scalar = along.value == Along.NOTHING
+        return Field(values[0] if scalar else values, text_of(unit), text_of(description), _DIMENSIONS[along.value])
+
+    def _count(self, path: str) -> int:
+        """Number of values of the field at a path. Raises BadArgument."""
+        count = c_size_t()
+        self._call("mfv_field_info", text_for(path), byref(count), None, None, None, 0, None, 0)
+        return count.value
 
     def _attribute_names(self) -> list[str]:
         """Names of the attributes of the result."""
@@ -205,48 +435,53 @@ class Case:
     def _attribute(self, name: str) -> str:
         """Text of an attribute, of any length."""
         length = c_size_t()
-        self._call("mfv_attribute", text_for(name), None, 0, byref(length))
-        buffer = create_string_buffer(length.value + 1)
-        self._call("mfv_attribute", text_for(name), buffer, len(buffer), None)
+        with self._lock:
+            self._call("mfv_attribute", text_for(name), None, 0, byref(length))
+            buffer = create_string_buffer(length.value + 1)
+            self._call("mfv_attribute", text_for(name), buffer, len(buffer), None)
         return text_of(buffer)
 
-    def _lead(self, check: bool, function: str, *arguments: object) -> str:
-        """Call what leads the loads; return the outcome. Raises for a bad call, and with `check` for an early end."""
-        with self._lock:
-            status = getattr(library(), function)(self._handle, *arguments)
-            message = self._library_message()
-            if status != 0 and errors.failures()[status] in (errors.BadHandle, errors.BadArgument):
-                raise errors.failure(status, message)
-            self._status, self._message = status, message
-            self._raise_early_end(check)
-            return self.outcome
+    def _lead(self, check: bool, watched: bool, function: Callable[..., int], *arguments: object) -> str:
+        """Call what leads the loads; return the outcome. Raises for a bad call, and with `check` for an early end.
+
+        `watched`: whether it may take long, so that KeyboardInterrupt has to end it.
+        """
+        observer = self._observer
+        is_observed = watched or observer.is_wanted or observer.is_leading
+        if is_observed:
+            status = observer.watch(function, *arguments)
+        else:
+            if observer.is_installed:
+                observer.rest()
+            status = function(*arguments)
+        if status != 0:
+            self._check(status, (errors.BadHandle, errors.BadArgument))
+        self._status = status
+        if is_observed:
+            observer.raise_what_ended_it()
+        self._raise_early_end(check)
+        return outcome_of(status)
 
     def _raise_early_end(self, check: bool) -> None:
         if check and self._status != 0:
-            raise errors.failure(self._status, self._message)
+            raise errors.failure(self._status, self.message)
 
     def _call(self, function: str, *arguments: object) -> None:
         """Call a function of the library on this case. Raises the exception of its status."""
         with self._lock:
-            status = getattr(library(), function)(self._handle, *arguments)
-            if status != 0:
-                raise errors.failure(status, self._library_message())
+            self._observer.refuse_while_leading()
+            self._check(getattr(library(), function)(self._handle, *arguments))
+
+    def _check(self, status: int, kinds: tuple[type[errors.MfvError], ...] = (errors.MfvError,)) -> None:
+        """Raise the exception of a status, if it is of these kinds."""
+        if status != 0 and issubclass(errors.failures()[status], kinds):
+            raise errors.failure(status, self._library_message())
 
     def _library_message(self) -> str:
         """The message of the last call; empty for a closed case."""
         buffer = text_buffer()
-        with self._lock:
-            library().mfv_message(self._handle, buffer, len(buffer))
+        library().mfv_message(self._handle, buffer, len(buffer))
         return text_of(buffer)
-
-
-def _created(function: str, *arguments: bytes) -> c_void_p:
-    """A handle from one of the functions that create it."""
-    handle, message = c_void_p(), text_buffer()
-    status = getattr(library(), function)(*arguments, byref(handle), message, len(message))
-    if status != 0:
-        raise errors.failure(status, text_of(message))
-    return handle
 
 
 def _control(

@@ -1,7 +1,8 @@
 """Pictures of results: numbers as points, closed forms as lines.
 
-`pressure`, `shear`, `surfaces`, `loop`, `turning` and `stress_contours` draw into axes of yours; `figure` makes a picture of what a
-result has, `stress_figure` one of the stresses inside a body.
+`pressure`, `shear`, `surfaces`, `loop`, `nonlinear_loop`, `friction_work`, `turning` and `stress_contours` draw into axes of yours, or
+new ones, and return them; `figure` makes a picture of what a result has, `cycles_figure` one of its cycles, `stress_figure` one of the
+stresses inside a body.
 """
 
 from __future__ import annotations
@@ -27,12 +28,12 @@ from .stress import NAMES, StressField, grid, stored, surface
 NUMBERS, CLOSED_FORM, SURFACE, MARKS = "#0072B2", "#D55E00", "#009E73", "#000000"
 STICK, RIGHT, LEFT, WITHOUT_FRICTION = "#DCEBF5", "#FBE3B4", "#EBD3E1", "#EEEEEE"
 ZONES: dict[int, dict[str, Any]] = {
-    NodeStatus.STICK: dict(label="stick", facecolor=STICK, edgecolor="none"),
-    NodeStatus.SLIP_RIGHT: dict(label="slip to the right", facecolor=RIGHT, edgecolor="#C9A24B", hatch="///"),
-    NodeStatus.SLIP_LEFT: dict(label="slip to the left", facecolor=LEFT, edgecolor="#B98AA6", hatch="\\\\\\"),
-    NodeStatus.CREEP_RIGHT: dict(label="creep to the right", facecolor=STICK, edgecolor="#9FC3DA", hatch="//"),
-    NodeStatus.CREEP_LEFT: dict(label="creep to the left", facecolor=STICK, edgecolor="#9FC3DA", hatch="\\\\"),
-    NodeStatus.FRICTIONLESS: dict(label="frictionless contact", facecolor=WITHOUT_FRICTION, edgecolor="none"),
+    NodeStatus.STICK: {"label": "stick", "facecolor": STICK, "edgecolor": "none"},
+    NodeStatus.SLIP_RIGHT: {"label": "slip to the right", "facecolor": RIGHT, "edgecolor": "#C9A24B", "hatch": "///"},
+    NodeStatus.SLIP_LEFT: {"label": "slip to the left", "facecolor": LEFT, "edgecolor": "#B98AA6", "hatch": "\\\\\\"},
+    NodeStatus.CREEP_RIGHT: {"label": "creep to the right", "facecolor": STICK, "edgecolor": "#9FC3DA", "hatch": "//"},
+    NodeStatus.CREEP_LEFT: {"label": "creep to the left", "facecolor": STICK, "edgecolor": "#9FC3DA", "hatch": "\\\\"},
+    NodeStatus.FRICTIONLESS: {"label": "frictionless contact", "facecolor": WITHOUT_FRICTION, "edgecolor": "none"},
 }
 
 STYLE: dict[Any, Any] = {
@@ -146,9 +147,7 @@ def stress_figure(result: Result, name: str = "von_mises", body: str = "lower", 
         raise ValueError(f"{name} is not defined in a half-plane")
     with matplotlib.rc_context(STYLE):
         picture = Figure(figsize=(6.4, 4.4), layout="constrained")
-        ax = picture.subplots()
-        contours = stress_contours(field, ax, name)
-        picture.colorbar(contours, ax=ax, label=f"{STRESS_LABELS[name]}$/p_0$", shrink=0.85)
+        ax = stress_contours(field, picture.subplots(), name, colour_bar=True)
         heading = _heading(result, step)
         ax.set_title(f"{heading}: {body} body" if heading else f"{body} body", fontsize=12, parse_math=False)
         picture.supxlabel(_scales(result, field), fontsize=9, color="0.35", parse_math=False)
@@ -166,9 +165,12 @@ def _scales(result: Result, field: StressField) -> str:
     )
 
 
-def stress_contours(field: StressField, ax: Axes, name: str = "von_mises") -> Any:
+def stress_contours(
+    field: StressField, ax: Axes | None = None, name: str = "von_mises", *, colour_bar: bool = False
+) -> Axes:
     """Contours of a stress over the largest pressure, axes over the contact half-width; for von Mises the place of the
-    largest. Returns the contour set, for a colour bar."""
+    largest. `colour_bar`: with a scale beside them."""
+    ax = _axes(ax)
     x, y = (field.x - field.middle) / field.half_width, np.nan_to_num(field.y / field.half_width)
     values = np.ma.masked_invalid(field[name] / field.largest_pressure)
     signed = bool(values.min() < -1.0e-9 * values.max() and name != "von_mises")
@@ -195,7 +197,9 @@ def stress_contours(field: StressField, ax: Axes, name: str = "von_mises") -> An
     ax.set_aspect("equal")
     ax.set_xlabel("$x/a$")
     ax.set_ylabel("$y/a$")
-    return contours
+    if colour_bar:
+        ax.figure.colorbar(contours, ax=ax, label=f"{STRESS_LABELS[name]}$/p_0$", shrink=0.85)
+    return ax
 
 
 def _rounded(value: float) -> str:
@@ -203,8 +207,9 @@ def _rounded(value: float) -> str:
     return f"{round(value, 2) + 0.0:.2f}"
 
 
-def pressure(result: Result, ax: Axes, step: int | None = None) -> None:
+def pressure(result: Result, ax: Axes | None = None, step: int | None = None) -> Axes:
     """Pressure over x, with its closed form where one holds."""
+    ax = _axes(ax)
     state = result.at(step)
     _draw_points(ax, result, state, state.pressure)
     if "pressure" in result.reference and _same_normal_force(result, step):
@@ -212,10 +217,12 @@ def pressure(result: Result, ax: Axes, step: int | None = None) -> None:
     ax.set_ylim(bottom=0.0)
     ax.set_ylabel(_label("pressure", "p", state.unit("pressure")))
     _frame_contact(ax, result, state)
+    return ax
 
 
-def shear(result: Result, ax: Axes, step: int | None = None) -> None:
+def shear(result: Result, ax: Axes | None = None, step: int | None = None) -> Axes:
     """Shear traction over x between the limits of friction, stick and slip zones, closed form where one holds."""
+    ax = _axes(ax)
     state = result.at(step)
     _shade_zones(ax, result, state)
     for coefficient, style in _coefficients(result):
@@ -227,6 +234,7 @@ def shear(result: Result, ax: Axes, step: int | None = None) -> None:
         _draw_closed_form(ax, result, result.reference.shear)
     ax.set_ylabel(_label("shear traction", r"\tau", state.unit("shear")))
     _frame_contact(ax, result, state)
+    return ax
 
 
 def _coefficients(result: Result) -> list[tuple[np.ndarray, dict[str, Any]]]:
@@ -235,21 +243,23 @@ def _coefficients(result: Result) -> list[tuple[np.ndarray, dict[str, Any]]]:
     if "static_friction" not in mesh:
         return []
     if np.array_equal(mesh.static_friction, mesh.kinetic_friction):
-        return [(mesh.static_friction, dict(label=r"limit $\pm\mu p$"))]
+        return [(mesh.static_friction, {"label": r"limit $\pm\mu p$"})]
     return [
-        (mesh.static_friction, dict(label=r"limit $\pm\mu_s p$")),
-        (mesh.kinetic_friction, dict(label=r"limit $\pm\mu_k p$", linestyle=(0, (2, 2)))),
+        (mesh.static_friction, {"label": r"limit $\pm\mu_s p$"}),
+        (mesh.kinetic_friction, {"label": r"limit $\pm\mu_k p$", "linestyle": (0, (2, 2))}),
     ]
 
 
-def surfaces(result: Result, ax: Axes, step: int | None = None) -> None:
+def surfaces(result: Result, ax: Axes | None = None, step: int | None = None) -> Axes:
     """The deformed surface of the lower body and the upper body on it."""
+    ax = _axes(ax)
     state = result.at(step)
     lower, upper = _heights(result, state)
     _draw_points(ax, result, state, lower, label="surface of the lower body", color=SURFACE)
     ax.plot(result.mesh.x, upper, color=MARKS, linewidth=0.9, label="surface of the upper body")
     ax.set_ylabel(_label("height", "y", state.unit("gap")))
     _frame_contact(ax, result, state)
+    return ax
 
 
 def _heights(result: Result, state: Group) -> tuple[np.ndarray, np.ndarray]:
@@ -259,14 +269,15 @@ def _heights(result: Result, state: Group) -> tuple[np.ndarray, np.ndarray]:
     return lower, np.where(np.isfinite(state.gap), lower + state.gap, np.nan)
 
 
-def loop(result: Result, ax: Axes, step: int | None = None) -> None:
+def loop(result: Result, ax: Axes | None = None, step: int | None = None) -> Axes:
     """Tangential force over shift, with the closed form where one holds; step ends are numbered, `step` stands out."""
+    ax = _axes(ax)
     history = result.history
     shift, force = history.shift, history.tangential_force
     has_events = not np.isin(history.event_kind, (EventKind.START, EventKind.STEP_END, EventKind.STOPPED)).all()
     ax.plot(shift, force, color=NUMBERS, linewidth=0.8 if has_events else 0.0, **_points(len(shift)), label="computed")
     if "shift" in result.reference:
-        style: dict[str, Any] = dict(linestyle=(0, (4, 3))) if has_events else dict(linestyle="none", marker="x")
+        style: dict[str, Any] = {"linestyle": (0, (4, 3))} if has_events else {"linestyle": "none", "marker": "x"}
         ax.plot(
             result.reference.shift, force, color=CLOSED_FORM, linewidth=0.9, label="closed form", markersize=4, **style
         )
@@ -275,10 +286,12 @@ def loop(result: Result, ax: Axes, step: int | None = None) -> None:
     ax.set_ylabel(_label("tangential force", "Q", history.unit("tangential_force")))
     ax.locator_params(axis="x", nbins=5)
     ax.margins(0.12)
+    return ax
 
 
-def nonlinear_loop(result: Result, ax: Axes, step: int | None = None) -> None:
+def nonlinear_loop(result: Result, ax: Axes | None = None, step: int | None = None) -> Axes:
     """Tangential force over the non-linear part of the shift: what slip adds to a contact where all sticks."""
+    ax = _axes(ax)
     history = result.history
     ax.plot(history.nonlinear_shift, history.tangential_force, color=NUMBERS, linewidth=0.8)
     _mark_step_ends(ax, result, step, "nonlinear_shift")
@@ -286,18 +299,22 @@ def nonlinear_loop(result: Result, ax: Axes, step: int | None = None) -> None:
     ax.set_ylabel(_label("tangential force", "Q", history.unit("tangential_force")))
     ax.locator_params(axis="x", nbins=4)
     ax.margins(0.12)
+    return ax
 
 
-def friction_work(result: Result, ax: Axes, step: int | None = None) -> None:
+def friction_work(result: Result, ax: Axes | None = None, step: int | None = None) -> Axes:
     """Energy that the last cycle dissipates per unit of surface, over x."""
+    ax = _axes(ax)
     cycles = result.cycles
     ax.plot(result.mesh.x, cycles.friction_work, color=NUMBERS, linewidth=0.8, **_points(result.mesh.x.size))
     ax.set_ylabel(_label("dissipated per cycle and surface", "d", cycles.unit("friction_work")))
     _frame_contact(ax, result, result.at(step))
+    return ax
 
 
-def turning(result: Result, ax: Axes, step: int | None = None) -> None:
+def turning(result: Result, ax: Axes | None = None, step: int | None = None) -> Axes:
     """Moment over rotation; step ends are numbered, `step` stands out."""
+    ax = _axes(ax)
     history = result.history
     ax.plot(history.rotation, history.moment, color=NUMBERS, linewidth=0.8, **_points(len(history.moment)), label="computed")
     _mark_step_ends(ax, result, step, "rotation", "moment")
@@ -305,6 +322,18 @@ def turning(result: Result, ax: Axes, step: int | None = None) -> None:
     ax.set_ylabel(_label("moment", "M", history.unit("moment")))
     ax.locator_params(axis="x", nbins=5)
     ax.margins(0.12)
+    return ax
+
+
+def _axes(ax: Axes | None) -> Axes:
+    """The axes to draw into: new ones, of a figure of pyplot, where none are given."""
+    if ax is not None:
+        return ax
+    from matplotlib import pyplot  # here: it looks for a display, which pictures in files do not need
+
+    with matplotlib.rc_context(STYLE):
+        _, made = pyplot.subplots(figsize=(PANEL_WIDTH, PANEL_HEIGHT), layout="constrained")
+    return made
 
 
 def _loads(result: Result, step: int | None) -> Group:
@@ -360,7 +389,7 @@ def _draw_points(
 
 def _points(number: int) -> dict[str, Any]:
     """Markers that leave each other room: smaller where there are more."""
-    return dict(marker="o", markersize=float(np.clip(350.0 / max(number, 1), 1.0, 3.5)), markeredgewidth=0.0)
+    return {"marker": "o", "markersize": float(np.clip(350.0 / max(number, 1), 1.0, 3.5)), "markeredgewidth": 0.0}
 
 
 def _shade_zones(ax: Axes, result: Result, state: Group) -> None:

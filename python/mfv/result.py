@@ -4,12 +4,18 @@ from __future__ import annotations
 
 import os
 from collections.abc import Iterator, Mapping
-from typing import Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
-import h5py
+import h5py  # type: ignore[import-untyped]
 import numpy as np
 
+from . import _html
 from .errors import NotAResult
+
+if TYPE_CHECKING:
+    import xarray
+
+    from .scene import Scene
 
 Values = Any
 """What a quantity is: an array of float64 or int32, or one such number."""
@@ -23,20 +29,26 @@ COORDINATES = {"mesh": ("x",), "history": ("record",), "error_estimate": ("compa
 #: Where mfv_stress puts its groups.
 STRESS = "stress/"
 
+#: The dimension along which `Result.to_xarray` stacks the steps.
+STATE = "state"
+
 
 class Field(NamedTuple):
-    """One quantity."""
+    """One quantity. `dimensions`: what its values run along, such as ("x",); () for a number."""
 
     values: Values
     unit: str
     description: str
+    dimensions: tuple[str, ...] = ()
 
 
 class Group(Mapping[str, Values]):
     """Named quantities, as attributes and items: `group.pressure` is `group["pressure"]`; `in` tells what is there."""
 
-    def __init__(self, fields: Mapping[str, Field]) -> None:
+    def __init__(self, fields: Mapping[str, Field], coordinates: Mapping[str, Field] | None = None) -> None:
+        """`coordinates`: what quantities run along, by name, where it is not among the fields itself."""
         self._fields = dict(fields)
+        self._coordinates = coordinates or {}
 
     def __getitem__(self, name: str) -> Values:
         return self._fields[name].values
@@ -63,6 +75,17 @@ class Group(Mapping[str, Values]):
             for name, field in self._fields.items()
         ]
         return "\n".join(["<mfv.Group", *lines]) + ">"
+
+    def _repr_html_(self) -> str:
+        rows = [
+            (name, _short(field.values), _html.unit(field.unit), field.description)
+            for name, field in self._fields.items()
+        ]
+        return _html.table(rows, numbers=(1,))
+
+    def to_xarray(self) -> xarray.Dataset:
+        """The group as an xarray.Dataset with its coordinates; units and long_name as attributes. Needs xarray."""
+        return _dataset(self._fields, self._coordinates)
 
     def unit(self, name: str) -> str:
         """Unit of a quantity."""
@@ -95,19 +118,29 @@ class Result:
     stresses: dict[str, Group]
     attributes: dict[str, str]
 
-    def __init__(self, groups: Mapping[str, Mapping[str, Field]], attributes: Mapping[str, str]) -> None:
-        """`groups` by path, those of the steps as steps/0001 and so on."""
+    def __init__(
+        self,
+        groups: Mapping[str, Mapping[str, Field]],
+        attributes: Mapping[str, str],
+        source: Scene | None = None,
+    ) -> None:
+        """`groups` by path, those of the steps as steps/0001 and so on. `source`: the scene that was run, where the input among
+        the attributes does not have all of it."""
+        coordinates = {
+            name: groups[path][name] for path, names in COORDINATES.items() if path in groups for name in names
+        }
         steps = sorted((path for path in groups if path.startswith("steps/")), key=lambda path: int(path.split("/")[1]))
-        self.steps = [Group(groups[path]) for path in steps]
+        self.steps = [Group(groups[path], coordinates) for path in steps]
         self.attributes = dict(attributes)
+        self._source = source
         for name in OPTIONAL_GROUPS:
             setattr(self, name, Group({}))
         self.stresses = {
             path.removeprefix(STRESS): Group(group) for path, group in groups.items() if path.startswith(STRESS)
         }
-        for path in groups:
-            if path not in steps and not path.startswith(STRESS):
-                setattr(self, path, Group(groups[path]))
+        self._names = [path for path in groups if path not in steps and not path.startswith(STRESS)]
+        for name in self._names:
+            setattr(self, name, Group(groups[name], coordinates))
 
     @property
     def outcome(self) -> str:
@@ -132,19 +165,39 @@ class Result:
             raise ValueError(f"there is no step {step}: the result has {len(self.steps)}")
         return self.steps[step - 1]
 
+    def to_xarray(self) -> dict[str, xarray.Dataset]:
+        """Every group that is not empty as an xarray.Dataset, by name; "steps" has all steps stacked along `state`, numbered
+        from 1 as in the file. Units and long_name are attributes of the variables, texts of the result those of the
+        datasets. `xarray.DataTree.from_dict` makes a tree of it. Needs xarray.
+        """
+        texts = {name: text for name, text in self.attributes.items() if name != "input"}
+        datasets = {name: getattr(self, name).to_xarray() for name in self._names}
+        if self.steps:
+            datasets["steps"] = _stacked(self.steps)
+        return {name: dataset.assign_attrs(texts) for name, dataset in datasets.items()}
+
     def __repr__(self) -> str:
+        lines = [f"<mfv.Result {self.title}".rstrip(), *(f"  {name:14}{text}" for name, text in self._words())]
+        return "\n".join(lines) + ">"
+
+    def _repr_html_(self) -> str:
+        return _html.block(
+            _html.table(self._words(), self.title),
+            _html.tractions(self.mesh.x, self.state.pressure, self.state.shear),
+        )
+
+    def _words(self) -> list[tuple[str, str]]:
+        """The result in a few lines, each with its name."""
         amount = self._amount
         lines = [
-            f"<mfv.Result {self.title}".rstrip(),
-            f"  outcome       {self.outcome}: {self.message}",
-            f"  nodes         {self.mesh.x.size}, {counts(self.summary)}",
-            f"  normal        force {amount('normal_force')}, approach {amount('approach')}",
-            f"  tangential    force {amount('tangential_force')}, shift {amount('shift')}",
-            f"  certificate   largest relative residual {amount('largest_residual')}",
-            f"  kept          {kept(self)}",
+            ("outcome", f"{self.outcome}: {self.message}"),
+            ("nodes", f"{self.mesh.x.size}, {counts(self.summary)}"),
+            ("normal", f"force {amount('normal_force')}, approach {amount('approach')}"),
+            ("tangential", f"force {amount('tangential_force')}, shift {amount('shift')}"),
+            ("certificate", f"largest relative residual {amount('largest_residual')}"),
+            ("kept", kept(self)),
         ]
-        lines += [f"  warning       {line}" for line in self.attributes.get("warnings", "").splitlines()]
-        return "\n".join(lines) + ">"
+        return lines + [("warning", line) for line in self.attributes.get("warnings", "").splitlines()]
 
     def _amount(self, name: str) -> str:
         """A value of the summary with its unit."""
@@ -200,7 +253,35 @@ def _groups(file: h5py.File) -> dict[str, dict[str, Field]]:
 
 
 def _field(dataset: h5py.Dataset) -> Field:
-    return Field(dataset[()], str(dataset.attrs.get("units", "")), str(dataset.attrs.get("long_name", "")))
+    name = dataset.name.rsplit("/", 1)[1]
+    dimensions = (name,) if dataset.is_scale else tuple(d[0].name.rsplit("/", 1)[1] for d in dataset.dims if len(d) > 0)
+    unit, description = (str(dataset.attrs.get(attribute, "")) for attribute in ("units", "long_name"))
+    return Field(dataset[()], unit, description, dimensions)
+
+
+def _dataset(fields: Mapping[str, Field], coordinates: Mapping[str, Field]) -> xarray.Dataset:
+    """Fields with those coordinates that they run along."""
+    import xarray
+
+    known = {**coordinates, **fields}
+    used = {dimension for field in fields.values() for dimension in field.dimensions if dimension in known}
+    variables = {
+        name: xarray.Variable(field.dimensions, field.values, {"units": field.unit, "long_name": field.description})
+        for name, field in {**{name: known[name] for name in sorted(used)}, **fields}.items()
+    }
+    return xarray.Dataset(
+        {name: variable for name, variable in variables.items() if name not in used},
+        {name: variable for name, variable in variables.items() if name in used},
+    )
+
+
+def _stacked(steps: list[Group]) -> xarray.Dataset:
+    """The steps in one dataset, along `state`."""
+    import xarray
+
+    numbers = xarray.Variable((STATE,), np.arange(1, len(steps) + 1), {"long_name": "number of the state in steps"})
+    stacked = xarray.concat([step.to_xarray() for step in steps], dim=STATE, data_vars="all", combine_attrs="override")
+    return stacked.assign_coords({STATE: numbers})
 
 
 def _short(values: Values) -> str:

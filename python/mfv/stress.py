@@ -2,15 +2,14 @@
 
 from __future__ import annotations
 
-import ctypes
 import os
-from ctypes import POINTER, c_double
 from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from ._library import real_pointer
 from .case import Case
 from .result import Result
 
@@ -72,17 +71,16 @@ def stress(result: Result, x: ArrayLike, y: ArrayLike, *, body: str = "lower", s
     across, up = (np.ascontiguousarray(values, dtype=np.float64) for values in np.broadcast_arrays(x, y))
     state = result.at(step)
     arc = _arc(result)
-    loads = arc, result.mesh.width, state.pressure, state.shear
+    loads = [np.ascontiguousarray(values) for values in (arc, result.mesh.width, state.pressure, state.shear)]
     values, largest = np.empty((across.size, len(NAMES))), np.empty(3)
-    name = os.path.join(result.attributes["working_directory"], result.attributes["input_file"])
-    with Case.from_text(result.attributes["input"], name) as case:
+    with _case(result) as case:
         case._call(
             "mfv_stress_under",
             BODIES.index(body),
             arc.size,
-            *map(_pointer, loads),
+            *map(real_pointer, loads),
             across.size,
-            *map(_pointer, (across, up, values, largest)),
+            *map(real_pointer, (across, up, values, largest)),
         )
     left, right = _loaded_surface(result, step)
     return StressField(
@@ -149,6 +147,14 @@ def surface(result: Result, body: str, x: Array) -> Array:
         return np.asarray(sign * x**2 / (radius + np.sqrt(radius**2 - x**2)))
 
 
+def _case(result: Result) -> Case:
+    """The case again, before its load history."""
+    if result._source is not None:
+        return Case(result._source)
+    name = os.path.join(result.attributes["working_directory"], result.attributes["input_file"])
+    return Case.from_text(result.attributes["input"], name)
+
+
 def _arc(result: Result) -> Array:
     """Positions of the nodes along the surface."""
     return np.ascontiguousarray(result.mesh.arc if "arc" in result.mesh else result.mesh.x)
@@ -162,7 +168,3 @@ def _loaded_surface(result: Result, step: int | None) -> tuple[float, float]:
         return 0.0, 0.0
     arc, half = _arc(result)[loaded], 0.5 * result.mesh.width[loaded]
     return float(np.min(arc - half)), float(np.max(arc + half))
-
-
-def _pointer(values: Array) -> ctypes._Pointer[c_double]:
-    return np.ascontiguousarray(values).ctypes.data_as(POINTER(c_double))

@@ -5,12 +5,15 @@ from __future__ import annotations
 import csv
 import os
 import sys
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from .errors import NotAResult
 from .result import open_hdf5
+
+if TYPE_CHECKING:
+    import pandas
 
 
 class Table(np.ndarray):
@@ -42,6 +45,14 @@ class Table(np.ndarray):
             for name in self.columns
         ]
         return "\n".join(lines)
+
+    def to_pandas(self) -> pandas.DataFrame:
+        """The table as a data frame; its `attrs` have the units and the meanings of the columns. Needs pandas."""
+        import pandas
+
+        frame = pandas.DataFrame(np.asarray(self))
+        frame.attrs = {"units": self.units, "long_names": self.long_names}
+        return frame
 
     def write_csv(self, path: str | os.PathLike[str] | None) -> None:
         """Write the table as comma-separated values, with a line of names; None: to the standard output."""
@@ -78,7 +89,7 @@ def _with_text(rows: np.ndarray) -> np.ndarray:
     """The same with str in place of bytes."""
     columns = {
         name: np.char.decode(rows[name], "utf-8") if rows.dtype[name].kind == "S" else rows[name]
-        for name in rows.dtype.names
+        for name in rows.dtype.names or ()
     }
     text = np.empty(rows.shape, np.dtype([(name, column.dtype) for name, column in columns.items()]))
     for name, column in columns.items():

@@ -8,7 +8,7 @@ module mfv_advice
    use mfv_kinds, only: wp
    use mfv_observer, only: observer_type, relay_type
    use mfv_scene
-   use mfv_simulation, only: history_none, new_simulation, simulation_type
+   use mfv_simulation, only: history_none, new_simulation, simulation_type, states_steps
    use mfv_solver_costs, only: cheapest_solver, seconds_of_solve
    use mfv_status, only: MFV_COMPLETE, MFV_INPUT_ERROR, status_outcome
    use mfv_strings, only: to_text
@@ -195,7 +195,7 @@ contains
 
       other = scene_on_mesh(scene, nodes)
       call fix_cycles(other, pilot)
-      simulation = new_simulation(other, history_none, .false.)
+      simulation = new_simulation(other, history_none, states_steps)
       watch%before = watch%before + 1
       call simulation%run(watch)
       if (simulation%outcome == MFV_COMPLETE) return

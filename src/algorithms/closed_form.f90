@@ -8,8 +8,8 @@ module mfv_closed_form
    use mfv_reference_hertz, only: hertz_half_width, hertz_pressure
    use mfv_reference_mindlin, only: mindlin_history_type, new_mindlin_history
    use mfv_reference_spence, only: spence_cylinder_shear, spence_flat_punch_shear
-   use mfv_scene, only: control_displacement, control_force, control_keep, scene_type, step_type
-   use mfv_simulation, only: simulation_type
+   use mfv_scene, only: scene_type
+   use mfv_simulation, only: simulation_type, states_reversals, states_steps
    implicit none
    private
    public :: closed_form_type, closed_form_of
@@ -42,7 +42,7 @@ contains
                  force => simulation%contact%state%fields%normal_force)
          if (.not. (force > 0.0_wp .and. scene%modulus() > 0.0_wp)) return
          if (model%compliance%has_block(block_wt) .and. model%tangential .and. .not. alike(scene)) return
-         if (is_rotated(simulation)) return
+         if (simulation%way%rotated) return
          if (is_hertz(scene)) then
             form%half_width = hertz_half_width(force, 1.0_wp/scene%curvature(), scene%modulus())
             if (form%half_width > widest_hertz*min(scene%lower%half_extent(), scene%upper%half_extent())) return
@@ -78,36 +78,15 @@ contains
       alike = abs(scene%dundurs_beta()) < none
    end function alike
 
-   !> Whether there is a rotation or a moment to speak of.
-   pure logical function is_rotated(simulation)
-      type(simulation_type), intent(in) :: simulation
-      integer :: i
-
-      is_rotated = .false.
-      do i = 1, size(simulation%taken)
-         is_rotated = is_rotated .or. simulation%taken(i)%rotational_control /= control_keep
-      end do
-   end function is_rotated
-
    !> Pressed only, ever harder, with friction from the start and Goodman's coupling.
    logical function is_spence(simulation)
       type(simulation_type), intent(in) :: simulation
-      real(wp) :: before
-      integer :: i
 
       associate (model => simulation%contact%model)
          is_spence = model%compliance%has_block(block_up) .and. &
                      model%scene%friction%is_coulomb() .and. model%tangential .and. .not. alike(model%scene)
-         before = 0.0_wp
-         do i = 1, size(simulation%taken)
-            associate (step => simulation%taken(i))
-               is_spence = is_spence .and. step%friction .and. step%cycles == 0 &
-                           .and. step%normal_control == control_force .and. step%normal_target >= before &
-                           .and. .not. abs(step%tangential_target) > 0.0_wp
-               before = step%normal_target
-            end associate
-         end do
       end associate
+      is_spence = is_spence .and. simulation%way%pressed_harder
    end function is_spence
 
    subroutine add_spence(form, simulation)
@@ -128,29 +107,17 @@ contains
       end associate
    end subroutine add_spence
 
-   !> A disk pressed to a constant normal force without shear (friction off, or no coupling), then sheared by forces.
+   !> A disk pressed to a constant normal force without shear (friction off, or no coupling), then sheared by forces, of which
+   !> every turn was kept.
    logical function is_mindlin(simulation)
       type(simulation_type), intent(in) :: simulation
-      logical :: pressing
-      integer :: i
 
-      associate (model => simulation%contact%model, scene => simulation%contact%model%scene)
-         is_mindlin = is_hertz(scene) .and. scene%friction%is_coulomb() .and. model%tangential
-         pressing = .true.
-         do i = 1, size(simulation%taken)
-            associate (step => simulation%taken(i))
-               pressing = pressing .and. .not. abs(step%tangential_target) > 0.0_wp
-               if (pressing) then
-                  is_mindlin = is_mindlin .and. (.not. step%friction .or. alike(scene) .or. &
-                                                 .not. model%compliance%has_block(block_up)) &
-                               .and. step%tangential_control /= control_displacement
-               else
-                  is_mindlin = is_mindlin .and. step%friction .and. step%normal_control == control_keep &
-                               .and. step%tangential_control == control_force
-               end if
-            end associate
-         end do
-         is_mindlin = is_mindlin .and. .not. pressing
+      associate (model => simulation%contact%model, way => simulation%way)
+         is_mindlin = is_hertz(model%scene) .and. model%scene%friction%is_coulomb() .and. model%tangential .and. &
+                      way%pressed_then_sheared .and. way%sheared .and. &
+                      (.not. way%friction_in_press .or. alike(model%scene) .or. .not. model%compliance%has_block(block_up)) .and. &
+                      (simulation%keep_states == states_reversals .or. &
+                       simulation%keep_states == states_steps .and. .not. way%cycled)
       end associate
    end function is_mindlin
 

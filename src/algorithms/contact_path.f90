@@ -4,7 +4,7 @@ module mfv_contact_path
    use, intrinsic :: ieee_arithmetic, only: ieee_quiet_nan, ieee_value
    use mfv_certificate, only: certificate_type, new_certificate
    use mfv_contact_fields, only: contact_fields_type
-   use mfv_contact_model, only: along_rotation, along_shift, contact_model_type
+   use mfv_contact_model, only: along_rotation, along_shift, contact_model_type, new_contact_model
    use mfv_contact_state, only: contact_state_type, new_contact_state
    use mfv_contact_system
    use mfv_error, only: error_type, set_error
@@ -19,7 +19,7 @@ module mfv_contact_path
    use mfv_strings, only: to_text
    implicit none
    private
-   public :: contact_path_type, new_contact_path, segment_type, moment_type, note_change, first_true
+   public :: contact_path_type, kept_path_type, new_contact_path, segment_type, moment_type, note_change, first_true
 
    !> A straight part of the load history: the controlled loads with their targets, and whether friction acts.
    type :: segment_type
@@ -53,6 +53,8 @@ module mfv_contact_path
       real(wp), private :: start_force = 0.0_wp, start_shift = 0.0_wp
       logical, private :: awaits_increment = .false.
    contains
+      procedure :: keep
+      procedure :: come_back
       procedure :: await_increment
       procedure :: begin_rotation
       procedure :: record
@@ -77,6 +79,17 @@ module mfv_contact_path
       procedure, private :: begin_tangential
       procedure :: close_nearest
    end type contact_path_type
+
+   !> What it takes to go on from a contact as it was, with the same digits: all but what can be made again.
+   type :: kept_path_type
+      private
+      class(contact_system_type), allocatable :: system
+      type(contact_state_type) :: state
+      type(certificate_type) :: certificate
+      integer :: events = 0, records = 0, added = 0
+      logical :: tangential = .false., rotational = .false.
+      real(wp) :: trial = 0.0_wp, first_stiffness = 0.0_wp
+   end type kept_path_type
 
    !> What is known at one load while statuses settle.
    type :: moment_type
@@ -109,6 +122,48 @@ contains
       self%certificate = new_certificate(model)
       self%record_events = record_events
    end subroutine new_contact_path
+
+   !> Keep the contact as it is between segments; the storage in `kept` is used again.
+   subroutine keep(self, kept)
+      class(contact_path_type), intent(in) :: self
+      type(kept_path_type), intent(inout) :: kept
+
+      if (allocated(kept%system)) deallocate (kept%system)
+      allocate (kept%system, source=self%system)
+      kept%state = self%state
+      kept%certificate = self%certificate
+      kept%events = self%events
+      kept%records = self%history%records
+      kept%added = self%model%added
+      kept%tangential = self%model%tangential
+      kept%rotational = self%model%rotational
+      kept%trial = self%trial
+      kept%first_stiffness = self%first_stiffness
+   end subroutine keep
+
+   !> Come back to what was kept of this contact, or of one with the same scene. History records since then are dropped. A mesh
+   !> that has grown, or a problem that has come to be modelled since, is modelled anew as it was.
+   subroutine come_back(self, kept)
+      class(contact_path_type), intent(inout) :: self
+      type(kept_path_type), intent(in) :: kept
+
+      call self%history%move_nodes(kept%added - self%model%added)
+      if (self%model%added /= kept%added .or. (self%model%tangential .neqv. kept%tangential) .or. &
+          (self%model%rotational .neqv. kept%rotational)) then
+         self%model = new_contact_model(self%model%scene)
+         if (kept%tangential .and. .not. self%model%tangential) call self%model%add_tangential()
+         if (kept%rotational) call self%model%add_rotation()
+         if (kept%added > 0) call self%model%grow(kept%added)
+      end if
+      deallocate (self%system)
+      allocate (self%system, source=kept%system)
+      self%state = kept%state
+      self%certificate = kept%certificate
+      self%events = kept%events
+      self%history%records = min(kept%records, self%history%records)
+      self%trial = kept%trial
+      self%first_stiffness = kept%first_stiffness
+   end subroutine come_back
 
    !> A segment begins: have its first_stiffness found.
    subroutine await_increment(self)

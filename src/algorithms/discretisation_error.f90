@@ -10,7 +10,7 @@ module mfv_discretisation_error
    use mfv_node_status, only: holds, in_contact
    use mfv_observer, only: observer_type, relay_type
    use mfv_scene, only: scene_type
-   use mfv_simulation, only: history_none, new_simulation, simulation_type
+   use mfv_simulation, only: history_none, new_simulation, simulation_type, states_steps
    use mfv_status, only: MFV_COMPLETE, MFV_INPUT_ERROR, status_outcome
    use mfv_strings, only: to_text
    use mfv_zone_edges, only: ends_with_body
@@ -85,7 +85,7 @@ contains
             estimate%message = 'the run ended early'
          else if (.not. has_coarser_meshes(scene)) then
             estimate%message = "a body with shape='matrix' has no coarser mesh"
-         else if (size(simulation%taken) /= size(scene%steps)) then
+         else if (simulation%way%steps /= size(scene%steps)) then
             estimate%message = 'steps were taken that the case does not have'
          else if (simulation%contact%state%contact_nodes() < 2*fewest_contact_nodes) then
             estimate%message = to_text(2*fewest_contact_nodes)//' nodes in contact are needed, there are '// &
@@ -154,7 +154,7 @@ contains
       watch%runs = size(nodes) - 1
       do i = 2, size(nodes)
          watch%before = i - 2
-         companion = new_simulation(coarser_scene(simulation, nodes(i)), history_none, .false.)
+         companion = new_simulation(coarser_scene(simulation, nodes(i)), history_none, states_steps)
          call companion%run(watch)
          if (companion%outcome /= MFV_COMPLETE) then
             estimate%status = companion%outcome

@@ -1,6 +1,8 @@
 !> A scene led through its load history: steps, their reversals, the state at the end of each, and how it all ended.
 module mfv_simulation
    use, intrinsic :: ieee_arithmetic, only: ieee_quiet_nan, ieee_value
+   use, intrinsic :: iso_fortran_env, only: int64, int8
+   use mfv_checksum, only: add_to_checksum
    use mfv_contact_model, only: new_contact_model
    use mfv_contact_state, only: contact_state_type
    use mfv_contact_system, only: load_type
@@ -11,6 +13,7 @@ module mfv_simulation
    use mfv_error_bar, only: error_estimate_type
    use mfv_kinds, only: wp
    use mfv_leap, only: lead_by_leaps
+   use mfv_load_way, only: load_way_type
    use mfv_node_status, only: event_none, event_step_end, event_stopped
    use mfv_observer, only: observer_type
    use mfv_scene
@@ -20,10 +23,13 @@ module mfv_simulation
    implicit none
    private
    public :: simulation_type, new_simulation, snapshot_type, history_events, history_steps, history_none
+   public :: states_reversals, states_steps, states_none, mark_count
    public :: mark_loading, mark_reversal, mark_return, mark_cycle_start
 
    !> What the load history keeps: a record an event, a record a step end, nothing.
    integer, parameter :: history_events = 1, history_steps = 2, history_none = 3
+   !> Of which states a snapshot is kept: at the ends of steps and of every reversal of a step with cycles, of steps alone, none.
+   integer, parameter :: states_reversals = 1, states_steps = 2, states_none = 3
 
    !> States that the last step with cycles leaves: where the step began, the far end of its last whole cycle, the end of that
    !> (with `reversal` 0 while there is none: where the step began), and its start.
@@ -58,10 +64,12 @@ module mfv_simulation
       !> Step that could not be reached, 0 for none; and steps done.
       integer :: failed_step = 0, steps_done = 0
       integer :: keep_history = history_events
-      !> Whether the state is kept at every reversal of a step with cycles, or only at the end of the step.
-      logical :: keep_reversals = .true.
-      !> The steps that were taken, the last one perhaps not to its end.
-      type(step_type), allocatable :: taken(:)
+      !> See states_reversals and so on.
+      integer :: keep_states = states_reversals
+      !> What is known of the steps that were taken, the last one perhaps not to its end.
+      type(load_way_type) :: way
+      !> Checksums of the way up to the end of every step taken, where something is kept of it; the first `way%steps` are in use.
+      integer(int64), allocatable, private :: trails(:)
       !> What the loads control now.
       type(load_type) :: normal, tangential
       type(load_type) :: rotational = load_type(control_displacement)
@@ -70,6 +78,8 @@ module mfv_simulation
    contains
       procedure :: run
       procedure :: advance
+      procedure :: trail
+      procedure :: came_through
       procedure :: padded_state
       procedure :: padded
       procedure, private :: lead_to
@@ -78,24 +88,24 @@ module mfv_simulation
       procedure, private :: end_of_leg
       procedure, private :: set_mark
       procedure, private :: change_since
+      procedure, private :: note_trail
    end type simulation_type
 
 contains
 
    !> A simulation of a valid scene, at its start. `keep_history`: history_events, history_steps or history_none.
-   !> `keep_reversals`: see simulation_type; true unless told.
-   function new_simulation(scene, keep_history, keep_reversals) result(self)
+   !> `keep_states`: states_reversals (unless told), states_steps or states_none.
+   function new_simulation(scene, keep_history, keep_states) result(self)
       type(scene_type), intent(in) :: scene
       integer, intent(in) :: keep_history
-      logical, intent(in), optional :: keep_reversals
+      integer, intent(in), optional :: keep_states
       type(simulation_type) :: self
 
       call new_contact_path(new_contact_model(scene), keep_history == history_events, self%contact)
       self%keep_history = keep_history
-      if (present(keep_reversals)) self%keep_reversals = keep_reversals
+      if (present(keep_states)) self%keep_states = keep_states
       self%message = 'nothing has been computed yet'
       allocate (self%snapshots(8))
-      allocate (self%taken(0))
       if (keep_history /= history_none) call self%contact%record(event_none, 0, 0, 0)
    end function new_simulation
 
@@ -139,7 +149,7 @@ contains
 
       if (self%outcome /= MFV_COMPLETE) return
       if (allocated(self%estimate)) deallocate (self%estimate)
-      self%taken = [self%taken, step]
+      call self%way%add(step)
       there(1) = target_of(self%normal, step%normal_control, step%normal_target)
       there(2) = target_of(self%tangential, step%tangential_control, step%tangential_target)
       there(3) = target_of(self%rotational, step%rotational_control, step%rotational_target)
@@ -153,6 +163,7 @@ contains
             self%outcome = error%status
             self%message = error%message
             self%failed_step = self%steps_done + 1
+            call self%note_trail(step)
             return
          end if
          cycles = i/2
@@ -160,14 +171,64 @@ contains
          if (step%cycles > 0) call self%end_of_leg(i, cycle)
          if (mod(i, 2) == 0 .and. i > 2 .and. step%steady_tolerance > 0.0_wp) &
             is_last = is_last .or. cycle%change <= step%steady_tolerance
-         if (is_last .or. self%keep_reversals) call self%take_snapshot(self%steps_done + 1, i)
+         if (is_last .and. self%keep_states /= states_none .or. self%keep_states == states_reversals) &
+            call self%take_snapshot(self%steps_done + 1, i)
          if (is_last) exit
       end do
       self%steps_done = self%steps_done + 1
       self%message = 'step '//to_text(self%steps_done)//' was reached'
       if (step%cycles > cycles) self%message = self%message//', steady after '//to_text(cycles)//' of '// &
                                                to_text(step%cycles)//' cycles'
+      call self%note_trail(step)
    end subroutine advance
+
+   !> Add the step that has just been taken to the checksum of the way: what it was to do, and where it led.
+   subroutine note_trail(self, step)
+      class(simulation_type), intent(inout) :: self
+      type(step_type), intent(in) :: step
+      integer, parameter :: first_capacity = 16
+      integer(int64), allocatable :: longer(:)
+      integer(int64) :: checksum
+      integer(int8) :: mold(1)
+
+      if (self%keep_history == history_none .and. self%keep_states == states_none) return
+      if (.not. allocated(self%trails)) allocate (self%trails(first_capacity))
+      if (self%way%steps > size(self%trails)) then
+         allocate (longer(2*size(self%trails)))
+         longer(:size(self%trails)) = self%trails
+         call move_alloc(longer, self%trails)
+      end if
+      checksum = 0
+      if (self%way%steps > 1) checksum = self%trails(self%way%steps - 1)
+      call add_to_checksum(transfer([step%normal_control, step%tangential_control, step%rotational_control, step%cycles, &
+                                     merge(1, 0, step%friction), self%contact%events], mold), checksum)
+      associate (f => self%contact%state%fields)
+         call add_to_checksum(transfer([step%normal_target, step%tangential_target, step%rotational_target, &
+                                        step%steady_tolerance, f%normal_force, f%tangential_force, f%moment, f%approach, &
+                                        f%shift, f%rotation, self%contact%state%dissipation], mold), checksum)
+      end associate
+      self%trails(self%way%steps) = checksum
+   end subroutine note_trail
+
+   !> The checksum of the way up to now; 0 at its start, and where nothing is kept of it.
+   pure integer(int64) function trail(self)
+      class(simulation_type), intent(in) :: self
+
+      trail = 0
+      if (allocated(self%trails) .and. self%way%steps > 0) trail = self%trails(self%way%steps)
+   end function trail
+
+   !> Whether the way up to now led through a state after so many steps with this trail; where nothing is kept of it, through any.
+   pure logical function came_through(self, steps, trail)
+      class(simulation_type), intent(in) :: self
+      integer, intent(in) :: steps
+      integer(int64), intent(in) :: trail
+
+      came_through = self%keep_history == history_none .and. self%keep_states == states_none
+      if (came_through) return
+      came_through = steps <= self%way%steps
+      if (came_through .and. steps > 0) came_through = self%trails(steps) == trail
+   end function came_through
 
    !> The cycles of a step begin from the present state.
    subroutine begin_cycles(self, cycle)

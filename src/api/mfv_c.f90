@@ -2,40 +2,51 @@
 module mfv_c
    use, intrinsic :: ieee_arithmetic, only: ieee_is_finite
    use, intrinsic :: iso_c_binding
-   use mfv_case, only: case_type
-   use mfv_case_reader, only: read_case_file, read_case_text
+   use mfv_contact, only: contact_type, loads_type, new_contact, read_contact, read_contact_text
    use mfv_contact_state, only: contact_state_type
-   use mfv_discretisation_error, only: estimate_error
+   use mfv_draft, only: draft_type, read_draft
    use mfv_error, only: error_type
+   use mfv_features, only: has_hdf5
    use mfv_interior, only: interior_type, largest_type, stress_count
+   use mfv_kept_state, only: kept_state_type
    use mfv_kinds, only: wp
-   use mfv_result_fields, only: field_named, field_type, group_fields, result_attributes, result_groups
-   use mfv_result_file, only: write_result
-   use mfv_scene, only: control_displacement, control_force, control_keep, most_cycles, step_type
-   use mfv_simulation, only: new_simulation, simulation_type
+   use mfv_observer, only: observer_type
+   use mfv_result_fields, only: field_type
+   use mfv_scene, only: step_type
    use mfv_status
-   use mfv_strings, only: add_text, copy_to_c, string_type, to_text
-   use mfv_validity, only: validity_warnings
+   use mfv_strings, only: copy_to_c, string_type, to_text
    use mfv_version, only: library_version
    implicit none
    private
 
-   !> What a handle points to.
+   !> Tells a function of the caller.
+   type, extends(observer_type) :: c_observer_type
+      procedure(c_observe), nopass, pointer :: observe => null()
+      type(c_ptr) :: user = c_null_ptr
+   contains
+      procedure :: notify
+   end type c_observer_type
+
+   !> What a handle points to. `mark`: by which a freed or foreign handle can be told in most cases.
    type :: handle_type
-      !> A mark by which a freed or foreign handle can be told in most cases.
       integer :: mark = 0
-      type(case_type) :: case
-      type(simulation_type) :: simulation
+      type(contact_type) :: contact
+      type(c_observer_type) :: observer
       character(:), allocatable :: message
-      !> Paths of all fields, and the group that was looked at last: made when asked for, dropped when the state changes.
-      type(string_type), allocatable :: paths(:)
-      character(:), allocatable :: group
-      type(field_type), allocatable :: fields(:)
-      !> Warnings, which may take a search for the largest stress; names and texts of the attributes.
-      type(string_type), allocatable :: warnings(:), attribute_names(:), attribute_texts(:)
    end type handle_type
 
-   integer, parameter :: valid_mark = 1297499699
+   !> What a mfv_scene and a mfv_state point to.
+   type :: scene_handle_type
+      integer :: mark = 0
+      type(draft_type) :: draft
+   end type scene_handle_type
+
+   type :: state_handle_type
+      integer :: mark = 0
+      type(kept_state_type) :: state
+   end type state_handle_type
+
+   integer, parameter :: valid_mark = 1297499699, scene_mark = 1297499700, state_mark = 1297499701
 
    !> mfv_step of the header.
    type, bind(C) :: c_step
@@ -43,9 +54,34 @@ module mfv_c
       real(c_double) :: normal_target, tangential_target
       integer(c_int) :: normal_control, tangential_control, friction, cycles
       real(c_double) :: rotational_target
-      integer(c_int) :: rotational_control, unused
+      integer(c_int) :: rotational_control, relative
       real(c_double) :: steady_tolerance
    end type c_step
+
+   !> mfv_loads of the header.
+   type, bind(C) :: c_loads
+      integer(c_size_t) :: size
+      real(c_double) :: normal_force, tangential_force, moment, approach, shift, rotation, dissipation
+      integer(c_int) :: contact_nodes, stick_nodes, slip_nodes, events, linear_solves, unused
+   end type c_loads
+
+   !> mfv_progress of the header.
+   type, bind(C) :: c_progress
+      integer(c_size_t) :: size
+      real(c_double) :: fraction
+      integer(c_int) :: segment, segments, contact_nodes, stick_nodes
+      real(c_double) :: normal_force, tangential_force, approach, shift
+   end type c_progress
+
+   abstract interface
+      !> mfv_observer of the header.
+      function c_observe(progress, user) bind(C) result(stop_wanted)
+         import :: c_int, c_progress, c_ptr
+         type(c_progress), intent(in) :: progress
+         type(c_ptr), value :: user
+         integer(c_int) :: stop_wanted
+      end function c_observe
+   end interface
 
    interface
       !> Characters of a C string.
@@ -79,66 +115,316 @@ contains
       if (status_exit_code(code) < 0) status = MFV_BAD_ARGUMENT
    end function mfv_status_text
 
-   function mfv_create_from_file(path, handle, message, message_size) result(status) bind(C, name='mfv_create_from_file')
-      type(c_ptr), value :: path, message
-      type(c_ptr), intent(out) :: handle
+   function mfv_has_feature(feature, there) result(status) bind(C, name='mfv_has_feature')
+      type(c_ptr), value :: feature, there
+      integer(c_int) :: status
+
+      status = MFV_BAD_ARGUMENT
+      if (.not. c_associated(feature) .or. .not. c_associated(there)) return
+      call integer_out(0, there)
+      if (text_in(feature) /= 'hdf5') return
+      call integer_out(merge(1, 0, has_hdf5), there)
+      status = MFV_COMPLETE
+   end function mfv_has_feature
+
+   function mfv_scene_create(scene) result(status) bind(C, name='mfv_scene_create')
+      type(c_ptr), intent(out), optional :: scene
+      integer(c_int) :: status
+      type(draft_type) :: draft
+
+      status = MFV_BAD_ARGUMENT
+      if (.not. present(scene)) return
+      call hand_out_scene(draft, scene)
+      status = MFV_COMPLETE
+   end function mfv_scene_create
+
+   function mfv_scene_from_text(text, name, scene, message, message_size) result(status) bind(C, name='mfv_scene_from_text')
+      type(c_ptr), value :: text, name, message
+      type(c_ptr), intent(out), optional :: scene
       integer(c_size_t), value :: message_size
       integer(c_int) :: status
-      type(case_type) :: case
+      type(draft_type) :: draft
       type(error_type), allocatable :: error
 
-      handle = c_null_ptr
       status = MFV_BAD_ARGUMENT
+      if (.not. present(scene)) return
+      scene = c_null_ptr
+      if (.not. c_associated(text)) return
+      if (c_associated(name)) then
+         call read_draft(text_in(text), text_in(name), draft, error)
+      else
+         call read_draft(text_in(text), 'text', draft, error)
+      end if
+      status = told(error, message, message_size)
+      if (status == MFV_COMPLETE) call hand_out_scene(draft, scene)
+   end function mfv_scene_from_text
+
+   subroutine hand_out_scene(draft, scene)
+      type(draft_type), intent(in) :: draft
+      type(c_ptr), intent(out) :: scene
+      type(scene_handle_type), pointer :: self
+
+      allocate (self)
+      self%mark = scene_mark
+      self%draft = draft
+      scene = c_loc(self)
+   end subroutine hand_out_scene
+
+   function mfv_scene_set_text(scene, key, value) result(status) bind(C, name='mfv_scene_set_text')
+      type(c_ptr), value :: scene, key, value
+      integer(c_int) :: status
+      type(scene_handle_type), pointer :: self
+      type(error_type), allocatable :: error
+
+      call find_scene(scene, self, status, key, value)
+      if (status /= MFV_COMPLETE) return
+      call self%draft%set(text_in(key), text_in(value), error)
+      status = kept(self, error)
+   end function mfv_scene_set_text
+
+   function mfv_scene_set_real(scene, key, value) result(status) bind(C, name='mfv_scene_set_real')
+      type(c_ptr), value :: scene, key
+      real(c_double), value :: value
+      integer(c_int) :: status
+      type(scene_handle_type), pointer :: self
+      type(error_type), allocatable :: error
+
+      call find_scene(scene, self, status, key)
+      if (status /= MFV_COMPLETE) return
+      call self%draft%set(text_in(key), value, error)
+      status = kept(self, error)
+   end function mfv_scene_set_real
+
+   function mfv_scene_set_reals(scene, key, values, count) result(status) bind(C, name='mfv_scene_set_reals')
+      type(c_ptr), value :: scene, key, values
+      integer(c_size_t), value :: count
+      integer(c_int) :: status
+      type(scene_handle_type), pointer :: self
+      type(error_type), allocatable :: error
+      real(c_double), pointer :: list(:)
+
+      call find_scene(scene, self, status, key, values)
+      if (status /= MFV_COMPLETE) return
+      call c_f_pointer(values, list, [count])
+      call self%draft%set(text_in(key), list, error)
+      status = kept(self, error)
+   end function mfv_scene_set_reals
+
+   function mfv_scene_set_integer(scene, key, value) result(status) bind(C, name='mfv_scene_set_integer')
+      type(c_ptr), value :: scene, key
+      integer(c_int), value :: value
+      integer(c_int) :: status
+      type(scene_handle_type), pointer :: self
+      type(error_type), allocatable :: error
+
+      call find_scene(scene, self, status, key)
+      if (status /= MFV_COMPLETE) return
+      call self%draft%set(text_in(key), int(value), error)
+      status = kept(self, error)
+   end function mfv_scene_set_integer
+
+   function mfv_scene_set_logical(scene, key, value) result(status) bind(C, name='mfv_scene_set_logical')
+      type(c_ptr), value :: scene, key
+      integer(c_int), value :: value
+      integer(c_int) :: status
+      type(scene_handle_type), pointer :: self
+      type(error_type), allocatable :: error
+
+      call find_scene(scene, self, status, key)
+      if (status /= MFV_COMPLETE) return
+      call self%draft%set(text_in(key), value /= 0, error)
+      status = kept(self, error)
+   end function mfv_scene_set_logical
+
+   function mfv_scene_set_data(scene, file, dataset, rows, columns, values) result(status) &
+      bind(C, name='mfv_scene_set_data')
+      type(c_ptr), value :: scene, file, dataset, values
+      integer(c_size_t), value :: rows, columns
+      integer(c_int) :: status
+      type(scene_handle_type), pointer :: self
+      real(c_double), pointer :: by_rows(:, :)
+      integer(c_size_t), parameter :: most = 2_c_size_t**31 - 1
+
+      call find_scene(scene, self, status, file, dataset)
+      if (status /= MFV_COMPLETE) return
+      status = MFV_BAD_ARGUMENT
+      if (.not. c_associated(values) .or. rows < 1 .or. columns < 1 .or. rows > most .or. columns > most) return
+      call c_f_pointer(values, by_rows, [columns, rows])
+      call self%draft%set_data(text_in(file), text_in(dataset), transpose(by_rows))
+      status = MFV_COMPLETE
+   end function mfv_scene_set_data
+
+   function mfv_scene_text(scene, buffer, size, length) result(status) bind(C, name='mfv_scene_text')
+      type(c_ptr), value :: scene, buffer, length
+      integer(c_size_t), value :: size
+      integer(c_int) :: status
+      type(scene_handle_type), pointer :: self
+      character(:), allocatable :: text
+
+      call find_scene(scene, self, status)
+      if (status /= MFV_COMPLETE) return
+      call self%draft%write_text(text)
+      call size_out(len(text, kind=c_size_t), length)
+      if (c_associated(buffer)) status = text_out(text, buffer, size)
+   end function mfv_scene_text
+
+   function mfv_scene_free(scene) result(status) bind(C, name='mfv_scene_free')
+      type(c_ptr), value :: scene
+      integer(c_int) :: status
+      type(c_ptr), pointer :: slot
+      type(scene_handle_type), pointer :: self
+
+      call find_slot(scene, slot)
+      status = MFV_COMPLETE
+      if (.not. associated(slot)) return
+      call find_scene(slot, self, status)
+      slot = c_null_ptr
+      if (status /= MFV_COMPLETE) return
+      self%mark = 0
+      deallocate (self)
+   end function mfv_scene_free
+
+   !> The object of a scene's handle, and whether the arguments that must be there are: MFV_BAD_HANDLE, MFV_BAD_ARGUMENT.
+   subroutine find_scene(scene, self, status, first, second)
+      type(c_ptr), intent(in) :: scene
+      type(scene_handle_type), pointer, intent(out) :: self
+      integer(c_int), intent(out) :: status
+      type(c_ptr), intent(in), optional :: first, second
+
+      nullify (self)
+      status = MFV_BAD_HANDLE
+      if (.not. c_associated(scene)) return
+      call c_f_pointer(scene, self)
+      if (self%mark /= scene_mark) return
+      status = MFV_BAD_ARGUMENT
+      if (present(first)) then
+         if (.not. c_associated(first)) return
+      end if
+      if (present(second)) then
+         if (.not. c_associated(second)) return
+      end if
+      status = MFV_COMPLETE
+   end subroutine find_scene
+
+   !> Have a scene keep the fault of a call, for mfv_create to tell; MFV_BAD_ARGUMENT where there is one.
+   function kept(self, error) result(status)
+      type(scene_handle_type), intent(inout) :: self
+      type(error_type), allocatable, intent(in) :: error
+      integer(c_int) :: status
+
+      status = MFV_COMPLETE
+      if (.not. allocated(error)) return
+      call self%draft%keep_fault(error)
+      status = MFV_BAD_ARGUMENT
+   end function kept
+
+   function mfv_create(scene, handle, message, message_size) result(status) bind(C, name='mfv_create')
+      type(c_ptr), value :: scene, message
+      type(c_ptr), intent(out), optional :: handle
+      integer(c_size_t), value :: message_size
+      integer(c_int) :: status
+      type(scene_handle_type), pointer :: given
+      type(handle_type), pointer :: self
+      type(error_type), allocatable :: error
+
+      status = MFV_BAD_ARGUMENT
+      if (.not. present(handle)) return
+      handle = c_null_ptr
+      call find_scene(scene, given, status)
+      if (status /= MFV_COMPLETE) return
+      allocate (self)
+      call new_contact(given%draft, self%contact, error)
+      status = told(error, message, message_size)
+      call hand_out(self, status, handle)
+   end function mfv_create
+
+   function mfv_create_from_file(path, handle, message, message_size) result(status) bind(C, name='mfv_create_from_file')
+      type(c_ptr), value :: path, message
+      type(c_ptr), intent(out), optional :: handle
+      integer(c_size_t), value :: message_size
+      integer(c_int) :: status
+      type(handle_type), pointer :: self
+      type(error_type), allocatable :: error
+
+      status = MFV_BAD_ARGUMENT
+      if (.not. present(handle)) return
+      handle = c_null_ptr
       if (.not. c_associated(path)) return
-      call read_case_file(text_in(path), case, error, without_steps=.true.)
-      call finish_creation(case, error, handle, message, message_size, status)
+      allocate (self)
+      call read_contact(text_in(path), self%contact, error)
+      status = told(error, message, message_size)
+      call hand_out(self, status, handle)
    end function mfv_create_from_file
 
    function mfv_create_from_text(text, name, handle, message, message_size) result(status) &
       bind(C, name='mfv_create_from_text')
       type(c_ptr), value :: text, name, message
-      type(c_ptr), intent(out) :: handle
+      type(c_ptr), intent(out), optional :: handle
       integer(c_size_t), value :: message_size
       integer(c_int) :: status
-      type(case_type) :: case
+      type(handle_type), pointer :: self
       type(error_type), allocatable :: error
 
-      handle = c_null_ptr
       status = MFV_BAD_ARGUMENT
+      if (.not. present(handle)) return
+      handle = c_null_ptr
       if (.not. c_associated(text)) return
+      allocate (self)
       if (c_associated(name)) then
-         call read_case_text(text_in(text), text_in(name), case, error, without_steps=.true.)
+         call read_contact_text(text_in(text), text_in(name), self%contact, error)
       else
-         call read_case_text(text_in(text), 'text', case, error, without_steps=.true.)
+         call read_contact_text(text_in(text), 'text', self%contact, error)
       end if
-      call finish_creation(case, error, handle, message, message_size, status)
+      status = told(error, message, message_size)
+      call hand_out(self, status, handle)
    end function mfv_create_from_text
 
-   !> Make a handle of a case that was read, or tell why it was not.
-   subroutine finish_creation(case, error, handle, message, message_size, status)
-      type(case_type), intent(in) :: case
+   !> The status of an error, MFV_COMPLETE where there is none; its message goes to a buffer, which may be null.
+   function told(error, message, message_size) result(status)
       type(error_type), allocatable, intent(in) :: error
-      type(c_ptr), intent(inout) :: handle
       type(c_ptr), intent(in) :: message
       integer(c_size_t), intent(in) :: message_size
-      integer(c_int), intent(out) :: status
-      type(handle_type), pointer :: self
-      integer(c_int) :: copied
+      integer(c_int) :: status, copied
 
+      status = MFV_COMPLETE
       if (allocated(error)) then
          status = error%status
          if (c_associated(message)) copied = text_out(error%message, message, message_size)
-         return
+      else if (c_associated(message)) then
+         copied = text_out('', message, message_size)
       end if
-      allocate (self)
-      self%mark = valid_mark
-      self%case = case
-      self%simulation = new_simulation(case%scene, case%keep_history, case%keep_reversals)
-      self%message = self%simulation%message
-      handle = c_loc(self)
-      status = MFV_COMPLETE
-      if (c_associated(message)) copied = text_out('', message, message_size)
-   end subroutine finish_creation
+   end function told
+
+   !> Hand out an object whose contact was made; do away with it where `status` says that it was not.
+   subroutine hand_out(self, status, handle)
+      type(handle_type), pointer, intent(inout) :: self
+      integer(c_int), intent(in) :: status
+      type(c_ptr), intent(inout) :: handle
+
+      if (status == MFV_COMPLETE) then
+         self%mark = valid_mark
+         call self%contact%get_message(self%message)
+         handle = c_loc(self)
+      else
+         deallocate (self)
+      end if
+   end subroutine hand_out
+
+   function mfv_copy(handle, copy) result(status) bind(C, name='mfv_copy')
+      type(c_ptr), value :: handle
+      type(c_ptr), intent(out), optional :: copy
+      integer(c_int) :: status
+      type(handle_type), pointer :: self, other
+
+      status = MFV_BAD_ARGUMENT
+      if (.not. present(copy)) return
+      copy = c_null_ptr
+      call find(handle, self, status)
+      if (status /= MFV_COMPLETE) return
+      allocate (other)
+      other%contact = self%contact
+      call hand_out(other, status, copy)
+   end function mfv_copy
 
    function mfv_free(handle) result(status) bind(C, name='mfv_free')
       type(c_ptr), value :: handle
@@ -146,35 +432,68 @@ contains
       type(c_ptr), pointer :: slot
       type(handle_type), pointer :: self
 
+      call find_slot(handle, slot)
       status = MFV_COMPLETE
-      if (.not. c_associated(handle)) return
-      call c_f_pointer(handle, slot)
-      if (.not. c_associated(slot)) return
-      self => handle_of(slot)
+      if (.not. associated(slot)) return
+      call find(slot, self, status)
       slot = c_null_ptr
-      status = MFV_BAD_HANDLE
-      if (.not. associated(self)) return
+      if (status /= MFV_COMPLETE) return
       self%mark = 0
       deallocate (self)
-      status = MFV_COMPLETE
    end function mfv_free
+
+   !> The pointer that a pointer to it points to; not associated where either is null.
+   subroutine find_slot(pointer_to_slot, slot)
+      type(c_ptr), intent(in) :: pointer_to_slot
+      type(c_ptr), pointer, intent(out) :: slot
+
+      nullify (slot)
+      if (.not. c_associated(pointer_to_slot)) return
+      call c_f_pointer(pointer_to_slot, slot)
+      if (.not. c_associated(slot)) nullify (slot)
+   end subroutine find_slot
+
+   function mfv_observe(handle, observer, user) result(status) bind(C, name='mfv_observe')
+      type(c_ptr), value :: handle, user
+      type(c_funptr), value :: observer
+      integer(c_int) :: status
+      type(handle_type), pointer :: self
+
+      call find(handle, self, status)
+      if (status /= MFV_COMPLETE) return
+      nullify (self%observer%observe)
+      if (c_associated(observer)) call c_f_procpointer(observer, self%observer%observe)
+      self%observer%user = user
+   end function mfv_observe
+
+   !> See mfv_observer.
+   subroutine notify(self, state, segment, segments, fraction, stop_wanted)
+      class(c_observer_type), intent(inout) :: self
+      type(contact_state_type), intent(in) :: state
+      integer, intent(in) :: segment, segments
+      real(wp), intent(in) :: fraction
+      logical, intent(out) :: stop_wanted
+      type(c_progress) :: progress
+
+      progress = c_progress(c_sizeof(progress), fraction, segment, segments, state%contact_nodes(), state%stick_nodes(), &
+                            state%fields%normal_force, state%fields%tangential_force, state%fields%approach, state%fields%shift)
+      stop_wanted = self%observe(progress, self%user) /= 0
+   end subroutine notify
 
    function mfv_run(handle) result(status) bind(C, name='mfv_run')
       type(c_ptr), value :: handle
       integer(c_int) :: status
       type(handle_type), pointer :: self
 
-      status = MFV_BAD_HANDLE
-      self => handle_of(handle)
-      if (.not. associated(self)) return
-      if (self%simulation%outcome == MFV_COMPLETE) then
-         call forget(self)
-         call self%simulation%run()
-         if (self%case%error_estimate) call estimate_error(self%simulation)
-         if (self%simulation%outcome /= MFV_COMPLETE) call self%case%explain(self%simulation)
+      call find(handle, self, status)
+      if (status /= MFV_COMPLETE) return
+      if (associated(self%observer%observe)) then
+         call self%contact%run(self%observer)
+      else
+         call self%contact%run()
       end if
-      self%message = self%simulation%message
-      status = self%simulation%outcome
+      call self%contact%get_message(self%message)
+      status = self%contact%status()
    end function mfv_run
 
    function mfv_advance(handle, step) result(status) bind(C, name='mfv_advance')
@@ -182,50 +501,142 @@ contains
       integer(c_int) :: status
       type(handle_type), pointer :: self
       type(c_step), pointer :: given
-      character(:), allocatable :: why
+      type(error_type), allocatable :: error
+      type(step_type) :: wanted
 
-      status = MFV_BAD_HANDLE
-      self => handle_of(handle)
-      if (.not. associated(self)) return
+      call find(handle, self, status)
+      if (status /= MFV_COMPLETE) return
       status = refused(self, 'mfv_advance: the step is null')
       if (.not. c_associated(step)) return
       call c_f_pointer(step, given)
-      call find_fault(given, why)
-      status = refused(self, 'mfv_advance: '//why)
-      if (why /= '') return
-      if (self%simulation%outcome == MFV_COMPLETE) then
-         call forget(self)
-         call self%simulation%advance(step_type(given%normal_control, given%tangential_control, given%normal_target, &
-                                                given%tangential_target, given%friction /= 0, given%cycles, &
-                                                given%rotational_control, given%rotational_target, &
-                                                given%steady_tolerance))
+      status = refused(self, 'mfv_advance: size is not sizeof(mfv_step)')
+      if (given%size /= c_sizeof(given)) return
+      wanted = step_type(given%normal_control, given%tangential_control, given%normal_target, given%tangential_target, &
+                         given%friction /= 0, given%cycles, given%rotational_control, given%rotational_target, &
+                         given%steady_tolerance)
+      if (associated(self%observer%observe)) then
+         call self%contact%advance(wanted, error, given%relative /= 0, self%observer)
+      else
+         call self%contact%advance(wanted, error, given%relative /= 0)
       end if
-      self%message = self%simulation%message
-      status = self%simulation%outcome
+      if (allocated(error)) then
+         status = refused(self, 'mfv_advance: '//error%message)
+      else
+         call self%contact%get_message(self%message)
+         status = self%contact%status()
+      end if
    end function mfv_advance
 
-   !> What is wrong with a step; empty when nothing is.
-   subroutine find_fault(step, why)
-      type(c_step), intent(in) :: step
-      character(:), allocatable, intent(out) :: why
-      integer, parameter :: controls(3) = [control_keep, control_force, control_displacement]
+   function mfv_get_loads(handle, loads) result(status) bind(C, name='mfv_get_loads')
+      type(c_ptr), value :: handle, loads
+      integer(c_int) :: status
+      type(handle_type), pointer :: self
+      type(c_loads), pointer :: given
+      type(loads_type) :: now
 
-      why = ''
-      if (step%size /= c_sizeof(step)) then
-         why = 'size is not sizeof(mfv_step)'
-      else if (.not. any(step%normal_control == controls) .or. .not. any(step%tangential_control == controls) .or. &
-               .not. any(step%rotational_control == controls)) then
-         why = 'a control must be MFV_KEEP, MFV_FORCE or MFV_DISPLACEMENT'
-      else if (.not. all(ieee_is_finite([step%normal_target, step%tangential_target, step%rotational_target]))) then
-         why = 'a target is not finite'
-      else if (step%normal_control == control_force .and. step%normal_target < 0.0_wp) then
-         why = 'the normal force must not be negative'
-      else if (.not. (step%steady_tolerance >= 0.0_wp .and. ieee_is_finite(step%steady_tolerance))) then
-         why = 'steady_tolerance must not be negative'
-      else if (step%cycles < 0 .or. step%cycles > most_cycles) then
-         why = 'cycles must be from 0 to '//to_text(most_cycles)
+      call find(handle, self, status)
+      if (status /= MFV_COMPLETE) return
+      status = refused(self, 'mfv_get_loads: loads is null')
+      if (.not. c_associated(loads)) return
+      call c_f_pointer(loads, given)
+      status = refused(self, 'mfv_get_loads: size is not sizeof(mfv_loads)')
+      if (given%size /= c_sizeof(given)) return
+      now = self%contact%loads()
+      given = c_loads(given%size, now%normal_force, now%tangential_force, now%moment, now%approach, now%shift, now%rotation, &
+                      now%dissipation, now%contact_nodes, now%stick_nodes, now%slip_nodes, now%events, now%linear_solves, 0)
+      status = MFV_COMPLETE
+   end function mfv_get_loads
+
+   function mfv_tangent(handle, motions, direction, tangent) result(status) bind(C, name='mfv_tangent')
+      type(c_ptr), value :: handle, direction, tangent
+      integer(c_int), value :: motions
+      integer(c_int) :: status
+      type(handle_type), pointer :: self
+      real(c_double), pointer :: towards(:), by_rows(:, :)
+      type(error_type), allocatable :: error
+      real(wp), allocatable :: found(:, :)
+
+      call find(handle, self, status)
+      if (status /= MFV_COMPLETE) return
+      status = refused(self, 'mfv_tangent: motions must be 2, or 3 with rotation')
+      if (motions /= 2 .and. motions /= 3) return
+      status = refused(self, 'mfv_tangent: tangent is null')
+      if (.not. c_associated(tangent)) return
+      allocate (found(motions, motions))
+      if (c_associated(direction)) then
+         call c_f_pointer(direction, towards, [motions])
+         status = refused(self, 'mfv_tangent: the direction is not finite')
+         if (.not. all(ieee_is_finite(towards))) return
+         call self%contact%get_tangent(found, error, towards)
+      else
+         call self%contact%get_tangent(found, error)
       end if
-   end subroutine find_fault
+      status = failed(self, error)
+      if (status /= MFV_COMPLETE) return
+      call c_f_pointer(tangent, by_rows, [motions, motions])
+      by_rows = transpose(found)
+   end function mfv_tangent
+
+   function mfv_save(handle, state) result(status) bind(C, name='mfv_save')
+      type(c_ptr), value :: handle, state
+      integer(c_int) :: status
+      type(handle_type), pointer :: self
+      type(state_handle_type), pointer :: kept
+      type(c_ptr), pointer :: slot
+
+      call find(handle, self, status)
+      if (status /= MFV_COMPLETE) return
+      status = refused(self, 'mfv_save: state is null')
+      if (.not. c_associated(state)) return
+      call c_f_pointer(state, slot)
+      if (c_associated(slot)) then
+         call c_f_pointer(slot, kept)
+         status = MFV_BAD_HANDLE
+         if (kept%mark /= state_mark) return
+      else
+         allocate (kept)
+         kept%mark = state_mark
+         slot = c_loc(kept)
+      end if
+      call self%contact%keep(kept%state)
+      status = MFV_COMPLETE
+   end function mfv_save
+
+   function mfv_restore(handle, state) result(status) bind(C, name='mfv_restore')
+      type(c_ptr), value :: handle, state
+      integer(c_int) :: status
+      type(handle_type), pointer :: self
+      type(state_handle_type), pointer :: kept
+      type(error_type), allocatable :: error
+
+      call find(handle, self, status)
+      if (status /= MFV_COMPLETE) return
+      status = MFV_BAD_HANDLE
+      if (.not. c_associated(state)) return
+      call c_f_pointer(state, kept)
+      if (kept%mark /= state_mark) return
+      call self%contact%come_back(kept%state, error)
+      status = failed(self, error)
+      if (status == MFV_COMPLETE) call self%contact%get_message(self%message)
+   end function mfv_restore
+
+   function mfv_state_free(state) result(status) bind(C, name='mfv_state_free')
+      type(c_ptr), value :: state
+      integer(c_int) :: status
+      type(c_ptr), pointer :: slot
+      type(state_handle_type), pointer :: kept
+
+      call find_slot(state, slot)
+      status = MFV_COMPLETE
+      if (.not. associated(slot)) return
+      call c_f_pointer(slot, kept)
+      slot = c_null_ptr
+      status = MFV_BAD_HANDLE
+      if (kept%mark /= state_mark) return
+      kept%mark = 0
+      deallocate (kept)
+      status = MFV_COMPLETE
+   end function mfv_state_free
 
    function mfv_message(handle, buffer, size) result(status) bind(C, name='mfv_message')
       type(c_ptr), value :: handle, buffer
@@ -233,25 +644,22 @@ contains
       integer(c_int) :: status
       type(handle_type), pointer :: self
 
-      status = MFV_BAD_HANDLE
-      self => handle_of(handle)
-      if (associated(self)) status = text_out(self%message, buffer, size)
+      call find(handle, self, status)
+      if (status == MFV_COMPLETE) status = text_out(self%message, buffer, size)
    end function mfv_message
 
    function mfv_field_count(handle, count) result(status) bind(C, name='mfv_field_count')
       type(c_ptr), value :: handle, count
       integer(c_int) :: status
       type(handle_type), pointer :: self
-      integer(c_size_t), pointer :: number
+      type(string_type), pointer :: paths(:)
 
-      status = MFV_BAD_HANDLE
-      self => handle_of(handle)
-      if (.not. associated(self)) return
+      call find(handle, self, status)
+      if (status /= MFV_COMPLETE) return
       status = refused(self, 'mfv_field_count: count is null')
       if (.not. c_associated(count)) return
-      call c_f_pointer(count, number)
-      call list_paths(self)
-      number = size(self%paths, kind=c_size_t)
+      call self%contact%field_paths(paths)
+      call size_out(size(paths, kind=c_size_t), count)
       status = MFV_COMPLETE
    end function mfv_field_count
 
@@ -260,43 +668,15 @@ contains
       integer(c_size_t), value :: index, size
       integer(c_int) :: status
       type(handle_type), pointer :: self
+      type(string_type), pointer :: paths(:)
 
-      status = MFV_BAD_HANDLE
-      self => handle_of(handle)
-      if (.not. associated(self)) return
-      call list_paths(self)
-      status = refused(self, 'mfv_field_path: there are '//to_text(ubound(self%paths, 1))//' fields')
-      if (index < 0 .or. index >= ubound(self%paths, 1)) return
-      status = text_out(self%paths(index + 1)%text, buffer, size)
+      call find(handle, self, status)
+      if (status /= MFV_COMPLETE) return
+      call self%contact%field_paths(paths)
+      status = refused(self, 'mfv_field_path: there are '//to_text(ubound(paths, 1))//' fields')
+      if (index < 0 .or. index >= ubound(paths, 1)) return
+      status = text_out(paths(index + 1)%text, buffer, size)
    end function mfv_field_path
-
-   !> Make the list of the paths of all fields.
-   subroutine list_paths(self)
-      type(handle_type), intent(inout) :: self
-      type(string_type), allocatable :: groups(:)
-      type(field_type), allocatable :: fields(:)
-      integer :: i, j
-
-      if (allocated(self%paths)) return
-      groups = result_groups(self%simulation)
-      do i = 1, size(groups)
-         call group_fields(self%case, self%simulation, groups(i)%text, fields)
-         do j = 1, size(fields)
-            call add_text(self%paths, groups(i)%text//'/'//fields(j)%name)
-         end do
-      end do
-   end subroutine list_paths
-
-   !> The state is about to change: drop what was made from it.
-   subroutine forget(self)
-      type(handle_type), intent(inout) :: self
-
-      if (allocated(self%paths)) deallocate (self%paths)
-      if (allocated(self%group)) deallocate (self%group)
-      if (allocated(self%fields)) deallocate (self%fields)
-      if (allocated(self%warnings)) deallocate (self%warnings)
-      if (allocated(self%attribute_names)) deallocate (self%attribute_names, self%attribute_texts)
-   end subroutine forget
 
    !> MFV_BAD_ARGUMENT, with its reason as the handle's message.
    function refused(self, why) result(status)
@@ -308,19 +688,31 @@ contains
       status = MFV_BAD_ARGUMENT
    end function refused
 
+   !> The status of an error, with its message as the handle's; MFV_COMPLETE where there is none.
+   function failed(self, error) result(status)
+      type(handle_type), intent(inout) :: self
+      type(error_type), allocatable, intent(in) :: error
+      integer(c_int) :: status
+
+      status = MFV_COMPLETE
+      if (.not. allocated(error)) return
+      status = error%status
+      self%message = error%message
+   end function failed
+
    function mfv_attribute_name(handle, index, buffer, size) result(status) bind(C, name='mfv_attribute_name')
       type(c_ptr), value :: handle, buffer
       integer(c_size_t), value :: index, size
       integer(c_int) :: status
       type(handle_type), pointer :: self
+      type(string_type), pointer :: names(:), texts(:)
 
-      status = MFV_BAD_HANDLE
-      self => handle_of(handle)
-      if (.not. associated(self)) return
-      call list_attributes(self)
-      status = refused(self, 'mfv_attribute_name: there are '//to_text(ubound(self%attribute_names, 1))//' attributes')
-      if (index < 0 .or. index >= ubound(self%attribute_names, 1)) return
-      status = text_out(self%attribute_names(index + 1)%text, buffer, size)
+      call find(handle, self, status)
+      if (status /= MFV_COMPLETE) return
+      call self%contact%attributes(names, texts)
+      status = refused(self, 'mfv_attribute_name: there are '//to_text(ubound(names, 1))//' attributes')
+      if (index < 0 .or. index >= ubound(names, 1)) return
+      status = text_out(names(index + 1)%text, buffer, size)
    end function mfv_attribute_name
 
    function mfv_attribute(handle, name, buffer, size, length) result(status) bind(C, name='mfv_attribute')
@@ -328,45 +720,25 @@ contains
       integer(c_size_t), value :: size
       integer(c_int) :: status
       type(handle_type), pointer :: self
-      integer(c_size_t), pointer :: characters
+      type(string_type), pointer :: names(:), texts(:)
+      character(:), allocatable :: wanted
       integer :: i
 
-      status = MFV_BAD_HANDLE
-      self => handle_of(handle)
-      if (.not. associated(self)) return
+      call find(handle, self, status)
+      if (status /= MFV_COMPLETE) return
       status = refused(self, 'mfv_attribute: the name is null')
       if (.not. c_associated(name)) return
-      call list_attributes(self)
-      status = refused(self, "there is no attribute '"//text_in(name)//"'")
-      do i = 1, ubound(self%attribute_names, 1)
-         if (self%attribute_names(i)%text /= text_in(name)) cycle
-         associate (text => self%attribute_texts(i)%text)
-            if (c_associated(length)) then
-               call c_f_pointer(length, characters)
-               characters = len(text, kind=c_size_t)
-            end if
-            status = MFV_COMPLETE
-            if (c_associated(buffer)) status = text_out(text, buffer, size)
-         end associate
+      wanted = text_in(name)
+      call self%contact%attributes(names, texts)
+      status = refused(self, "there is no attribute '"//wanted//"'")
+      do i = 1, ubound(names, 1)
+         if (names(i)%text /= wanted) cycle
+         call size_out(len(texts(i)%text, kind=c_size_t), length)
+         status = MFV_COMPLETE
+         if (c_associated(buffer)) status = text_out(texts(i)%text, buffer, size)
          return
       end do
    end function mfv_attribute
-
-   !> Make the list of the attributes.
-   subroutine list_attributes(self)
-      type(handle_type), intent(inout) :: self
-
-      if (allocated(self%attribute_names)) return
-      call find_warnings(self)
-      call result_attributes(self%case, self%simulation, self%warnings, self%attribute_names, self%attribute_texts)
-   end subroutine list_attributes
-
-   !> Have the warnings at hand.
-   subroutine find_warnings(self)
-      type(handle_type), intent(inout) :: self
-
-      if (.not. allocated(self%warnings)) call validity_warnings(self%simulation, self%warnings)
-   end subroutine find_warnings
 
    function mfv_field_info(handle, path, count, is_integer, along, unit, unit_size, description, description_size) &
       result(status) bind(C, name='mfv_field_info')
@@ -374,15 +746,11 @@ contains
       integer(c_size_t), value :: unit_size, description_size
       integer(c_int) :: status
       type(field_type), pointer :: field
-      integer(c_size_t), pointer :: number
       integer(c_int) :: copied
 
       call field_at(handle, path, field, status)
       if (status /= MFV_COMPLETE) return
-      if (c_associated(count)) then
-         call c_f_pointer(count, number)
-         number = values_of(field)
-      end if
+      call size_out(values_of(field), count)
       call integer_out(merge(1, 0, allocated(field%whole)), is_integer)
       call integer_out(field%along, along)
       if (c_associated(unit)) copied = text_out(field%unit, unit, unit_size)
@@ -428,8 +796,8 @@ contains
       integer(c_int) :: status
       type(handle_type), pointer :: self
 
-      status = MFV_COMPLETE
-      self => handle_of(handle)
+      call find(handle, self, status)
+      if (status /= MFV_COMPLETE) return
       if (allocated(field%whole) .neqv. whole) then
          status = refused(self, text_in(path)//' has '//trim(merge('whole numbers', 'reals        ', .not. whole)))
       else if (.not. c_associated(values)) then
@@ -445,28 +813,59 @@ contains
       integer(c_size_t), value :: count
       integer(c_int) :: status
       type(handle_type), pointer :: self
-      type(interior_type) :: interior
+      type(error_type), allocatable :: error
+      real(c_double), pointer :: across(:), up(:), values(:, :)
 
-      status = MFV_BAD_HANDLE
-      self => handle_of(handle)
-      if (.not. associated(self)) return
-      call interior_of_state(self, body, step, interior, status)
-      if (status == MFV_COMPLETE) status = stresses_out(self, interior, count, x, y, stresses)
+      call find(handle, self, status)
+      if (status == MFV_COMPLETE) call take_points(self, count, x, y, stresses, across, up, values, status)
+      if (status /= MFV_COMPLETE) return
+      call self%contact%get_stresses(int(body), across, up, values, error, int(step))
+      status = failed(self, error)
    end function mfv_stress
+
+   !> Arrays for points and the stresses at them. MFV_BAD_ARGUMENT.
+   subroutine take_points(self, count, x, y, stresses, across, up, values, status)
+      type(handle_type), intent(inout) :: self
+      integer(c_size_t), intent(in) :: count
+      type(c_ptr), intent(in) :: x, y, stresses
+      real(c_double), pointer, intent(out) :: across(:), up(:), values(:, :)
+      integer(c_int), intent(out) :: status
+
+      nullify (across, up, values)
+      status = refused(self, 'an array is null')
+      if (.not. (c_associated(x) .and. c_associated(y) .and. c_associated(stresses))) return
+      call c_f_pointer(x, across, [count])
+      call c_f_pointer(y, up, [count])
+      call c_f_pointer(stresses, values, [int(stress_count, c_size_t), count])
+      status = MFV_COMPLETE
+   end subroutine take_points
 
    function mfv_largest_von_mises(handle, body, step, place) result(status) bind(C, name='mfv_largest_von_mises')
       type(c_ptr), value :: handle, place
       integer(c_int), value :: body, step
       integer(c_int) :: status
       type(handle_type), pointer :: self
-      type(interior_type) :: interior
+      type(error_type), allocatable :: error
+      type(largest_type) :: largest
 
-      status = MFV_BAD_HANDLE
-      self => handle_of(handle)
-      if (.not. associated(self)) return
-      call interior_of_state(self, body, step, interior, status)
-      if (status == MFV_COMPLETE) status = largest_out(self, interior, place)
+      call find(handle, self, status)
+      if (status /= MFV_COMPLETE) return
+      status = refused(self, 'place is null')
+      if (.not. c_associated(place)) return
+      call self%contact%get_largest_von_mises(int(body), largest, error, int(step))
+      status = failed(self, error)
+      if (status == MFV_COMPLETE) call place_out(largest, place)
    end function mfv_largest_von_mises
+
+   !> A largest stress and its place through a pointer.
+   subroutine place_out(largest, place)
+      type(largest_type), intent(in) :: largest
+      type(c_ptr), intent(in) :: place
+      real(c_double), pointer :: values(:)
+
+      call c_f_pointer(place, values, [3])
+      values = [largest%value, largest%x, largest%y]
+   end subroutine place_out
 
    function mfv_stress_under(handle, body, nodes, arc, width, pressure, shear, count, x, y, stresses, place) &
       result(status) bind(C, name='mfv_stress_under')
@@ -476,11 +875,13 @@ contains
       integer(c_int) :: status
       type(handle_type), pointer :: self
       type(interior_type) :: interior
-      real(c_double), pointer, dimension(:) :: positions, widths, pressures, shears
+      type(error_type), allocatable :: error
+      real(c_double), pointer, dimension(:) :: positions, widths, pressures, shears, across, up
+      real(c_double), pointer :: values(:, :)
+      integer(c_size_t) :: i
 
-      status = MFV_BAD_HANDLE
-      self => handle_of(handle)
-      if (.not. associated(self)) return
+      call find(handle, self, status)
+      if (status /= MFV_COMPLETE) return
       status = refused(self, 'mfv_stress_under: an array is null')
       if (.not. (c_associated(arc) .and. c_associated(width) .and. c_associated(pressure) .and. c_associated(shear))) return
       call c_f_pointer(arc, positions, [nodes])
@@ -491,155 +892,64 @@ contains
       if (.not. (all(ieee_is_finite(positions)) .and. all(ieee_is_finite(widths)) .and. all(ieee_is_finite(pressures)) .and. &
                  all(ieee_is_finite(shears)))) return
       if (any(widths <= 0.0_wp)) return
-      call make_interior(self, body, positions, widths, pressures, shears, interior, status)
-      if (status == MFV_COMPLETE .and. c_associated(stresses)) &
-         status = stresses_out(self, interior, count, x, y, stresses)
-      if (status == MFV_COMPLETE .and. c_associated(place)) status = largest_out(self, interior, place)
+      call self%contact%make_interior(int(body), positions, widths, pressures, shears, interior, error)
+      status = failed(self, error)
+      if (status == MFV_COMPLETE .and. c_associated(stresses)) then
+         call take_points(self, count, x, y, stresses, across, up, values, status)
+         if (status /= MFV_COMPLETE) return
+         do i = 1, count
+            values(:, i) = interior%all_stresses(across(i), up(i))
+         end do
+      end if
+      if (status == MFV_COMPLETE .and. c_associated(place)) call place_out(interior%largest_von_mises(), place)
    end function mfv_stress_under
-
-   !> A body under the tractions of the present state or of a step.
-   subroutine interior_of_state(self, body, step, interior, status)
-      type(handle_type), intent(inout) :: self
-      integer(c_int), intent(in) :: body, step
-      type(interior_type), intent(out) :: interior
-      integer(c_int), intent(out) :: status
-      type(contact_state_type) :: state
-
-      status = refused(self, 'there is no step '//to_text(int(step))//'; there are '// &
-                       to_text(self%simulation%snapshot_count))
-      if (step < 0 .or. step > self%simulation%snapshot_count) return
-      state = self%simulation%contact%state
-      if (step > 0) state = self%simulation%padded_state(step)
-      associate (model => self%simulation%contact%model)
-         call make_interior(self, body, model%arc, model%width, state%fields%pressure, state%fields%shear, interior, status)
-      end associate
-   end subroutine interior_of_state
-
-   subroutine make_interior(self, body, arc, width, pressure, shear, interior, status)
-      type(handle_type), intent(inout) :: self
-      integer(c_int), intent(in) :: body
-      real(wp), intent(in) :: arc(:), width(:), pressure(:), shear(:)
-      type(interior_type), intent(out) :: interior
-      integer(c_int), intent(out) :: status
-      integer(c_int), parameter :: lower = 0, upper = 1
-      logical :: available
-
-      status = refused(self, 'the body must be MFV_LOWER or MFV_UPPER')
-      if (body /= lower .and. body /= upper) return
-      call self%case%scene%interior(body == upper, arc, width, pressure, shear, interior, available)
-      status = MFV_COMPLETE
-      if (.not. available) status = refused(self, 'the '//merge('upper', 'lower', body == upper)// &
-                                            ' body is rigid or a matrix: there are no stresses inside it')
-   end subroutine make_interior
-
-   function stresses_out(self, interior, count, x, y, stresses) result(status)
-      type(handle_type), intent(inout) :: self
-      type(interior_type), intent(in) :: interior
-      integer(c_size_t), intent(in) :: count
-      type(c_ptr), intent(in) :: x, y, stresses
-      integer(c_int) :: status
-      real(c_double), pointer :: across(:), up(:), values(:, :)
-      integer(c_size_t) :: i
-
-      status = refused(self, 'an array is null')
-      if (.not. (c_associated(x) .and. c_associated(y) .and. c_associated(stresses))) return
-      call c_f_pointer(x, across, [count])
-      call c_f_pointer(y, up, [count])
-      call c_f_pointer(stresses, values, [int(stress_count, c_size_t), count])
-      do i = 1, count
-         values(:, i) = interior%all_stresses(across(i), up(i))
-      end do
-      status = MFV_COMPLETE
-   end function stresses_out
-
-   function largest_out(self, interior, place) result(status)
-      type(handle_type), intent(inout) :: self
-      type(interior_type), intent(in) :: interior
-      type(c_ptr), intent(in) :: place
-      integer(c_int) :: status
-      real(c_double), pointer :: values(:)
-      type(largest_type) :: largest
-
-      status = refused(self, 'place is null')
-      if (.not. c_associated(place)) return
-      call c_f_pointer(place, values, [3])
-      largest = interior%largest_von_mises()
-      values = [largest%value, largest%x, largest%y]
-      status = MFV_COMPLETE
-   end function largest_out
 
    function mfv_write(handle, path) result(status) bind(C, name='mfv_write')
       type(c_ptr), value :: handle, path
       integer(c_int) :: status
       type(handle_type), pointer :: self
       type(error_type), allocatable :: error
-      character(:), allocatable :: where_to
 
-      status = MFV_BAD_HANDLE
-      self => handle_of(handle)
-      if (.not. associated(self)) return
-      where_to = self%case%result_path
-      if (c_associated(path)) where_to = text_in(path)
-      status = refused(self, 'mfv_write: no path, and the case has no &output file')
-      if (where_to == '') return
-      call find_warnings(self)
-      call write_result(where_to, self%case, self%simulation, self%warnings, error)
-      status = MFV_COMPLETE
-      self%message = self%simulation%message
-      if (.not. allocated(error)) return
-      status = error%status
-      self%message = error%message
+      call find(handle, self, status)
+      if (status /= MFV_COMPLETE) return
+      if (c_associated(path)) then
+         call self%contact%write(text_in(path), error)
+      else
+         call self%contact%write('', error)
+      end if
+      status = failed(self, error)
+      if (status == MFV_COMPLETE) call self%contact%get_message(self%message)
    end function mfv_write
 
-   !> The object of a handle; not associated where it is none.
-   function handle_of(handle) result(self)
+   !> The object of a handle; MFV_BAD_HANDLE where it is none.
+   subroutine find(handle, self, status)
       type(c_ptr), intent(in) :: handle
-      type(handle_type), pointer :: self
+      type(handle_type), pointer, intent(out) :: self
+      integer(c_int), intent(out) :: status
 
       nullify (self)
+      status = MFV_BAD_HANDLE
       if (.not. c_associated(handle)) return
       call c_f_pointer(handle, self)
-      if (self%mark /= valid_mark) nullify (self)
-   end function handle_of
+      if (self%mark == valid_mark) status = MFV_COMPLETE
+   end subroutine find
 
-   !> The field at a path of a handle; MFV_BAD_HANDLE or MFV_BAD_ARGUMENT where there is none. The group it is in is kept,
-   !> for the next field of it.
+   !> The field at a path of a handle; MFV_BAD_HANDLE or MFV_BAD_ARGUMENT where there is none.
    subroutine field_at(handle, path, field, status)
       type(c_ptr), intent(in) :: handle, path
       type(field_type), pointer, intent(out) :: field
       integer(c_int), intent(out) :: status
       type(handle_type), pointer :: self
-      character(:), allocatable :: name
-      integer :: number, slash
+      type(error_type), allocatable :: error
 
       nullify (field)
-      status = MFV_BAD_HANDLE
-      self => handle_of(handle)
-      if (.not. associated(self)) return
+      call find(handle, self, status)
+      if (status /= MFV_COMPLETE) return
       status = refused(self, 'the path is null')
       if (.not. c_associated(path)) return
-      name = text_in(path)
-      status = refused(self, "there is no field '"//name//"'")
-      slash = index(name, '/', back=.true.)
-      if (slash < 2) return
-      call keep_group(self, name(:slash - 1))
-      number = field_named(self%fields, name(slash + 1:))
-      if (number == 0) return
-      field => self%fields(number)
-      status = MFV_COMPLETE
+      call self%contact%find_field(text_in(path), field, error)
+      status = failed(self, error)
    end subroutine field_at
-
-   !> Have the fields of a group at hand.
-   subroutine keep_group(self, group)
-      type(handle_type), intent(inout) :: self
-      character(*), intent(in) :: group
-
-      if (allocated(self%group)) then
-         if (self%group == group) return
-      end if
-      call group_fields(self%case, self%simulation, group, self%fields)
-      self%group = group
-   end subroutine keep_group
 
    !> A number through a pointer that may be null.
    subroutine integer_out(value, pointer_to_integer)
@@ -651,6 +961,17 @@ contains
       call c_f_pointer(pointer_to_integer, place)
       place = value
    end subroutine integer_out
+
+   !> A size through a pointer that may be null.
+   subroutine size_out(value, pointer_to_size)
+      integer(c_size_t), intent(in) :: value
+      type(c_ptr), intent(in) :: pointer_to_size
+      integer(c_size_t), pointer :: place
+
+      if (.not. c_associated(pointer_to_size)) return
+      call c_f_pointer(pointer_to_size, place)
+      place = value
+   end subroutine size_out
 
    pure integer(c_size_t) function values_of(field)
       type(field_type), intent(in) :: field

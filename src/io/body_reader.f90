@@ -7,7 +7,7 @@ module mfv_body_reader
    use mfv_kinds, only: wp
    use mfv_material, only: new_material
    use mfv_matrix_file, only: read_matrix_body
-   use mfv_profile_file, only: read_profile
+   use mfv_profile_file, only: profile_of_data, read_profile
    use mfv_scene, only: scene_type
    use mfv_strings, only: string_type, to_text
    implicit none
@@ -138,9 +138,18 @@ contains
       type(error_type), allocatable, intent(out) :: error
       type(error_type), allocatable :: file_error
       character(:), allocatable :: path
+      logical :: is_profile
 
+      is_profile = reader%text_value('body', number, 'shape') == 'profile'
       call find_file(reader, 'body', number, 'file', path)
-      if (reader%text_value('body', number, 'shape') == 'profile') then
+      if (reader%data%has_file(reader%text_value('body', number, 'file'))) then
+         path = reader%text_value('body', number, 'file')
+         if (is_profile) then
+            call profile_of_data(reader%data, path, body, file_error)
+         else
+            call reader%data%read_matrix_body(path, body, file_error)
+         end if
+      else if (is_profile) then
          call read_profile(path, body, file_error)
       else
          call read_matrix_body(path, body, file_error)

@@ -1,7 +1,7 @@
 !> A case: a scene with what the user wants to see of its solution, and the text it came from.
 module mfv_case
    use mfv_scene, only: control_force, control_keep, scene_type, step_type
-   use mfv_simulation, only: history_events, simulation_type
+   use mfv_simulation, only: history_events, simulation_type, states_reversals
    use mfv_strings, only: to_text
    implicit none
    private
@@ -15,8 +15,7 @@ module mfv_case
       character(:), allocatable :: result_path
       !> See mfv_simulation.
       integer :: keep_history = history_events
-      !> Whether the state is kept at every reversal of a step with cycles, or only at the end of the step.
-      logical :: keep_reversals = .true.
+      integer :: keep_states = states_reversals
       !> Whether companions on coarser meshes are solved for an estimate of the discretisation error.
       logical :: error_estimate = .false.
       !> Names of the user's units, for labels.

@@ -5,7 +5,7 @@ module mfv_case_changes
    use mfv_strings, only: to_text
    implicit none
    private
-   public :: set_value, set_dundurs_beta, write_number, stands_for
+   public :: set_value, put_entry, set_dundurs_beta, write_number, stands_for
 
    !> Keys of one group of which a case has one at most: a value for one takes the place of the others.
    character(*), parameter :: alternatives(5) = [character(40) :: 'tangential_force force_ratio shift', &
@@ -21,8 +21,22 @@ contains
       character(*), intent(in) :: group, key, value
       integer, intent(in) :: number
       logical, intent(in) :: is_quoted
-      type(group_type) :: new
       type(entry_type) :: entry
+
+      entry%key = key
+      allocate (entry%values(1))
+      entry%values(1)%text = value
+      entry%is_quoted = [is_quoted]
+      call put_entry(groups, group, number, entry)
+   end subroutine set_value
+
+   !> The same with a whole entry, whose line becomes that of what it takes the place of.
+   subroutine put_entry(groups, group, number, entry)
+      type(group_type), allocatable, intent(inout) :: groups(:)
+      character(*), intent(in) :: group
+      integer, intent(in) :: number
+      type(entry_type), intent(inout) :: entry
+      type(group_type) :: new
       integer :: place, i
 
       place = place_of_group(groups, group, number)
@@ -32,19 +46,15 @@ contains
          call append_group(groups, new)
          place = size(groups)
       end if
-      entry%key = key
-      allocate (entry%values(1))
-      entry%values(1)%text = value
-      entry%is_quoted = [is_quoted]
       entry%line = groups(place)%line
       do i = 1, size(groups(place)%entries)
-         if (.not. stands_for(key, groups(place)%entries(i)%key)) cycle
+         if (.not. stands_for(entry%key, groups(place)%entries(i)%key)) cycle
          entry%line = groups(place)%entries(i)%line
          groups(place)%entries(i) = entry
          return
       end do
       call append_entry(groups(place)%entries, entry)
-   end subroutine set_value
+   end subroutine put_entry
 
    !> Whether a key takes the place of another one in its group: it is the same, or an alternative to it.
    pure logical function stands_for(key, other)

@@ -187,8 +187,8 @@ contains
                         'in the working directory')
       call add_choice_key(keys, 'output', 'history', 'events', 'events steps none', &
                           'a history record an event, a step end, or none')
-      call add_choice_key(keys, 'output', 'states', 'reversals', 'reversals steps', 'state kept at every reversal of a step '// &
-                          'with cycles, or only at the end of every step')
+      call add_choice_key(keys, 'output', 'states', 'reversals', 'reversals steps none', 'state kept at every reversal of a '// &
+                          'step with cycles, only at the end of every step, or none but the last')
       call add_logical_key(keys, 'output', 'error_estimate', '.false.', 'whether the case is also solved on coarser meshes, to '// &
                            'tell the discretisation error of half-width, stick ratio, peak tractions and dissipation')
    end subroutine add_output_keys

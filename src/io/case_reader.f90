@@ -2,6 +2,7 @@
 module mfv_case_reader
    use mfv_body_reader
    use mfv_case, only: case_type
+   use mfv_case_data, only: case_data_type
    use mfv_case_keys, only: case_catalogue
    use mfv_compliance, only: coupling_full, coupling_goodman, coupling_none
    use mfv_discretisation_error, only: has_coarser_meshes
@@ -13,7 +14,7 @@ module mfv_case_reader
    use mfv_mesh_reader, only: read_mesh
    use mfv_namelist, only: group_type, parse_namelists
    use mfv_scene
-   use mfv_simulation, only: history_events, history_none, history_steps
+   use mfv_simulation, only: history_events, history_none, history_steps, states_none, states_reversals, states_steps
    use mfv_strings, only: to_text
    use mfv_text_file, only: directory_of, read_text, stem_of
    implicit none
@@ -53,15 +54,17 @@ contains
    end subroutine read_case_text
 
    !> The case in a text that has been taken apart; `case%text` is left to the caller. `directory`: where the files are that it
-   !> names, with its final slash. For the rest see read_case_text.
-   subroutine read_case_groups(groups, source, directory, case, error, without_steps)
+   !> names, with its final slash; `data`: what is in memory in place of such files. For the rest see read_case_text.
+   subroutine read_case_groups(groups, source, directory, case, error, without_steps, data)
       type(group_type), intent(in) :: groups(:)
       character(*), intent(in) :: source, directory
       type(case_type), intent(out) :: case
       type(error_type), allocatable, intent(out) :: error
       logical, intent(in), optional :: without_steps
+      type(case_data_type), intent(in), optional :: data
       type(reader_type) :: reader
 
+      if (present(data)) reader%data = data
       if (present(without_steps)) reader%without_steps = without_steps
       reader%source = source
       reader%directory = directory
@@ -80,7 +83,9 @@ contains
       case%keep_history = history_events
       if (reader%text_value('output', 1, 'history') == 'steps') case%keep_history = history_steps
       if (reader%text_value('output', 1, 'history') == 'none') case%keep_history = history_none
-      case%keep_reversals = reader%text_value('output', 1, 'states') == 'reversals'
+      case%keep_states = states_reversals
+      if (reader%text_value('output', 1, 'states') == 'steps') case%keep_states = states_steps
+      if (reader%text_value('output', 1, 'states') == 'none') case%keep_states = states_none
       case%error_estimate = reader%logical_value('output', 1, 'error_estimate')
       if (case%error_estimate .and. .not. has_coarser_meshes(case%scene)) &
          call reader%complain('output', 1, 'error_estimate', "must be .false. with shape='matrix', which has no coarser mesh", &

@@ -2,6 +2,7 @@
 !> message names file, line, group, key, value and what is right.
 module mfv_key_reader
    use, intrinsic :: ieee_arithmetic, only: ieee_is_finite
+   use mfv_case_data, only: case_data_type
    use mfv_error, only: error_type, set_error
    use mfv_keys
    use mfv_kinds, only: wp
@@ -21,6 +22,8 @@ module mfv_key_reader
       type(group_type), allocatable :: groups(:)
       type(catalogue_type) :: catalogue
       logical :: without_steps = .false.
+      !> Data in memory in place of files.
+      type(case_data_type) :: data
    contains
       procedure :: has
       procedure :: real_value

@@ -3,13 +3,14 @@ module mfv_profile_file
    use, intrinsic :: ieee_arithmetic, only: ieee_is_finite
    use mfv_error, only: error_type, set_error
    use mfv_body, only: body_type, new_profile
+   use mfv_case_data, only: case_data_type
    use mfv_kinds, only: wp
    use mfv_status, only: MFV_INPUT_ERROR
    use mfv_strings, only: string_type, to_text
    use mfv_text_file, only: read_text, split_lines
    implicit none
    private
-   public :: read_profile, read_table
+   public :: read_profile, profile_of_data, read_table
 
    !> Steffen's interpolation needs as many points.
    integer, parameter :: fewest_points = 3
@@ -25,14 +26,35 @@ contains
       real(wp), allocatable :: table(:, :)
 
       call read_table(path, 'x and height', 2, .true., table, error)
-      if (allocated(error)) return
-      if (size(table, 2) < fewest_points) then
-         call set_error(error, MFV_INPUT_ERROR, path//': needs at least '//to_text(fewest_points)//' points, and has '// &
-                        to_text(size(table, 2)))
-         return
-      end if
-      body = new_profile(table(1, :), table(2, :))
+      if (.not. allocated(error)) call make_profile(path, table, body, error)
    end subroutine read_profile
+
+   !> The profile in the datasets x and height of the data for a file. Error MFV_INPUT_ERROR.
+   subroutine profile_of_data(data, file, body, error)
+      type(case_data_type), intent(in) :: data
+      character(*), intent(in) :: file
+      type(body_type), intent(out) :: body
+      type(error_type), allocatable, intent(out) :: error
+      real(wp), allocatable :: table(:, :)
+
+      call data%read_columns(file, 'x height', table, error)
+      if (.not. allocated(error)) call make_profile(file, table, body, error)
+   end subroutine profile_of_data
+
+   !> The profile of a table of x and height, shape (2, points). Error MFV_INPUT_ERROR.
+   subroutine make_profile(name, table, body, error)
+      character(*), intent(in) :: name
+      real(wp), intent(in) :: table(:, :)
+      type(body_type), intent(out) :: body
+      type(error_type), allocatable, intent(out) :: error
+
+      if (size(table, 2) < fewest_points) then
+         call set_error(error, MFV_INPUT_ERROR, name//': needs at least '//to_text(fewest_points)//' points, and has '// &
+                        to_text(size(table, 2)))
+      else
+         body = new_profile(table(1, :), table(2, :))
+      end if
+   end subroutine make_profile
 
    !> Columns of numbers from a text file; blank lines and comments do not count. `names`: what they are, for messages;
    !> `columns`: how many; `increasing`: whether the first must increase. `table`: shape (columns, lines).

@@ -13,7 +13,7 @@ module mfv_result_file
    use mfv_strings, only: string_type
    implicit none
    private
-   public :: write_result
+   public :: check_writable, write_result
 
 contains
 

@@ -7,6 +7,7 @@ module mfv_sweep_reader
    use mfv_case_reader, only: read_case_groups
    use mfv_checksum, only: add_text_to_checksum
    use mfv_error, only: error_type
+   use mfv_key_path, only: split_key
    use mfv_key_reader
    use mfv_keys
    use mfv_kinds, only: wp
@@ -199,36 +200,17 @@ contains
       type(target_type), intent(out) :: target
       character(:), allocatable, intent(out) :: why
       type(catalogue_type) :: catalogue
-      character(:), allocatable :: text, number
-      integer :: percent, bracket, code
+      character(:), allocatable :: number
 
       catalogue = case_catalogue()
       why = ''
-      text = lower_case(written)
       target%group = ''
-      target%key = text
-      if (text == dundurs_key) return
-      percent = index(text, '%')
-      if (percent == 0) then
-         why = quoted(written)//": must be 'group%key', 'group(number)%key' or "//quoted(dundurs_key)
+      target%key = lower_case(written)
+      if (target%key == dundurs_key) return
+      call split_key(written, target%group, number, target%number, target%key, why)
+      if (why /= '') then
+         if (index(written, '%') == 0) why = why//' or '//quoted(dundurs_key)
          return
-      end if
-      target%key = text(percent + 1:)
-      target%group = text(:percent - 1)
-      number = ''
-      bracket = index(target%group, '(')
-      if (bracket > 0) then
-         number = target%group(bracket:)
-         target%group = target%group(:bracket - 1)
-         code = 1
-         if (len(number) > 2 .and. len(number) < 12) then
-            if (number(len(number):) == ')' .and. verify(number(2:len(number) - 1), '0123456789') == 0) &
-               read (number(2:len(number) - 1), *, iostat=code) target%number
-         end if
-         if (code /= 0) then
-            why = quoted(written)//": '"//number//"' is no number of a group, such as (2)"
-            return
-         end if
       end if
       call check_target(catalogue, sweep, number, target, why)
       if (why /= '') why = quoted(written)//': '//why
@@ -243,7 +225,7 @@ contains
       character(:), allocatable, intent(out) :: why
       integer :: i, there
 
-      if (size(catalogue%names(target%group)) == 0) then
+      if (.not. catalogue%has_group(target%group)) then
          call suggest(target%group, catalogue%groups(), '', why)
          why = 'unknown group'//why//'; groups are '//catalogue%group_list
          return

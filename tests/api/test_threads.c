@@ -153,6 +153,93 @@ static void *work(void *argument) {
   return (void *)different;
 }
 
+/* Many handles alive at once: their loads after every increment, with trial steps, tangents and observers in between. */
+enum { HANDLES = 125, INCREMENTS = 6 };
+
+static int count_increments(const mfv_progress *progress, void *user) {
+  *(int *)user += progress->contact_nodes > 0;
+  return 0;
+}
+
+static int by(mfv_case *handle, double shift) {
+  mfv_step step = MFV_STEP_INIT;
+  step.tangential_control = MFV_DISPLACEMENT;
+  step.tangential_target = shift;
+  step.relative = 1;
+  return mfv_advance(handle, &step);
+}
+
+/* What one handle gave after every increment. */
+typedef struct {
+  mfv_loads loads[INCREMENTS];
+  double tangent[INCREMENTS][4];
+  int increments;
+} track;
+
+static int begin(mfv_case **handle, track *seen) {
+  static const char *const text = "&body shape='half_plane', shear_modulus=1.0, poisson_ratio=0.2 /\n"
+                                  "&body shape='disk', radius=0.25, rigid=.true. / &mesh nodes=15, half_width=0.02 /\n"
+                                  "&friction law='coulomb', mu=0.5 / &output history='none', states='none' /\n"
+                                  "&step normal_force=1.0e-3 /\n";
+  seen->increments = 0;
+  if (mfv_create_from_text(text, NULL, handle, NULL, 0) != MFV_COMPLETE || mfv_run(*handle) != MFV_COMPLETE) return 0;
+  return mfv_observe(*handle, count_increments, &seen->increments) == MFV_COMPLETE;
+}
+
+static int go_on(mfv_case *handle, track *seen, int increment) {
+  mfv_state *state = NULL;
+  const double size = increment < 4 ? 4e-5 : -5e-5;
+  int good = mfv_save(handle, &state) == MFV_COMPLETE && by(handle, -3 * size) == MFV_COMPLETE &&
+             mfv_restore(handle, state) == MFV_COMPLETE && by(handle, size) == MFV_COMPLETE;
+  mfv_state_free(&state);
+  seen->loads[increment] = (mfv_loads)MFV_LOADS_INIT;
+  return good && mfv_get_loads(handle, &seen->loads[increment]) == MFV_COMPLETE &&
+         mfv_tangent(handle, 2, NULL, seen->tangent[increment]) == MFV_COMPLETE;
+}
+
+static track one_track;
+
+/* Lead so many handles at once, increment by increment; returns the number of those that gave something else than one alone. */
+static void *lead_many(void *argument) {
+  static const size_t everything_failed = HANDLES;
+  size_t different = 0;
+  mfv_case *handles[HANDLES] = {NULL};
+  track *seen = calloc(HANDLES, sizeof *seen);
+  (void)argument;
+  for (int i = 0; i < HANDLES; ++i)
+    if (!begin(&handles[i], &seen[i])) return (void *)everything_failed;
+  for (int increment = 0; increment < INCREMENTS; ++increment)
+    for (int i = 0; i < HANDLES; ++i)
+      if (!go_on(handles[i], &seen[i], increment)) return (void *)everything_failed;
+  for (int i = 0; i < HANDLES; ++i) {
+    different += memcmp(&seen[i], &one_track, sizeof one_track) != 0;
+    mfv_free(&handles[i]);
+  }
+  free(seen);
+  return (void *)different;
+}
+
+/* Returns the number of handles, of a thousand in all threads, that did not give the digits of one. */
+static size_t thousand_handles(void) {
+  pthread_t threads[THREADS];
+  size_t failures = 0;
+  mfv_case *handle = NULL;
+  if (!begin(&handle, &one_track)) return 1;
+  for (int increment = 0; increment < INCREMENTS; ++increment)
+    if (!go_on(handle, &one_track, increment)) return 1;
+  mfv_free(&handle);
+  if (one_track.increments <= INCREMENTS || one_track.tangent[0][0] <= 0) return 1;
+  for (size_t i = 0; i < THREADS; ++i)
+    if (pthread_create(&threads[i], NULL, lead_many, NULL) != 0) return 1;
+  for (size_t i = 0; i < THREADS; ++i) {
+    void *different = NULL;
+    pthread_join(threads[i], &different);
+    failures += (size_t)different;
+  }
+  if (failures > 0) printf("%zu of %d handles gave other digits than one alone\n", failures, THREADS * HANDLES);
+  return failures;
+}
+
 /* Whether the texts do what they are here for. */
 static int as_meant(void) {
   int used = 0, ended = 0, refused = 0;
@@ -187,5 +274,6 @@ int main(void) {
     failures += (size_t)different;
   }
   for (size_t i = 0; i < TEXTS; ++i) free(alone[i].bytes);
+  failures += thousand_handles();
   return failures != 0;
 }

@@ -1,16 +1,55 @@
-# Installs the build into a fresh tree, builds the consumer against that tree and runs it; the installed mfv_run too.
-# Variables: BUILD_DIR, SOURCE_DIR, WORK_DIR, VERSION.
-function(step)
-  execute_process(COMMAND ${ARGV} RESULT_VARIABLE code OUTPUT_VARIABLE output ERROR_VARIABLE output)
-  if(NOT code EQUAL 0)
-    message(FATAL_ERROR "failed: ${ARGV}\n${output}")
-  endif()
-endfunction()
+# Installs the build into a fresh tree, moves the tree, and builds and runs programs on it in C, C++ and Fortran, with the shared
+# and with the static library, by find_package and by pkg-config; and the installed programs. No stack may be executable.
+# Variables: BUILD_DIR, SOURCE_DIR, WORK_DIR, VERSION, LIBDIR, C, CXX, Fortran (compilers), READELF, PKG_CONFIG.
+include(${CMAKE_CURRENT_LIST_DIR}/../support/steps.cmake)
+set(case ${SOURCE_DIR}/examples/mindlin.nml)
+set(source_C ${SOURCE_DIR}/tests/api/test_c_api.c)
+set(source_CXX ${CMAKE_CURRENT_LIST_DIR}/consumer.cpp)
+set(source_Fortran ${CMAKE_CURRENT_LIST_DIR}/consumer.f90)
+set(tree ${WORK_DIR}/moved)
 
 file(REMOVE_RECURSE ${WORK_DIR})
 step(${CMAKE_COMMAND} --install ${BUILD_DIR} --prefix ${WORK_DIR}/tree)
-step(${CMAKE_COMMAND} -S ${SOURCE_DIR}/tests/consumer -B ${WORK_DIR}/build -DCMAKE_PREFIX_PATH=${WORK_DIR}/tree
-     -DEXPECTED_VERSION=${VERSION})
-step(${CMAKE_COMMAND} --build ${WORK_DIR}/build)
-step(${WORK_DIR}/build/consumer ${SOURCE_DIR}/examples/mindlin.nml ${WORK_DIR}/mindlin.h5)
-step(${WORK_DIR}/tree/bin/mfv_run --check ${SOURCE_DIR}/examples/mindlin.nml)
+file(RENAME ${WORK_DIR}/tree ${tree})
+file(GLOB package_files ${tree}/${LIBDIR}/cmake/mfv/* ${tree}/${LIBDIR}/pkgconfig/*)
+foreach(package_file IN LISTS package_files)
+  file(STRINGS ${package_file} named REGEX "${WORK_DIR}|${SOURCE_DIR}|${BUILD_DIR}")
+  if(named)
+    message(FATAL_ERROR "${package_file} names a place that is not its own: ${named}")
+  endif()
+endforeach()
+
+function(run_consumer program)
+  step(${program} ${case} ${WORK_DIR}/result.h5)
+  if(NOT step_output MATCHES "(contact nodes 87|C interface: all checks passed)\n")
+    message(FATAL_ERROR "${program} prints ${step_output}")
+  endif()
+  expect_no_executable_stack(${program})
+endfunction()
+
+foreach(language C CXX Fortran)
+  set(build ${WORK_DIR}/${language})
+  step(${CMAKE_COMMAND} -S ${CMAKE_CURRENT_LIST_DIR} -B ${build} -DLANGUAGE=${language} -DCMAKE_${language}_COMPILER=${${language}}
+    -DSOURCE=${source_${language}} -DCMAKE_PREFIX_PATH=${tree} -DEXPECTED_VERSION=${VERSION})
+  step(${CMAKE_COMMAND} --build ${build})
+  run_consumer(${build}/consumer)
+  run_consumer(${build}/static_consumer)
+  foreach(kind shared static)
+    build_by_pkg_config(${${language}} ${source_${language}} ${kind} ${build}/${kind}_by_pkg_config)
+    run_consumer(${build}/${kind}_by_pkg_config)
+  endforeach()
+endforeach()
+
+# Modules of another compiler are told of.
+file(READ ${tree}/${LIBDIR}/cmake/mfv/mfv-config.cmake config)
+string(REGEX REPLACE "set\\(mfv_FORTRAN_COMPILER [^)]*\\)" "set(mfv_FORTRAN_COMPILER Other-1)" config "${config}")
+file(WRITE ${tree}/${LIBDIR}/cmake/mfv/mfv-config.cmake "${config}")
+execute_process(COMMAND ${CMAKE_COMMAND} ${WORK_DIR}/Fortran RESULT_VARIABLE code OUTPUT_QUIET ERROR_VARIABLE output)
+string(REGEX REPLACE "[ \n]+" " " output "${output}")
+if(code EQUAL 0 OR NOT output MATCHES "the Fortran modules of mfv are those of Other-1, your Fortran compiler is ")
+  message(FATAL_ERROR "modules of another compiler: ${output}")
+endif()
+
+file(GLOB programs ${tree}/bin/*)
+expect_no_executable_stack(${tree}/${LIBDIR}/libmfv.so ${programs})
+step(${tree}/bin/mfv_run --check ${case})

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import copy
-import ctypes
 import os
 import pickle
 import re
@@ -19,6 +18,7 @@ import pytest
 import mfv
 from mfv import __main__ as command_line
 from mfv import _library, errors
+from mfv.commands import info
 
 PROJECT = Path(__file__).resolve().parents[2]
 MINDLIN = PROJECT / "examples" / "mindlin.nml"
@@ -79,59 +79,7 @@ def assert_same(first: mfv.Result, second: mfv.Result) -> None:
         assert np.asarray(one[path]).tobytes() == np.asarray(other[path]).tobytes(), path
 
 
-# --- the C interface and its description in Python ---
-
-
-def header_text() -> str:
-    """The C header without comments."""
-    text = (PROJECT / "include" / "mfv.h").read_text()
-    return re.sub(r"/\*.*?\*/", "", text, flags=re.DOTALL)
-
-
-def as_ctypes(declaration: str) -> type:
-    """The ctypes type of a C parameter."""
-    kind = " ".join(re.sub(r"\w+$", "", declaration.replace("const", "").strip()).split())
-    return {
-        "int": ctypes.c_int,
-        "double": ctypes.c_double,
-        "size_t": ctypes.c_size_t,
-        "char *": ctypes.c_char_p,
-        "double *": ctypes.POINTER(ctypes.c_double),
-        "int32_t *": ctypes.POINTER(ctypes.c_int32),
-        "int *": ctypes.POINTER(ctypes.c_int),
-        "size_t *": ctypes.POINTER(ctypes.c_size_t),
-        "mfv_case *": ctypes.c_void_p,
-        "mfv_case **": ctypes.POINTER(ctypes.c_void_p),
-        "mfv_step *": ctypes.POINTER(_library.Step),
-    }[kind]
-
-
-def test_signatures_are_those_of_the_header() -> None:
-    declared = re.findall(r"^(int|double) (mfv_\w+)\(([^)]*)\);", header_text(), flags=re.MULTILINE)
-    assert len(declared) > 20
-    results = {"int": ctypes.c_int, "double": ctypes.c_double}
-    signatures = {name: (results[kind], *map(as_ctypes, inside.split(","))) for kind, name, inside in declared}
-    assert _library.SIGNATURES == signatures
-
-
-def test_step_is_that_of_the_header() -> None:
-    body = re.search(r"typedef struct mfv_step \{(.*?)\}", header_text(), flags=re.DOTALL).group(1)
-    members = [(name, as_ctypes(f"{kind} {name}")) for kind, name in re.findall(r"(\w+) (\w+);", body)]
-    assert _library.Step._fields_ == members
-
-
-def test_controls_are_those_of_the_header() -> None:
-    assert {f"MFV_{control.name}": control.value for control in _library.Control} == {
-        name: int(value) for name, value in re.findall(r"(MFV_(?:KEEP|FORCE|DISPLACEMENT)) = (\d+)", header_text())
-    }
-
-
-def test_stresses_and_bodies_are_those_of_the_header() -> None:
-    names = re.search(r"(MFV_SIGMA_XX.*?), MFV_STRESS_COUNT", header_text(), flags=re.DOTALL).group(1)
-    assert [name.strip() for name in names.split(",")] == [f"MFV_{name.upper()}" for name in mfv.stress.NAMES]
-    assert re.findall(r"MFV_(LOWER|UPPER) = (\d)", header_text()) == [
-        (name.upper(), str(number)) for number, name in enumerate(mfv.stress.BODIES)
-    ]
+# --- errors, versions, the library ---
 
 
 def test_exceptions_are_those_of_the_list_of_statuses() -> None:
@@ -738,7 +686,7 @@ def test_error_bars_in_the_process_and_in_the_file(tmp_path: Path) -> None:
     read = mfv.read(tmp_path / "case.h5").error_estimate
     assert set(read) == set(estimate)
     np.testing.assert_array_equal(read.peak_shear_companions, estimate.peak_shear_companions)
-    assert "error estimate" in command_line._description(result)
+    assert "error estimate" in info.description(result)
 
 
 def test_a_matrix_has_no_error_bars(tmp_path: Path) -> None:

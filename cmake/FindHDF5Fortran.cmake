@@ -1,0 +1,28 @@
+# HDF5 with its Fortran and high-level interfaces: HDF5Fortran_FOUND, target HDF5Fortran::hdf5_fortran. CMake's own module wants a
+# Fortran compiler; without one, as in a C project that links the static libmfv, the libraries are found by their names.
+if(CMAKE_Fortran_COMPILER_LOADED)
+  find_package(HDF5 QUIET COMPONENTS Fortran HL)
+  set(HDF5Fortran_LIBRARIES ${HDF5_Fortran_HL_LIBRARIES} ${HDF5_Fortran_LIBRARIES})
+  set(HDF5Fortran_INCLUDE_DIRS ${HDF5_Fortran_INCLUDE_DIRS})
+else()
+  set(HDF5Fortran_LIBRARIES)
+  # Debian calls the first libhdf5hl_fortran.
+  find_library(HDF5Fortran_HL_FORTRAN_LIBRARY NAMES hdf5_hl_fortran hdf5hl_fortran PATH_SUFFIXES hdf5/serial)
+  find_library(HDF5Fortran_FORTRAN_LIBRARY NAMES hdf5_fortran PATH_SUFFIXES hdf5/serial)
+  find_library(HDF5Fortran_HL_LIBRARY NAMES hdf5_hl PATH_SUFFIXES hdf5/serial)
+  find_library(HDF5Fortran_C_LIBRARY NAMES hdf5 PATH_SUFFIXES hdf5/serial)
+  foreach(interface HL_FORTRAN FORTRAN HL C)
+    mark_as_advanced(HDF5Fortran_${interface}_LIBRARY)
+    list(APPEND HDF5Fortran_LIBRARIES ${HDF5Fortran_${interface}_LIBRARY})
+  endforeach()
+  if(HDF5Fortran_LIBRARIES MATCHES "NOTFOUND")
+    set(HDF5Fortran_LIBRARIES)
+  endif()
+endif()
+include(FindPackageHandleStandardArgs)
+find_package_handle_standard_args(HDF5Fortran REQUIRED_VARS HDF5Fortran_LIBRARIES)
+if(HDF5Fortran_FOUND AND NOT TARGET HDF5Fortran::hdf5_fortran)
+  add_library(HDF5Fortran::hdf5_fortran INTERFACE IMPORTED)
+  set_target_properties(HDF5Fortran::hdf5_fortran PROPERTIES INTERFACE_LINK_LIBRARIES "${HDF5Fortran_LIBRARIES}"
+    INTERFACE_INCLUDE_DIRECTORIES "${HDF5Fortran_INCLUDE_DIRS}")
+endif()

@@ -1,0 +1,134 @@
+"""Who is told of a run while it goes on: a callback of the user's, a bar; and how an interrupt from the keyboard ends it."""
+
+from __future__ import annotations
+
+import signal
+import threading
+from collections.abc import Iterator
+from contextlib import contextmanager
+from ctypes import c_void_p
+from typing import Any, Callable, NamedTuple
+
+from ._library import OBSERVER, library
+
+BAR_FORMAT = "{percentage:3.0f}%|{bar}| {elapsed}<{remaining}{postfix}"
+
+
+class Progress(NamedTuple):
+    """What an observer is told after every increment of the load."""
+
+    fraction: float  #: of this straight part of the load history
+    segment: int  #: number of this part, from 1
+    segments: int  #: how many there are
+    contact_nodes: int
+    stick_nodes: int
+    normal_force: float  #: [force/length]
+    tangential_force: float  #: [force/length]
+    approach: float  #: [length]
+    shift: float  #: [length]
+
+    @property
+    def done(self) -> float:
+        """Part of the whole load history that is done."""
+        return (self.segment - 1 + self.fraction) / max(self.segments, 1)
+
+
+class Observer:
+    """The one observer that the library knows of a case. It passes on what it is told, and ends the run when told to."""
+
+    def __init__(self, handle: c_void_p) -> None:
+        self.callback: Callable[[Progress], object] | None = None
+        self.is_leading = False
+        self.is_installed = False
+        self._handle = handle
+        self._bar: Any = None
+        self._signals: list[tuple[Any, Any]] = []
+        self._handler: Any = None
+        self._raised: BaseException | None = None
+        self._function = OBSERVER(self._tell)
+
+    @property
+    def is_wanted(self) -> bool:
+        """Whether someone wants to be told."""
+        return self.callback is not None or self._bar is not None
+
+    def watch(self, function: Callable[..., int], *arguments: object) -> int:
+        """Call what leads the loads while observing it; return its status."""
+        self.refuse_while_leading()
+        if not self.is_installed:
+            library().mfv_observe(self._handle, self._function, None)
+            self.is_installed = True
+        self._signals, self._raised, self.is_leading = [], None, True
+        try:
+            with self._signals_held():
+                return function(*arguments)
+        finally:
+            self.is_leading = False
+
+    def raise_what_ended_it(self) -> None:
+        """Raise what a callback raised; let an interrupt from the keyboard be handled, which as a rule raises."""
+        raised, self._raised = self._raised, None
+        signals, self._signals = self._signals, []
+        for number, frame in signals[:1]:
+            self._handler(number, frame)
+        if raised is not None:
+            raise raised
+
+    def rest(self) -> None:
+        """Let the library go on without an observer, which costs nothing."""
+        library().mfv_observe(self._handle, OBSERVER(), None)
+        self.is_installed = False
+
+    def refuse_while_leading(self) -> None:
+        """Raises RuntimeError in a callback, which must not use the case that calls it."""
+        if self.is_leading:
+            raise RuntimeError("a callback of observe must not use the case that calls it; what it needs is in its argument")
+
+    @contextmanager
+    def bar(self, wanted: bool) -> Iterator[None]:
+        """Show how far a run is, on a terminal or in a notebook. Raises ImportError where tqdm is missing."""
+        if not wanted:
+            yield
+            return
+        try:
+            from tqdm.auto import tqdm
+        except ImportError:
+            raise ImportError("progress=True needs tqdm: pip install tqdm") from None
+        with tqdm(total=1.0, disable=None, bar_format=BAR_FORMAT) as bar:
+            self._bar = None if bar.disable else bar
+            try:
+                yield
+            finally:
+                self._bar = None
+
+    def _tell(self, progress: Any, _: object) -> int:
+        """What the library calls: not 0 ends the run."""
+        if self._signals:
+            return 1
+        if not self.is_wanted:
+            return 0
+        try:
+            now = progress.contents
+            told = Progress(*(getattr(now, name) for name in Progress._fields))
+            if self._bar is not None and self._bar.update(told.done - self._bar.n):
+                self._bar.set_postfix_str(f"{told.contact_nodes} in contact, {told.stick_nodes} stuck", refresh=False)
+            return int(self.callback is not None and bool(self.callback(told)))
+        except BaseException as error:  # noqa: BLE001 - to be raised by `watch`: nothing can be raised through the library
+            self._raised = error
+            return 1
+
+    @contextmanager
+    def _signals_held(self) -> Iterator[None]:
+        """Hold an interrupt from the keyboard back until the run has ended because of it.
+
+        Without this the interrupt would be raised inside the callback, where Python can only report and forget it.
+        """
+        self._handler = signal.getsignal(signal.SIGINT)
+        if threading.current_thread() is not threading.main_thread() or not callable(self._handler):
+            yield
+            return
+        signal.signal(signal.SIGINT, lambda number, frame: self._signals.append((number, frame)))
+        try:
+            yield
+        finally:
+            signal.signal(signal.SIGINT, self._handler)

@@ -1,0 +1,585 @@
+"""Scenes: bodies, mesh, friction, steps and settings as Python objects.
+
+Every class has the keys of a group of docs/namelist.md, by their names; `None` leaves a key out. What is allowed is for the
+library to say: its messages come as exceptions when a case is made of the scene.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import dataclasses
+import numbers
+import os
+import re
+import sys
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from ctypes import byref, c_size_t, c_void_p, create_string_buffer
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Callable, ClassVar, Literal, TypeVar, Union
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from . import _html, errors
+from ._library import LARGEST_INTEGER, library, real_pointer, text_buffer, text_for, text_of
+
+if TYPE_CHECKING:
+    from typing_extensions import dataclass_transform
+
+    from .case import Case
+    from .result import Result
+else:
+
+    def dataclass_transform(**_: Any) -> Callable[[Any], Any]:
+        return lambda decorator: decorator
+
+
+#: A coefficient of friction: one, or one a node.
+Coefficient = Union[float, Sequence[float], NDArray[np.float64]]
+
+#: Arrays in place of a file: datasets by name.
+Data = Mapping[str, NDArray[np.float64]]
+
+_Class = TypeVar("_Class")
+
+#: One token of the library's own form of a namelist text: a key, a text between apostrophes, or a bare value.
+_TOKEN = re.compile(r"(?P<key>\w+)=|'(?P<text>(?:[^']|'')*)'|(?P<bare>[^\s,='/&]+)")
+
+
+@dataclass_transform(kw_only_default=True, eq_default=False)
+def _keywords_only(cls: type[_Class]) -> type[_Class]:
+    """A dataclass with keywords only (before Python 3.10 arguments by position are not refused)."""
+    options: dict[str, Any] = {"kw_only": True} if sys.version_info >= (3, 10) else {}
+    return dataclasses.dataclass(eq=False, repr=False, **options)(cls)
+
+
+class KeyGroup:
+    """What the groups of a scene share: keys that can be left out, comparison by value, no attributes by mistake."""
+
+    #: Fields that are not keys of the namelist.
+    _not_keys: ClassVar[tuple[str, ...]] = ()
+
+    @classmethod
+    def key_names(cls) -> list[str]:
+        """Names of the keys."""
+        return [name for name in cls.__annotations__ if not name.startswith("_") and name not in cls._not_keys]
+
+    def keys(self) -> dict[str, Any]:
+        """The keys that are given, with their values."""
+        values = {name: getattr(self, name) for name in self.key_names()}
+        return {name: value for name, value in values.items() if value is not None}
+
+    def _everything(self) -> dict[str, Any]:
+        """Keys and what else is given."""
+        values = {name: getattr(self, name) for name in type(self).__annotations__ if not name.startswith("_")}
+        return {name: value for name, value in values.items() if value is not None}
+
+    def __setattr__(self, name: str, value: Any) -> None:
+        if name not in type(self).__annotations__:
+            known = ", ".join([*self.key_names(), *self._not_keys])
+            raise AttributeError(f"{type(self).__name__} has no '{name}'; it has {known}")
+        super().__setattr__(name, value)
+
+    def __eq__(self, other: object) -> bool:
+        if not isinstance(other, KeyGroup) or type(self) is not type(other):
+            return NotImplemented
+        return _same(self._everything(), other._everything())
+
+    __hash__ = None  # type: ignore[assignment]  # its keys may change
+
+    def __repr__(self) -> str:
+        return f"{type(self).__name__}({', '.join(f'{name}={_shown(value)}' for name, value in self._everything().items())})"
+
+    def _repr_html_(self) -> str:
+        return _html.table([(name, _shown(value)) for name, value in self._everything().items()], type(self).__name__)
+
+
+@_keywords_only
+class Body(KeyGroup):
+    """A body: the keys of &body. `data`: arrays in place of the `file` of a profile or a matrix."""
+
+    shape: Literal["half_plane", "disk", "hole", "flat_punch", "profile", "matrix"]
+    rigid: bool | None = None
+    shear_modulus: float | None = None
+    youngs_modulus: float | None = None
+    poisson_ratio: float | None = None
+    yield_strength: float | None = None
+    datum: float | None = None
+    radius: float | None = None
+    half_width: float | None = None
+    kernel: Literal["exact", "fourier"] | None = None
+    harmonics: int | None = None
+    file: str | os.PathLike[str] | None = None
+    data: Data | None = None
+
+    _not_keys: ClassVar[tuple[str, ...]] = ("data",)
+
+    @classmethod
+    def half_plane(
+        cls,
+        *,
+        shear_modulus: float | None = None,
+        youngs_modulus: float | None = None,
+        poisson_ratio: float | None = None,
+        rigid: bool | None = None,
+        yield_strength: float | None = None,
+        datum: float | None = None,
+    ) -> Body:
+        """Flat and without end. Elastic: `shear_modulus` or `youngs_modulus` [force/length^2], and `poisson_ratio`."""
+        return cls(shape="half_plane", **_given(locals()))
+
+    @classmethod
+    def disk(
+        cls,
+        radius: float,
+        *,
+        shear_modulus: float | None = None,
+        youngs_modulus: float | None = None,
+        poisson_ratio: float | None = None,
+        rigid: bool | None = None,
+        yield_strength: float | None = None,
+        datum: float | None = None,
+        kernel: Literal["exact", "fourier"] | None = None,
+        harmonics: int | None = None,
+    ) -> Body:
+        """A solid disk of a radius [length]; a force on it is balanced in its centre."""
+        return cls(shape="disk", **_given(locals()))
+
+    @classmethod
+    def hole(
+        cls,
+        radius: float,
+        *,
+        shear_modulus: float | None = None,
+        youngs_modulus: float | None = None,
+        poisson_ratio: float | None = None,
+        rigid: bool | None = None,
+        yield_strength: float | None = None,
+        datum: float | None = None,
+        kernel: Literal["exact", "fourier"] | None = None,
+        harmonics: int | None = None,
+    ) -> Body:
+        """The infinite plane around a hole of a radius [length]."""
+        return cls(shape="hole", **_given(locals()))
+
+    @classmethod
+    def flat_punch(cls, half_width: float) -> Body:
+        """A rigid flat punch with sharp edges; `half_width` [length]."""
+        return cls(shape="flat_punch", rigid=True, half_width=half_width)
+
+    @classmethod
+    def profile(
+        cls,
+        x: ArrayLike,
+        height: ArrayLike,
+        *,
+        shear_modulus: float | None = None,
+        youngs_modulus: float | None = None,
+        poisson_ratio: float | None = None,
+        rigid: bool | None = None,
+        yield_strength: float | None = None,
+        datum: float | None = None,
+    ) -> Body:
+        """A nearly flat surface through points: positions `x`, increasing, and heights above the flat surface [length]."""
+        keys = _given(locals(), but=("x", "height"))
+        return cls(shape="profile", data={"x": _numbers(x), "height": _numbers(height)}, **keys)
+
+    @classmethod
+    def matrix(
+        cls,
+        x: ArrayLike,
+        *,
+        compliance: ArrayLike | None = None,
+        stiffness: ArrayLike | None = None,
+        gap: ArrayLike | None = None,
+        width: ArrayLike | None = None,
+    ) -> Body:
+        """An elastic body by the compliance or the stiffness of its n surface nodes at `x`, increasing [length].
+
+        `compliance`: (n, n), or (2n, 2n) with friction: displacements by nodal forces per unit thickness, the normal
+        components of all nodes before the tangential ones; `stiffness`: the other way round. `gap` (n): how far the surface
+        recedes; `width` (n): surface that belongs to each node. See docs/namelist.md for signs.
+        """
+        arrays = {"x": x, "gap": gap, "width": width, "compliance": compliance, "stiffness": stiffness}
+        return cls(shape="matrix", data={name: _numbers(values) for name, values in arrays.items() if values is not None})
+
+
+@_keywords_only
+class Mesh(KeyGroup):
+    """The mesh: the keys of &mesh."""
+
+    nodes: int | None = None
+    half_width: float | None = None
+    half_angle: float | None = None
+    gap: Literal["exact", "parabolic"] | None = None
+    normals: Literal["vertical", "radial"] | None = None
+
+
+@_keywords_only
+class Friction(KeyGroup):
+    """Friction: the keys of &friction. `data`: arrays in place of `mu_file`."""
+
+    law: Literal["none", "coulomb", "static_kinetic", "weakening", "dahl"] | None = None
+    mu: Coefficient | None = None
+    mu_static: Coefficient | None = None
+    mu_kinetic: Coefficient | None = None
+    mu_file: str | os.PathLike[str] | None = None
+    weakening_distance: float | None = None
+    stiffness: float | None = None
+    exponent: float | None = None
+    data: Data | None = None
+
+    _not_keys: ClassVar[tuple[str, ...]] = ("data",)
+
+    @classmethod
+    def coulomb(cls, mu: Coefficient, *, x: ArrayLike | None = None) -> Friction:
+        """A node sticks below mu p and slips at mu p. `mu`: one value, one a node, or with `x` one a position: linear between
+        them, constant beyond."""
+        return cls(law="coulomb", **_coefficients(x, mu=mu))
+
+    @classmethod
+    def static_kinetic(cls, mu_static: Coefficient, mu_kinetic: Coefficient, *, x: ArrayLike | None = None) -> Friction:
+        """It sticks up to mu_static p and slips at mu_kinetic p; results depend on the mesh. Coefficients as in `coulomb`."""
+        return cls(law="static_kinetic", **_coefficients(x, mu_static=mu_static, mu_kinetic=mu_kinetic))
+
+    @classmethod
+    def weakening(
+        cls, mu_static: Coefficient, mu_kinetic: Coefficient, distance: float, *, x: ArrayLike | None = None
+    ) -> Friction:
+        """The coefficient falls linearly from mu_static to mu_kinetic over a slip `distance` [length]."""
+        coefficients = _coefficients(x, mu_static=mu_static, mu_kinetic=mu_kinetic)
+        return cls(law="weakening", weakening_distance=distance, **coefficients)
+
+    @classmethod
+    def dahl(
+        cls, mu: Coefficient, stiffness: float, *, exponent: float | None = None, x: ArrayLike | None = None
+    ) -> Friction:
+        """Bristles of a `stiffness` [force/length^3] give way before mu p is reached."""
+        return cls(law="dahl", stiffness=stiffness, exponent=exponent, **_coefficients(x, mu=mu))
+
+
+@_keywords_only
+class Step(KeyGroup):
+    """One step of the load history: the keys of &step. Targets are reached linearly; what is not named stays as it is."""
+
+    normal_force: float | None = None
+    approach: float | None = None
+    tangential_force: float | None = None
+    shift: float | None = None
+    force_ratio: float | None = None
+    moment: float | None = None
+    rotation: float | None = None
+    friction: bool | None = None
+    cycles: int | None = None
+    steady_tolerance: float | None = None
+
+
+@_keywords_only
+class Solver(KeyGroup):
+    """How it is solved: the keys of &solver."""
+
+    algorithm: Literal["mfv", "conventional"] | None = None
+    stepping: Literal["event", "nominal", "leap"] | None = None
+    leap_tolerance: float | None = None
+    event_tolerance: float | None = None
+    load_step: float | None = None
+    integration: Literal["second_order", "explicit"] | None = None
+    friction_tolerance: float | None = None
+    iterations: int | None = None
+    linear_solver: Literal["auto", "dgesv", "reduced", "fft"] | None = None
+    linear_tolerance: float | None = None
+
+
+@_keywords_only
+class Output(KeyGroup):
+    """What is kept: the keys of &output."""
+
+    file: str | os.PathLike[str] | None = None
+    history: Literal["events", "steps", "none"] | None = None
+    states: Literal["reversals", "steps", "none"] | None = None
+    error_estimate: bool | None = None
+
+
+class Scene(KeyGroup):
+    """Two bodies, how they rub and how they are loaded; with the keys of &scene. `lower` is below, `upper` above."""
+
+    lower: Body
+    upper: Body
+    friction: Friction | None
+    mesh: Mesh | None
+    steps: list[Step]
+    solver: Solver | None
+    output: Output | None
+    name: str
+    title: str | None
+    plane: Literal["strain", "stress"] | None
+    coupling: Literal["full", "goodman", "none"] | None
+    length_unit: str | None
+    force_unit: str | None
+
+    _not_keys: ClassVar[tuple[str, ...]] = ("lower", "upper", "friction", "mesh", "steps", "solver", "output", "name")
+
+    def __init__(
+        self,
+        lower: Body,
+        upper: Body,
+        *,
+        friction: Friction | None = None,
+        mesh: Mesh | None = None,
+        steps: Iterable[Step] = (),
+        solver: Solver | None = None,
+        output: Output | None = None,
+        title: str | None = None,
+        plane: Literal["strain", "stress"] | None = None,
+        coupling: Literal["full", "goodman", "none"] | None = None,
+        length_unit: str | None = None,
+        force_unit: str | None = None,
+        name: str = "scene",
+    ) -> None:
+        """`name`: what messages call the scene; files that it names are looked for beside that path."""
+        self.lower = lower
+        self.upper = upper
+        self.friction = friction
+        self.mesh = mesh
+        self.steps = list(steps)
+        self.solver = solver
+        self.output = output
+        self.title = title
+        self.plane = plane
+        self.coupling = coupling
+        self.length_unit = length_unit
+        self.force_unit = force_unit
+        self.name = name
+
+    @classmethod
+    def from_file(cls, path: str | os.PathLike[str]) -> Scene:
+        """The scene of a namelist file. Raises OSError, InputError."""
+        return cls.from_text(os.fsdecode(Path(path).read_bytes()), os.fspath(path))
+
+    @classmethod
+    def from_text(cls, text: str, name: str = "text") -> Scene:
+        """The scene of a namelist text; `name` as for a new one. Raises InputError."""
+        with _scene_handle(text, name) as handle:
+            canonical = _text_of_scene(handle)
+        try:
+            return cls._of_groups(_groups_of(canonical), name)
+        except (TypeError, ValueError) as unknown:
+            from .case import Case
+
+            Case.from_text(text, name).close()  # the library's message, which names line and key
+            raise errors.MfvError(None, f"{name}: {unknown}") from None
+
+    @classmethod
+    def _of_groups(cls, groups: list[tuple[str, dict[str, Any]]], name: str) -> Scene:
+        """The scene of groups by name. Raises TypeError, ValueError for what it cannot be made of."""
+        bodies = [Body(**keys) for group, keys in groups if group == "body"]
+        steps = [Step(**keys) for group, keys in groups if group == "step"]
+        single: dict[str, Any] = {}
+        for group, keys in groups:
+            if group in single or group not in ("scene", "body", "step", *_SINGLE):
+                raise ValueError(f"&{group} comes twice or is not known to the Python package")
+            if group not in ("body", "step"):
+                single[group] = _SINGLE[group](**keys) if group in _SINGLE else keys
+        keys = single.pop("scene", {})
+        if len(bodies) != 2 or not set(keys) <= set(cls.key_names()):
+            raise ValueError("there are not two bodies, or &scene has a key that is not known to the Python package")
+        lower, upper = bodies
+        return cls(lower, upper, steps=steps, name=name, **single, **keys)
+
+    def text(self) -> str:
+        """The scene as a namelist text. Arrays are not in it: `file` names them ('lower body', for one). Raises InputError."""
+        with self._handle() as handle:
+            return _text_of_scene(handle)
+
+    @property
+    def has_arrays(self) -> bool:
+        """Whether arrays are part of it, which its text has not."""
+        return any(getattr(part, "data", None) is not None for part in (self.lower, self.upper, self.friction))
+
+    def contact(self) -> Case:
+        """A case of this scene, to be led step by step. Raises InputError."""
+        from .case import Case
+
+        return Case(self)
+
+    def run(
+        self, *, output: str | os.PathLike[str] | None = None, check: bool = False, progress: bool = False
+    ) -> Result:
+        """Solve it and return the result: see `mfv.run`."""
+        from .case import run
+
+        return run(self, output=output, check=check, progress=progress)
+
+    def __eq__(self, other: object) -> bool:
+        if not isinstance(other, Scene):
+            return NotImplemented
+        here, there = self._everything(), other._everything()
+        return _same({**here, "name": None}, {**there, "name": None})
+
+    __hash__ = None
+
+    def _repr_html_(self) -> str:
+        parts = [(name.replace("body(1)", "lower").replace("body(2)", "upper"), part) for name, part in self._parts()]
+        rows = [(name, _shown(value)) for name, value in self.keys().items() if name != "title"]
+        rows += [(name, f"{part!r}".partition("(")[2][:-1]) for name, part in parts]
+        return _html.table(rows, self.title or "Scene")
+
+    def _parts(self) -> list[tuple[str, KeyGroup]]:
+        """The groups of the namelist with their numbers, but &scene."""
+        parts: list[tuple[str, KeyGroup]] = [("body(1)", self.lower), ("body(2)", self.upper)]
+        parts += [(name, getattr(self, name)) for name in _SINGLE if getattr(self, name) is not None]
+        return parts + [(f"step({number})", step) for number, step in enumerate(self.steps, start=1)]
+
+    @contextlib.contextmanager
+    def _handle(self) -> Iterator[c_void_p]:
+        """The library's own scene with all keys and arrays, while in use. Raises InputError."""
+        with _scene_handle("", self.name) as handle:
+            statuses = _set_keys(handle, "scene", self.keys())
+            for group, part in self._parts():
+                keys, data = part.keys(), getattr(part, "data", None)
+                if data is not None:
+                    file = keys.setdefault(_FILE_KEYS[type(part)], _NAMES_OF_DATA[group])
+                    statuses += [_set_data(handle, file, dataset, values) for dataset, values in data.items()]
+                if isinstance(part, Step):
+                    keys = keys or {"friction": True}  # its default: the library has to see a step in which nothing is named
+                statuses += _set_keys(handle, group, keys)
+            if any(statuses):  # mfv_create tells of the first call that failed
+                created("mfv_create", handle)
+            yield handle
+
+
+#: Groups that come at most once, but &scene.
+_SINGLE: dict[str, type[KeyGroup]] = {"mesh": Mesh, "friction": Friction, "solver": Solver, "output": Output}
+
+#: Keys that name a file for which there may be arrays; what these are called where they have no name.
+_FILE_KEYS: dict[type[KeyGroup], str] = {Body: "file", Friction: "mu_file"}
+_NAMES_OF_DATA = {"body(1)": "lower body", "body(2)": "upper body", "friction": "friction"}
+
+
+def _numbers(values: ArrayLike) -> NDArray[np.float64]:
+    """Numbers as the library takes them; not copied where they are so already."""
+    return np.ascontiguousarray(values, dtype=np.float64)
+
+
+def _given(arguments: Mapping[str, Any], but: Sequence[str] = ()) -> dict[str, Any]:
+    """Arguments of a constructor that are keys."""
+    return {name: value for name, value in arguments.items() if name not in ("cls", *but)}
+
+
+def _coefficients(x: ArrayLike | None, **coefficients: Coefficient) -> dict[str, Any]:
+    """Coefficients as keys or, with their positions, as arrays."""
+    if x is None:
+        return dict(coefficients)
+    return {"data": {"x": _numbers(x), **{name: _numbers(values) for name, values in coefficients.items()}}}
+
+
+def _same(one: Any, other: Any) -> bool:
+    """Whether two values are equal, arrays and tables of them by their items."""
+    if isinstance(one, Mapping) and isinstance(other, Mapping):
+        return one.keys() == other.keys() and all(_same(one[name], other[name]) for name in one)
+    if isinstance(one, KeyGroup) or isinstance(other, KeyGroup):
+        return bool(one == other)
+    return bool(np.array_equal(one, other))
+
+
+def _shown(value: Any) -> str:
+    """A value in a repr: long arrays by their size."""
+    if isinstance(value, Mapping):
+        return "{" + ", ".join(f"{name!r}: {_shown(item)}" for name, item in value.items()) + "}"
+    if isinstance(value, np.ndarray):
+        return f"array({'x'.join(map(str, value.shape))})"
+    return repr(value)
+
+
+def created(function: str, *arguments: bytes | c_void_p) -> c_void_p:
+    """A handle from one of the functions of the library that create it. Raises InputError."""
+    handle, message = c_void_p(), text_buffer()
+    status = getattr(library(), function)(*arguments, byref(handle), message, len(message))
+    if status != 0:
+        raise errors.failure(status, text_of(message))
+    return handle
+
+
+@contextlib.contextmanager
+def _scene_handle(text: str, name: str) -> Iterator[c_void_p]:
+    """The library's scene of a text, while in use. Raises InputError."""
+    handle = created("mfv_scene_from_text", text_for(text), text_for(name))
+    try:
+        yield handle
+    finally:
+        library().mfv_scene_free(byref(handle))
+
+
+def _text_of_scene(handle: c_void_p) -> str:
+    """The library's scene as a namelist text, of any length."""
+    length = c_size_t()
+    library().mfv_scene_text(handle, None, 0, byref(length))
+    buffer = create_string_buffer(length.value + 1)
+    library().mfv_scene_text(handle, buffer, len(buffer), None)
+    return text_of(buffer)
+
+
+def _set_keys(handle: c_void_p, group: str, keys: Mapping[str, Any]) -> list[int]:
+    """Give keys their values; return the statuses. Raises TypeError."""
+    return [_set_key(handle, f"{group}%{name}", value) for name, value in keys.items()]
+
+
+def _set_key(handle: c_void_p, key: str, value: Any) -> int:
+    name = text_for(key)
+    status: int
+    if isinstance(value, (str, os.PathLike)):
+        status = library().mfv_scene_set_text(handle, name, text_for(value))
+    elif isinstance(value, (bool, np.bool_)):
+        status = library().mfv_scene_set_logical(handle, name, int(value))
+    elif isinstance(value, numbers.Integral) and abs(int(value)) <= LARGEST_INTEGER:
+        status = library().mfv_scene_set_integer(handle, name, int(value))
+    elif isinstance(value, numbers.Real):
+        status = library().mfv_scene_set_real(handle, name, float(value))
+    elif isinstance(value, (Sequence, np.ndarray)):
+        values = _numbers(np.atleast_1d(value))
+        status = library().mfv_scene_set_reals(handle, name, real_pointer(values), values.size)
+    else:
+        raise TypeError(f"{key}: a text, a truth value, a number or an array is wanted, not {value!r}")
+    return status
+
+
+def _set_data(handle: c_void_p, file: str | os.PathLike[str], dataset: str, values: ArrayLike) -> int:
+    """Give the library an array in place of one in a file; return the status. Raises ValueError."""
+    array = _numbers(values)
+    if array.ndim not in (1, 2) or array.size == 0:
+        raise ValueError(f"{os.fspath(file)}: {dataset} must have values in one dimension or two, not the shape {array.shape}")
+    rows, columns = array.shape if array.ndim == 2 else (array.size, 1)
+    status: int = library().mfv_scene_set_data(
+        handle, text_for(file), text_for(dataset), rows, columns, real_pointer(array)
+    )
+    return status
+
+
+def _groups_of(text: str) -> list[tuple[str, dict[str, Any]]]:
+    """Groups with their keys of a namelist text as the library writes it: a group a line, texts between apostrophes."""
+    groups: list[tuple[str, dict[str, Any]]] = []
+    for line in filter(lambda line: line.startswith("&"), text.splitlines()):
+        name, _, rest = line.strip().removeprefix("&").partition(" ")
+        values: dict[str, list[Any]] = {}
+        for token in _TOKEN.finditer(rest):
+            if token["key"]:
+                if token["key"] in values:
+                    raise ValueError(f"&{name} {token['key']} comes twice")
+                values[token["key"]] = found = []
+            else:
+                found.append(token["text"].replace("''", "'") if token["text"] is not None else _value(token["bare"]))
+        groups.append((name, {key: items[0] if len(items) == 1 else items for key, items in values.items()}))
+    return groups
+
+
+def _value(text: str) -> bool | int | float:
+    """A truth value or a number of a namelist text. Raises ValueError."""
+    logical = text.strip(".").lower()
+    if logical in ("true", "t", "false", "f"):
+        return logical.startswith("t")
+    if "_" in text:  # which Python would take
+        raise ValueError(f"{text} is no number")
+    try:
+        return int(text)
+    except ValueError:
+        return float(text.lower().replace("d", "e"))

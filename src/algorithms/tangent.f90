@@ -1,0 +1,122 @@
+!> The consistent tangent of a contact: how its loads change with the motions of the upper body.
+!>
+!> With all statuses fixed everything is linear (mfv_first_violation), so that the rates of the loads under prescribed motions are
+!> derivatives, exact until a node changes its status. At corners of contact and friction (a load that turns, nodes that touch) they
+!> depend on where the motions go on to: then the statuses are first settled in that direction.
+module mfv_tangent
+   use mfv_contact_model, only: along_approach, along_rotation, along_shift
+   use mfv_contact_path, only: contact_path_type, segment_type
+   use mfv_contact_state, only: contact_state_type
+   use mfv_contact_system
+   use mfv_error, only: error_type, set_error
+   use mfv_first_violation, only: lead_by_violations
+   use mfv_kinds, only: wp
+   use mfv_node_status, only: in_contact
+   use mfv_observer, only: observer_type
+   use mfv_scene, only: control_displacement
+   use mfv_status, only: MFV_BAD_ARGUMENT, MFV_INTERRUPTED
+   implicit none
+   private
+   public :: find_tangent
+
+   !> Ends a run after its first increment.
+   type, extends(observer_type) :: one_increment_type
+   contains
+      procedure :: notify
+   end type one_increment_type
+
+contains
+
+   !> tangent(i, j): derivative of load i (normal force and tangential force, force/length; moment, force) with respect to motion j
+   !> (approach and shift, length; rotation), shape (motions, motions), motions 2 or 3 (rotation too). `friction`: whether it acts.
+   !> `direction`: of motions to go on with, shape (motions), only its direction counts; left out, statuses are as they are.
+   !> Errors MFV_BAD_ARGUMENT: the contact does not determine it, or a direction of zeros; others: nothing leads on in this direction.
+   subroutine find_tangent(path, friction, tangent, error, direction)
+      type(contact_path_type), intent(in) :: path
+      logical, intent(in) :: friction
+      real(wp), intent(out) :: tangent(:, :)
+      type(error_type), allocatable, intent(out) :: error
+      real(wp), intent(in), optional :: direction(:)
+      type(contact_path_type) :: copy
+
+      ! The solver's work is its state: a copy leaves the digits of the original as they are.
+      copy = path
+      tangent = 0.0_wp
+      if (size(tangent, 1) > along_shift) call copy%begin_rotation()
+      if (present(direction)) call turn(copy, friction, direction, error)
+      if (.not. allocated(error)) call derive(copy, tangent, error)
+   end subroutine find_tangent
+
+   !> Settle the statuses for motions that go on in a direction.
+   subroutine turn(path, friction, direction, error)
+      type(contact_path_type), intent(inout) :: path
+      logical, intent(in) :: friction
+      real(wp), intent(in) :: direction(:)
+      type(error_type), allocatable, intent(out) :: error
+      !> So far, in parts of the mesh's length: little beside everything but round-off.
+      real(wp), parameter :: little = 1.0e-9_wp
+      type(segment_type) :: segment
+      type(one_increment_type) :: observer
+      real(wp) :: motion(3), largest
+
+      motion = 0.0_wp
+      motion(:size(direction)) = direction
+      largest = max(maxval(abs(motion(:along_shift))), abs(motion(along_rotation))*path%model%length())
+      if (.not. largest > 0.0_wp) then
+         call set_error(error, MFV_BAD_ARGUMENT, 'the direction of the tangent has no length')
+         return
+      end if
+      motion = motion*(little*path%model%length()/largest)
+      segment%friction = friction
+      associate (f => path%state%fields)
+         segment%normal = load_type(control_displacement, f%approach, motion(along_approach))
+         segment%tangential = load_type(control_displacement, f%shift, motion(along_shift))
+         segment%rotational = load_type(control_displacement, f%rotation, motion(along_rotation))
+      end associate
+      path%record_events = .false.
+      call lead_by_violations(path, segment, observer, error)
+      if (.not. allocated(error)) return
+      if (error%status == MFV_INTERRUPTED) deallocate (error)
+   end subroutine turn
+
+   !> See mfv_observer.
+   subroutine notify(self, state, segment, segments, fraction, stop_wanted)
+      class(one_increment_type), intent(inout) :: self
+      type(contact_state_type), intent(in) :: state
+      integer, intent(in) :: segment, segments
+      real(wp), intent(in) :: fraction
+      logical, intent(out) :: stop_wanted
+
+      stop_wanted = .true.
+   end subroutine notify
+
+   !> The derivatives with the statuses as they are.
+   subroutine derive(path, tangent, error)
+      type(contact_path_type), intent(inout) :: path
+      real(wp), intent(inout) :: tangent(:, :)
+      type(error_type), allocatable, intent(out) :: error
+      type(constraints_type) :: constraints
+      type(response_type) :: response
+      logical :: singular
+      integer :: i, j
+
+      if (.not. any(in_contact(path%state%status))) return
+      call path%set_rows(constraints, .false.)
+      do j = 1, size(tangent, 2)
+         associate (f => path%state%fields)
+            constraints%normal = load_type(control_displacement, f%approach, merge(1.0_wp, 0.0_wp, j == along_approach))
+            constraints%tangential = load_type(control_displacement, f%shift, merge(1.0_wp, 0.0_wp, j == along_shift))
+            constraints%rotational = load_type(control_displacement, f%rotation, merge(1.0_wp, 0.0_wp, j == along_rotation))
+         end associate
+         call path%system%solve(path%model, constraints, path%state%fields, response, singular)
+         if (singular) then
+            call set_error(error, MFV_BAD_ARGUMENT, 'the contact does not determine the tangent: the linear system is singular')
+            return
+         end if
+         do i = 1, size(tangent, 1)
+            tangent(i, j) = path%model%resultant(i, response%rate%pressure, response%rate%shear)
+         end do
+      end do
+   end subroutine derive
+
+end module mfv_tangent

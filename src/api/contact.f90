@@ -1,0 +1,527 @@
+!> A contact to be led and asked: a case with its simulation, behind one object. The Fortran face of the library (module mfv) and
+!> the C interface (mfv_c) are both this.
+module mfv_contact
+   use, intrinsic :: ieee_arithmetic, only: ieee_is_finite
+   use, intrinsic :: iso_fortran_env, only: int64, int8
+   use mfv_case, only: case_type
+   use mfv_case_reader, only: read_case_file, read_case_text
+   use mfv_checksum, only: add_text_to_checksum, add_to_checksum
+   use mfv_contact_state, only: contact_state_type
+   use mfv_discretisation_error, only: estimate_error
+   use mfv_draft, only: draft_type
+   use mfv_error, only: error_type, set_error
+   use mfv_interior, only: interior_type, largest_type, stress_count
+   use mfv_kept_state, only: kept_state_type
+   use mfv_kinds, only: wp
+   use mfv_observer, only: observer_type
+   use mfv_result_fields, only: field_named, field_type, group_fields, result_attributes, result_groups
+   use mfv_result_file, only: write_result
+   use mfv_scene, only: control_displacement, control_force, control_keep, most_cycles, step_type
+   use mfv_simulation, only: new_simulation, simulation_type
+   use mfv_status
+   use mfv_strings, only: add_text, string_type, to_text
+   use mfv_tangent, only: find_tangent
+   use mfv_validity, only: validity_warnings
+   implicit none
+   private
+   public :: contact_type, loads_type, read_contact, read_contact_text, new_contact, step_to, body_lower, body_upper
+
+   integer, parameter :: body_lower = 0, body_upper = 1
+   !> What step_to makes of a force and a displacement for one direction.
+   integer, parameter :: control_both = -1
+
+   !> Loads and motions of a state: forces [force/length], moment and dissipation [force], lengths, radians; and counts.
+   type :: loads_type
+      real(wp) :: normal_force = 0.0_wp, tangential_force = 0.0_wp, moment = 0.0_wp
+      real(wp) :: approach = 0.0_wp, shift = 0.0_wp, rotation = 0.0_wp, dissipation = 0.0_wp
+      integer :: contact_nodes = 0, stick_nodes = 0, slip_nodes = 0, events = 0, linear_solves = 0
+   end type loads_type
+
+   type :: contact_type
+      type(case_type) :: case
+      type(simulation_type) :: simulation
+      !> A checksum by which states that are kept know their scene.
+      integer(int64), private :: scene = 0
+      !> What was asked for last: paths of all fields, one group of them, warnings, attributes; dropped when the state changes.
+      type(string_type), allocatable, private :: paths(:)
+      character(:), allocatable, private :: group
+      type(field_type), allocatable, private :: fields(:)
+      type(string_type), allocatable, private :: warnings(:), attribute_names(:), attribute_texts(:)
+   contains
+      procedure :: run
+      procedure :: advance
+      procedure :: status
+      procedure :: get_message
+      procedure :: loads
+      procedure :: get_tangent
+      procedure :: keep
+      procedure :: come_back
+      procedure :: field_paths
+      procedure :: find_field
+      !> Copy out a field: `call contact%get('state/pressure', pressure, error)`, into an allocatable of reals or whole numbers.
+      !> Error MFV_BAD_ARGUMENT.
+      generic :: get => get_reals, get_integers, get_real, get_integer
+      procedure :: attributes
+      procedure :: get_stresses
+      procedure :: get_largest_von_mises
+      procedure :: make_interior
+      procedure :: write
+      procedure, private :: get_reals, get_integers, get_real, get_integer, begin, interior_of, forget
+   end type contact_type
+
+contains
+
+   !> The contact of the case in a namelist file. It may have no steps. Error MFV_INPUT_ERROR.
+   subroutine read_contact(path, contact, error)
+      character(*), intent(in) :: path
+      type(contact_type), intent(out) :: contact
+      type(error_type), allocatable, intent(out) :: error
+
+      call read_case_file(path, contact%case, error, without_steps=.true.)
+      if (.not. allocated(error)) call contact%begin()
+   end subroutine read_contact
+
+   !> The same of a text. `source`: what messages call it; files that it names are looked for beside it.
+   subroutine read_contact_text(text, source, contact, error)
+      character(*), intent(in) :: text, source
+      type(contact_type), intent(out) :: contact
+      type(error_type), allocatable, intent(out) :: error
+
+      call read_case_text(text, source, contact%case, error, without_steps=.true.)
+      if (.not. allocated(error)) call contact%begin()
+   end subroutine read_contact_text
+
+   !> The contact of a scene that was built by calls. Error MFV_INPUT_ERROR.
+   subroutine new_contact(draft, contact, error)
+      type(draft_type), intent(in) :: draft
+      type(contact_type), intent(out) :: contact
+      type(error_type), allocatable, intent(out) :: error
+
+      call draft%make_case(contact%case, error)
+      if (.not. allocated(error)) call contact%begin()
+   end subroutine new_contact
+
+   !> The unloaded contact of the case.
+   subroutine begin(self)
+      class(contact_type), intent(inout) :: self
+      integer(int8) :: mold(1)
+
+      self%simulation = new_simulation(self%case%scene, self%case%keep_history, self%case%keep_states)
+      call add_text_to_checksum(self%case%text, self%scene)
+      associate (model => self%simulation%contact%model)
+         call add_to_checksum(transfer(model%x, mold), self%scene)
+         call add_to_checksum(transfer(model%initial_gap, mold), self%scene)
+         call add_to_checksum(transfer(model%compliance%modulus, mold), self%scene)
+      end associate
+   end subroutine begin
+
+   !> Run the steps of the case that have not been run. How it went: see status.
+   subroutine run(self, observer)
+      class(contact_type), intent(inout) :: self
+      class(observer_type), intent(inout), optional :: observer
+
+      if (self%simulation%outcome /= MFV_COMPLETE) return
+      call self%forget()
+      call self%simulation%run(observer)
+      if (self%case%error_estimate) call estimate_error(self%simulation, observer)
+      if (self%simulation%outcome /= MFV_COMPLETE) call self%case%explain(self%simulation)
+   end subroutine run
+
+   !> Lead the loads through one more step, straight from where they are: a force or a displacement in every direction that is to
+   !> change, units as in step_type. `relative`: targets are increments on the loads now. How it went: see status.
+   !> Error MFV_BAD_ARGUMENT: the step is none; nothing is done.
+   subroutine advance(self, step, error, relative, observer)
+      class(contact_type), intent(inout) :: self
+      type(step_type), intent(in) :: step
+      type(error_type), allocatable, intent(out) :: error
+      logical, intent(in), optional :: relative
+      class(observer_type), intent(inout), optional :: observer
+      type(step_type) :: absolute
+
+      absolute = step
+      if (present(relative)) then
+         if (relative) call add_present(self%simulation%contact%state, absolute)
+      end if
+      call check_step(absolute, error)
+      if (allocated(error) .or. self%simulation%outcome /= MFV_COMPLETE) return
+      call self%forget()
+      call self%simulation%advance(absolute, observer=observer)
+   end subroutine advance
+
+   !> A step to the targets that are there: normal_force or approach, tangential_force or shift, moment or rotation; units and the rest
+   !> as in step_type.
+   pure function step_to(normal_force, approach, tangential_force, shift, moment, rotation, friction, cycles, steady_tolerance) &
+      result(step)
+      real(wp), intent(in), optional :: normal_force, approach, tangential_force, shift, moment, rotation, steady_tolerance
+      logical, intent(in), optional :: friction
+      integer, intent(in), optional :: cycles
+      type(step_type) :: step
+
+      call choose(normal_force, approach, step%normal_control, step%normal_target)
+      call choose(tangential_force, shift, step%tangential_control, step%tangential_target)
+      call choose(moment, rotation, step%rotational_control, step%rotational_target)
+      if (present(friction)) step%friction = friction
+      if (present(cycles)) step%cycles = cycles
+      if (present(steady_tolerance)) step%steady_tolerance = steady_tolerance
+   end function step_to
+
+   !> What a step does with one direction.
+   pure subroutine choose(force, displacement, control, target)
+      real(wp), intent(in), optional :: force, displacement
+      integer, intent(inout) :: control
+      real(wp), intent(inout) :: target
+
+      if (present(force)) then
+         control = control_force
+         target = force
+      end if
+      if (.not. present(displacement)) return
+      control = merge(control_both, control_displacement, present(force))
+      target = displacement
+   end subroutine choose
+
+   !> Add the loads of a state to the targets of a step.
+   pure subroutine add_present(state, step)
+      type(contact_state_type), intent(in) :: state
+      type(step_type), intent(inout) :: step
+
+      associate (f => state%fields)
+         call add_load(f%normal_force, f%approach, step%normal_control, step%normal_target)
+         call add_load(f%tangential_force, f%shift, step%tangential_control, step%tangential_target)
+         call add_load(f%moment, f%rotation, step%rotational_control, step%rotational_target)
+      end associate
+   end subroutine add_present
+
+   !> Add the load that a step controls to its target.
+   pure subroutine add_load(force, displacement, control, target)
+      real(wp), intent(in) :: force, displacement
+      integer, intent(in) :: control
+      real(wp), intent(inout) :: target
+
+      if (control == control_force) target = target + force
+      if (control == control_displacement) target = target + displacement
+   end subroutine add_load
+
+   !> What is wrong with a step: error MFV_BAD_ARGUMENT.
+   subroutine check_step(step, error)
+      type(step_type), intent(in) :: step
+      type(error_type), allocatable, intent(out) :: error
+      integer, parameter :: controls(3) = [control_keep, control_force, control_displacement]
+
+      if (any([step%normal_control, step%tangential_control, step%rotational_control] == control_both)) then
+         call set_error(error, MFV_BAD_ARGUMENT, 'a step leads the force or the displacement of a direction, not both')
+      else if (.not. any(step%normal_control == controls) .or. .not. any(step%tangential_control == controls) .or. &
+          .not. any(step%rotational_control == controls)) then
+         call set_error(error, MFV_BAD_ARGUMENT, 'a control must be MFV_KEEP, MFV_FORCE or MFV_DISPLACEMENT')
+      else if (.not. (ieee_is_finite(step%normal_target) .and. ieee_is_finite(step%tangential_target) .and. &
+                      ieee_is_finite(step%rotational_target))) then
+         call set_error(error, MFV_BAD_ARGUMENT, 'a target is not finite')
+      else if (step%normal_control == control_force .and. step%normal_target < 0.0_wp) then
+         call set_error(error, MFV_BAD_ARGUMENT, 'the normal force must not be negative')
+      else if (.not. ieee_is_finite(step%steady_tolerance) .or. step%steady_tolerance < 0.0_wp) then
+         call set_error(error, MFV_BAD_ARGUMENT, 'steady_tolerance must be a number and not negative')
+      else if (step%cycles < 0 .or. step%cycles > most_cycles) then
+         call set_error(error, MFV_BAD_ARGUMENT, 'cycles must be from 0 to '//to_text(most_cycles))
+      end if
+   end subroutine check_step
+
+   !> How it has gone so far, see mfv_status: MFV_COMPLETE while nothing has gone wrong.
+   pure integer function status(self)
+      class(contact_type), intent(in) :: self
+
+      status = self%simulation%outcome
+   end function status
+
+   !> What was reached, or why not.
+   pure subroutine get_message(self, message)
+      class(contact_type), intent(in) :: self
+      character(:), allocatable, intent(out) :: message
+
+      message = self%simulation%message
+   end subroutine get_message
+
+   !> Loads and motions now.
+   pure type(loads_type) function loads(self)
+      class(contact_type), intent(in) :: self
+
+      associate (f => self%simulation%contact%state%fields, state => self%simulation%contact%state)
+         loads = loads_type(f%normal_force, f%tangential_force, f%moment, f%approach, f%shift, f%rotation, state%dissipation, &
+                            state%contact_nodes(), state%stick_nodes(), state%slip_nodes(), self%simulation%contact%events, &
+                            self%simulation%contact%system%solves)
+      end associate
+   end function loads
+
+   !> The consistent tangent at the present state, see mfv_tangent; `tangent`: shape (2, 2), or (3, 3) with rotation. Friction acts as
+   !> in the last step.
+   subroutine get_tangent(self, tangent, error, direction)
+      class(contact_type), intent(in) :: self
+      real(wp), intent(out) :: tangent(:, :)
+      type(error_type), allocatable, intent(out) :: error
+      real(wp), intent(in), optional :: direction(:)
+
+      call find_tangent(self%simulation%contact, self%simulation%way%friction, tangent, error, direction)
+   end subroutine get_tangent
+
+   !> Keep the present state.
+   subroutine keep(self, kept)
+      class(contact_type), intent(in) :: self
+      type(kept_state_type), intent(inout) :: kept
+
+      call kept%keep(self%simulation, self%scene)
+   end subroutine keep
+
+   !> Come back to a state that was kept, see mfv_kept_state. Error MFV_BAD_ARGUMENT.
+   subroutine come_back(self, kept, error)
+      class(contact_type), intent(inout) :: self
+      type(kept_state_type), intent(in) :: kept
+      type(error_type), allocatable, intent(out) :: error
+
+      call kept%come_back(self%simulation, self%scene, error)
+      if (.not. allocated(error)) call self%forget()
+   end subroutine come_back
+
+   !> Paths of all fields there are now, such as state/pressure: those of the result file. They hold until the state changes.
+   subroutine field_paths(self, paths)
+      class(contact_type), intent(inout), target :: self
+      type(string_type), pointer, intent(out) :: paths(:)
+      type(string_type), allocatable :: groups(:)
+      type(field_type), allocatable :: fields(:)
+      integer :: i, j
+
+      if (.not. allocated(self%paths)) then
+         groups = result_groups(self%simulation)
+         do i = 1, size(groups)
+            call group_fields(self%case, self%simulation, groups(i)%text, fields)
+            do j = 1, size(fields)
+               call add_text(self%paths, groups(i)%text//'/'//fields(j)%name)
+            end do
+         end do
+      end if
+      paths => self%paths
+   end subroutine field_paths
+
+   !> The field at a path. The group it is in is kept, for the next field of it; the pointer holds until another group is asked for
+   !> or the state changes. Error MFV_BAD_ARGUMENT.
+   subroutine find_field(self, path, field, error)
+      class(contact_type), intent(inout), target :: self
+      character(*), intent(in) :: path
+      type(field_type), pointer, intent(out) :: field
+      type(error_type), allocatable, intent(out) :: error
+      integer :: number, slash
+
+      nullify (field)
+      number = 0
+      slash = index(path, '/', back=.true.)
+      if (slash > 1) then
+         if (.not. is_at_hand(self%group, path(:slash - 1))) then
+            call group_fields(self%case, self%simulation, path(:slash - 1), self%fields)
+            self%group = path(:slash - 1)
+         end if
+         number = field_named(self%fields, path(slash + 1:))
+      end if
+      if (number == 0) then
+         call set_error(error, MFV_BAD_ARGUMENT, "there is no field '"//path//"'")
+      else
+         field => self%fields(number)
+      end if
+   end subroutine find_field
+
+   !> Whether the group that was looked at last is this one.
+   pure logical function is_at_hand(group, wanted)
+      character(:), allocatable, intent(in) :: group
+      character(*), intent(in) :: wanted
+
+      is_at_hand = .false.
+      if (allocated(group)) is_at_hand = group == wanted
+   end function is_at_hand
+
+   subroutine get_reals(self, path, values, error)
+      class(contact_type), intent(inout), target :: self
+      character(*), intent(in) :: path
+      real(wp), allocatable, intent(out) :: values(:)
+      type(error_type), allocatable, intent(out) :: error
+      type(field_type), pointer :: field
+
+      call self%find_field(path, field, error)
+      if (allocated(error)) return
+      if (allocated(field%whole)) then
+         call set_error(error, MFV_BAD_ARGUMENT, path//' has whole numbers')
+      else
+         values = field%values
+      end if
+   end subroutine get_reals
+
+   subroutine get_integers(self, path, values, error)
+      class(contact_type), intent(inout), target :: self
+      character(*), intent(in) :: path
+      integer, allocatable, intent(out) :: values(:)
+      type(error_type), allocatable, intent(out) :: error
+      type(field_type), pointer :: field
+
+      call self%find_field(path, field, error)
+      if (allocated(error)) return
+      if (allocated(field%whole)) then
+         values = field%whole
+      else
+         call set_error(error, MFV_BAD_ARGUMENT, path//' has reals')
+      end if
+   end subroutine get_integers
+
+   subroutine get_real(self, path, value, error)
+      class(contact_type), intent(inout), target :: self
+      character(*), intent(in) :: path
+      real(wp), intent(out) :: value
+      type(error_type), allocatable, intent(out) :: error
+      real(wp), allocatable :: values(:)
+
+      value = 0.0_wp
+      call self%get_reals(path, values, error)
+      if (allocated(error)) return
+      if (size(values) /= 1) call set_error(error, MFV_BAD_ARGUMENT, path//' has '//to_text(size(values))//' values, not one')
+      if (.not. allocated(error)) value = values(1)
+   end subroutine get_real
+
+   subroutine get_integer(self, path, value, error)
+      class(contact_type), intent(inout), target :: self
+      character(*), intent(in) :: path
+      integer, intent(out) :: value
+      type(error_type), allocatable, intent(out) :: error
+      integer, allocatable :: values(:)
+
+      value = 0
+      call self%get_integers(path, values, error)
+      if (allocated(error)) return
+      if (size(values) /= 1) call set_error(error, MFV_BAD_ARGUMENT, path//' has '//to_text(size(values))//' values, not one')
+      if (.not. allocated(error)) value = values(1)
+   end subroutine get_integer
+
+   !> Names and texts of the attributes of the result: title, outcome, input and so on. They hold until the state changes.
+   subroutine attributes(self, names, texts)
+      class(contact_type), intent(inout), target :: self
+      type(string_type), pointer, intent(out) :: names(:), texts(:)
+
+      if (.not. allocated(self%attribute_names)) then
+         call find_warnings(self)
+         call result_attributes(self%case, self%simulation, self%warnings, self%attribute_names, self%attribute_texts)
+      end if
+      names => self%attribute_names
+      texts => self%attribute_texts
+   end subroutine attributes
+
+   !> Have the warnings at hand: they may take a search for the largest stress.
+   subroutine find_warnings(self)
+      class(contact_type), intent(inout) :: self
+
+      if (.not. allocated(self%warnings)) call validity_warnings(self%simulation, self%warnings)
+   end subroutine find_warnings
+
+   !> Stresses inside a body (body_lower, body_upper) at points x, y (lengths, y up from the contact), force/length^2, shape
+   !> (stress_count, points): see mfv_interior. `step`: in the state that steps/000N has, 0 for the present one (also left out).
+   !> NaN outside the body. Error MFV_BAD_ARGUMENT: a rigid body or a matrix, or no such step.
+   subroutine get_stresses(self, body, x, y, stresses, error, step)
+      class(contact_type), intent(in) :: self
+      integer, intent(in) :: body
+      real(wp), intent(in) :: x(:), y(:)
+      real(wp), intent(out) :: stresses(:, :)
+      type(error_type), allocatable, intent(out) :: error
+      integer, intent(in), optional :: step
+      type(interior_type) :: interior
+      integer :: i
+
+      if (size(y) /= size(x) .or. size(stresses, 1) /= stress_count .or. size(stresses, 2) /= size(x)) then
+         call set_error(error, MFV_BAD_ARGUMENT, 'x and y must have one size, and stresses the shape ('//to_text(stress_count)// &
+                        ', that size)')
+         return
+      end if
+      call self%interior_of(body, interior, error, step)
+      if (allocated(error)) return
+      do i = 1, size(x)
+         stresses(:, i) = interior%all_stresses(x(i), y(i))
+      end do
+   end subroutine get_stresses
+
+   !> The largest von Mises stress of a body with its place; as get_stresses.
+   subroutine get_largest_von_mises(self, body, largest, error, step)
+      class(contact_type), intent(in) :: self
+      integer, intent(in) :: body
+      type(largest_type), intent(out) :: largest
+      type(error_type), allocatable, intent(out) :: error
+      integer, intent(in), optional :: step
+      type(interior_type) :: interior
+
+      call self%interior_of(body, interior, error, step)
+      if (.not. allocated(error)) largest = interior%largest_von_mises()
+   end subroutine get_largest_von_mises
+
+   !> A body under the tractions of the present state or of a step. Error MFV_BAD_ARGUMENT.
+   subroutine interior_of(self, body, interior, error, step)
+      class(contact_type), intent(in) :: self
+      integer, intent(in) :: body
+      type(interior_type), intent(out) :: interior
+      type(error_type), allocatable, intent(out) :: error
+      integer, intent(in), optional :: step
+      type(contact_state_type) :: state
+      integer :: number
+
+      number = 0
+      if (present(step)) number = step
+      if (number < 0 .or. number > self%simulation%snapshot_count) then
+         call set_error(error, MFV_BAD_ARGUMENT, 'there is no step '//to_text(number)//'; there are '// &
+                        to_text(self%simulation%snapshot_count))
+         return
+      end if
+      state = self%simulation%contact%state
+      if (number > 0) state = self%simulation%padded_state(number)
+      associate (model => self%simulation%contact%model)
+         call self%make_interior(body, model%arc, model%width, state%fields%pressure, state%fields%shear, interior, error)
+      end associate
+   end subroutine interior_of
+
+   !> A body under tractions (on the lower body, to the right; force/length^2) on intervals of the lengths `width` around `arc` along
+   !> the surface; shapes (intervals). Error MFV_BAD_ARGUMENT: no such body, a rigid one or a matrix.
+   subroutine make_interior(self, body, arc, width, pressure, shear, interior, error)
+      class(contact_type), intent(in) :: self
+      integer, intent(in) :: body
+      real(wp), intent(in) :: arc(:), width(:), pressure(:), shear(:)
+      type(interior_type), intent(out) :: interior
+      type(error_type), allocatable, intent(out) :: error
+      logical :: available
+
+      if (body /= body_lower .and. body /= body_upper) then
+         call set_error(error, MFV_BAD_ARGUMENT, 'the body must be MFV_LOWER or MFV_UPPER')
+         return
+      end if
+      call self%case%scene%interior(body == body_upper, arc, width, pressure, shear, interior, available)
+      if (.not. available) call set_error(error, MFV_BAD_ARGUMENT, 'the '//merge('upper', 'lower', body == body_upper)// &
+                                          ' body is rigid or a matrix: there are no stresses inside it')
+   end subroutine make_interior
+
+   !> Write the result file to `path`, or where &output says when that is empty. Errors MFV_FILE_ERROR, MFV_BAD_ARGUMENT.
+   subroutine write(self, path, error)
+      class(contact_type), intent(inout) :: self
+      character(*), intent(in) :: path
+      type(error_type), allocatable, intent(out) :: error
+      character(:), allocatable :: where_to
+
+      where_to = path
+      if (path == '') where_to = self%case%result_path
+      if (where_to == '') then
+         call set_error(error, MFV_BAD_ARGUMENT, 'no path, and the case has no &output file')
+         return
+      end if
+      call find_warnings(self)
+      call write_result(where_to, self%case, self%simulation, self%warnings, error)
+   end subroutine write
+
+   !> The state is about to change: drop what was made from it.
+   subroutine forget(self)
+      class(contact_type), intent(inout) :: self
+
+      if (allocated(self%paths)) deallocate (self%paths)
+      if (allocated(self%group)) deallocate (self%group)
+      if (allocated(self%fields)) deallocate (self%fields)
+      if (allocated(self%warnings)) deallocate (self%warnings)
+      if (allocated(self%attribute_names)) deallocate (self%attribute_names, self%attribute_texts)
+   end subroutine forget
+
+end module mfv_contact

@@ -1,0 +1,271 @@
+!> A scene that is being built, key by key: what a text of namelist groups says, said by calls. Nothing is judged here but what
+!> cannot be kept; the case reader judges the whole (mfv_case_reader), with the messages that it has for texts.
+module mfv_draft
+   use, intrinsic :: ieee_arithmetic, only: ieee_is_finite
+   use mfv_case, only: case_type
+   use mfv_case_changes, only: put_entry, set_value, write_number
+   use mfv_case_data, only: case_data_type
+   use mfv_case_keys, only: case_catalogue
+   use mfv_case_reader, only: read_case_groups
+   use mfv_error, only: error_type, set_error
+   use mfv_key_path, only: split_key
+   use mfv_key_reader, only: suggest
+   use mfv_keys, only: catalogue_type
+   use mfv_kinds, only: wp
+   use mfv_namelist, only: append_group, entry_type, group_type, groups_of_name, parse_namelists, write_namelists
+   use mfv_status, only: MFV_INPUT_ERROR
+   use mfv_strings, only: quoted, to_text
+   use mfv_text_file, only: directory_of
+   implicit none
+   private
+   public :: draft_type, read_draft
+
+   type :: draft_type
+      private
+      type(group_type), allocatable :: groups(:)
+      type(case_data_type) :: data
+      !> What messages call it, and where the files are that it names.
+      character(:), allocatable :: source, directory
+      !> What was wrong with the first call that could not be kept.
+      type(error_type), allocatable :: fault
+   contains
+      !> Give a key a value: `call draft%set('body(2)%radius', 0.25_wp)`. Keys: docs/namelist.md. A first fault is told by make_case, or
+      !> by `error` (MFV_INPUT_ERROR) where it is there.
+      generic :: set => set_real, set_reals, set_integer, set_logical, set_text
+      !> Data in memory in place of a file that a key names, see mfv_case_data: values of shape (rows) or (rows, columns).
+      generic :: set_data => set_column, set_matrix
+      procedure :: keep_fault
+      procedure :: write_text
+      procedure :: make_case
+      procedure, private :: set_real, set_reals, set_integer, set_logical, set_text, set_column, set_matrix, set_written, find_group
+   end type draft_type
+
+contains
+
+   !> A draft from a namelist text, to be changed. `source`: its name for messages; files it names are looked for beside it.
+   !> Error MFV_INPUT_ERROR.
+   subroutine read_draft(text, source, draft, error)
+      character(*), intent(in) :: text, source
+      type(draft_type), intent(out) :: draft
+      type(error_type), allocatable, intent(out) :: error
+
+      draft%source = source
+      draft%directory = directory_of(source)
+      call parse_namelists(text, source, draft%groups, error)
+   end subroutine read_draft
+
+   !> The group and key of a name; the groups of that name up to its number come to be. Error MFV_INPUT_ERROR.
+   subroutine find_group(self, name, group, number, key, error)
+      class(draft_type), intent(inout) :: self
+      character(*), intent(in) :: name
+      character(:), allocatable, intent(out) :: group, key
+      integer, intent(out) :: number
+      type(error_type), allocatable, intent(out) :: error
+      type(catalogue_type) :: catalogue
+      type(group_type) :: new
+      character(:), allocatable :: written, why
+      integer :: there
+
+      if (.not. allocated(self%groups)) allocate (self%groups(0))
+      catalogue = case_catalogue()
+      call split_key(name, group, written, number, key, why)
+      if (why /= '') then
+         call set_error(error, MFV_INPUT_ERROR, why)
+         return
+      end if
+      there = groups_of_name(self%groups, group)
+      if (.not. catalogue%has_group(group)) then
+         call suggest(group, catalogue%groups(), '', why)
+         why = 'unknown group'//why//'; groups are '//catalogue%group_list
+      else if (catalogue%place(group, key) == 0) then
+         call suggest(key, catalogue%names(group), '', why)
+         why = 'unknown key of &'//group//why
+      else if (catalogue%repeats(group) .and. written == '') then
+         why = 'which &'//group//'? write '//group//'(1)%'//key
+      else if (.not. catalogue%repeats(group) .and. number /= 1) then
+         why = 'there is one &'//group//' only'
+      else if (number < 1 .or. number > max(2, there + 1)) then
+         why = 'there are '//to_text(there)//' of &'//group//' so far; the next one is '//group//'('//to_text(there + 1)//')'
+      end if
+      if (why /= '') then
+         call set_error(error, MFV_INPUT_ERROR, quoted(name)//': '//why)
+         return
+      end if
+      do there = there + 1, number
+         new%name = group
+         allocate (new%entries(0))
+         call append_group(self%groups, new)
+      end do
+   end subroutine find_group
+
+   !> Keep a value as it would be written, or the fault with it (`why`, where it is not empty).
+   subroutine set_written(self, name, value, is_quoted, why, error)
+      class(draft_type), intent(inout) :: self
+      character(*), intent(in) :: name, value, why
+      logical, intent(in) :: is_quoted
+      type(error_type), allocatable, intent(out), optional :: error
+      type(error_type), allocatable :: fault
+      character(:), allocatable :: group, key
+      integer :: number
+
+      call self%find_group(name, group, number, key, fault)
+      if (.not. allocated(fault) .and. why /= '') call set_error(fault, MFV_INPUT_ERROR, quoted(name)//': '//why)
+      if (.not. allocated(fault)) call set_value(self%groups, group, number, key, value, is_quoted)
+      call tell(self, fault, error)
+   end subroutine set_written
+
+   !> Keep a first fault, and tell it to a caller who wants to know.
+   subroutine tell(self, fault, error)
+      class(draft_type), intent(inout) :: self
+      type(error_type), allocatable, intent(in) :: fault
+      type(error_type), allocatable, intent(out), optional :: error
+
+      if (.not. allocated(fault)) return
+      if (present(error)) then
+         error = fault
+      else
+         call self%keep_fault(fault)
+      end if
+   end subroutine tell
+
+   !> Keep a fault for make_case to tell, unless there is one already.
+   subroutine keep_fault(self, fault)
+      class(draft_type), intent(inout) :: self
+      type(error_type), intent(in) :: fault
+
+      if (.not. allocated(self%fault)) self%fault = fault
+   end subroutine keep_fault
+
+   subroutine set_real(self, name, value, error)
+      class(draft_type), intent(inout) :: self
+      character(*), intent(in) :: name
+      real(wp), intent(in) :: value
+      type(error_type), allocatable, intent(out), optional :: error
+      character(:), allocatable :: text
+
+      if (ieee_is_finite(value)) then
+         call write_number(value, text)
+         call self%set_written(name, text, .false., '', error)
+      else
+         call self%set_written(name, '', .false., 'the value is not finite', error)
+      end if
+   end subroutine set_real
+
+   subroutine set_reals(self, name, values, error)
+      class(draft_type), intent(inout) :: self
+      character(*), intent(in) :: name
+      real(wp), intent(in) :: values(:)
+      type(error_type), allocatable, intent(out), optional :: error
+      type(error_type), allocatable :: fault
+      type(entry_type) :: entry
+      character(:), allocatable :: group, key
+      integer :: number, i
+
+      call self%find_group(name, group, number, key, fault)
+      if (.not. allocated(fault) .and. size(values) == 0) &
+         call set_error(fault, MFV_INPUT_ERROR, quoted(name)//': there are no values')
+      if (.not. allocated(fault) .and. .not. all(ieee_is_finite(values))) &
+         call set_error(fault, MFV_INPUT_ERROR, quoted(name)//': value '// &
+                        to_text(findloc(ieee_is_finite(values), .false., dim=1))//' is not finite')
+      if (.not. allocated(fault)) then
+         entry%key = key
+         allocate (entry%values(size(values)), entry%is_quoted(size(values)))
+         entry%is_quoted = .false.
+         do i = 1, size(values)
+            call write_number(values(i), entry%values(i)%text)
+         end do
+         call put_entry(self%groups, group, number, entry)
+      end if
+      call tell(self, fault, error)
+   end subroutine set_reals
+
+   subroutine set_integer(self, name, value, error)
+      class(draft_type), intent(inout) :: self
+      character(*), intent(in) :: name
+      integer, intent(in) :: value
+      type(error_type), allocatable, intent(out), optional :: error
+
+      call self%set_written(name, to_text(value), .false., '', error)
+   end subroutine set_integer
+
+   subroutine set_logical(self, name, value, error)
+      class(draft_type), intent(inout) :: self
+      character(*), intent(in) :: name
+      logical, intent(in) :: value
+      type(error_type), allocatable, intent(out), optional :: error
+
+      call self%set_written(name, trim(merge('.true. ', '.false.', value)), .false., '', error)
+   end subroutine set_logical
+
+   subroutine set_text(self, name, value, error)
+      class(draft_type), intent(inout) :: self
+      character(*), intent(in) :: name, value
+      type(error_type), allocatable, intent(out), optional :: error
+      character(len=1), parameter :: line_feed = achar(10), carriage_return = achar(13)
+
+      if (scan(value, line_feed//carriage_return) > 0) then
+         call self%set_written(name, '', .true., 'a text must be of one line', error)
+      else
+         call self%set_written(name, value, .true., '', error)
+      end if
+   end subroutine set_text
+
+   subroutine set_column(self, file, name, values)
+      class(draft_type), intent(inout) :: self
+      character(*), intent(in) :: file, name
+      real(wp), intent(in) :: values(:)
+
+      call self%data%put(file, name, reshape(values, [size(values), 1]))
+   end subroutine set_column
+
+   subroutine set_matrix(self, file, name, values)
+      class(draft_type), intent(inout) :: self
+      character(*), intent(in) :: file, name
+      real(wp), intent(in) :: values(:, :)
+
+      call self%data%put(file, name, values)
+   end subroutine set_matrix
+
+   !> The scene as a text of namelist groups; comments say which data were in memory.
+   subroutine write_text(self, text)
+      class(draft_type), intent(in) :: self
+      character(:), allocatable, intent(out) :: text
+      character(len=1), parameter :: line_feed = achar(10)
+      integer :: i
+
+      text = ''
+      if (allocated(self%groups)) call write_namelists(self%groups, text)
+      if (.not. allocated(self%data%datasets)) return
+      do i = size(self%data%datasets), 1, -1
+         associate (dataset => self%data%datasets(i))
+            text = "! '"//dataset%file//"' was given in memory: "//dataset%name//', '//to_text(size(dataset%values, 1))//' x '// &
+                   to_text(size(dataset%values, 2))//line_feed//text
+         end associate
+      end do
+   end subroutine write_text
+
+   !> The case. It may have no steps. Error MFV_INPUT_ERROR.
+   subroutine make_case(self, case, error)
+      class(draft_type), intent(in) :: self
+      type(case_type), intent(out) :: case
+      type(error_type), allocatable, intent(out) :: error
+      character(:), allocatable :: source, directory, text
+      type(group_type), allocatable :: groups(:)
+
+      source = 'scene'
+      directory = ''
+      if (allocated(self%source)) source = self%source
+      if (allocated(self%directory)) directory = self%directory
+      if (allocated(self%fault)) then
+         call set_error(error, self%fault%status, source//': '//self%fault%message)
+         return
+      end if
+      allocate (groups(0))
+      if (allocated(self%groups)) groups = self%groups
+      call read_case_groups(groups, source, directory, case, error, without_steps=.true., data=self%data)
+      if (allocated(error)) return
+      call self%write_text(text)
+      case%text = text
+   end subroutine make_case
+
+end module mfv_draft

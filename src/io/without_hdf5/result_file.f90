@@ -1,0 +1,35 @@
+!> In place of io/result_file.f90 where MFV is built without HDF5: results cannot be written.
+module mfv_result_file
+   use mfv_case, only: case_type
+   use mfv_error, only: error_type, set_error
+   use mfv_features, only: hdf5_is_left_out
+   use mfv_simulation, only: simulation_type
+   use mfv_status, only: MFV_FILE_ERROR, MFV_INPUT_ERROR
+   use mfv_strings, only: string_type
+   implicit none
+   private
+   public :: check_writable, write_result
+
+contains
+
+   !> Error MFV_INPUT_ERROR, always.
+   subroutine check_writable(path, error)
+      character(*), intent(in) :: path
+      type(error_type), allocatable, intent(out) :: error
+
+      call set_error(error, MFV_INPUT_ERROR, path//' cannot be written: '//hdf5_is_left_out)
+   end subroutine check_writable
+
+   !> Error MFV_FILE_ERROR, always.
+   subroutine write_result(path, case, simulation, warnings, error)
+      character(*), intent(in) :: path
+      type(case_type), intent(in) :: case
+      type(simulation_type), intent(in) :: simulation
+      type(string_type), intent(in) :: warnings(:)
+      type(error_type), allocatable, intent(out) :: error
+
+      call check_writable(path, error)
+      error%status = MFV_FILE_ERROR
+   end subroutine write_result
+
+end module mfv_result_file

@@ -1,0 +1,204 @@
+"""Results in Python: xarray, notebooks, pickles; every panel of mfv.plot."""
+
+from __future__ import annotations
+
+import copy
+import inspect
+import pickle
+import re
+import xml.etree.ElementTree
+from pathlib import Path
+from typing import Callable
+
+import numpy as np
+import pytest
+import xarray
+from matplotlib import pyplot
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from scenes import PRESS, cylinder
+
+import mfv
+
+TO_AND_FRO = (
+    mfv.Step(normal_force=5.0e-4),
+    mfv.Step(tangential_force=2.0e-4),
+    mfv.Step(tangential_force=-2.0e-4, cycles=2),
+)
+
+
+@pytest.fixture(scope="module")
+def cycled() -> mfv.Result:
+    """The cylinder sheared to and fro, with full coupling."""
+    return cylinder(*TO_AND_FRO, coupling="full", title="to & fro", length_unit="mm", force_unit="N").run(check=True)
+
+
+@pytest.fixture(scope="module")
+def pressed() -> mfv.Result:
+    """The cylinder, pressed without friction and turned."""
+    return cylinder(PRESS, mfv.Step(rotation=1.0e-6)).run(check=True)
+
+
+# --- xarray ---
+
+
+def test_datasets_have_every_quantity_with_its_coordinates(cycled: mfv.Result) -> None:
+    datasets = cycled.to_xarray()
+    assert {"mesh", "state", "summary", "history", "cycles", "certificate", "steps"} <= set(datasets)
+    state = datasets["state"]
+    assert state.pressure.dims == ("x",) and state.pressure.attrs["units"] == "N/mm^2"
+    assert "compressive" in state.pressure.attrs["long_name"] and state.x.attrs["units"] == "mm"
+    np.testing.assert_array_equal(state.x, cycled.mesh.x)
+    assert state.attrs["title"] == "to & fro" and "input" not in state.attrs
+    assert datasets["history"]["shift"].dims == ("record",) and datasets["summary"]["shift"].dims == ()
+    assert datasets["cycles"].dissipation.dims == ("cycle",) and datasets["cycles"].friction_work.dims == ("x",)
+    for name, dataset in datasets.items():
+        group = cycled.steps[0] if name == "steps" else getattr(cycled, name)
+        assert set(dataset.variables) >= set(group), name
+
+
+def test_steps_are_stacked_along_state(cycled: mfv.Result) -> None:
+    steps = cycled.to_xarray()["steps"]
+    assert steps.pressure.dims == ("state", "x") and steps["shift"].dims == ("state",)
+    assert steps.pressure.attrs["units"] == "N/mm^2" and steps.x.dims == ("x",)
+    assert list(steps.state) == list(range(1, len(cycled.steps) + 1))
+    for number, step in enumerate(cycled.steps, start=1):
+        chosen = steps.sel(state=number)
+        np.testing.assert_array_equal(chosen.shear, step.shear)
+        assert float(chosen["shift"]) == step.shift and int(chosen.reversal) == step.reversal
+
+
+def test_a_file_gives_the_same_datasets(tmp_path: Path) -> None:
+    scene = cylinder(*TO_AND_FRO, output=mfv.Output(error_estimate=True))
+    ran, read = scene.run(output=tmp_path / "x.h5"), mfv.read(tmp_path / "x.h5")
+    here, there = ran.to_xarray(), read.to_xarray()
+    assert here.keys() == there.keys()
+    for name in here:
+        there[name].attrs.pop("hdf5_version")  # which a file alone has
+        xarray.testing.assert_identical(here[name], there[name])
+    assert here["error_estimate"].stick_ratio_companions.dims == ("companion_nodes",)
+
+
+def test_stresses_of_a_file_run_along_depth_and_x(cycled: mfv.Result) -> None:
+    grid = {"depth": ("depth",), "x": ("x",), "von_mises": ("depth", "x")}
+    shapes = {"depth": np.arange(2.0), "x": np.arange(3.0), "von_mises": np.ones((2, 3))}
+    fields = {name: mfv.result.Field(shapes[name], "1", name, dimensions) for name, dimensions in grid.items()}
+    dataset = mfv.Group(fields).to_xarray()
+    assert dataset.von_mises.dims == ("depth", "x") and set(dataset.coords) == {"depth", "x"}
+
+
+def test_a_result_that_grew_its_mesh_can_be_stacked() -> None:
+    with cylinder(mesh=mfv.Mesh(nodes=31)).contact() as case:
+        for force in (1.0e-4, 1.0e-3):
+            case.advance(normal_force=force, friction=False)
+        result = case.result()
+    assert result.mesh.x.size > 31
+    assert result.to_xarray()["steps"].pressure.shape == (2, result.mesh.x.size)
+
+
+# --- copies and notebooks ---
+
+
+def test_results_can_be_pickled_and_copied(cycled: mfv.Result) -> None:
+    for other in (pickle.loads(pickle.dumps(cycled)), copy.deepcopy(cycled)):
+        assert repr(other) == repr(cycled)
+        np.testing.assert_array_equal(other.steps[1].shear, cycled.steps[1].shear)
+        assert other.state.shear is not cycled.state.shear
+        xarray.testing.assert_identical(other.to_xarray()["steps"], cycled.to_xarray()["steps"])
+
+
+def test_notebooks_show_results_without_scripts(cycled: mfv.Result) -> None:
+    shown = cycled._repr_html_()
+    for word in ("to &amp; fro", "complete: step 3 was reached", "certificate", "<svg", "<polyline"):
+        assert word in shown
+    group = cycled.state._repr_html_()
+    for word in ("pressure", "(61)", "N/mm^2", "compressive"):
+        assert word in group
+    for page in (shown, group, cycled.summary._repr_html_()):
+        assert "<script" not in page and "to & fro" not in page
+        xml.etree.ElementTree.fromstring(page)  # well-formed
+
+
+def test_the_picture_of_tractions_is_the_tractions(cycled: mfv.Result) -> None:
+    x, pressure = cycled.mesh.x, cycled.state.pressure
+    lines = re.findall(r"<polyline points='(.*?)'", cycled._repr_html_())
+    _, curve, _ = (np.array([point.split(",") for point in line.split()], dtype=float) for line in lines)
+    assert np.corrcoef(np.interp(np.linspace(0, 1, 50), np.linspace(0, 1, len(curve)), curve[:, 0]), np.arange(50))[0, 1] > 0.999
+    loaded = np.flatnonzero((pressure != 0.0) | (cycled.state.shear != 0.0))
+    shown = slice(loaded[0] - 1, loaded[-1] + 2)
+    assert np.corrcoef(curve[:, 1], pressure[shown])[0, 1] < -0.9999  # upwards in an svg is down
+    assert np.corrcoef(curve[:, 0], x[shown])[0, 1] > 0.9999
+
+
+def test_nothing_is_drawn_where_nothing_is_loaded() -> None:
+    with cylinder().contact() as case:
+        assert "<svg" not in case.result()._repr_html_()
+        assert "<table" in case.result()._repr_html_()
+
+
+# --- panels ---
+
+
+PANELS: dict[str, tuple[str, str, str]] = {
+    "pressure": ("cycled", "position $x$ [mm]", "pressure $p$ [N/mm$^2$]"),
+    "shear": ("cycled", "position $x$ [mm]", r"shear traction $\tau$ [N/mm$^2$]"),
+    "surfaces": ("pressed", "position $x$", "height $y$"),
+    "loop": ("cycled", "shift $U$ [mm]", "tangential force $Q$ [N/mm]"),
+    "nonlinear_loop": ("cycled", "non-linear shift $U - Q/k$ [mm]", "tangential force $Q$ [N/mm]"),
+    "friction_work": ("cycled", "position $x$ [mm]", "dissipated per cycle and surface $d$ [N/mm]"),
+    "turning": ("pressed", r"rotation $\varphi$ [rad]", "moment $M$"),
+}
+
+
+def drawn(ax: Axes) -> np.ndarray:
+    """Heights of all points that lines have."""
+    return np.concatenate([np.asarray(line.get_ydata(), dtype=float) for line in ax.lines])
+
+
+@pytest.mark.parametrize("name", PANELS)
+def test_a_panel_takes_an_axes_or_makes_one_and_returns_it(name: str, request: pytest.FixtureRequest) -> None:
+    which, xlabel, ylabel = PANELS[name]
+    result = request.getfixturevalue(which)
+    panel: Callable[..., Axes] = getattr(mfv.plot, name)
+    ax = Figure().subplots()
+    assert panel(result, ax) is ax
+    made = panel(result)
+    try:
+        assert made is not ax and made.figure.number in pyplot.get_fignums()
+        for axes in (ax, made):
+            assert (axes.get_xlabel(), axes.get_ylabel()) == (xlabel, ylabel)
+        np.testing.assert_array_equal(drawn(ax), drawn(made))
+        assert np.ptp(drawn(ax)[np.isfinite(drawn(ax))]) > 0.0
+    finally:
+        pyplot.close(made.figure)
+    parameters = inspect.signature(panel).parameters
+    assert list(parameters) == ["result", "ax", "step"] and parameters["ax"].default is None
+
+
+def test_panels_draw_the_state_that_is_asked_for(cycled: mfv.Result) -> None:
+    ax = mfv.plot.shear(cycled, Figure().subplots(), 2)
+    (points,) = (line for line in ax.lines if line.get_label() == "computed")
+    np.testing.assert_array_equal(points.get_ydata(), cycled.steps[1].shear)
+    ax = mfv.plot.friction_work(cycled, Figure().subplots())
+    np.testing.assert_array_equal(ax.lines[0].get_ydata(), cycled.cycles.friction_work)
+
+
+def test_contours_of_stresses_take_an_axes_or_make_one(cycled: mfv.Result) -> None:
+    field = mfv.stress.grid(cycled, across=41, down=21)
+    ax = Figure().subplots()
+    assert mfv.plot.stress_contours(field, ax, "sigma_xx") is ax
+    assert len(ax.figure.axes) == 1 and ax.collections
+    made = mfv.plot.stress_contours(field, colour_bar=True)
+    try:
+        assert made.figure.axes[1].get_ylabel() == r"$\sigma_\mathrm{vM}$$/p_0$"
+    finally:
+        pyplot.close(made.figure)
+
+
+def test_panels_are_all_tested_here() -> None:
+    taking_axes = {
+        name
+        for name, function in inspect.getmembers(mfv.plot, inspect.isfunction)
+        if not name.startswith("_") and function.__module__ == "mfv.plot" and "ax" in inspect.signature(function).parameters
+    }
+    assert taking_axes == {*PANELS, "stress_contours"}

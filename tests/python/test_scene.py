@@ -1,0 +1,257 @@
+"""Scenes in Python: their keys are those of the library, they run as their texts do, arrays stand in for files."""
+
+from __future__ import annotations
+
+import copy
+import os
+import pickle
+import re
+import subprocess
+import typing
+from pathlib import Path
+
+import h5py
+import numpy as np
+import pytest
+from scenes import DISK, HALF_PLANE, MESH, PRESS, PROJECT, cylinder
+
+import mfv
+from mfv import errors
+
+GROUPS = {
+    "scene": mfv.Scene,
+    "body": mfv.Body,
+    "mesh": mfv.Mesh,
+    "friction": mfv.Friction,
+    "step": mfv.Step,
+    "solver": mfv.Solver,
+    "output": mfv.Output,
+}
+KINDS = {"a text": str, ".true.": bool, "a whole number": int, "a number": float}
+EXAMPLES = sorted(path for path in (PROJECT / "examples").glob("*.nml") if path.name != "sweep.nml")
+
+
+def keys_of_the_library() -> dict[str, dict[str, str]]:
+    """Of every group its keys with the column of their values, as `mfv_run --keys` prints them."""
+    program = os.environ.get("MFV_RUN", str(PROJECT / "build/release/bin/mfv_run"))
+    printed = subprocess.run([program, "--keys"], capture_output=True, text=True, check=True, timeout=60).stdout
+    groups: dict[str, dict[str, str]] = {}
+    for line in printed.splitlines():
+        if line.startswith("### &"):
+            keys = groups.setdefault(line.split()[1].lstrip("&"), {})
+        elif row := re.match(r"\| `(\w+)` \| (.*?) \|", line):
+            keys[row[1]] = row[2]
+    return groups
+
+
+def test_the_keys_of_the_classes_are_those_of_the_library() -> None:
+    library = keys_of_the_library()
+    assert {name: sorted(kind.key_names()) for name, kind in GROUPS.items()} == {
+        name: sorted(keys) for name, keys in library.items()
+    }
+
+
+@pytest.mark.parametrize("group", GROUPS)
+def test_kinds_and_choices_are_those_of_the_library(group: str) -> None:
+    hints = typing.get_type_hints(GROUPS[group])
+    for key, values in keys_of_the_library()[group].items():
+        kinds = typing.get_args(hints[key]) or (hints[key],)
+        if values.startswith("'"):
+            (choices,) = (typing.get_args(kind) for kind in [hints[key], *kinds] if typing.get_origin(kind) is typing.Literal)
+            assert list(choices) == re.findall(r"'(\w+)'", values), key
+        else:
+            (expected,) = (kind for words, kind in KINDS.items() if values.startswith(words))
+            assert expected in kinds, key
+
+
+@pytest.mark.parametrize("path", EXAMPLES, ids=lambda path: path.stem)
+def test_an_example_read_and_written_is_the_same_scene(path: Path) -> None:
+    scene = mfv.Scene.from_file(path)
+    assert scene.name == str(path)
+    assert mfv.Scene.from_text(scene.text(), str(path)) == scene
+
+
+@pytest.mark.parametrize("name", ["mindlin", "rough_punch", "weakening", "pin_in_bore"])
+def test_a_scene_runs_with_the_digits_of_its_file(name: str) -> None:
+    path = PROJECT / "examples" / f"{name}.nml"
+    ran, expected = mfv.Scene.from_file(path).run(), mfv.run(path)
+    assert ran.outcome == expected.outcome == "complete"
+    for quantity in expected.state:
+        np.testing.assert_array_equal(ran.state[quantity], expected.state[quantity])
+
+
+def test_a_scene_by_hand_is_that_of_its_text() -> None:
+    scene = cylinder(PRESS, mfv.Step(tangential_force=2.8e-4), title="O'Hara's", solver=mfv.Solver(linear_solver="dgesv"))
+    text = """
+      &scene title="O'Hara's", coupling='Goodman' /
+      &body shape='half_plane', shear_modulus=1, poisson_ratio=3D-1 / ! below
+      &body shape='disk', radius=0.25, rigid=T /
+      &mesh nodes=61, half_width=0.01225 /
+      &friction law='coulomb', mu=0.7 /
+      &step normal_force=1.0e-3, friction=.false. /
+      &step tangential_force=2.8e-4 /
+      &solver linear_solver='dgesv' /
+    """.replace("Goodman", "goodman")
+    assert mfv.Scene.from_text(text) == scene
+    assert scene.run().state.shear.tobytes() == mfv.run(text=text).state.shear.tobytes()
+
+
+def test_constructors_give_the_keys() -> None:
+    assert mfv.Body.half_plane(youngs_modulus=2.6, poisson_ratio=0.3).keys() == {
+        "shape": "half_plane",
+        "youngs_modulus": 2.6,
+        "poisson_ratio": 0.3,
+    }
+    assert mfv.Body.disk(0.25, rigid=True) == mfv.Body(shape="disk", radius=0.25, rigid=True)
+    assert mfv.Body.hole(2.0, shear_modulus=1.0, kernel="fourier", harmonics=64).keys()["harmonics"] == 64
+    assert mfv.Body.flat_punch(0.4) == mfv.Body(shape="flat_punch", rigid=True, half_width=0.4)
+    assert mfv.Friction.coulomb(0.5).keys() == {"law": "coulomb", "mu": 0.5}
+    assert mfv.Friction.static_kinetic(0.7, 0.5).keys() == {"law": "static_kinetic", "mu_static": 0.7, "mu_kinetic": 0.5}
+    assert mfv.Friction.weakening(0.7, 0.5, 1e-5).weakening_distance == 1e-5
+    assert mfv.Friction.dahl(0.7, 1.0e3, exponent=2.0).keys() == {
+        "law": "dahl",
+        "mu": 0.7,
+        "stiffness": 1.0e3,
+        "exponent": 2.0,
+    }
+
+
+def test_keys_are_given_by_name_and_only_those_there_are() -> None:
+    with pytest.raises(TypeError):
+        mfv.Body(shape="disk", radiuss=0.25)  # type: ignore[call-arg]
+    with pytest.raises(AttributeError, match="Step has no 'normal_froce'; it has normal_force, approach"):
+        PRESS.normal_froce = 1.0
+    with pytest.raises(AttributeError, match="Scene has no 'step'; it has title"):
+        cylinder().step = PRESS
+
+
+def test_the_library_judges() -> None:
+    for scene, message in (
+        (cylinder(mfv.Step(normal_force=-1.0)), r"scene: &step normal_force=-1: must be a number at least 0"),
+        (cylinder(mfv.Step(normal_force=float("nan"))), r"scene: 'step\(1\)%normal_force': the value is not finite"),
+        (cylinder(mesh=mfv.Mesh(nodes=10**12)), "nodes=1e12: must be a whole number from 1 to 100000000"),
+        (cylinder(mesh=mfv.Mesh(nodes=61.5)), "nodes=61.5: must be a whole number"),
+        (cylinder(friction=mfv.Friction.coulomb([])), r"'friction%mu': there are no values"),
+        (cylinder(friction=mfv.Friction(law="koulomb")), "law='koulomb'"),
+        (mfv.Scene(DISK, DISK), "rigid"),
+        (cylinder(title="two\nlines"), r"'scene%title': a text must be of one line"),
+    ):
+        with pytest.raises(errors.InputError, match=message):
+            scene.contact()
+    with pytest.raises(errors.InputError, match="not finite"):
+        cylinder(mfv.Step(shift=float("inf"))).text()
+    with pytest.raises(errors.InputError, match="hand.nml: &body"):
+        mfv.Scene(DISK, DISK, name="hand.nml").run()
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        ("&body shape='disk', radiuss=3 / &body shape='half_plane' /", "text:1: &body radiuss=3: unknown key; did you mean radius?"),
+        ("&body shape='disk', radius=3 /\n&mesh nodes=11 /\n&mesh nodes=13 /", "text:3: &mesh"),
+        ("&body shape='disk', radius=3, radius=4 / &body shape='half_plane' /", "radius"),
+        ("&body shape='disk', radius=1_0 / &body shape='half_plane' /", "radius=1_0"),
+        ("&body shape='disk', radius=3 /", "&body"),
+        ("&boddy shape='disk' /", "boddy"),
+        ("body shape='disk' /", "is outside a group"),
+    ],
+)
+def test_a_bad_text_is_told_of_by_the_library(text: str, message: str) -> None:
+    with pytest.raises(errors.InputError, match=re.escape(message)):
+        mfv.Scene.from_text(text)
+
+
+def test_values_of_a_wrong_kind_are_told_of() -> None:
+    with pytest.raises(TypeError, match=r"mesh%nodes: a text, a truth value, a number or an array is wanted, not \{1\}"):
+        cylinder(mesh=mfv.Mesh(nodes={1})).text()  # type: ignore[arg-type]
+    with pytest.raises(ValueError, match=r"upper body: x must have values in one dimension or two, not the shape \(0,\)"):
+        mfv.Scene(HALF_PLANE, mfv.Body.profile([], [], rigid=True)).text()
+    with pytest.raises(FileNotFoundError):
+        mfv.Scene.from_file("no_such_file.nml")
+    with pytest.raises(TypeError, match="one of them"):
+        mfv.run(cylinder(PRESS), text="&scene /")
+
+
+def test_numbers_of_numpy_are_numbers() -> None:
+    scene = cylinder(mfv.Step(normal_force=np.float32(0.5), cycles=np.int64(2), friction=np.bool_(False)))
+    assert "&step normal_force=0.5, friction=.false., cycles=2 /" in scene.text()
+
+
+def test_a_step_in_which_nothing_is_named_is_not_lost() -> None:
+    with pytest.raises(errors.InputError, match="&step 2: needs a target"):
+        cylinder(PRESS, mfv.Step()).run()
+
+
+def test_coefficients_one_a_node() -> None:
+    coefficients = np.linspace(0.3, 0.7, 61)
+    result = cylinder(PRESS, mfv.Step(tangential_force=1.0e-4), friction=mfv.Friction.coulomb(coefficients)).run(check=True)
+    np.testing.assert_array_equal(result.mesh.static_friction, coefficients)
+
+
+def test_coefficients_along_x_are_those_of_a_file(tmp_path: Path) -> None:
+    x, static, kinetic = [-0.01, 0.0, 0.01], [0.5, 0.6, 0.7], [0.4, 0.5, 0.5]
+    np.savetxt(tmp_path / "mu.txt", np.column_stack((x, static, kinetic)))
+    steps = PRESS, mfv.Step(tangential_force=1.0e-4)
+    from_file = mfv.Friction(law="static_kinetic", mu_file=tmp_path / "mu.txt")
+    expected = cylinder(*steps, friction=from_file).run(check=True)
+    result = cylinder(*steps, friction=mfv.Friction.static_kinetic(static, kinetic, x=x)).run(check=True)
+    np.testing.assert_array_equal(result.mesh.kinetic_friction, expected.mesh.kinetic_friction)
+    np.testing.assert_array_equal(result.state.shear, expected.state.shear)
+
+
+def test_a_profile_in_memory_is_that_of_a_file(tmp_path: Path) -> None:
+    x = np.linspace(-0.05, 0.05, 41)
+    height = x**2 / 0.5
+    np.savetxt(tmp_path / "bump.txt", np.column_stack((x, height)))
+    from_file = mfv.Body(shape="profile", file=tmp_path / "bump.txt", rigid=True)
+    expected, scene = (
+        mfv.Scene(HALF_PLANE, body, mesh=MESH, steps=[mfv.Step(normal_force=1e-3)])
+        for body in (from_file, mfv.Body.profile(x, height, rigid=True))
+    )
+    result = scene.run(check=True)
+    np.testing.assert_array_equal(result.state.pressure, expected.run(check=True).state.pressure)
+    height += 1.0  # the library and the result have their own
+    again = mfv.stress.stress(pickle.loads(pickle.dumps(result)), 0.0, -0.005)
+    assert again["sigma_yy"] == mfv.stress.stress(expected.run(), 0.0, -0.005)["sigma_yy"] < 0.0
+
+
+def test_a_matrix_in_memory_is_that_of_a_file(tmp_path: Path) -> None:
+    x = (np.arange(21) - 10) * 8.0e-4
+    distance = np.abs(x[:, None] - x[None, :])
+    compliance = np.log(0.25 / np.maximum(distance, 2.0e-4)) * 0.5
+    with h5py.File(tmp_path / "body.h5", "w") as file:
+        file["x"], file["compliance"] = x, compliance
+    step = mfv.Step(normal_force=1.0e-4)
+    expected = mfv.Scene(mfv.Body(shape="matrix", file=tmp_path / "body.h5"), DISK, steps=[step]).run(check=True)
+    result = mfv.Scene(mfv.Body.matrix(x, compliance=compliance), DISK, steps=[step]).run(check=True)
+    np.testing.assert_array_equal(result.state.pressure, expected.state.pressure)
+    stiff = mfv.Scene(mfv.Body.matrix(x, stiffness=np.linalg.inv(compliance)), DISK, steps=[step]).run(check=True)
+    np.testing.assert_allclose(stiff.state.pressure, expected.state.pressure, rtol=1e-6, atol=1e-9)
+    with pytest.raises(errors.InputError, match=r"lower body.*compliance has the shape 21 x 20"):
+        mfv.Scene(mfv.Body.matrix(x, compliance=compliance[:, :20]), DISK, steps=[step]).run()
+    transposed = np.asfortranarray(compliance + np.triu(np.ones_like(compliance)))
+    with pytest.raises(errors.InputError, match="compliance is not symmetric"):
+        mfv.Scene(mfv.Body.matrix(x, compliance=transposed), DISK, steps=[step]).run()
+
+
+def test_scenes_are_values() -> None:
+    scene = cylinder(PRESS, friction=mfv.Friction.coulomb([0.3, 0.4], x=[-1.0, 1.0]))
+    for other in (copy.deepcopy(scene), pickle.loads(pickle.dumps(scene))):
+        assert other == scene and other.friction is not scene.friction
+        other.friction.data["mu"][0] = 0.5
+        assert other != scene
+    assert cylinder(PRESS) != cylinder()
+    assert MESH != PRESS and PRESS != "press" and scene != "scene"
+    with pytest.raises(TypeError):
+        hash(scene)
+
+
+def test_scenes_show_what_they_have() -> None:
+    scene = cylinder(PRESS, title="<b>")
+    assert repr(scene.upper) == "Body(shape='disk', rigid=True, radius=0.25)"
+    assert repr(scene).startswith("Scene(lower=Body(shape='half_plane'")
+    assert repr(mfv.Body.profile([0.0, 1.0], [0.0, 1.0])).endswith("data={'x': array(2), 'height': array(2)})")
+    shown = scene._repr_html_()
+    for word in ("&lt;b&gt;", "half_plane", "radius", "friction", "normal_force", "goodman"):
+        assert word in shown
+    assert "<b>" not in shown and "<script" not in shown
