@@ -201,7 +201,9 @@ class Body(KeyGroup):
         recedes; `width` (n): surface that belongs to each node. See docs/namelist.md for signs.
         """
         arrays = {"x": x, "gap": gap, "width": width, "compliance": compliance, "stiffness": stiffness}
-        return cls(shape="matrix", data={name: _numbers(values) for name, values in arrays.items() if values is not None})
+        return cls(
+            shape="matrix", data={name: _numbers(values) for name, values in arrays.items() if values is not None}
+        )
 
 
 @_keywords_only
@@ -441,7 +443,9 @@ class Scene(KeyGroup):
                     file = keys.setdefault(_FILE_KEYS[type(part)], _NAMES_OF_DATA[group])
                     statuses += [_set_data(handle, file, dataset, values) for dataset, values in data.items()]
                 if isinstance(part, Step):
-                    keys = keys or {"friction": True}  # its default: the library has to see a step in which nothing is named
+                    keys = keys or {
+                        "friction": True
+                    }  # its default: the library has to see a step in which nothing is named
                 statuses += _set_keys(handle, group, keys)
             if any(statuses):  # mfv_create tells of the first call that failed
                 created("mfv_create", handle)
@@ -547,7 +551,9 @@ def _set_data(handle: c_void_p, file: str | os.PathLike[str], dataset: str, valu
     """Give the library an array in place of one in a file; return the status. Raises ValueError."""
     array = _numbers(values)
     if array.ndim not in (1, 2) or array.size == 0:
-        raise ValueError(f"{os.fspath(file)}: {dataset} must have values in one dimension or two, not the shape {array.shape}")
+        raise ValueError(
+            f"{os.fspath(file)}: {dataset} must have values in one dimension or two, not the shape {array.shape}"
+        )
     rows, columns = array.shape if array.ndim == 2 else (array.size, 1)
     status: int = library().mfv_scene_set_data(
         handle, text_for(file), text_for(dataset), rows, columns, real_pointer(array)
