@@ -47,3 +47,21 @@ list(JOIN fortran_libraries " " fortran_libraries)
 string(APPEND MFV_LIBS_PRIVATE " ${fortran_libraries} -lm")
 configure_file(${PROJECT_SOURCE_DIR}/cmake/mfv.pc.in ${PROJECT_BINARY_DIR}/mfv.pc @ONLY)
 install(FILES ${PROJECT_BINARY_DIR}/mfv.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig)
+
+# What pip puts into the Python package: the library under the one name that programs ask for (a wheel has no links), and the programs.
+if(BUILD_SHARED_LIBS)
+  install(FILES $<TARGET_FILE:mfv> DESTINATION mfv/lib RENAME $<TARGET_SONAME_FILE_NAME:mfv> COMPONENT python EXCLUDE_FROM_ALL)
+  install(TARGETS ${MFV_PROGRAMS} RUNTIME DESTINATION mfv/bin COMPONENT python EXCLUDE_FROM_ALL)
+endif()
+
+# Manual pages (docs/man, made by scripts/manual.py) and completion for the shells.
+foreach(section 1 5)
+  install(DIRECTORY ${PROJECT_SOURCE_DIR}/docs/man/ DESTINATION ${CMAKE_INSTALL_MANDIR}/man${section}
+    FILES_MATCHING PATTERN "*.${section}")
+endforeach()
+set(completion ${PROJECT_SOURCE_DIR}/drivers/completion)
+install(FILES ${completion}/_mfv DESTINATION ${CMAKE_INSTALL_DATADIR}/zsh/site-functions)
+foreach(program ${MFV_PROGRAMS})
+  install(FILES ${completion}/mfv.bash DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions RENAME ${program})
+  install(FILES ${completion}/mfv.fish DESTINATION ${CMAKE_INSTALL_DATADIR}/fish/vendor_completions.d RENAME ${program}.fish)
+endforeach()

@@ -6,6 +6,7 @@ module mfv_advise_case
    use mfv_case, only: case_type
    use mfv_case_reader, only: read_case_file
    use mfv_error, only: error_type, set_error
+   use mfv_help, only: refuse
    use mfv_kinds, only: wp
    use mfv_status, only: MFV_COMPLETE
    use mfv_one_thread, only: use_one_thread
@@ -17,9 +18,9 @@ module mfv_advise_case
 contains
 
    !> Read the arguments after --advise, the wanted error and the case among them, and print what the case needs. The program
-   !> ends with an exit code where that cannot be told. `usage`: how the program is used, for messages.
+   !> ends with an exit code where that cannot be told. `usage`: how the program is used, for messages, one line an element.
    subroutine advise_case(usage)
-      character(*), intent(in) :: usage
+      character(*), intent(in) :: usage(:)
       type(case_type) :: case
       type(advice_type) :: advice
       type(error_type), allocatable :: error
@@ -47,7 +48,7 @@ contains
 
    !> error=..., of=... and the case, in any order.
    subroutine read_arguments(usage, path, wanted_error, wanted)
-      character(*), intent(in) :: usage
+      character(*), intent(in) :: usage(:)
       character(:), allocatable, intent(out) :: path
       real(wp), intent(out) :: wanted_error
       logical, intent(out) :: wanted(:)

@@ -2,35 +2,59 @@
 !> names, to compare with mfv_run.
 program mfv_conventional
    use, intrinsic :: iso_fortran_env, only: output_unit
+   use mfv_help, only: print_lines, refuse, refuse_option
    use mfv_run_case, only: run_case
    use mfv_scene, only: algorithm_conventional
    use mfv_terminal
    use mfv_version, only: library_version
    implicit none
 
-   character(len=1), parameter :: line_feed = achar(10)
-   character(*), parameter :: usage = &
-      'usage: mfv_conventional CASE.nml  solve the case with the conventional algorithm, for comparison with mfv_run'// &
-      line_feed// &
-      '       mfv_conventional --version'//line_feed// &
-      '       mfv_conventional --help'//line_feed
-   character(*), parameter :: teaching = line_feed// &
-      'The load goes on by &solver load_step, a part of each straight part of the load history; at every load statuses are'// &
-      line_feed//'repaired one at a time, at most &solver iterations times. Outcomes of its own, with exit code 3: cycling (the'// &
-      line_feed//'repairs go round in circles) and inadmissible (they do not end, or the system is singular). The case is'// &
-      line_feed//"mfv_run's; '_conventional' comes to the name of its result file. algorithm='conventional' in &solver does the"// &
-      line_feed//'same in mfv_run.'
+   !> How it is used, and what --help adds: one line an element. The manual page is made from both (docs/man).
+   character(*), parameter :: usage(*) = [character(len=100) :: &
+      'usage: mfv_conventional CASE.nml', &
+      '       mfv_conventional --version | --help' &
+      ]
+   character(*), parameter :: help(*) = [character(len=100) :: &
+      '', &
+      'Solve one case with the conventional algorithm, whatever algorithm it names, to compare with', &
+      "mfv_run. The case is one for mfv_run; '_conventional' comes to the name of its result file.", &
+      '', &
+      'The load goes on by the load_step of &solver, a part of each straight part of the load history; at', &
+      'every load the statuses of nodes are repaired one at a time, at most iterations times. Only the', &
+      'ends of load steps are admissible, and even there the result depends on the load step. The same is', &
+      "done by mfv_run with algorithm='conventional' in &solver.", &
+      '', &
+      'Options:', &
+      '  --version    print the version', &
+      '  -h, --help   print this text', &
+      '', &
+      'Exit codes:', &
+      '  0     complete: the states at the ends of load steps break no inequality', &
+      '  2     the input cannot be used; the message names file, line, group, key and value', &
+      '  3     the computation ended early, with the result up to there: as mfv_run, and cycling (the', &
+      '        repairs go round in circles) or inadmissible (they do not end, or the system is singular)', &
+      '  4     a file could not be read or written', &
+      '  130   interrupted, with the result up to there', &
+      '', &
+      'Examples:', &
+      '  mfv_run case.nml                        # writes case.h5', &
+      '  mfv_conventional case.nml               # writes case_conventional.h5', &
+      '  python -m mfv plot case_conventional.h5 # draws it', &
+      '', &
+      'See also:', &
+      '  docs/guide.md, section Comparing with the conventional algorithm. mfv_run(1), mfv_case(5).' &
+      ]
    character(:), allocatable :: argument
 
    if (command_argument_count() /= 1) call refuse('mfv_conventional', usage, 'one case file is wanted')
    call get_argument(1, argument)
    select case (argument)
    case ('--help', '-h')
-      write (output_unit, '(a)') usage//teaching
+      call print_lines([usage, help])
    case ('--version')
       write (output_unit, '(a)') 'mfv_conventional '//library_version
    case default
-      if (index(argument, '-') == 1) call refuse('mfv_conventional', usage, "unknown option '"//argument//"'")
+      if (index(argument, '-') == 1) call refuse_option('mfv_conventional', usage, help, argument)
       call run_case(argument, algorithm_conventional, '_conventional')
    end select
 

@@ -6,6 +6,7 @@ program mfv_run
    use mfv_case_keys, only: case_catalogue
    use mfv_case_reader, only: read_case_file
    use mfv_error, only: error_type
+   use mfv_help, only: print_lines, refuse, refuse_option
    use mfv_keys, only: list_keys_as_markdown
    use mfv_run_case, only: run_case
    use mfv_summary, only: summarize_check
@@ -13,38 +14,83 @@ program mfv_run
    use mfv_version, only: library_version
    implicit none
 
-   character(len=1), parameter :: line_feed = achar(10)
-   character(*), parameter :: usage = &
-      'usage: mfv_run CASE.nml          solve the case, write its result file, print a summary'//line_feed// &
-      '       mfv_run --estimate CASE.nml   the same, with error bars: the case is solved on coarser meshes too'//line_feed// &
-      '       mfv_run --advise error=1e-2 [of=pressure,stick_ratio,...] CASE.nml'//line_feed// &
-      '                                 how many nodes, and which solver, this error takes; of: pressure, shear,'// &
-      line_feed// &
-      '                                 half_width, stick_ratio, dissipation; all unless told'//line_feed// &
-      '       mfv_run --check CASE.nml  read and validate the case only'//line_feed// &
-      '       mfv_run --keys            print every group and key of a case (Markdown)'//line_feed// &
-      '       mfv_run --version'//line_feed// &
-      '       mfv_run --help'//line_feed
-   character(*), parameter :: teaching = line_feed// &
-      'A case is a text of namelist groups:'//line_feed//line_feed// &
-      "  &scene    title='Mindlin', coupling='goodman' /                        ! full | goodman | none"//line_feed// &
-      "  &body     shape='half_plane', shear_modulus=1.0, poisson_ratio=0.3 /   ! first body: below"//line_feed// &
-      "  &body     shape='disk', radius=0.25, rigid=.true. /                    ! second body: above"//line_feed// &
-      "  &friction law='coulomb', mu=0.7 /"//line_feed// &
-      "  &step     normal_force=1.0e-3, friction=.false. /                      ! press"//line_feed// &
-      "  &step     tangential_force=2.8e-4 /                                    ! shear"//line_feed// &
-      "  &output   file='mindlin.h5' /"//line_feed//line_feed// &
-      'Exit codes: 0 complete; 2 the input cannot be used; 3 the computation ended early (gross sliding, no'//line_feed// &
-      'admissible continuation, separated, inadmissible step, mesh exceeded; conventional: cycling, inadmissible),'//line_feed// &
-      'with the result up to there; 4 the result could not be written; 130 interrupted, with the result up to'//line_feed// &
-      'there.'//line_feed//line_feed// &
-      'Draw a result with: python -m mfv plot RESULT.h5 -o PICTURE.png'
+   !> How it is used, and what --help adds: one line an element. The manual page is made from both (docs/man).
+   character(*), parameter :: usage(*) = [character(len=100) :: &
+      'usage: mfv_run CASE.nml', &
+      '       mfv_run --estimate CASE.nml', &
+      '       mfv_run --advise error=1e-2 [of=stick_ratio,dissipation] CASE.nml', &
+      '       mfv_run --check CASE.nml', &
+      '       mfv_run --keys | --version | --help' &
+      ]
+   character(*), parameter :: help(*) = [character(len=100) :: &
+      '', &
+      'Solve one case of two-dimensional frictional contact of elastic bodies: lead the loads through', &
+      'the steps of the case from event to event (a node touches, parts, slips or sticks), write the', &
+      'result file, print a summary.', &
+      '', &
+      'A case is a text of namelist groups. This is a whole one, a rigid cylinder on an elastic plane:', &
+      '', &
+      "  &body shape='half_plane', shear_modulus=1.0, poisson_ratio=0.3 /   ! first body: below", &
+      "  &body shape='disk', radius=0.25, rigid=.true. /                    ! second body: above", &
+      '  &step normal_force=1.0e-3 /                                        ! press', &
+      '', &
+      'With a coefficient of friction and one step more it is sheared as well:', &
+      '', &
+      "  &friction law='coulomb', mu=0.7 /", &
+      '  &step     tangential_force=2.8e-4 /', &
+      '', &
+      'Any consistent units will do; forces are per unit thickness. What is not said has a default: the', &
+      'mesh, for one, is chosen from an estimate of the contact.', &
+      '', &
+      'Options:', &
+      '  --estimate   solve the case on coarser meshes too, and put error bars on half-width, stick ratio,', &
+      '               peak tractions and dissipation; takes about twice the time', &
+      '  --advise     print the number of nodes, and the linear solver, that an error takes, from coarse', &
+      '               meshes; the case itself is not solved. error=E: the wanted error, relative, such as', &
+      '               1e-2. of=LIST: quantities that it is for, separated by commas: pressure, shear,', &
+      '               half_width, stick_ratio, dissipation; all unless told', &
+      '  --check      read and validate the case only; nothing is solved or written', &
+      '  --keys       print every group and key of a case, as tables in Markdown', &
+      '  --version    print the version', &
+      '  -h, --help   print this text', &
+      '', &
+      'Files:', &
+      '  The result goes into the file that &output names, else into the working directory, under the name', &
+      '  of the case with .h5 for its extension. It is HDF5: tractions, displacements, slip and status of', &
+      '  every node, the history of the loads, the certificate. It is written under another name and', &
+      '  renamed when it is whole; a run that fails leaves an older result as it was.', &
+      '', &
+      'Output:', &
+      '  The summary goes to standard output; messages go to standard error, and so does progress, on a', &
+      '  terminal only. Ctrl-C ends the run at its next event, with the result up to there.', &
+      '', &
+      'Exit codes:', &
+      '  0     complete: every step was reached', &
+      '  2     the input cannot be used; the message names file, line, group, key and value', &
+      '  3     the computation ended early, with the result up to there: gross sliding, no admissible', &
+      '        continuation, separated, inadmissible step, mesh exceeded; of the conventional algorithm', &
+      '        also cycling, inadmissible', &
+      '  4     a file could not be read or written', &
+      '  130   interrupted, with the result up to there', &
+      '', &
+      'Examples:', &
+      '  mfv_run --check case.nml                      # is it valid, and what will be solved?', &
+      '  mfv_run case.nml                              # solve it, write case.h5', &
+      '  python -m mfv plot case.h5 -o case.png        # draw it', &
+      '  mfv_stress case.h5                            # stresses inside the lower body, into case.h5', &
+      '  mfv_run --estimate case.nml                   # with error bars', &
+      '  mfv_run --advise error=1e-2 of=shear case.nml # how fine a mesh?', &
+      '', &
+      'See also:', &
+      '  mfv_case(5) has every key of a case, as mfv_run --keys. docs/guide.md goes from a question to a', &
+      '  picture; examples/*.nml are cases to begin with. mfv_stress(1), mfv_sweep(1), mfv_conventional(1).' &
+      ]
    character(:), allocatable :: argument, option, text
 
    call get_argument(1, option)
    select case (option)
    case ('--help', '-h')
-      write (output_unit, '(a)') usage//teaching
+      call print_lines([usage, help])
    case ('--version')
       write (output_unit, '(a)') 'mfv_run '//library_version
    case ('--keys')
@@ -61,8 +107,8 @@ program mfv_run
       call expect_arguments(2)
       call check_case(argument)
    case default
+      if (index(option, '-') == 1) call refuse_option('mfv_run', usage, help, option)
       call expect_arguments(1)
-      if (index(option, '-') == 1) call refuse('mfv_run', usage, "unknown option '"//option//"'")
       call run_case(option)
    end select
 

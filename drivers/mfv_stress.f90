@@ -2,35 +2,67 @@
 program mfv_stress
    use, intrinsic :: iso_fortran_env, only: error_unit, output_unit
    use mfv_error, only: error_type
+   use mfv_help, only: print_lines, refuse, refuse_option
    use mfv_interior, only: stress_count, stress_names
    use mfv_kinds, only: wp
    use mfv_profile_file, only: read_table
    use mfv_stress_file
    use mfv_strings, only: to_text
    use mfv_summary, only: unit_suffix
-   use mfv_terminal, only: end_program, fail, get_argument, refuse
+   use mfv_terminal, only: end_program, fail, get_argument
    use mfv_version, only: library_version
    implicit none
 
-   character(len=1), parameter :: line_feed = achar(10)
-   character(*), parameter :: usage = &
-      'usage: mfv_stress RESULT.h5 [--body lower|upper] [--step N] [--width W] [--depth D] [--points NX NY]'//line_feed// &
-      '       mfv_stress RESULT.h5 --at POINTS.txt [--body lower|upper] [--step N]'//line_feed// &
-      '       mfv_stress --help | --version'
-   character(*), parameter :: teaching = line_feed//line_feed// &
-      'Compute the stresses inside a body from the surface tractions of a result, by closed forms for'//line_feed// &
-      'half-planes, disks and holes, and put them into the result file, under /stress/last/lower and so'//line_feed// &
-      'on: sigma_xx, sigma_yy, sigma_xy, sigma_zz, principal stresses, von Mises, for disks and holes'//line_feed// &
-      'polar components, and the largest von Mises stress with its place, found by refinement.'//line_feed//line_feed// &
-      '  --body lower|upper   which body; lower unless told'//line_feed// &
-      '  --step N             the state in /steps/000N; the last one unless told'//line_feed// &
-      '  --width W            the grid goes W contact half-widths to either side of the contact; 2 unless told'//line_feed// &
-      '  --depth D            and D contact half-widths deep, along the surface; 2 unless told'//line_feed// &
-      '  --points NX NY       with NX by NY points; 161 81 unless told'//line_feed// &
-      '  --at POINTS.txt      at the points x y of a text file instead, which are printed too'//line_feed//line_feed// &
-      'Example: mfv_run examples/disk_on_plane.nml && mfv_stress disk_on_plane.h5'//line_feed// &
-      '         python -m mfv plot disk_on_plane.h5 --stress von_mises'//line_feed//line_feed// &
-      'Exit codes: 0 done; 2 the input cannot be used; 4 the file could not be written. The file then stays as it was.'
+   !> How it is used, and what --help adds: one line an element. The manual page is made from both (docs/man).
+   character(*), parameter :: usage(*) = [character(len=100) :: &
+      'usage: mfv_stress RESULT.h5 [--body lower|upper] [--step N] [--width W] [--depth D] [--points NX NY]', &
+      '       mfv_stress RESULT.h5 --at POINTS.txt [--body lower|upper] [--step N]', &
+      '       mfv_stress --version | --help' &
+      ]
+   character(*), parameter :: help(*) = [character(len=100) :: &
+      '', &
+      'Compute the stresses inside a body from the surface tractions of a result, by closed forms for', &
+      'half-planes, disks and holes, and put them into the result file, under /stress/last/lower and so', &
+      'on, with the largest von Mises stress and its place, found by refinement.', &
+      '', &
+      'A result is what mfv_run has written:', &
+      '', &
+      '  mfv_run examples/disk_on_plane.nml', &
+      '  mfv_stress disk_on_plane.h5', &
+      '  python -m mfv plot disk_on_plane.h5 --stress von_mises', &
+      '', &
+      'Options:', &
+      '  --body lower|upper   which body; lower unless told', &
+      '  --step N             in the state kept in /steps/000N; the last one unless told', &
+      '  --width W            on a grid that goes W contact half-widths to either side of the contact; 2', &
+      '                       unless told', &
+      '  --depth D            and D contact half-widths deep, along the surface; 2 unless told', &
+      '  --points NX NY       of NX by NY points; 161 81 unless told', &
+      '  --at POINTS.txt      at the points of a text file instead, x and y a line, y up from the contact;', &
+      '                       the stresses there are printed too', &
+      '  --version            print the version', &
+      '  -h, --help           print this text', &
+      '', &
+      'Quantities:', &
+      '  sigma_xx, sigma_yy, sigma_xy               Cartesian components, positive in tension', &
+      '  sigma_zz                                   across the plane', &
+      '  principal_1, principal_2                   principal stresses in the plane', &
+      '  von_mises                                  equivalent stress', &
+      '  sigma_rr, sigma_thetatheta, sigma_rtheta   polar components, of disks and holes', &
+      '', &
+      'Exit codes:', &
+      '  0     done', &
+      '  2     the arguments or the result cannot be used: a rigid body, a state that is not there', &
+      '  4     the file could not be written; it then stays as it was', &
+      '', &
+      'Examples:', &
+      '  mfv_stress two_cylinders.h5 --body upper --step 1', &
+      '  mfv_stress two_cylinders.h5 --width 3 --depth 1 --points 301 101', &
+      '  mfv_stress two_cylinders.h5 --at points.txt', &
+      '', &
+      'See also:', &
+      '  docs/guide.md, section Stresses inside; docs/theory.md for how they are computed. mfv_run(1).' &
+      ]
    type(stress_request_type) :: request
    type(stress_result_type) :: result
    type(error_type), allocatable :: error
@@ -39,7 +71,7 @@ program mfv_stress
    call get_argument(1, option)
    select case (option)
    case ('--help', '-h')
-      write (output_unit, '(a)') usage//teaching
+      call print_lines([usage, help])
       call end_program(0)
    case ('--version')
       write (output_unit, '(a)') 'mfv_stress '//library_version
@@ -87,7 +119,7 @@ contains
             request%x = points(1, :)
             request%y = points(2, :)
          case default
-            if (index(argument, '-') == 1) call refuse('mfv_stress', usage, "unknown option '"//argument//"'")
+            if (index(argument, '-') == 1) call refuse_option('mfv_stress', usage, help, argument)
             if (path /= '') call refuse('mfv_stress', usage, "too many arguments: '"//argument//"'")
             path = argument
             cycle

@@ -2,6 +2,7 @@
 program mfv_sweep
    use, intrinsic :: iso_fortran_env, only: output_unit
    use mfv_error, only: error_type
+   use mfv_help, only: print_lines, refuse, refuse_option
    use mfv_keys, only: list_keys_as_markdown
    use mfv_namelist, only: group_type, write_namelists
    use mfv_ranks, only: has_ranks
@@ -16,26 +17,62 @@ program mfv_sweep
    implicit none
 
    character(len=1), parameter :: line_feed = achar(10)
-   character(*), parameter :: usage = &
-      'usage: mfv_sweep [--threads N] [--again] SWEEP.nml   solve the cases that are not there yet, write the table'//line_feed// &
-      '       mfv_sweep --part 3/16 SWEEP.nml               solve one part of the cases only; later runs gather the parts'// &
-      line_feed// &
-      '       mfv_sweep --check SWEEP.nml                   validate, and say which cases there are'//line_feed// &
-      '       mfv_sweep --case 17 SWEEP.nml                 print case 17 as a case for mfv_run'//line_feed// &
-      '       mfv_sweep --keys | --version | --help'//line_feed
-   character(*), parameter :: teaching = line_feed// &
-      'A sweep names one or more base cases and what is varied in them:'//line_feed//line_feed// &
-      "  &sweep base='mindlin.nml', file='study.h5' /"//line_feed// &
-      "  &vary  key='friction%mu', values=0.3, 0.5, 0.7 /"//line_feed// &
-      "  &vary  key='step(2)%tangential_force', 'step(3)%tangential_force', factor=1, -1,"//line_feed// &
-      "         from=0.5e-4, to=2.5e-4, count=10, spacing='linear', name='Q' /"//line_feed// &
-      "  &vary  key='scene%coupling', values='full', 'goodman', 'none' /"//line_feed//line_feed// &
-      'The table is the dataset /table of the file, one row a case. What has been solved is kept in a journal beside it: after'// &
-      line_feed//'Ctrl-C, or worse, the same command (without --again) goes on. OMP_NUM_THREADS or --threads: how many cases at'// &
-      line_feed//'a time; all processors unless told. With MPI: mpirun -n 64 mfv_sweep SWEEP.nml.'//line_feed//line_feed// &
-      'Exit codes: 0 all cases are done, early ends among them; 2 the input cannot be used; 4 a file could not be read or'// &
-      line_feed//'written; 130 interrupted, the cases so far are kept.'//line_feed//line_feed// &
-      "Load the table with: python -m mfv table study.h5, or mfv.read_table('study.h5')"
+   !> How it is used, and what --help adds: one line an element. The manual page is made from both (docs/man).
+   character(*), parameter :: usage(*) = [character(len=100) :: &
+      'usage: mfv_sweep [--threads N] [--again] SWEEP.nml', &
+      '       mfv_sweep --part I/N [--threads M] SWEEP.nml', &
+      '       mfv_sweep --check SWEEP.nml', &
+      '       mfv_sweep --case N SWEEP.nml', &
+      '       mfv_sweep --keys | --version | --help' &
+      ]
+   character(*), parameter :: help(*) = [character(len=100) :: &
+      '', &
+      'Solve many cases that differ in some values, on all processors, and write one table, one row a', &
+      'case: dissipation, stiffness, stick ratios, shift of the contact, peak tractions, outcome.', &
+      '', &
+      'A sweep names a base case and what is varied in it. This is a whole one, of 3 x 10 x 3 cases, of', &
+      'the case examples/mindlin.nml:', &
+      '', &
+      "  &sweep base='mindlin.nml', file='study.h5' /", &
+      "  &vary  key='friction%mu', values=0.3, 0.5, 0.7 /", &
+      "  &vary  key='step(2)%tangential_force', 'step(3)%tangential_force', factor=1, -1,", &
+      "         from=0.5e-4, to=2.5e-4, count=10, spacing='linear', name='Q' /", &
+      "  &vary  key='scene%coupling', values='full', 'goodman', 'none' /", &
+      '', &
+      'Keys in one &vary move together, here forth and back; the last &vary runs fastest.', &
+      '', &
+      'Options:', &
+      '  --threads N     cases at a time; OMP_NUM_THREADS, or all processors, unless told', &
+      '  --again         solve all cases, those that are there already as well', &
+      '  --part I/N      solve part I of N only, such as 3/16, for queues; a later run gathers the parts', &
+      '  --check         validate, and say which cases there are; nothing is solved or written', &
+      '  --case N        print case N, from 1, as a case for mfv_run', &
+      '  --keys          print every group and key of a sweep, as tables in Markdown', &
+      '  --version       print the version, and whether it was built with MPI', &
+      '  -h, --help      print this text', &
+      '', &
+      'Files:', &
+      '  The table is the dataset /table of the file, which lies in the working directory, under the name', &
+      '  of the sweep with .h5 unless &sweep names it. What has been solved is kept in a journal beside it:', &
+      '  after Ctrl-C, or worse, the same command goes on where it was.', &
+      '', &
+      'Exit codes:', &
+      '  0     all cases are done, those that ended early among them: the column outcome tells', &
+      '  2     the input cannot be used; the message names file, line, key and value', &
+      '  4     a file could not be read or written', &
+      '  130   interrupted; the cases so far are kept', &
+      '', &
+      'Examples:', &
+      '  mfv_sweep --check study.nml', &
+      '  mfv_sweep study.nml                      # all processors of this machine', &
+      '  mpirun -n 64 mfv_sweep study.nml         # of many, where it was built with MPI', &
+      '  mfv_sweep --case 17 study.nml > 17.nml   # case 17 by itself', &
+      '  python -m mfv table study.h5 --csv study.csv', &
+      '', &
+      'See also:', &
+      '  docs/sweep.md has what can be varied, and the columns of the table; mfv_sweep --keys every key.', &
+      '  mfv_run(1), mfv_case(5).' &
+      ]
    type(sweep_options_type) :: options
    character(:), allocatable :: argument, path, text
    integer :: i, number
@@ -50,7 +87,7 @@ program mfv_sweep
       call get_argument(i, argument)
       select case (argument)
       case ('--help', '-h')
-         write (output_unit, '(a)') usage//teaching
+         call print_lines([usage, help])
          call end_program(0)
       case ('--version')
          write (output_unit, '(a)') 'mfv_sweep '//library_version//trim(merge(' with MPI   ', ' without MPI', has_ranks))
@@ -67,7 +104,7 @@ program mfv_sweep
          i = i + 1
          call read_option(argument, i)
       case default
-         if (index(argument, '-') == 1) call refuse('mfv_sweep', usage, "unknown option '"//argument//"'")
+         if (index(argument, '-') == 1) call refuse_option('mfv_sweep', usage, help, argument)
          if (path /= '') call refuse('mfv_sweep', usage, "too many arguments: '"//argument//"'")
          path = argument
       end select

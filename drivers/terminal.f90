@@ -7,12 +7,12 @@ module mfv_terminal
    use mfv_error, only: error_type
    use mfv_kinds, only: wp
    use mfv_observer, only: observer_type
-   use mfv_status, only: MFV_INPUT_ERROR, status_exit_code
+   use mfv_status, only: status_exit_code
    use mfv_strings, only: to_text
    implicit none
    private
    public :: get_argument, terminal_observer_type, catch_interrupts, is_interrupted, request_interrupt, is_terminal, end_program, &
-             fail, refuse
+             fail
 
    !> Shows progress on a terminal, and ends the run after Ctrl-C.
    type, extends(observer_type) :: terminal_observer_type
@@ -140,14 +140,6 @@ contains
       write (error_unit, '(a)') error%message
       call end_program(status_exit_code(error%status))
    end subroutine fail
-
-   !> End `program` because of its arguments: say why, and how it is used.
-   subroutine refuse(program, usage, why)
-      character(*), intent(in) :: program, usage, why
-
-      write (error_unit, '(a)') program//': '//why//achar(10)//usage
-      call end_program(status_exit_code(MFV_INPUT_ERROR))
-   end subroutine refuse
 
    !> End the program with an exit code, without the words that a stop statement may print.
    subroutine end_program(code)

@@ -37,13 +37,15 @@ install_missing() {
   fi
 }
 
-# Python environment of the project, in build/venv. $1: extra of python/pyproject.toml to install, or nothing.
+# Python environment of the project, in build/venv: what the package depends on, the package itself being run from the source tree.
+# $1: extra of pyproject.toml to install too, or nothing.
 python_environment() {
   stamp=$venv/done${1:+-$1}
-  [ "$stamp" -nt "$root/python/pyproject.toml" ] && return 0
+  [ "$stamp" -nt "$root/pyproject.toml" ] && return 0
   say "Python packages for ${1:-pictures} in build/venv"
   [ -x "$venv/bin/python" ] || python3 -m venv "$venv"
-  "$venv/bin/python" -m pip install --quiet --disable-pip-version-check -e "$root/python${1:+[$1]}"
+  "$venv/bin/python" "$root/scripts/requirements.py" ${1:+"$1"} >"$venv/requirements.txt"
+  "$venv/bin/python" -m pip install --quiet --disable-pip-version-check -r "$venv/requirements.txt"
   touch "$stamp"
 }
 

@@ -8,5 +8,5 @@ mkdir -p "$root/build/demo"
 cd "$root/build/demo"
 say "solving examples/mindlin.nml"
 "$root/build/release/bin/mfv_run" "$root/examples/mindlin.nml"
-"$venv/bin/python" -m mfv plot mindlin.h5 -o mindlin.png
+PYTHONPATH=$root/python "$venv/bin/python" -m mfv plot mindlin.h5 -o mindlin.png
 say "result build/demo/mindlin.h5, picture build/demo/mindlin.png"

@@ -4,6 +4,10 @@
 # The debug preset is built with MPI, so that mfv_sweep is tested with it too; the others without. Users' programs are built in C++
 # and by pkg-config too.
 packages="$packages openmpi-bin libopenmpi-dev g++ pkgconf"
+# The manual pages are looked at by both programs that show such pages.
+packages="$packages mandoc groff-base"
+# Pages of python -m mfv report are looked at in chromium.
+packages="$packages chromium"
 install_missing
 python_environment test
 for preset in "${@:-release}"; do

@@ -205,9 +205,10 @@ def find_library() -> str:
 def _usual_places() -> Iterator[Path]:
     """In the package (an installed one), then in the builds of the source tree, the release first."""
     package = Path(__file__).resolve().parent
+    yield from sorted((package / "lib").glob("libmfv.*"))
     builds = package.parents[1] / "build"
-    directories = [package, builds / "release" / "lib", *sorted(builds.glob("*/lib"))]
-    return (directory / name for directory in directories for name in ("libmfv.so", "libmfv.dylib"))
+    for directory in [builds / "release" / "lib", *sorted(builds.glob("*/lib"))]:
+        yield from (directory / name for name in ("libmfv.so", "libmfv.dylib"))
 
 
 def text_buffer() -> ctypes.Array[ctypes.c_char]:

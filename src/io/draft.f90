@@ -74,7 +74,7 @@ contains
          return
       end if
       there = groups_of_name(self%groups, group)
-      if (size(catalogue%names(group)) == 0) then
+      if (.not. catalogue%has_group(group)) then
          call suggest(group, catalogue%groups(), '', why)
          why = 'unknown group'//why//'; groups are '//catalogue%group_list
       else if (catalogue%place(group, key) == 0) then

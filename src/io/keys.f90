@@ -37,6 +37,7 @@ module mfv_keys
       procedure :: groups
       procedure :: repeats
       procedure :: place
+      procedure :: has_group
       procedure :: names
    end type catalogue_type
 
@@ -209,6 +210,14 @@ contains
          if (self%keys(place)%group == group .and. self%keys(place)%name == name) return
       end do
    end function place
+
+   !> Whether there is a group of this name.
+   pure logical function has_group(self, group)
+      class(catalogue_type), intent(in) :: self
+      character(*), intent(in) :: group
+
+      has_group = index(' '//self%group_list//' ', ' '//group//' ') > 0 .and. group /= ''
+   end function has_group
 
    !> Names of the keys of a group.
    pure function names(self, group)

@@ -225,7 +225,7 @@ contains
       character(:), allocatable, intent(out) :: why
       integer :: i, there
 
-      if (size(catalogue%names(target%group)) == 0) then
+      if (.not. catalogue%has_group(target%group)) then
          call suggest(target%group, catalogue%groups(), '', why)
          why = 'unknown group'//why//'; groups are '//catalogue%group_list
          return

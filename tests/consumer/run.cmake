@@ -1,7 +1,7 @@
 # Installs the build into a fresh tree, moves the tree, and builds and runs programs on it in C, C++ and Fortran, with the shared
 # and with the static library, by find_package and by pkg-config; and the installed programs. No stack may be executable.
 # Variables: BUILD_DIR, SOURCE_DIR, WORK_DIR, VERSION, LIBDIR, C, CXX, Fortran (compilers), READELF, PKG_CONFIG.
-include(${CMAKE_CURRENT_LIST_DIR}/steps.cmake)
+include(${CMAKE_CURRENT_LIST_DIR}/../support/steps.cmake)
 set(case ${SOURCE_DIR}/examples/mindlin.nml)
 set(source_C ${SOURCE_DIR}/tests/api/test_c_api.c)
 set(source_CXX ${CMAKE_CURRENT_LIST_DIR}/consumer.cpp)

@@ -1,7 +1,7 @@
 # Builds MFV without HDF5 and without a shared library, installs it, builds and runs a program on it by find_package and by
 # pkg-config, and runs a case with the installed mfv_run.
 # Variables: SOURCE_DIR, WORK_DIR, VERSION, LIBDIR, C, Fortran (compilers), READELF, PKG_CONFIG.
-include(${CMAKE_CURRENT_LIST_DIR}/steps.cmake)
+include(${CMAKE_CURRENT_LIST_DIR}/../support/steps.cmake)
 set(case ${SOURCE_DIR}/examples/mindlin.nml)
 set(source ${SOURCE_DIR}/tests/api/test_without_hdf5.c)
 set(tree ${WORK_DIR}/tree)

@@ -18,6 +18,7 @@ import pytest
 import mfv
 from mfv import __main__ as command_line
 from mfv import _library, errors
+from mfv.commands import info
 
 PROJECT = Path(__file__).resolve().parents[2]
 MINDLIN = PROJECT / "examples" / "mindlin.nml"
@@ -685,7 +686,7 @@ def test_error_bars_in_the_process_and_in_the_file(tmp_path: Path) -> None:
     read = mfv.read(tmp_path / "case.h5").error_estimate
     assert set(read) == set(estimate)
     np.testing.assert_array_equal(read.peak_shear_companions, estimate.peak_shear_companions)
-    assert "error estimate" in command_line._description(result)
+    assert "error estimate" in info.description(result)
 
 
 def test_a_matrix_has_no_error_bars(tmp_path: Path) -> None:

@@ -1,0 +1,222 @@
+"""Pages of the gallery: examples solved and drawn, the dissertation's figures and the decoupling study from their pictures."""
+
+from __future__ import annotations
+
+import ast
+import re
+import shutil
+import subprocess
+from dataclasses import dataclass
+from pathlib import Path
+
+import matplotlib
+import matplotlib.image
+
+matplotlib.use("Agg")
+import matplotlib.pyplot as plt
+from matplotlib.figure import Figure
+
+import mfv
+
+THUMBNAIL_WIDTH = 480
+GRID = ["::::{grid} 1 2 2 3", ":gutter: 3", ""]
+
+
+@dataclass
+class Entry:
+    """One example: where it lies in the repository, what it is, how it is run, its picture beside the page (or none)."""
+
+    source: Path
+    title: str
+    sentence: str
+    commands: str
+    picture: str = ""
+    summary: str = ""
+
+    @property
+    def name(self) -> str:
+        return self.source.stem
+
+
+def write_gallery(root: Path, programs: Path, folder: Path, show: object = print) -> dict[Path, str]:
+    """Write gallery/index.md and a page for every example below `folder`, the source of the site, in a folder for each sort.
+
+    root: the repository; programs: folder of mfv_run and mfv_sweep; show: told of every case that is solved.
+    Returns the page of each example file, both relative: files to the repository, pages to the source.
+    """
+    gallery = folder / "gallery"
+    places = {name: gallery / name for name in ("examples", "scripts", "dissertation", "decoupling")}
+    for place in places.values():
+        place.mkdir(parents=True)
+    sections = [
+        ("Examples", "Solved and drawn while this site was built.", "examples", _solved(root, programs, places["examples"], show)),
+        ("Scripts", "Python programs that solve many cases.", "scripts", _scripts(root, places["scripts"])),
+        ("Figures of the dissertation", "Drawn by `examples/dissertation/draw.py`.", "dissertation",
+         _dissertation(root, places["dissertation"])),
+    ]
+    lines = ["# Gallery", ""]
+    made = {}
+    for heading, words, place, entries in sections:
+        lines += [f"## {heading}", "", words, "", *GRID]
+        for entry in entries:
+            lines += _card(entry, places[place])
+            # The side bar has room for the examples; the others are found from here.
+            mark = "" if place == "examples" else "---\norphan: true\n---\n\n"
+            (places[place] / f"{entry.name}.md").write_text(mark + _page(root, entry))
+            made[entry.source.relative_to(root)] = f"gallery/{place}/{entry.name}.md"
+        lines += ["::::", ""]
+    lines += _decoupling(root, places["decoupling"])
+    lines += ["```{toctree}", ":hidden:", "", *(f"examples/{entry.name}" for entry in sections[0][3]), "```", ""]
+    (gallery / "index.md").write_text("\n".join(lines))
+    return made
+
+
+def _solved(root: Path, programs: Path, pages: Path, show: object) -> list[Entry]:
+    entries = []
+    for source in sorted((root / "examples").glob("*.nml")):
+        show(f"  {source.name}")
+        text = source.read_text()
+        is_sweep = "&sweep" in text.lower()
+        program = "mfv_sweep" if is_sweep else "mfv_run"
+        run = subprocess.run([programs / program, source], cwd=pages, capture_output=True, text=True)
+        if run.returncode != 0:
+            raise RuntimeError(f"{source}: {program} ended with exit code {run.returncode}: {run.stderr}")
+        result = re.search(r"^(?:result|table) +(\S+\.h5)", run.stdout, re.MULTILINE)[1]
+        picture = f"{source.stem}.png"
+        if is_sweep:
+            _save(_table_figure(pages / result), pages / picture)
+            _thumbnail(pages / picture)
+        else:
+            solved = mfv.read(pages / result)
+            _save(mfv.plot.figure(solved), pages / picture)
+            _save(_small_figure(solved), _place_of_thumbnail(pages / picture))
+        (pages / result).unlink()
+        command = f"python -m mfv table {result}" if is_sweep else f"python -m mfv plot {result} -o {picture}"
+        title, sentence = _words(text, source.stem)
+        entries.append(Entry(source, title, sentence, f"{program} {source.name}\n{command}", picture, run.stdout))
+    return entries
+
+
+def _save(figure: Figure, path: Path) -> None:
+    figure.savefig(path, dpi=110)
+    plt.close(figure)
+
+
+def _small_figure(result: mfv.Result) -> Figure:
+    """The traction that a case is about: shear where there is any, else pressure."""
+    figure, axes = plt.subplots(figsize=(4.4, 3.0), layout="constrained")
+    draw = mfv.plot.shear if "shear" in result.state and result.state.shear.any() else mfv.plot.pressure
+    draw(result, axes)
+    axes.set_title("")
+    return figure
+
+
+def _table_figure(path: Path) -> Figure:
+    """Dissipation of a cycle in a table over its last varied number, a curve for each combination of the others."""
+    table = mfv.read_table(path)
+    names = list(table.dtype.names)
+    varied = [name for name in names[2:names.index("outcome")] if len(set(table[name])) > 1]
+    across = [name for name in varied if table[name].dtype.kind == "f"][-1]
+    others = [name for name in varied if name != across]
+    figure, axes = plt.subplots(figsize=(7, 5), layout="constrained")
+    for values in sorted({tuple(row[name] for name in others) for row in table}):
+        rows = [row for row in table if tuple(row[name] for name in others) == values]
+        label = ", ".join(f"{name.split('%')[-1]} {value}" for name, value in zip(others, values))
+        axes.plot([row[across] for row in rows], [row["cycle_dissipation"] for row in rows], "o-", markersize=3, label=label)
+    axes.set_xlabel(across)
+    axes.set_ylabel("cycle_dissipation")
+    axes.set_yscale("log")
+    axes.legend(fontsize="x-small")
+    return figure
+
+
+def _scripts(root: Path, pages: Path) -> list[Entry]:
+    entries = []
+    for source in sorted((root / "examples").glob("*.py")):
+        title, sentence = _of_docstring(source)
+        picture = root / f"docs/pictures/{source.name.replace('.py', '.png')}"
+        name = Path(shutil.copy(picture, pages)).name if picture.exists() else ""
+        entries.append(Entry(source, title, sentence, f"python examples/{source.name}", name))
+    return entries
+
+
+def _of_docstring(source: Path) -> tuple[str, str]:
+    """Title and first sentence of a script."""
+    words = " ".join(ast.get_docstring(ast.parse(source.read_text())).split("\n\n")[0].split())
+    return source.stem.replace("_", " ").capitalize(), _first_sentence(words)
+
+
+def _dissertation(root: Path, pages: Path) -> list[Entry]:
+    entries = []
+    for source in sorted((root / "examples/dissertation").glob("*.nml")):
+        title, sentence = _words(source.read_text(), source.stem)
+        picture = root / f"examples/dissertation/pictures/{source.stem}.png"
+        shutil.copy(picture, pages)
+        commands = f"python examples/dissertation/draw.py --help\nmfv_run examples/dissertation/{source.name}"
+        entries.append(Entry(source, title, re.sub(r"^Figure \d+\.\d+: ", "", sentence), commands, picture.name))
+    return entries
+
+
+def _decoupling(root: Path, pages: Path) -> list[str]:
+    """The section of the decoupling study: its pictures, copied into `pages`, which lead to its document."""
+    lines = ["## The decoupling study", "", "Chapter 6 of the dissertation computed again, some 4,600 cases:",
+             "[what came out](../examples/decoupling/README.md), [statement by statement](../examples/decoupling/statements.md).",
+             "", *GRID]
+    for picture in sorted((root / "examples/decoupling/pictures").glob("*.png")):
+        shutil.copy(picture, pages)
+        title = re.sub(r"^figure (\d+) (\d+)$", r"figure \1.\2", picture.stem.replace("_", " ")).capitalize()
+        _thumbnail(pages / picture.name)
+        lines += _framed(title, "", "../examples/decoupling/README", f"{pages.name}/{picture.name}", title)
+    return [*lines, "::::", ""]
+
+
+def _words(text: str, name: str) -> tuple[str, str]:
+    """Title of a case, and the first sentence of the comment that it begins with."""
+    comment = re.match(r"(?:!.*\n)*", text)[0]
+    words = " ".join(line.lstrip("! ") for line in comment.splitlines())
+    title = re.search(r"\btitle *= *(['\"])(.*?)\1", text, re.IGNORECASE)
+    return title[2] if title else name.replace("_", " ").capitalize(), _first_sentence(words)
+
+
+def _first_sentence(words: str) -> str:
+    return re.split(r"(?<=[\w)\]]\.) (?=[A-Z0-9&])", words, maxsplit=1)[0]
+
+
+def _card(entry: Entry, pages: Path) -> list[str]:
+    picture = pages / entry.picture
+    if entry.picture and not _place_of_thumbnail(picture).exists():
+        _thumbnail(picture)
+    shown = f"{pages.name}/{entry.picture}" if entry.picture else ""
+    return _framed(entry.title, _literal(entry.sentence), f"{pages.name}/{entry.name}", shown, entry.title)
+
+
+def _framed(title: str, words: str, link: str, picture: str, alternative: str) -> list[str]:
+    shown = [f":img-top: {_place_of_thumbnail(Path(picture))}", f":img-alt: {alternative}"] if picture else []
+    return [f":::{{grid-item-card}} {_literal(title)}", f":link: {link}", ":link-type: doc", *shown, "", words, ":::", ""]
+
+
+def _place_of_thumbnail(picture: Path) -> Path:
+    return picture.with_name(f"thumbnail_{picture.name}")
+
+
+def _thumbnail(picture: Path) -> None:
+    """A small copy of a picture beside it."""
+    width = matplotlib.image.imread(picture).shape[1]
+    matplotlib.image.thumbnail(str(picture), str(_place_of_thumbnail(picture)), scale=min(1.0, THUMBNAIL_WIDTH / width))
+
+
+def _page(root: Path, entry: Entry) -> str:
+    language = "python" if entry.source.suffix == ".py" else "fortran"
+    source = entry.source.read_text()
+    lines = [f"# {_literal(entry.title)}", "", f"{_literal(entry.sentence)}", "", "```sh", entry.commands, "```", ""]
+    if entry.picture:
+        lines += [f"![{entry.title}]({entry.picture})", ""]
+    if entry.summary:
+        lines += ["```text", entry.summary.rstrip(), "```", ""]
+    lines += [f"`{entry.source.relative_to(root)}`:", "", f"```{language}", source.rstrip(), "```", ""]
+    return "\n".join(lines)
+
+
+def _literal(text: str) -> str:
+    """Words in which Markdown sees no markup."""
+    return re.sub(r"([\\*_$<\[\]{}])", r"\\\1", text)

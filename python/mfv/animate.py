@@ -1,0 +1,193 @@
+"""Animations of results: the load history as a GIF or an MP4.
+
+`movie` makes one of the states in `steps`; `save` writes it.
+"""
+
+from __future__ import annotations
+
+import os
+import shutil
+from collections.abc import Callable
+from typing import Any, NamedTuple
+
+import matplotlib
+import numpy as np
+from matplotlib.animation import AbstractMovieWriter, FFMpegWriter, FuncAnimation, PillowWriter
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.layout_engine import ConstrainedLayoutEngine
+from matplotlib.patches import Patch
+
+from . import plot
+from .result import Group, Result
+from .views import Curve, contact, curve_of
+
+#: What can be written, by the suffix of the file.
+SUFFIXES = (".gif", ".mp4")
+
+#: Dots an inch: a panel of 3.6 inch is 360 pixels wide.
+RESOLUTION = 100
+
+#: Heights in inch: of the picture, of the row of its caption, of the row of its legend.
+HEIGHT, CAPTION, LEGEND = 4.1, 0.3, 0.27
+
+#: Margin of the axes, in parts of what they show.
+MARGIN = 0.06
+
+
+class Movie(NamedTuple):
+    """A picture and what draws each of the frames into it."""
+
+    picture: Figure
+    draw: Callable[[int], None]
+    frames: int
+
+
+def movie(result: Result) -> Movie:
+    """The states in `result.steps` one after the other: pressure; shear traction with stick and slip zones, or the surfaces
+    without friction; the curve of load over displacement with a point where the state is."""
+    has_friction = plot._has_friction(result)
+    with matplotlib.rc_context(plot.STYLE):
+        picture = Figure(figsize=(3 * plot.PANEL_WIDTH, HEIGHT), dpi=RESOLUTION)
+        axes = picture.subplots(1, 3)
+        picture.suptitle(result.title, fontsize=12, parse_math=False)
+        zones = _zones(result) if has_friction else []
+        below = CAPTION + (LEGEND if zones else 0.0)
+        picture.set_layout_engine(ConstrainedLayoutEngine(rect=(0.0, below / HEIGHT, 1.0, 1.0 - below / HEIGHT), w_pad=0.08))
+        caption = picture.text(0.5, 0.08 / HEIGHT, "", ha="center", fontsize=10, color="0.35", parse_math=False)
+        if zones:
+            place = dict(loc="upper center", bbox_to_anchor=(0.5, below / HEIGHT), borderaxespad=0.0, borderpad=0.0)
+            picture.legend(handles=zones, ncols=len(zones), fontsize=10, **place)
+    panels = [
+        (axes[0], plot.pressure, (0.0, _largest(result, "pressure"))),
+        (axes[1], plot.shear, _symmetric(_largest_shear(result)))
+        if has_friction
+        else (axes[1], plot.surfaces, _heights(result)),
+    ]
+    framed = contact(result)
+    curve = curve_of(result)
+    point = _draw_curve(result, axes[2], curve)
+
+    def draw(number: int) -> None:
+        state = result.steps[number]
+        with matplotlib.rc_context(plot.STYLE):
+            for ax, panel, limits in panels:
+                ax.clear()
+                panel(result, ax, number + 1)
+                ax.set_xlim(framed)
+                ax.set_ylim(_with_margin(limits))
+        point.set_data([state[curve.across]], [state[curve.up]])
+        caption.set_text(_caption(result, state, number + 1))
+
+    draw(len(result.steps) - 1)
+    with matplotlib.rc_context(plot.STYLE):
+        picture.draw_without_rendering()
+    picture.set_layout_engine("none")  # panels stay where they are
+    return Movie(picture, draw, len(result.steps))
+
+
+def save(
+    moving: Movie,
+    path: str | os.PathLike[str],
+    frames_per_second: float = 20.0,
+    progress: Callable[[int, int], Any] | None = None,
+) -> None:
+    """Write a movie as a GIF or an MP4, by the suffix. `progress` is called with each frame and their number.
+
+    Raises ValueError for another suffix and where there is no ffmpeg for an MP4; OSError.
+    """
+    path = os.fspath(path)
+    program = {"animation.ffmpeg_path": _ffmpeg()} if path.endswith(".mp4") else {}
+    writer = _writer(path, frames_per_second)
+    frames = FuncAnimation(moving.picture, moving.draw, frames=moving.frames, init_func=lambda: None)
+    with matplotlib.rc_context({**plot.STYLE, **program}):
+        frames.save(path, writer=writer, progress_callback=progress)
+
+
+def _writer(path: str, frames_per_second: float) -> AbstractMovieWriter:
+    """What writes a file with that suffix."""
+    suffix = os.path.splitext(path)[1]
+    if suffix == ".gif":
+        return PillowWriter(fps=frames_per_second)
+    if suffix == ".mp4":
+        return FFMpegWriter(fps=frames_per_second, codec="libx264", extra_args=["-pix_fmt", "yuv420p"])
+    raise ValueError(f"an animation is written as {' or '.join(SUFFIXES)}, not as '{suffix}'")
+
+
+def _ffmpeg() -> str:
+    """The program ffmpeg, or that of the package imageio-ffmpeg. Raises ValueError where there is none."""
+    found = shutil.which(matplotlib.rcParams["animation.ffmpeg_path"])
+    if found:
+        return found
+    try:
+        from imageio_ffmpeg import get_ffmpeg_exe
+
+        return get_ffmpeg_exe()
+    except (ImportError, RuntimeError):
+        raise ValueError(
+            "an MP4 needs ffmpeg, which is not there: install it (apt-get install ffmpeg, or pip install imageio-ffmpeg), "
+            "or write a GIF (-o NAME.gif)"
+        ) from None
+
+
+def _zones(result: Result) -> list[Patch]:
+    """Patches for a legend of what nodes come to be in any of the states."""
+    seen = np.unique(np.concatenate([state.status for state in result.steps]))
+    return [Patch(**style) for status, style in plot.ZONES.items() if status in seen]
+
+
+def _largest(result: Result, name: str) -> float:
+    return max(float(np.max(np.abs(state[name]))) for state in result.steps) or 1.0
+
+
+def _largest_shear(result: Result) -> float:
+    """What the limits of friction come to; without any, the shear traction."""
+    if "static_friction" not in result.mesh:
+        return _largest(result, "shear")
+    return max(float(np.max(result.mesh.static_friction * state.pressure)) for state in result.steps) or 1.0
+
+
+def _symmetric(largest: float) -> tuple[float, float]:
+    return -largest, largest
+
+
+def _heights(result: Result) -> tuple[float, float]:
+    """The lowest and the highest point of both surfaces in view."""
+    left, right = contact(result)
+    in_view = (result.mesh.x >= left) & (result.mesh.x <= right)
+    heights = np.concatenate([height[in_view] for state in result.steps for height in plot._heights(result, state)])
+    return float(np.nanmin(heights)), float(np.nanmax(heights))
+
+
+def _with_margin(limits: tuple[float, float]) -> tuple[float, float]:
+    low, high = limits
+    margin = MARGIN * (high - low)
+    return (low - margin if low != 0.0 else 0.0), high + margin
+
+
+def _draw_curve(result: Result, ax: Axes, curve: Curve) -> Any:
+    """The curve of load over displacement, from the history or, without one, the states; returns the point to be moved."""
+    names = curve.across, curve.up
+    if result.history:
+        across, up = (result.history[name] for name in names)
+    else:
+        across, up = ([state[name] for state in result.steps] for name in names)
+    with matplotlib.rc_context(plot.STYLE):
+        ax.plot(across, up, color=plot.NUMBERS, linewidth=0.8)
+        (point,) = ax.plot([], [], "o", color=plot.CLOSED_FORM, markersize=8, zorder=5)
+        for name, (word, symbol), label in zip(names, (curve.across_label, curve.up_label), (ax.set_xlabel, ax.set_ylabel)):
+            label(plot._label(word, symbol, result.summary.unit(name)))
+        ax.locator_params(axis="x", nbins=5)
+        ax.margins(0.12)
+    return point
+
+
+def _caption(result: Result, state: Group, number: int) -> str:
+    """Number of the state, its loads and how many nodes stick."""
+    parts = [f"state {number} of {len(result.steps)}"]
+    for symbol, name in (("P", "normal_force"), ("Q", "tangential_force"), ("M", "moment")):
+        if name in state:
+            unit = state.unit(name)
+            parts.append(f"{symbol} = {state[name]:.3g}{f' {unit}' if plot._is_named(unit) else ''}")
+    parts.append(plot.counts(state))
+    return " \N{MIDDLE DOT} ".join(parts)

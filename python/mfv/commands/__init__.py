@@ -1,0 +1,80 @@
+"""The command line of the package, `python -m mfv COMMAND`: one module a command."""
+
+from __future__ import annotations
+
+import argparse
+import os
+import sys
+
+from .. import __version__
+from ..errors import MfvError
+from . import animate, compare, info, new, plot, report, table
+
+UNUSABLE = 2  # exit code, as that of mfv_run for input that cannot be used
+INTERRUPTED = 130  # exit code after Ctrl-C, as that of mfv_run
+
+COMMANDS = (new, plot, info, compare, animate, report, table)
+
+EXAMPLES = """\
+examples:
+  python -m mfv new                         write a commented case, cylinder.nml
+  mfv_run examples/mindlin.nml              write mindlin.h5
+  python -m mfv info mindlin.h5             what is in it
+  python -m mfv plot mindlin.h5             draw mindlin.png
+  python -m mfv compare goodman.h5 full.h5  two results side by side
+  python -m mfv animate mindlin.h5          the load history as mindlin.gif
+  python -m mfv report mindlin.h5           a web page of it, mindlin.html
+  python -m mfv table study.h5 --csv study.csv
+                                            the table of a sweep for a spreadsheet
+
+python -m mfv COMMAND --help tells more about each.
+"""
+
+
+def main(arguments: list[str] | None = None) -> int:
+    """Run the command line; return the exit code."""
+    options = _parser().parse_args(arguments)
+    try:
+        return options.command(options) or 0
+    except BrokenPipeError:  # whoever read the output has had enough
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        return UNUSABLE
+    except (MfvError, OSError, ValueError) as error:
+        print(f"mfv: {_with_file(str(error), options)}", file=sys.stderr)
+        return UNUSABLE
+    except ModuleNotFoundError as error:
+        print(f"mfv: this needs the Python package {error.name}, which is not there: pip install {error.name}", file=sys.stderr)
+        return UNUSABLE
+    except KeyboardInterrupt:
+        print("mfv: interrupted", file=sys.stderr)
+        return INTERRUPTED
+
+
+def _parser() -> argparse.ArgumentParser:
+    parser = argparse.ArgumentParser(
+        prog="python -m mfv",
+        description="Begin a case, look at result files of mfv_run and tables of mfv_sweep.",
+        epilog=EXAMPLES,
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+    )
+    parser.add_argument("--version", action="version", version=f"mfv {__version__}")
+    commands = parser.add_subparsers(required=True, metavar=" | ".join(module.NAME for module in COMMANDS))
+    for module in COMMANDS:
+        command = commands.add_parser(
+            module.NAME,
+            help=module.HELP,
+            description=module.DESCRIPTION,
+            epilog=module.EXAMPLES,
+            formatter_class=argparse.RawDescriptionHelpFormatter,
+        )
+        module.add_arguments(command)
+        command.set_defaults(command=module.run)
+    return parser
+
+
+def _with_file(message: str, options: argparse.Namespace) -> str:
+    """A message that names the file it is about: the one that was read, unless it names one of those given already."""
+    given = [str(value) for value in (getattr(options, name, None) for name in ("file", "other", "output")) if value]
+    if not given or any(name in message for name in given):
+        return message
+    return f"{given[0]}: {message}"

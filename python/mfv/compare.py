@@ -1,0 +1,244 @@
+"""Two results side by side: what differs in their settings and inputs, their numbers, their tractions, a picture.
+
+`compare` makes the comparison, `figure` draws it.
+"""
+
+from __future__ import annotations
+
+import csv
+from dataclasses import dataclass
+from typing import Any, NamedTuple, TextIO
+
+import numpy as np
+
+from .inputs import keys
+from .result import Group, Result
+
+#: Groups of numbers that are compared.
+GROUPS = ("summary", "observables", "certificate")
+
+#: Attributes that are not settings: the input is compared by its keys, and where a run was started says nothing.
+NOT_SETTINGS = ("input", "working_directory")
+
+TRACTIONS = ("pressure", "shear")
+
+Array = np.ndarray
+
+
+class Setting(NamedTuple):
+    """An attribute or a key of the input that differs; None where one of the results is without it."""
+
+    name: str
+    first: Any
+    second: Any
+
+
+class Number(NamedTuple):
+    """A number of both results; NaN where one of them is without it."""
+
+    group: str
+    name: str
+    unit: str
+    description: str
+    first: float
+    second: float
+
+    @property
+    def relative_difference(self) -> float:
+        """Difference in parts of the larger of the two; 0 where they are equal."""
+        return relative_difference(self.first, self.second)
+
+
+class Traction(NamedTuple):
+    """How a traction differs between the states that are compared."""
+
+    name: str
+    unit: str
+    #: Largest absolute values.
+    first: float
+    second: float
+    #: Largest difference, and that in the mean square, both in parts of the largest value of this traction in either result; 0
+    #: where both are zero.
+    largest_difference: float
+    mean_square_difference: float
+
+
+@dataclass(frozen=True)
+class Comparison:
+    """What differs between two results."""
+
+    first: Result
+    second: Result
+    #: Number of the state in `steps`, None for the last one.
+    step: int | None
+    settings: list[Setting]
+    #: Keys of the inputs that differ, or the reason why they cannot be told.
+    inputs: list[Setting] | str
+    numbers: list[Number]
+    tractions: list[Traction]
+    #: The number to judge by: the largest difference of a traction, in parts of the largest traction of either result.
+    largest_difference: float
+    #: Whether the meshes differ, so that tractions were compared by interpolation.
+    interpolated: bool
+
+    def describe(self) -> str:
+        """The comparison in words and numbers."""
+        state = "at the end" if self.step is None else f"in state {self.step}"
+        meshes = f"{self.first.mesh.x.size} and {self.second.mesh.x.size} nodes"
+        how = f"interpolated linearly to the nodes of both meshes ({meshes})" if self.interpolated else "node by node"
+        blocks = [
+            _setting_lines("settings that differ", self.settings),
+            [f"keys of the inputs: {self.inputs}"]
+            if isinstance(self.inputs, str)
+            else _setting_lines("keys of the inputs that differ", self.inputs),
+            *(self._number_lines(group) for group in GROUPS),
+            [
+                f"tractions {state}, {how}",
+                f"  {'':26}{'first':>14} {'second':>14}   largest difference, and in the mean square",
+                *(
+                    f"  {name:26}{first:14.6g} {second:14.6g}   {largest:<10.3g}{mean_square:<10.3g}{_shown(unit)}"
+                    for name, unit, first, second, largest, mean_square in self.tractions
+                ),
+            ],
+            [f"largest difference of the tractions: {self.largest_difference:.3g} of the largest traction"],
+        ]
+        return "\n\n".join("\n".join(block) for block in blocks if block)
+
+    def _number_lines(self, group: str) -> list[str]:
+        """The numbers of one group, one a line."""
+        numbers = [number for number in self.numbers if number.group == group]
+        if not numbers:
+            return []
+        lines = [f"{group:28}{'first':>14} {'second':>14}   relative difference"]
+        return lines + [
+            f"  {number.name:26}{_figure(number.first):>14} {_figure(number.second):>14}   "
+            f"{_figure(number.relative_difference, 3):<10}"
+            f"{_shown(number.unit)}".rstrip()
+            for number in numbers
+        ]
+
+    def write_csv(self, file: TextIO) -> None:
+        """Write everything as comma-separated values, with a line of names."""
+        writer = csv.writer(file, lineterminator="\n")
+        writer.writerow(("group", "name", "unit", "first", "second", "relative_difference", "meaning"))
+        for setting in self.settings:
+            writer.writerow(("settings", setting.name, "", setting.first, setting.second, "", ""))
+        if not isinstance(self.inputs, str):
+            for setting in self.inputs:
+                writer.writerow(("input", setting.name, "", setting.first, setting.second, "", ""))
+        for number in self.numbers:
+            group, name, unit, meaning, first, second = number
+            writer.writerow((group, name, unit, first, second, number.relative_difference, meaning))
+        for traction in self.tractions:
+            name, unit, first, second, largest, _ = traction
+            meaning = "largest absolute values; largest difference in parts of the larger"
+            writer.writerow(("tractions", name, unit, first, second, largest, meaning))
+        meaning = "largest difference of a traction in parts of the largest traction"
+        writer.writerow(("tractions", "largest_difference", "1", "", "", self.largest_difference, meaning))
+
+
+def compare(first: Result, second: Result, step: int | None = None) -> Comparison:
+    """The comparison of two results, of their last states or of `steps[step - 1]`.
+
+    Tractions on different meshes are interpolated linearly to the nodes of both; outside a mesh there are none. Numbers are
+    compared as they stand, whatever their units. Raises ValueError where a result has no such state.
+    """
+    states = first.at(step), second.at(step)
+    meshes = first.mesh.x, second.mesh.x
+    x = np.union1d(*meshes)
+    values = {
+        name: [np.interp(x, mesh, state[name], 0.0, 0.0) for mesh, state in zip(meshes, states)] for name in TRACTIONS
+    }
+    differences = [np.max(np.abs(one - other)) for one, other in values.values()]
+    return Comparison(
+        first,
+        second,
+        step,
+        _different_settings(first, second),
+        _different_keys(first, second),
+        [number for group in GROUPS for number in _numbers(group, getattr(first, group), getattr(second, group))],
+        [_traction(name, states[0].unit(name), *values[name]) for name in TRACTIONS],
+        _ratio(max(differences), np.max(np.abs(list(values.values())))),
+        not np.array_equal(*meshes),
+    )
+
+
+def relative_difference(first: float, second: float) -> float:
+    """Difference of two numbers in parts of the larger; 0 where they are equal, NaN where one is not a number."""
+    if first == second:
+        return 0.0
+    return abs(second - first) / max(abs(first), abs(second))
+
+
+def _different_settings(first: Result, second: Result) -> list[Setting]:
+    """Attributes that differ."""
+    one, other = ({name: text for name, text in r.attributes.items() if name not in NOT_SETTINGS} for r in (first, second))
+    return _different(one, other)
+
+
+def _different_keys(first: Result, second: Result) -> list[Setting] | str:
+    """Keys of the inputs that differ, or why they cannot be told."""
+    try:
+        return _different(keys(first.attributes["input"]), keys(second.attributes["input"]))
+    except ValueError as error:
+        return str(error)
+
+
+def _different(one: dict[str, Any], other: dict[str, Any]) -> list[Setting]:
+    names = [*one, *(name for name in other if name not in one)]
+    return [Setting(name, one.get(name), other.get(name)) for name in names if one.get(name) != other.get(name)]
+
+
+def _numbers(name: str, first: Group, second: Group) -> list[Number]:
+    """The numbers of one group of both results, those of the first one first."""
+    found = []
+    for key in [*first, *(key for key in second if key not in first)]:
+        source = first if key in first else second
+        if np.ndim(source[key]) == 0:
+            values = (float(group[key]) if key in group else np.nan for group in (first, second))
+            found.append(Number(name, key, source.unit(key), source.description(key), *values))
+    return found
+
+
+def _traction(name: str, unit: str, one: Array, other: Array) -> Traction:
+    """How a traction differs; both at the same nodes."""
+    largest = float(np.max(np.abs((one, other))))
+    difference = np.abs(one - other)
+    return Traction(
+        name,
+        unit,
+        float(np.max(np.abs(one))),
+        float(np.max(np.abs(other))),
+        _ratio(np.max(difference), largest),
+        _ratio(np.sqrt(np.mean(difference**2)), largest),
+    )
+
+
+def _ratio(part: float, whole: float) -> float:
+    """part/whole, 0 where both are zero."""
+    return 0.0 if part == 0.0 else float(part / whole)
+
+
+def _setting_lines(heading: str, settings: list[Setting]) -> list[str]:
+    """Settings one a line, as wide as the first ones are."""
+    if not settings:
+        return [f"{heading}: none"]
+    width = min(48, max(len(_text(first)) for _, first, _ in settings)) + 2
+    return [
+        f"{heading:34}{'first':{width}}second",
+        *(f"  {name:32}{_text(first):{width}}{_text(second)}".rstrip() for name, first, second in settings),
+    ]
+
+
+def _text(value: Any) -> str:
+    """A setting on one line; - where there is none."""
+    return "-" if value is None else "; ".join(str(value).splitlines())
+
+
+def _figure(value: float, digits: int = 6) -> str:
+    """A number; - where there is none."""
+    return "-" if np.isnan(value) else f"{value:.{digits}g}"
+
+
+def _shown(unit: str) -> str:
+    return "" if unit in ("", "1") else unit

@@ -1,0 +1,110 @@
+"""A picture of two results: the first, the second, both over each other."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import matplotlib
+import numpy as np
+from matplotlib.artist import Artist
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.patches import Patch
+
+from . import plot
+from .compare import Comparison
+
+#: How the two are drawn over each other, and their difference.
+FIRST = dict(color=plot.NUMBERS, linewidth=1.0)
+SECOND = dict(color=plot.CLOSED_FORM, linewidth=1.0, linestyle=(0, (4, 2)))
+DIFFERENCE = dict(color=plot.SURFACE, linewidth=0.8)
+
+
+def figure(comparison: Comparison, first: str = "first", second: str = "second") -> Figure:
+    """A picture of a comparison, a column for each result and one for both over each other; a row for the pressure, one for
+    the shear traction and, where a load history has a tangential force, one for that over the shift.
+
+    `first`, `second`: what the results are called.
+    """
+    results = comparison.first, comparison.second
+    rows = [plot.pressure, plot.shear if any(map(plot._has_friction, results)) else plot.surfaces]
+    if any(map(plot._is_sheared, results)):
+        rows.append(plot.loop)
+    over = {plot.pressure: _pressures, plot.shear: _shears, plot.surfaces: _gaps, plot.loop: _loops}
+    with matplotlib.rc_context(plot.STYLE):
+        picture = Figure(figsize=(3 * plot.PANEL_WIDTH, len(rows) * 0.92 * plot.PANEL_HEIGHT + 0.9), layout="constrained")
+        axes = picture.subplots(len(rows), 3, squeeze=False)
+        for panel, row in zip(rows, axes):
+            for result, ax in zip(results, row):
+                if panel is plot.loop and not plot._is_sheared(result):
+                    ax.set_axis_off()
+                else:
+                    panel(result, ax, comparison.step)
+            over[panel](comparison, row[2])
+            _unite_limits([ax for ax in row if ax.axison], panel is plot.surfaces)
+        for ax, name in zip(axes[0], (first, second, "both")):
+            ax.set_title(name, parse_math=False)
+        picture.suptitle(
+            f"Largest difference of the tractions: {comparison.largest_difference:.3g} of the largest traction", fontsize=12
+        )
+        _add_legend(picture)
+    return picture
+
+
+def _pressures(comparison: Comparison, ax: Axes) -> None:
+    _draw_tractions(comparison, ax, "pressure")
+
+
+def _shears(comparison: Comparison, ax: Axes) -> None:
+    _draw_tractions(comparison, ax, "shear")
+
+
+def _draw_tractions(comparison: Comparison, ax: Axes, name: str) -> None:
+    """A traction of both results over x, and its difference."""
+    results = comparison.first, comparison.second
+    states = [result.at(comparison.step) for result in results]
+    for result, state, label, style in zip(results, states, ("first", "second"), (FIRST, SECOND)):
+        ax.plot(result.mesh.x, state[name], label=label, **style)
+    x = np.union1d(*(result.mesh.x for result in results))
+    one, other = (np.interp(x, r.mesh.x, state[name], 0.0, 0.0) for r, state in zip(results, states))
+    ax.plot(x, other - one, label="second less first", **DIFFERENCE)
+    plot._frame_contact(ax, comparison.first, states[0])
+
+
+def _gaps(comparison: Comparison, ax: Axes) -> None:
+    """Deformed surfaces of the lower body of both results."""
+    for result, label, style in zip((comparison.first, comparison.second), ("first", "second"), (FIRST, SECOND)):
+        ax.plot(result.mesh.x, plot._heights(result, result.at(comparison.step))[0], label=label, **style)
+    plot._frame_contact(ax, comparison.first, comparison.first.at(comparison.step))
+
+
+def _loops(comparison: Comparison, ax: Axes) -> None:
+    """Tangential force over shift of those that have it."""
+    for result, label, style in zip((comparison.first, comparison.second), ("first", "second"), (FIRST, SECOND)):
+        if plot._is_sheared(result):
+            ax.plot(result.history.shift, result.history.tangential_force, label=label, **style)
+            ax.set_xlabel(plot._label("shift", "U", result.history.unit("shift")))
+    ax.locator_params(axis="x", nbins=5)
+    ax.margins(0.12)
+
+
+def _unite_limits(axes: Sequence[Axes], only_across: bool) -> None:
+    """Show the same part in all panels of a row, so that they can be compared; the names of their axes once."""
+    across = np.array([ax.get_xlim() for ax in axes])
+    up = np.array([ax.get_ylim() for ax in axes])
+    for ax in axes:
+        ax.set_xlim(across[:, 0].min(), across[:, 1].max())
+        if not only_across:
+            ax.set_ylim(up[:, 0].min(), up[:, 1].max())
+    for ax in axes[1:]:
+        ax.set_ylabel("")
+
+
+def _add_legend(picture: Figure) -> None:
+    """One legend below all panels, lines before zones."""
+    handles: dict[str, Artist] = {}
+    for ax in picture.axes:
+        for handle, label in zip(*ax.get_legend_handles_labels()):
+            handles.setdefault(label, handle)
+    labels = sorted(handles, key=lambda label: isinstance(handles[label], Patch))
+    picture.legend([handles[label] for label in labels], labels, ncols=6, fontsize=10, loc="outside lower center")

@@ -1,0 +1,147 @@
+"""States along a load history: those that a result keeps, or more of them by solving its case again."""
+
+from __future__ import annotations
+
+import copy
+import os
+from collections.abc import Callable, Iterable, Iterator
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from .case import Case
+from .compare import compare
+from .errors import MfvError
+from .inputs import groups
+from .result import Field, Group, Result
+
+#: Loads by the keys of a step that lead them.
+LOADS = ("normal_force", "approach", "tangential_force", "shift", "moment", "rotation")
+
+#: Keys of a step that this module knows; a step with any other cannot be divided.
+KNOWN = (*LOADS, "force_ratio", "friction", "cycles", "steady_tolerance")
+
+#: By how much the tractions at the end may differ from those of the file, in parts of the largest.
+AGREEMENT = 1.0e-9
+
+Progress = Callable[[Iterable[Any]], Iterable[Any]]
+
+
+class Part(NamedTuple):
+    """A straight part of a load history: loads to lead to targets; those on the way back go to where the step began."""
+
+    step: int
+    targets: dict[str, float]
+    is_back: bool
+    friction: bool
+
+
+class LoadHistory(NamedTuple):
+    """A result with a state in `steps` for every picture, and what is to be said of it, if anything."""
+
+    result: Result
+    note: str
+
+
+def kept_states(result: Result) -> Result:
+    """A result whose `steps` end with its last state, also where a run ended early, or has not begun."""
+    if result.steps and all(np.array_equal(result.steps[-1][name], result.state[name]) for name in ("pressure", "shear")):
+        return result
+    loads = {name: _field(result.summary, name) for name in result.summary if name not in result.state}
+    last = Group({**{name: _field(result.state, name) for name in result.state}, **loads})
+    longer = copy.copy(result)
+    longer.steps = [*result.steps, last]
+    return longer
+
+
+def thinned(result: Result, states: int) -> Result:
+    """A result with at most that many of its states in `steps`, evenly, the last one among them."""
+    if len(result.steps) <= states:
+        return result
+    chosen = np.unique(np.linspace(0, len(result.steps) - 1, states).round().astype(int))
+    thinner = copy.copy(result)
+    thinner.steps = [result.steps[number] for number in chosen]
+    return thinner
+
+
+def with_states_between(result: Result, states: int, progress: Progress = iter) -> LoadHistory:
+    """The load history of a result with about that many states, from its case solved again with targets on the way.
+
+    Where that cannot be done, the states that the result keeps, with a note that says why; a note also tells when the case
+    does not end where the result does, to within AGREEMENT. `progress` goes over the targets.
+    """
+    kept = kept_states(result)
+    try:
+        again = _solved_again(result, states, progress)
+    except (MfvError, ValueError) as error:
+        return LoadHistory(thinned(kept, states), f"only states that the file keeps: {error}")
+    difference = compare(result, again).largest_difference
+    if difference <= AGREEMENT:
+        return LoadHistory(again, "")
+    return LoadHistory(again, f"solved again, the case ends elsewhere: tractions differ by {difference:.1e} of the largest")
+
+
+def _solved_again(result: Result, states: int, progress: Progress) -> Result:
+    """The result of a case solved again, with states on the way. Raises MfvError, ValueError."""
+    if result.attributes["algorithm"].strip() != "mfv":
+        raise ValueError("the conventional algorithm goes by load steps, which more states would change")
+    parts = list(_parts(result))
+    divisions = states // max(len(parts), 1)
+    if divisions < 2:
+        raise ValueError(f"{len(parts)} straight parts of the load history want {2 * len(parts)} states at least")
+    name = os.path.join(result.attributes["working_directory"], result.attributes["input_file"])
+    with Case.from_text(result.attributes["input"], name) as case:
+        for part, loads in progress(list(_divided(case, parts, divisions))):
+            if case.advance(friction=part.friction, **loads()) != "complete":
+                break
+        return kept_states(case.result())
+
+
+def _divided(case: Case, parts: list[Part], divisions: int) -> Iterator[tuple[Part, Callable[[], dict[str, float]]]]:
+    """Every part with the loads at each of its divisions, as functions to be called when the case is there."""
+    began: dict[int, dict[str, float]] = {}
+    start: dict[str, float] = {}
+
+    def loads(part: Part, division: int) -> dict[str, float]:
+        if division == 1:
+            start.update({name: float(case[f"summary/{name}"]) for name in part.targets})
+            began.setdefault(part.step, dict(start))
+        ends = began[part.step] if part.is_back else part.targets
+        share = division / divisions
+        return {
+            name: ends[name] if division == divisions else start[name] + share * (ends[name] - start[name])
+            for name in part.targets
+        }
+
+    for part in parts:
+        for division in range(1, divisions + 1):
+            yield part, lambda part=part, division=division: loads(part, division)
+
+
+def _parts(result: Result) -> Iterator[Part]:
+    """The straight parts of the load history that a result has gone through, and the one where it ended early."""
+    steps = [values for name, values in groups(result.attributes["input"]) if name == "step"]
+    done = int(result.summary.steps_done)
+    normal_force = 0.0
+    for number, step in enumerate(steps[: done + (result.outcome != "complete")], start=1):
+        unknown = [key for key in step if key not in KNOWN]
+        if unknown:
+            raise ValueError(f"&step {unknown[0]}: a step with this key cannot be divided")
+        normal_force = step.get("normal_force", normal_force)
+        targets = {name: float(step[name]) for name in LOADS if name in step}
+        if "force_ratio" in step:
+            targets["tangential_force"] = step["force_ratio"] * float(np.max(result.mesh.static_friction)) * normal_force
+        for reversal in range(1, _reversals(result, number, step, number <= done) + 1):
+            yield Part(number, targets, reversal % 2 == 0, bool(step.get("friction", True)))
+
+
+def _reversals(result: Result, number: int, step: dict[str, Any], is_done: bool) -> int:
+    """How many straight parts of a step a result has gone through, the one where it ended early among them."""
+    if step.get("cycles", 0) == 0:
+        return 1
+    kept = max((int(state.reversal) for state in result.steps if state.step == number), default=0)
+    return kept if is_done else kept + 1
+
+
+def _field(group: Group, name: str) -> Field:
+    return Field(group[name], group.unit(name), group.description(name))

@@ -1,0 +1,461 @@
+"""A result as one web page that needs nothing else: plotly and all data are inside, nothing is loaded from anywhere.
+
+`page` makes the text of the page. It needs the Python packages plotly and jinja2 (the extra `report`).
+"""
+
+from __future__ import annotations
+
+import json
+import math
+from collections.abc import Iterable, Sequence
+from importlib.resources import files
+from typing import Any
+
+import numpy as np
+import plotly.graph_objects as go
+from jinja2 import Environment, StrictUndefined
+from markupsafe import Markup
+from plotly.offline import get_plotlyjs
+
+from . import __version__, plot
+from .codes import NodeStatus
+from .load_history import LoadHistory, kept_states, thinned
+from .result import Group, Result, counts
+from .views import Curve, contact, curve_of
+
+#: The most states, records of the history and rows of the table of cycles that a page shows.
+MOST_STATES, MOST_RECORDS, MOST_CYCLES = 240, 4000, 40
+
+#: The most states that each get a tick.
+MOST_TICKS = 12
+
+#: Digits of the numbers in the curves.
+DIGITS = 7
+
+#: How the page names what a node is, and its colour in the style sheet.
+STATUSES = {
+    NodeStatus.OPEN: ("open", "rgba(0,0,0,0)"),
+    NodeStatus.STICK: ("stick", "var(--stick)"),
+    NodeStatus.SLIP_RIGHT: ("slip to the right", "var(--right)"),
+    NodeStatus.SLIP_LEFT: ("slip to the left", "var(--left)"),
+    NodeStatus.FRICTIONLESS: ("frictionless contact", "var(--frictionless)"),
+    NodeStatus.CREEP_RIGHT: ("creep to the right", "var(--creep-right)"),
+    NodeStatus.CREEP_LEFT: ("creep to the left", "var(--creep-left)"),
+}
+
+#: Key numbers of the page: group, name, what it is called. Those that a result is without are left out.
+KEY_NUMBERS = (
+    ("summary", "normal_force", "normal force P"),
+    ("summary", "tangential_force", "tangential force Q"),
+    ("summary", "moment", "moment M"),
+    ("summary", "approach", "approach"),
+    ("summary", "shift", "shift U"),
+    ("summary", "edge_half_width", "contact half-width"),
+    ("summary", "edge_stick_ratio", "stick ratio"),
+    ("observables", "peak_pressure", "largest pressure"),
+    ("observables", "peak_shear", "largest shear traction"),
+    ("summary", "dissipation", "dissipation so far"),
+    ("observables", "cycle_dissipation", "dissipation of the last cycle"),
+    ("observables", "loss_factor", "loss factor"),
+    ("certificate", "largest", "largest relative residual"),
+)
+
+#: Those that say nothing where there is no friction.
+OF_FRICTION = ("tangential_force", "shift", "edge_stick_ratio", "peak_shear", "dissipation")
+
+#: Columns of the table of cycles.
+CYCLE_COLUMNS = ("dissipation", "loss_factor", "tangential_stiffness", "secant_stiffness", "stick_ratio_reversal", "change")
+
+SUPERSCRIPTS = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
+
+NUMBERS = dict(color="var(--numbers)", width=1.5)
+SECOND = dict(color="var(--second)", width=1.5)
+CLOSED_FORM = dict(color="var(--closed-form)", width=1.5)
+LIMIT = dict(color="var(--limit)", width=1)
+
+#: Computed values at the nodes.
+POINTS = dict(mode="lines+markers", line={**NUMBERS, "width": 0.75}, marker=dict(size=4))
+
+
+def page(result: Result, source: str, history: LoadHistory | None = None) -> str:
+    """The page of a result. `source`: what the file is called; `history`: states to show in place of those that it keeps."""
+    states, note = history or LoadHistory(kept_states(result), "")
+    shown = thinned(states, MOST_STATES)
+    limits = contact(shown)
+    inside = _in_view(shown, limits)
+    curve = curve_of(shown)
+    notes = [note] if note else []
+    if len(shown.steps) < len(states.steps):
+        notes.append(f"{len(shown.steps)} of {len(states.steps)} states are shown")
+    data = {
+        "states": [_state(shown, number, inside, curve, history is None) for number in range(len(shown.steps))],
+        "figures": {
+            **_traction_figures(shown, inside),
+            "curve": _curve_figure(shown, curve),
+            "map": _map_figure(shown, inside),
+            **_history_figures(result),
+            **_cycle_figures(result, _in_view(result, limits)),
+        },
+    }
+    resources = files(__package__) / "pages"
+    environment = Environment(autoescape=True, undefined=StrictUndefined, trim_blocks=True, lstrip_blocks=True)
+    environment.filters["number"] = _number
+    return environment.from_string((resources / "report.html").read_text(encoding="utf-8")).render(
+        title=result.title or source,
+        source=source,
+        result=result,
+        attributes={name: text.strip() for name, text in result.attributes.items()},
+        key_numbers=_key_numbers(result),
+        zones=_zones(shown),
+        notes=notes,
+        figures=data["figures"],
+        states=len(shown.steps),
+        has_friction=plot._has_friction(result),
+        sources=_sources(result),
+        tables=_tables(result),
+        cycles=_cycle_table(result),
+        version=__version__,
+        style=Markup((resources / "report.css").read_text(encoding="utf-8")),
+        script=Markup((resources / "report.js").read_text(encoding="utf-8")),
+        plotly=Markup(get_plotlyjs()),
+        data=Markup(json.dumps(data, separators=(",", ":"), allow_nan=False).replace("<", "\\u003c")),
+    )
+
+
+def _in_view(result: Result, limits: tuple[float, float]) -> slice:
+    """The nodes that are shown."""
+    left, right = limits
+    inside = np.flatnonzero((result.mesh.x >= left) & (result.mesh.x <= right))
+    return slice(int(inside[0]), int(inside[-1]) + 1)
+
+
+def _state(result: Result, number: int, inside: slice, curve: Curve, is_kept: bool) -> dict[str, Any]:
+    """What the slider changes: the curves of a state, by figure and trace, the point on the curve, and words.
+
+    `is_kept`: whether it is one of the file's, with a step and a reversal of its own.
+    """
+    state = result.steps[number]
+    is_last = plot._is_last(result, state)
+    pressures: dict[str, Any] = {"pressure": _list(state.pressure[inside])}
+    if "pressure" in result.reference:
+        same_force = np.isclose(state.normal_force, result.summary.normal_force, rtol=1.0e-9, atol=0.0)
+        pressures["closed form"] = _list(result.reference.pressure[inside]) if same_force else []
+    if plot._has_friction(result):
+        shears: dict[str, Any] = {"zones": [state.status[inside].tolist()], "shear traction": _list(state.shear[inside])}
+        for name, coefficient in _coefficients(result):
+            limit = np.where(state.status != NodeStatus.OPEN, coefficient * state.pressure, np.nan)[inside]
+            shears[f"+{name}"], shears[f"\N{MINUS SIGN}{name}"] = _list(limit), _list(-limit)
+        if "shear" in result.reference:
+            shears["closed form"] = _list(result.reference.shear[inside]) if is_last else []
+        lower = {"shear": shears}
+    else:
+        heights = plot._heights(result, state)
+        names = "lower body", "upper body"
+        lower = {"surfaces": {name: _list(height[inside]) for name, height in zip(names, heights)}}
+    return {
+        "curves": {"pressure": pressures, **lower},
+        "point": [_rounded(state[curve.across]), _rounded(state[curve.up])],
+        "text": _words(result, state, number, is_kept),
+    }
+
+
+def _words(result: Result, state: Group, number: int, is_kept: bool) -> str:
+    """A state in words: its number, its loads, what its nodes do."""
+    place = f"state {number + 1} of {len(result.steps)}"
+    if is_kept and "step" in state:
+        place += f" (step {state.step}, reversal {state.reversal})"
+    loads = [
+        f"{symbol} = {_with_unit(state, name)}"
+        for symbol, name in (("P", "normal_force"), ("Q", "tangential_force"), ("M", "moment"))
+        if name in state
+    ]
+    return ", ".join([place, *loads, counts(state)])
+
+
+def _coefficients(result: Result) -> list[tuple[str, np.ndarray]]:
+    """Names of the limits of friction and the coefficients at the nodes: one, or static and kinetic."""
+    mesh = result.mesh
+    if "static_friction" not in mesh:
+        return []
+    if np.array_equal(mesh.static_friction, mesh.kinetic_friction):
+        return [("μp", mesh.static_friction)]
+    return [("μₛp", mesh.static_friction), ("μₖp", mesh.kinetic_friction)]
+
+
+def _traction_figures(result: Result, inside: slice) -> dict[str, Any]:
+    """Pressure, and shear traction or surfaces, without the values, which are those of the state that the slider is at."""
+    x = _list(result.mesh.x[inside])
+    across = _axis("position", "x", result.mesh.unit("x"))
+    largest = max(float(state.pressure.max()) for state in result.steps) or 1.0
+    pressure = _figure(across, _axis("pressure", "p", result.state.unit("pressure"), [0.0, 1.08 * largest]))
+    if "pressure" in result.reference:
+        pressure.add_scatter(x=x, name="closed form", mode="lines", line=CLOSED_FORM)
+    pressure.add_scatter(x=x, name="pressure", **POINTS)
+    figures = {"pressure": pressure}
+    if plot._has_friction(result):
+        figures["shear"] = _shear_figure(result, inside, x, across)
+    else:
+        surfaces = _figure(across, _axis("height", "y", result.state.unit("gap")))
+        surfaces.add_scatter(x=x, name="lower body", mode="lines+markers", line=SECOND, marker_size=4)
+        surfaces.add_scatter(x=x, name="upper body", mode="lines", line=LIMIT)
+        figures["surfaces"] = surfaces
+    return {name: _plain(figure) for name, figure in figures.items()}
+
+
+def _shear_figure(result: Result, inside: slice, x: Sequence[Any], across: dict[str, Any]) -> go.Figure:
+    """Shear traction between the limits of friction, stick and slip zones behind them."""
+    limits = _coefficients(result)
+    bound = max(
+        [float(np.max(np.abs(state.shear))) for state in result.steps]
+        + [float(np.max(coefficient * state.pressure)) for state in result.steps for _, coefficient in limits]
+    )
+    bound = bound or 1.0
+    figure = _figure(across, _axis("shear traction", "τ", result.state.unit("shear"), [-1.08 * bound, 1.08 * bound]))
+    figure.add_heatmap(
+        x=_edges(result, inside), y=[-2.0 * bound, 2.0 * bound], name="zones", hoverinfo="skip", **_status_colours()
+    )
+    for number, (name, _) in enumerate(limits):
+        line = {**LIMIT, "dash": "dot" if number > 0 else "solid"}
+        for sign in "+\N{MINUS SIGN}":
+            figure.add_scatter(x=x, name=f"{sign}{name}", mode="lines", line=line)
+    if "shear" in result.reference:
+        figure.add_scatter(x=x, name="closed form", mode="lines", line=CLOSED_FORM)
+    figure.add_scatter(x=x, name="shear traction", **POINTS)
+    return figure
+
+
+def _curve_figure(result: Result, curve: Curve) -> dict[str, Any]:
+    """Load over displacement, and the point that the slider moves, which comes last."""
+    names = curve.across, curve.up
+    labels = (_axis(*label, result.summary.unit(name)) for name, label in zip(names, (curve.across_label, curve.up_label)))
+    figure = _figure(*labels)
+    if result.history:
+        chosen = _some(result.history[curve.across].size, MOST_RECORDS)
+        values = [_list(result.history[name][chosen]) for name in names]
+    else:
+        values = [_list([state[name] for state in result.steps]) for name in names]
+    figure.add_scatter(x=values[0], y=values[1], name="computed", mode="lines", line=NUMBERS)
+    if curve.across == "shift" and result.history and "shift" in result.reference:
+        closed = {**CLOSED_FORM, "dash": "dash"}
+        shift = _list(result.reference.shift[chosen])
+        figure.add_scatter(x=shift, y=values[1], name="closed form", mode="lines", line=closed)
+    figure.add_scatter(name="this state", mode="markers", marker=dict(size=13, color="var(--point)"))
+    return _plain(figure)
+
+
+def _map_figure(result: Result, inside: slice) -> dict[str, Any]:
+    """What every node is in every state."""
+    statuses = np.array([state.status[inside] for state in result.steps])
+    ticks = dict(dtick=1) if len(result.steps) <= MOST_TICKS else {}
+    figure = _figure(_axis("position", "x", result.mesh.unit("x")), {"title": {"text": "state"}, **ticks})
+    figure.update_layout(margin_t=8)
+    words = [STATUSES[NodeStatus(code)][0] for code in range(len(NodeStatus))]
+    figure.add_heatmap(
+        x=_edges(result, inside),
+        y=(np.arange(len(result.steps) + 1) + 0.5).tolist(),
+        z=statuses.tolist(),
+        text=[[words[code] for code in row] for row in statuses] if statuses.size <= 20000 else None,
+        hovertemplate="x = %{x:.4g}, state %{y}: %{text}<extra></extra>" if statuses.size <= 20000 else None,
+        name="status",
+        **_status_colours(),
+    )
+    return _plain(figure)
+
+
+def _history_figures(result: Result) -> dict[str, Any]:
+    """Loads, dissipation and numbers of nodes over the records of the history."""
+    history = result.history
+    if not history:
+        return {}
+    chosen = _some(history.normal_force.size, MOST_RECORDS)
+    record = (chosen + 1).tolist()
+
+    def over_records(names: Iterable[tuple[str, str]], label: tuple[str, str, str]) -> dict[str, Any]:
+        figure = _figure({"title": {"text": "record"}}, _axis(*label))
+        for (name, shown), line in zip(names, (NUMBERS, SECOND)):
+            figure.add_scatter(x=record, y=_list(history[name][chosen]), name=shown, mode="lines", line=line)
+        return _plain(figure)
+
+    has_friction = plot._has_friction(result)
+    forces = [("normal_force", "normal force P")] + [("tangential_force", "tangential force Q")] * has_friction
+    nodes = [("contact_nodes", "in contact")] + [("stick_nodes", "stuck")] * has_friction
+    figures = {"forces": over_records(forces, ("force", "", history.unit("normal_force")))}
+    if has_friction:
+        label = "dissipation", "", history.unit("dissipation")
+        figures["dissipation"] = over_records([("dissipation", "dissipation")], label)
+    figures["nodes"] = over_records(nodes, ("nodes", "", "1"))
+    return figures
+
+
+def _cycle_figures(result: Result, inside: slice) -> dict[str, Any]:
+    """Dissipation of every cycle, and where the last one dissipates."""
+    cycles = result.cycles
+    if not cycles:
+        return {}
+    figure = _figure({"title": {"text": "cycle"}}, _axis("dissipation of a cycle", "", cycles.unit("dissipation")))
+    figure.update_yaxes(rangemode="tozero")
+    figure.add_scatter(
+        x=cycles.cycle.tolist(), y=_list(cycles.dissipation), name="dissipation", mode="lines+markers", line=NUMBERS
+    )
+    figures = {"cycles": figure}
+    if "friction_work" in cycles:
+        label = _axis("dissipated per surface", "", cycles.unit("friction_work"))
+        work = _figure(_axis("position", "x", result.mesh.unit("x")), label)
+        x, values = _list(result.mesh.x[inside]), _list(cycles.friction_work[inside])
+        work.add_scatter(x=x, y=values, name="friction work", **POINTS)
+        figures["work"] = work
+    return {name: _plain(figure) for name, figure in figures.items()}
+
+
+def _figure(across: dict[str, Any], up: dict[str, Any]) -> go.Figure:
+    """An empty figure in the colours of the page."""
+    frame = dict(
+        showline=True, mirror=True, ticks="inside", zeroline=False, exponentformat="power", automargin=True,
+        linecolor="var(--frame)", tickcolor="var(--frame)", gridcolor="var(--grid)",
+    )  # fmt: skip
+    return go.Figure(
+        layout=dict(
+            template={},
+            xaxis={**frame, **across},
+            yaxis={**frame, **up},
+            font=dict(color="var(--text)", size=13),
+            paper_bgcolor="rgba(0,0,0,0)",
+            plot_bgcolor="rgba(0,0,0,0)",
+            hoverlabel=dict(bgcolor="var(--card)", bordercolor="var(--frame)", font=dict(color="var(--text)")),
+            modebar=dict(bgcolor="rgba(0,0,0,0)", color="var(--faint)", activecolor="var(--text)"),
+            margin=dict(l=56, r=12, t=30, b=44),
+            legend=dict(orientation="h", x=0, y=1.02, yanchor="bottom", font=dict(size=12)),
+            showlegend=False,
+        )
+    )
+
+
+def _axis(name: str, symbol: str, unit: str, limits: Sequence[float] | None = None) -> dict[str, Any]:
+    """Title, and where given the range, of an axis; the unit only where the user has named it."""
+    shown = f" [{_unit(unit)}]" if plot._is_named(unit) else ""
+    title = f"{name} <i>{symbol}</i>{shown}" if symbol else f"{name}{shown}"
+    axis: dict[str, Any] = {"title": {"text": title}}
+    if limits is not None:
+        axis["range"] = list(limits)
+    return axis
+
+
+def _plain(figure: go.Figure) -> dict[str, Any]:
+    """A figure as plain lists and dictionaries."""
+    return json.loads(figure.to_json())
+
+
+def _status_colours() -> dict[str, Any]:
+    """A colour for each status, for a heat map."""
+    bands = len(NodeStatus)
+    scale = [[edge / bands, STATUSES[NodeStatus(code)][1]] for code in range(bands) for edge in (code, code + 1)]
+    return dict(colorscale=scale, zmin=-0.5, zmax=bands - 0.5, showscale=False)
+
+
+def _edges(result: Result, inside: slice) -> list[float]:
+    """Where the surface of one node ends and that of the next begins."""
+    x = result.mesh.x[inside]
+    if x.size == 1:
+        half = 0.5 * float(result.mesh.interval)
+        return [float(x[0]) - half, float(x[0]) + half]
+    middles = 0.5 * (x[1:] + x[:-1])
+    return [float(2.0 * x[0] - middles[0]), *map(float, middles), float(2.0 * x[-1] - middles[-1])]
+
+
+def _zones(result: Result) -> list[tuple[str, str]]:
+    """Words and colours of what nodes in contact come to be."""
+    seen = np.unique(np.concatenate([state.status for state in result.steps]))
+    return [STATUSES[NodeStatus(code)] for code in seen if code != NodeStatus.OPEN]
+
+
+def _sources(result: Result) -> dict[str, str]:
+    """Where the closed forms come from, by what they are of."""
+    return {name: result.reference.description(name) for name in ("pressure", "shear", "shift") if name in result.reference}
+
+
+def _key_numbers(result: Result) -> list[dict[str, str]]:
+    """What a reader looks for first: name, value with unit, error bar, definition."""
+    found = []
+    left_out = () if plot._has_friction(result) else OF_FRICTION
+    for group_name, name, shown in KEY_NUMBERS:
+        group: Group = getattr(result, group_name)
+        if name in group and name not in left_out and not math.isnan(group[name]):
+            bar = result.error_estimate.get(f"{_ESTIMATED.get(name, name)}_error")
+            found.append(
+                dict(
+                    name=shown,
+                    value=_with_unit(group, name),
+                    bar="" if bar is None or not math.isfinite(bar) else f"± {bar:.2g}",
+                    meaning=group.description(name),
+                )
+            )
+    return found
+
+
+#: Key numbers that an error estimate knows under other names.
+_ESTIMATED = {"edge_half_width": "contact_half_width", "edge_stick_ratio": "stick_ratio"}
+
+
+def _tables(result: Result) -> dict[str, list[tuple[str, str, str, str]]]:
+    """All numbers of the result: name, value, unit, meaning, by group."""
+    groups = (("certificate", result.certificate), ("summary", result.summary), ("observables", result.observables))
+    return {
+        name: [
+            (key, _number(group[key]), _unit(group.unit(key)), group.description(key))
+            for key in group
+            if np.ndim(group[key]) == 0
+        ]
+        for name, group in groups
+        if group
+    }
+
+
+def _cycle_table(result: Result) -> dict[str, Any]:
+    """The cycles: columns with names and units, rows; of many the first and the last."""
+    cycles = result.cycles
+    if not cycles:
+        return {}
+    names = [name for name in CYCLE_COLUMNS if name in cycles and not np.isnan(cycles[name]).all()]
+    chosen = _some(cycles.cycle.size, MOST_CYCLES)
+    rows = [(int(cycles.cycle[row]), [_number(cycles[name][row]) for name in names]) for row in chosen]
+    return dict(
+        names=[(name.replace("_", " "), _unit(cycles.unit(name))) for name in names],
+        rows=rows,
+        all=int(cycles.cycle.size),
+    )
+
+
+def _with_unit(group: Group, name: str) -> str:
+    """A number with its unit where the user has named one."""
+    unit = group.unit(name)
+    return f"{_number(group[name])}{f' {_unit(unit)}' if plot._is_named(unit) else ''}"
+
+
+def _unit(unit: str) -> str:
+    """A unit for a reader; nothing for that of a pure number."""
+    return "" if unit == "1" else unit.replace("^2", "²").replace("^3", "³")
+
+
+def _number(value: Any) -> str:
+    """A number for a reader, with a power of ten where it is very large or small."""
+    if math.isnan(value):
+        return "none"
+    digits, _, exponent = f"{value + 0:.6g}".replace("-", "\N{MINUS SIGN}").partition("e")
+    if not exponent:
+        return digits
+    power = str(int(exponent.replace("\N{MINUS SIGN}", "-")))
+    return f"{digits}\N{NO-BREAK SPACE}\N{MULTIPLICATION SIGN}\N{NO-BREAK SPACE}10{power.translate(SUPERSCRIPTS)}"
+
+
+def _some(size: int, most: int) -> np.ndarray:
+    """Indices of at most that many of a number of things, evenly, the first and the last among them."""
+    return np.unique(np.linspace(0, size - 1, min(size, most)).round().astype(int))
+
+
+def _list(values: Any) -> list[float | None]:
+    """Numbers for the page; what is not finite is left out."""
+    return [_rounded(value) for value in np.asarray(values, dtype=float).tolist()]
+
+
+def _rounded(value: float) -> float | None:
+    return float(f"{value:.{DIGITS}g}") if math.isfinite(value) else None

@@ -1,0 +1,95 @@
+"""Commented cases to begin with: the templates of `python -m mfv new`.
+
+`names` tells which there are, `write` writes one with the files that it needs. The comments come from the catalogue of keys
+(scripts/templates.py).
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable
+from importlib.resources import files
+from pathlib import Path
+from typing import Any
+
+import h5py
+import numpy as np
+
+#: Files that a template needs beside itself.
+COMPANIONS = {"profile": ("profile.txt",), "matrix": ("matrix.h5",), "sweep": ("cylinder.nml",)}
+
+#: The half-plane of matrix.h5: shear modulus, Poisson's ratio, where its displacements are measured from, nodes on either side.
+SHEAR_MODULUS, POISSON_RATIO, DATUM, HALF_WIDTH, NODES = 1.0, 0.3, 0.25, 0.0127, 81
+
+_FOLDER = files(__package__) / "templates"
+
+
+def names() -> dict[str, str]:
+    """The templates, and what each is, in a line."""
+    found = sorted(Path(entry.name).stem for entry in _FOLDER.iterdir() if entry.name.endswith(".nml"))
+    return {name: text(name).splitlines()[0].removeprefix("! ") for name in found}
+
+
+def text(name: str) -> str:
+    """The text of a template."""
+    return (_FOLDER / f"{name}.nml").read_text(encoding="utf-8")
+
+
+def is_sweep(name: str) -> bool:
+    """Whether a template is for mfv_sweep."""
+    return re.search(r"^&sweep\b", text(name), flags=re.MULTILINE) is not None
+
+
+def write(name: str, path: Path, written: Callable[[Path], Any], overwrite: bool = False) -> list[Path]:
+    """Write a template to `path` and what it needs beside it; returns the files written.
+
+    `written(path)` is a context with a path to write to that becomes `path` when all is well. A file beside it that is the
+    same already is left alone. Raises ValueError for an unknown template, FileExistsError for a file that would be
+    overwritten; then nothing is written.
+    """
+    if name not in names():
+        raise ValueError(f"there is no template {name}; there is {', '.join(names())}")
+    wanted = {path.with_name(companion): companion for companion in COMPANIONS.get(name, ()) if path.name != companion}
+    if len(wanted) < len(COMPANIONS.get(name, ())):
+        raise ValueError(f"{path}: another file of this template has that name; give another with -o")
+    targets = {path: f"{name}.nml", **{place: c for place, c in wanted.items() if not _is_there(place, c)}}
+    for place in targets:
+        if place.exists() and not overwrite:
+            raise FileExistsError(f"{place}: exists already; --force overwrites it, -o NAME.nml writes elsewhere")
+    for place, source in reversed(targets.items()):
+        with written(place) as part:
+            _write_one(source, part, place.stem)
+    return list(targets)
+
+
+def _write_one(source: str, part: Path, name: str) -> None:
+    """Write one file of a template; `name`: that of the file without its suffix, for the commands in its comments."""
+    if source == "matrix.h5":
+        _write_matrix(part)
+    else:
+        part.write_bytes(_packaged(source, name))
+
+
+def _packaged(source: str, name: str) -> bytes:
+    """A file of the package, with its name in the commands in its comments."""
+    return (_FOLDER / source).read_bytes().replace(b"FILE", name.encode())
+
+
+def _is_there(place: Path, companion: str) -> bool:
+    """Whether a file that a template needs is there already, the same."""
+    return companion != "matrix.h5" and place.is_file() and place.read_bytes() == _packaged(companion, place.stem)
+
+
+def _write_matrix(path: Path) -> None:
+    """Write the compliance of an elastic half-plane by nodal forces, in closed form (Johnson 1985, sections 2.2 and 2.3)."""
+    interval = 2.0 * HALF_WIDTH / NODES
+    x = interval * (np.arange(NODES) - 0.5 * (NODES - 1))
+    distance = x[:, None] - x
+    ends = (distance + 0.5 * interval, distance - 0.5 * interval)
+    logarithm = (ends[0] * np.log(np.abs(ends[0])) - ends[1] * np.log(np.abs(ends[1]))) / interval - 1.0 - np.log(DATUM)
+    direct = -(1.0 - POISSON_RATIO) / (np.pi * SHEAR_MODULUS) * logarithm
+    coupling = (1.0 - 2.0 * POISSON_RATIO) / (4.0 * SHEAR_MODULUS) * np.sign(distance)
+    with h5py.File(path, "w") as file:
+        file["x"] = x
+        file["width"] = np.full(NODES, interval)
+        file["compliance"] = np.block([[direct, coupling], [-coupling, direct]])

@@ -1,0 +1,19 @@
+#!/bin/sh
+# Installs what is missing and makes build/wheel/mfv-*.whl: the Python package with the library, the programs and what they stand on,
+# down to the C library. It works on machines without compilers and without these libraries, with a C library no older than here.
+# Safe to repeat. Wants Linux.
+. "$(dirname "$0")/common.sh"
+install_missing
+python_environment wheel
+fresh=$root/build/wheel.new
+rm -rf "$fresh"
+trap 'rm -rf "$fresh"' EXIT
+mkdir -p "$fresh"
+say "building the wheel"
+log=$fresh/build.log
+PATH=$venv/bin:$PATH
+{ python -m pip wheel --disable-pip-version-check --no-deps --wheel-dir "$fresh/plain" "$root" &&
+  python -m auditwheel repair --wheel-dir "$fresh/wheel" "$fresh"/plain/mfv-*.whl; } >"$log" 2>&1 || { tail -n 40 "$log"; exit 1; }
+rm -rf "$root/build/wheel"
+mv "$fresh/wheel" "$root/build/wheel"
+say "wheel build/wheel/$(basename "$root"/build/wheel/mfv-*.whl)"

@@ -1,0 +1,187 @@
+"""What the programs say about themselves: --help with cases that work, manual pages made from it, completion of every option."""
+import os
+import re
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).resolve().parents[2]
+BIN = Path(os.environ.get("MFV_RUN", ROOT / "build/release/bin/mfv_run")).parent
+PROGRAMS = ("mfv_run", "mfv_stress", "mfv_sweep", "mfv_conventional")
+PAGES = sorted((ROOT / "docs/man").glob("*.[15]"))
+BASH = ROOT / "drivers/completion/mfv.bash"
+AS_ROOT = {"OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1", "OPENBLAS_NUM_THREADS": "1"}
+COMPLETE, INPUT = 0, 2
+
+
+def run(program, *arguments, cwd=ROOT):
+    return subprocess.run([BIN / program, *arguments], cwd=cwd, capture_output=True, text=True, timeout=300, env=os.environ | AS_ROOT)
+
+
+def help_of(program):
+    return run(program, "--help").stdout
+
+
+def options_of(program):
+    return re.findall(r"^  (?:-\w, )?(--[a-z-]+)", help_of(program), re.MULTILINE)
+
+
+@pytest.mark.parametrize("program", PROGRAMS)
+def test_help_has_what_a_newcomer_needs(program):
+    for option in ("--help", "-h"):
+        shown = run(program, option)
+        assert shown.returncode == COMPLETE and shown.stderr == ""
+        assert shown.stdout.startswith(f"usage: {program} ")
+        for heading in ("Options", "Exit codes", "Examples", "See also"):
+            assert f"\n{heading}:\n" in shown.stdout
+    assert max(map(len, shown.stdout.splitlines())) <= 100
+    assert {"--help", "--version"} <= set(options_of(program))
+    used = set(re.findall(r"--[a-z]+", shown.stdout.split("\n\n")[0]))
+    assert used <= set(options_of(program)), "an option of the usage that is not explained"
+
+
+@pytest.mark.parametrize("program", PROGRAMS)
+def test_options_that_help_explains_are_known(program):
+    for option in options_of(program):
+        refused = run(program, option, "--no-such-option").stderr
+        assert f"unknown option '{option}'" not in refused, refused
+
+
+@pytest.mark.parametrize("program, option, nearest", [
+    ("mfv_run", "--chekc", "--check"), ("mfv_stress", "--bodi", "--body"), ("mfv_sweep", "--thread", "--threads"),
+    ("mfv_conventional", "--verson", "--version"), ("mfv_run", "--frobnicate", None),
+])
+def test_unknown_options_propose_the_nearest(program, option, nearest):
+    refused = run(program, option)
+    assert refused.returncode == INPUT and refused.stdout == ""
+    first, *rest = refused.stderr.splitlines()
+    assert first == f"{program}: unknown option '{option}'" + (f"; did you mean {nearest}?" if nearest else "")
+    assert rest[0].startswith("usage: ") and rest[-1] == f"{program} --help explains."
+
+
+def test_the_case_in_the_help_is_one(tmp_path):
+    (tmp_path / "case.nml").write_text("\n".join(re.findall(r"^  &.*", help_of("mfv_run"), re.MULTILINE)))
+    done = run("mfv_run", "case.nml", cwd=tmp_path)
+    assert done.returncode == COMPLETE and "complete: step 2 was reached" in done.stdout and "stick ratio" in done.stdout
+
+
+def test_the_sweep_in_the_help_is_one(tmp_path):
+    shutil.copy(ROOT / "examples/mindlin.nml", tmp_path)
+    text = re.search(r"^  &sweep.*?\n\n", help_of("mfv_sweep"), re.MULTILINE | re.DOTALL)
+    (tmp_path / "study.nml").write_text(text[0])
+    done = run("mfv_sweep", "--check", "study.nml", cwd=tmp_path)
+    assert done.returncode == COMPLETE and "90 cases" in done.stdout, done.stderr
+
+
+def test_manual_pages_are_those_of_the_programs(tmp_path):
+    subprocess.run([sys.executable, ROOT / "scripts/manual.py", BIN, tmp_path], check=True)
+    assert {page.name for page in PAGES} == {page.name for page in tmp_path.iterdir()}
+    for page in PAGES:
+        assert page.read_text() == (tmp_path / page.name).read_text(), "python3 scripts/manual.py build/release/bin docs/man"
+
+
+@pytest.mark.parametrize("page", PAGES, ids=lambda page: page.name)
+def test_manual_pages_have_every_key_and_option(page):
+    text = page.read_text().replace(r"\-", "-")
+    if page.suffix == ".1":
+        expected = options_of(page.stem)
+    else:
+        keys = run({"mfv_case": "mfv_run", "mfv_sweep": "mfv_sweep"}[page.stem], "--keys").stdout
+        expected = re.findall(r"^\| `(\w+)`", keys, re.MULTILINE)
+        assert len(expected) > 10
+    for name in expected:
+        assert re.search(rf"^\.TP\n\\fB(-\w, )?{name}\b", text, re.MULTILINE), name
+
+
+@pytest.mark.parametrize("page", PAGES, ids=lambda page: page.name)
+@pytest.mark.parametrize("checker", [("mandoc", "-T", "lint", "-W", "warning"), ("groff", "-man", "-ww", "-z", "-T", "utf8")],
+                         ids=lambda checker: checker[0])
+def test_manual_pages_are_free_of_warnings(checker, page):
+    if shutil.which(checker[0]) is None:
+        pytest.skip(f"{checker[0]} is not installed")
+    checked = subprocess.run([*checker, page], capture_output=True, text=True)
+    assert checked.returncode == 0 and checked.stdout + checked.stderr == ""
+
+
+def completions(line, cwd):
+    """What bash proposes at the end of a line, as a user's shell calls the function."""
+    script = f"""source '{BASH}'
+        PATH='{BIN}':$PATH
+        COMP_LINE=$1 COMP_POINT=${{#1}} COMP_WORDS=(${{1//=/ = }})
+        [[ $1 != *' ' ]] || COMP_WORDS+=('')
+        COMP_CWORD=$((${{#COMP_WORDS[@]}} - 1))
+        completer=$(complete -p "${{COMP_WORDS[0]}}")
+        completer=${{completer#* -F }}
+        "${{completer%% *}}" "${{COMP_WORDS[0]}}" "${{COMP_WORDS[COMP_CWORD]}}" "${{COMP_WORDS[COMP_CWORD - 1]}}"
+        printf '%s\\n' "${{COMPREPLY[@]}}" """
+    shown = subprocess.run(["bash", "-c", script, "bash", line], cwd=cwd, capture_output=True, text=True, check=True)
+    assert shown.stderr == ""
+    return set(shown.stdout.split("\n")) - {""}
+
+
+@pytest.fixture
+def folder(tmp_path):
+    for name in ("case.nml", "sweep.nml", "with blank.nml", "case.h5", "other.h5", "points.txt"):
+        (tmp_path / name).touch()
+    (tmp_path / "cases").mkdir()
+    return tmp_path
+
+
+@pytest.mark.parametrize("program", PROGRAMS)
+def test_every_option_is_completed(program, folder):
+    assert completions(f"{program} --", folder) == set(options_of(program))
+
+
+@pytest.mark.parametrize("line, expected", [
+    ("mfv_run ", {"case.nml", "sweep.nml", "with blank.nml", "cases"}),
+    ("mfv_run --check cas", {"case.nml", "cases"}),
+    ("mfv_conventional s", {"sweep.nml"}),
+    ("mfv_sweep --again ", {"case.nml", "sweep.nml", "with blank.nml", "cases"}),
+    ("mfv_sweep --threads ", set()),
+    ("mfv_sweep --threads 4 s", {"sweep.nml"}),
+    ("mfv_stress ", {"case.h5", "other.h5", "cases"}),
+    ("mfv_stress o", {"other.h5"}),
+    ("mfv_stress case.h5 --bo", {"--body"}),
+    ("mfv_stress case.h5 --body ", {"lower", "upper"}),
+    ("mfv_stress --body u", {"upper"}),
+    ("mfv_stress --points ", set()),
+    ("mfv_stress --points 11 ", set()),
+    ("mfv_stress --points 11 11 o", {"other.h5"}),
+    ("mfv_stress case.h5 --at ", {"points.txt", "cases"}),
+    ("mfv_run --advise ", {"error=", "of=", "case.nml", "sweep.nml", "with blank.nml", "cases"}),
+    ("mfv_run --advise of=s", {"shear", "stick_ratio"}),
+    ("mfv_run --advise of=shear,s", {"shear,stick_ratio"}),
+])
+def test_arguments_are_completed(line, expected, folder):
+    assert completions(line, folder) == expected
+
+
+def test_quantities_of_advice_are_all_completed(folder):
+    (folder / "case.nml").write_text("&body /")
+    message = run("mfv_run", "--advise", "error=1e-2", "of=", "case.nml", cwd=folder).stderr
+    names = re.search(r"must be one or more of (\S+)", message)[1].split(",")
+    assert completions("mfv_run --advise of=", folder) == set(names)
+    for other in ("_mfv", "mfv.fish"):
+        text = (ROOT / "drivers/completion" / other).read_text()
+        assert all(re.search(rf"\b{name}\b", text) for name in names), other
+
+
+@pytest.mark.parametrize("shell, file", [("bash", "mfv.bash"), ("zsh", "_mfv"), ("fish", "mfv.fish")])
+def test_shells_can_read_the_completion(shell, file):
+    if shutil.which(shell) is None:
+        pytest.skip(f"{shell} is not installed")
+    checked = subprocess.run([shell, "-n", ROOT / "drivers/completion" / file], capture_output=True, text=True)
+    assert checked.returncode == 0 and checked.stderr == ""
+
+
+def test_fish_completes_every_option(folder):
+    if shutil.which("fish") is None:
+        pytest.skip("fish is not installed")
+    path = ROOT / "drivers/completion/mfv.fish"
+    for program in PROGRAMS:
+        script = f"set PATH '{BIN}' $PATH; source '{path}'; complete -C '{program} --'"
+        shown = subprocess.run(["fish", "-c", script], cwd=folder, capture_output=True, text=True, check=True).stdout
+        assert {line.split("\t")[0] for line in shown.splitlines()} == set(options_of(program))

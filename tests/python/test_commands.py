@@ -1,0 +1,356 @@
+"""Commands of python -m mfv that make more than one picture: compare, animate, new."""
+
+from __future__ import annotations
+
+import csv
+import importlib.util
+import io
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+from PIL import Image
+
+import mfv
+from mfv import animate, comparison_figure, template
+from mfv.commands import main
+from mfv.compare import compare, relative_difference
+from mfv.load_history import kept_states, thinned, with_states_between
+
+PRESSED = """
+&scene title='{title}', coupling='{coupling}' /
+&body shape='half_plane', shear_modulus=1.0, poisson_ratio=0.3 /
+&body shape='disk', radius=0.25, rigid=.true. /
+&mesh nodes={nodes}, half_width=0.01225 /
+"""
+SHEARED = (
+    PRESSED
+    + """
+&friction law='coulomb', mu=0.7 /
+&step normal_force=1.0e-3, friction=.false. /
+&step tangential_force=2.8e-4 /
+&step tangential_force=-2.8e-4, cycles=1 /
+"""
+)
+MINDLIN = dict(title="it's a/b ! sheared", coupling="goodman", nodes=61)
+
+
+def solved(path: Path, text: str = SHEARED, **changes: object) -> mfv.Result:
+    """A result in a file."""
+    values = {key: str(value).replace("'", "''") for key, value in {**MINDLIN, **changes}.items()}
+    return mfv.run(text=text.format(**values), output=path)
+
+
+# --- compare ---
+
+
+def test_a_result_is_no_different_from_itself(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    solved(tmp_path / "a.h5")
+    same = compare(mfv.read(tmp_path / "a.h5"), mfv.read(tmp_path / "a.h5"))
+    assert same.largest_difference == 0.0 and same.settings == [] and same.inputs == [] and not same.interpolated
+    assert all(number.relative_difference == 0.0 or np.isnan(number.first) for number in same.numbers)
+    assert len(same.numbers) > 40
+    assert main(["compare", str(tmp_path / "a.h5"), str(tmp_path / "a.h5"), "--no-picture", "--tolerance", "0"]) == 0
+    assert "keys of the inputs that differ: none" in capsys.readouterr().out
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["a.h5"]
+
+
+def test_what_differs_is_told(tmp_path: Path) -> None:
+    first, second = solved(tmp_path / "a.h5"), solved(tmp_path / "b.h5", coupling="full")
+    found = compare(first, second)
+    assert ("coupling", "goodman", "full") in found.settings
+    assert found.inputs == [("scene%coupling", "goodman", "full")]
+    (shift,) = (number for number in found.numbers if (number.group, number.name) == ("summary", "shift"))
+    assert (shift.first, shift.second) == (first.summary.shift, second.summary.shift)
+    assert shift.relative_difference == pytest.approx(1.0 - second.summary.shift / first.summary.shift)
+    largest = np.max(np.abs(first.state.pressure - second.state.pressure))
+    assert found.tractions[0].largest_difference == pytest.approx(largest / second.state.pressure.max(), rel=1e-12)
+    assert found.largest_difference == pytest.approx(largest / second.state.pressure.max(), rel=1e-12)
+
+
+def test_tractions_on_other_meshes_are_interpolated() -> None:
+    coarse, fine = (mfv.run(text=SHEARED.format(**{**MINDLIN, "title": "", "nodes": nodes})) for nodes in (61, 183))
+    found = compare(coarse, fine)
+    assert found.interpolated and "interpolated linearly" in found.describe()
+    # Both hold at the nodes of the coarse mesh, which are among those of the fine one.
+    shared = np.max(np.abs(coarse.state.pressure - fine.state.pressure[1::3])) / fine.state.pressure.max()
+    assert shared <= found.tractions[0].largest_difference < 0.2
+    assert 0.0 < found.tractions[0].mean_square_difference < found.tractions[0].largest_difference
+
+
+def test_relative_differences() -> None:
+    assert relative_difference(0.0, 0.0) == relative_difference(np.inf, np.inf) == 0.0
+    assert relative_difference(1.0, 2.0) == relative_difference(2.0, 1.0) == 0.5
+    assert relative_difference(0.0, -3.0) == 1.0
+    assert np.isnan(relative_difference(1.0, np.nan))
+
+
+def test_compare_writes_picture_and_table(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    solved(tmp_path / "a.h5")
+    second = solved(tmp_path / "b.h5", coupling="full", nodes=81)
+    arguments = ["compare", str(tmp_path / "a.h5"), str(tmp_path / "b.h5")]
+    assert main([*arguments, "--tolerance", "1e-3", "--csv", str(tmp_path / "d.csv")]) == 1
+    assert capsys.readouterr().out.rstrip().endswith(str(tmp_path / "a_b.png"))
+    assert (tmp_path / "a_b.png").stat().st_size > 50000
+    text = (tmp_path / "d.csv").read_text()
+    rows = list(csv.DictReader(io.StringIO(text)))
+    (dissipation,) = (row for row in rows if row["group"] == "summary" and row["name"] == "dissipation")
+    assert float(dissipation["second"]) == second.summary.dissipation
+    assert {row["name"] for row in rows if row["group"] == "input"} == {"scene%coupling", "mesh%nodes"}
+    assert main([*arguments, "--no-picture", "--csv", "-"]) == 0
+    assert capsys.readouterr().out == text
+
+
+def test_the_picture_has_both_results_and_both_over_each_other(tmp_path: Path) -> None:
+    first, second = solved(tmp_path / "a.h5"), solved(tmp_path / "b.h5", coupling="full", nodes=81)
+    axes = comparison_figure.figure(compare(first, second)).axes
+    assert len(axes) == 9
+    one, other, difference = axes[2].lines
+    np.testing.assert_array_equal(one.get_ydata(), first.state.pressure)
+    np.testing.assert_array_equal(other.get_ydata(), second.state.pressure)
+    assert np.max(np.abs(difference.get_ydata())) == pytest.approx(
+        compare(first, second).tractions[0].largest_difference * max(first.state.pressure.max(), second.state.pressure.max())
+    )
+    assert len({ax.get_xlim() for ax in axes[:3]}) == len({ax.get_ylim() for ax in axes[6:]}) == 1
+    # A pressed and a sheared one; two that are only pressed.
+    pressed = mfv.run(text=PRESSED.format(**{**MINDLIN, "title": ""}) + "&step normal_force=1.0e-3 /")
+    assert [ax.axison for ax in comparison_figure.figure(compare(pressed, second)).axes[6:]] == [False, True, True]
+    assert len(comparison_figure.figure(compare(pressed, pressed)).axes) == 6
+
+
+def test_what_cannot_be_compared_is_named(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    solved(tmp_path / "a.h5")
+    (tmp_path / "b.h5").write_text("no HDF5\n")
+    good, bad = str(tmp_path / "a.h5"), str(tmp_path / "b.h5")
+    for arguments, complaint in (
+        ([good, bad], f"{bad}: not a result file"),
+        ([good, str(tmp_path / "c.h5")], "c.h5"),
+        ([good, good, "--step", "9"], f"{good}: there is no step 9"),
+        ([good, good, "-o", str(tmp_path / "nowhere" / "x.png")], "nowhere"),
+    ):
+        assert main(["compare", *arguments]) == 2
+        printed = capsys.readouterr().err
+        assert complaint in printed and printed.count("\n") == 1
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["a.h5", "b.h5"]
+
+
+# --- states between those that a result keeps ---
+
+PROJECT = Path(__file__).resolve().parents[2]
+EXAMPLES = PROJECT / "examples"
+
+
+@pytest.mark.parametrize(
+    ("name", "parts"),
+    [("mindlin", 6), ("steel_fretting", 6), ("pin_in_bore", 2), ("hertz", 1), ("shear_cycles", 10), ("cycles", 54)],
+)
+def test_states_on_the_way_lead_to_the_same_end(name: str, parts: int) -> None:
+    result = mfv.run(EXAMPLES / f"{name}.nml")
+    again, note = with_states_between(result, 2 * parts)
+    assert note == "" and len(again.steps) == 2 * parts
+    assert compare(result, again).largest_difference < 1e-9
+    if len(result.steps) == parts:  # every second state is one of the result's own
+        for kept, state in zip(result.steps, again.steps[1::2]):
+            np.testing.assert_allclose(state.pressure, kept.pressure, atol=1e-9 * kept.pressure.max())
+            np.testing.assert_allclose(state.shear, kept.shear, atol=1e-9 * kept.pressure.max())
+            assert state.tangential_force == pytest.approx(kept.tangential_force, abs=1e-9 * kept.normal_force)
+
+
+def test_states_on_the_way_are_half_way() -> None:
+    result = mfv.run(text=SHEARED.format(**{**MINDLIN, "title": ""}))
+    forces = [state.tangential_force for state in with_states_between(result, 8).result.steps]
+    np.testing.assert_allclose(forces, np.array([0, 0, 1.4, 2.8, 0, -2.8, 0, 2.8]) * 1e-4, atol=1e-15)
+
+
+def test_an_early_end_is_the_end_of_the_states() -> None:
+    result = mfv.run(text=SHEARED.format(**{**MINDLIN, "title": ""}) + "&step tangential_force=1e-3 /")
+    assert result.outcome == "gross sliding"
+    again, note = with_states_between(result, 50)
+    assert note == "" and again.outcome == "gross sliding"
+    np.testing.assert_array_equal(again.steps[-1].pressure, again.state.pressure)
+    assert again.steps[-1].tangential_force == pytest.approx(result.summary.tangential_force, rel=1e-9)
+    assert len(kept_states(result).steps) == len(result.steps) + 1
+
+
+def test_another_end_is_told_and_so_is_what_cannot_be_solved_again() -> None:
+    # Dahl's friction is solved to a tolerance of an increment, of which more states make more.
+    assert "ends elsewhere" in with_states_between(mfv.run(EXAMPLES / "dahl.nml"), 20).note
+    result = mfv.run(text=SHEARED.format(**{**MINDLIN, "title": ""}))
+    assert "want 8 states at least" in with_states_between(result, 7).note
+    result.attributes["input"] = result.attributes["input"].replace("shift", "").replace("disk", "disc")
+    again, note = with_states_between(result, 40)
+    assert "disc" in note and again.steps == result.steps
+    result.attributes["algorithm"] = "conventional"
+    assert "load steps" in with_states_between(result, 40).note
+
+
+def test_of_many_states_some_are_shown() -> None:
+    result = mfv.run(text=SHEARED.format(**{**MINDLIN, "title": ""}).replace("cycles=1", "cycles=20"))
+    few = thinned(result, 5).steps
+    assert len(few) == 5 and few[0] is result.steps[0] and few[-1] is result.steps[-1]
+    assert thinned(result, 100) is result
+    assert len(result.steps) == 42
+
+
+# --- animate ---
+
+
+def pictures(path: Path) -> list[np.ndarray]:
+    """The frames of a GIF."""
+    with Image.open(path) as image:
+        frames = []
+        for number in range(image.n_frames):
+            image.seek(number)
+            frames.append(np.asarray(image.convert("RGB")))
+        return frames
+
+
+def test_animate_writes_a_gif_that_moves(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    solved(tmp_path / "a.h5")
+    assert main(["animate", str(tmp_path / "a.h5"), "--frames", "8", "--rate", "4"]) == 0
+    printed = capsys.readouterr()
+    assert printed.out.strip() == str(tmp_path / "a.gif") and printed.err == ""
+    frames = pictures(tmp_path / "a.gif")
+    assert len(frames) == 8
+    assert all(np.any(one != other) for one, other in zip(frames, frames[1:]))
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["a.gif", "a.h5"]
+
+
+def test_animate_draws_the_states_of_the_file(tmp_path: Path) -> None:
+    result = solved(tmp_path / "a.h5")
+    moving = animate.movie(result)
+    assert moving.frames == len(result.steps)
+    for number, state in enumerate(result.steps):
+        moving.draw(number)
+        pressure, shear, curve = moving.picture.axes
+        (computed,) = (line for line in shear.lines if line.get_label() == "computed")
+        np.testing.assert_array_equal(computed.get_ydata(), state.shear)
+        assert curve.lines[-1].get_xydata().tolist() == [[state.shift, state.tangential_force]]
+        assert pressure.get_ylim()[1] >= max(other.pressure.max() for other in result.steps)
+
+
+@pytest.mark.parametrize(
+    ("text", "across"),
+    [
+        (PRESSED + "&step normal_force=1e-3 /\n&output history='none' /\n", "approach"),
+        ((EXAMPLES / "pin_in_bore.nml").read_text(), "rotation"),
+        (SHEARED + "&step tangential_force=1e-3 /\n", "shift"),
+    ],
+    ids=["frictionless without history", "turned", "sliding"],
+)
+def test_animate_draws_what_there_is(text: str, across: str, tmp_path: Path) -> None:
+    mfv.run(text=text.format(**{**MINDLIN, "title": ""}), output=tmp_path / "a.h5")
+    shown = kept_states(mfv.read(tmp_path / "a.h5"))
+    assert across in animate.movie(shown).picture.axes[2].get_xlabel()
+    assert main(["animate", str(tmp_path / "a.h5"), "--kept"]) == 0
+    assert len(pictures(tmp_path / "a.gif")) == len(shown.steps)
+
+
+def test_an_mp4_needs_ffmpeg_and_says_so(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    solved(tmp_path / "a.h5")
+    arguments = ["animate", str(tmp_path / "a.h5"), "--kept", "-o", str(tmp_path / "a.mp4")]
+    assert main(arguments) == 0
+    assert (tmp_path / "a.mp4").read_bytes()[4:8] == b"ftyp"
+    (tmp_path / "a.mp4").unlink()
+    monkeypatch.setattr("shutil.which", lambda name: None)
+    monkeypatch.setitem(sys.modules, "imageio_ffmpeg", None)
+    assert main(arguments) == 2
+    assert "write a GIF" in capsys.readouterr().err
+    assert main([*arguments[:-1], str(tmp_path / "a.avi")]) == 2
+    assert ".gif or .mp4" in capsys.readouterr().err
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["a.h5"]
+
+
+# --- new ---
+
+PROGRAMS = {name: Path(os.environ.get(name.upper(), PROJECT / "build" / "release" / "bin" / name)) for name in ("mfv_run", "mfv_sweep")}
+
+
+@pytest.mark.parametrize("name", template.names())
+def test_every_template_is_solved(name: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    path = tmp_path / "case.nml"
+    assert main(["new", name, "-o", str(path)]) == 0
+    printed = capsys.readouterr().out.splitlines()
+    assert printed[0] == str(path) and printed[-1].endswith(str(path))
+    assert sorted(printed[:-1]) == sorted(str(place) for place in tmp_path.iterdir())
+    program = printed[-1].split()[2]
+    ended = subprocess.run([PROGRAMS[program], path], cwd=tmp_path, capture_output=True, text=True)
+    assert ended.returncode == 0, ended.stderr
+    if program == "mfv_sweep":
+        table = mfv.read_table(tmp_path / "case.h5")
+        assert table.size == 24 and set(table["outcome"]) == {"complete"}
+    else:
+        result = mfv.read(tmp_path / "case.h5")
+        assert result.outcome == "complete" and result.certificate.largest < 1e-11
+        assert not result.attributes["warnings"].strip()
+        assert 0.0 < result.summary.stick_ratio < 1.0
+
+
+def test_comments_of_templates_are_those_of_the_catalogue() -> None:
+    specification = importlib.util.spec_from_file_location("templates", PROJECT / "scripts" / "templates.py")
+    scripts = importlib.util.module_from_spec(specification)
+    specification.loader.exec_module(scripts)
+    comments = {}
+    for name, program in PROGRAMS.items():
+        printed = subprocess.run([program, "--keys"], capture_output=True, text=True, check=True).stdout
+        comments.update(scripts.meanings_of(printed))
+    assert len(comments) > 50
+    for name in template.names():
+        text = template.text(name)
+        assert scripts.commented(text, comments) == text, f"{name}.nml: run scripts/templates.py"
+    # A comment that is wrong is put right, and what is written behind keys stays.
+    text = template.text("cylinder")
+    assert scripts.commented(text.replace("number of equal", "amount of"), comments) == text
+    with pytest.raises(KeyError):
+        scripts.commented("&mesh\n   knots = 3\n/\n", comments)
+
+
+def test_the_matrix_of_the_template_is_a_half_plane(tmp_path: Path) -> None:
+    assert main(["new", "matrix", "-o", str(tmp_path / "case.nml")]) == 0
+    given = mfv.run(tmp_path / "case.nml")
+    body = "shape = 'half_plane', shear_modulus = 1.0, poisson_ratio = 0.3 /"
+    text = template.text("matrix").replace("shape = 'matrix'", body + "\n&mesh nodes = 81, half_width = 0.0127")
+    known = mfv.run(text=text.replace("   file = 'matrix.h5'\n", ""))
+    assert compare(given, known).largest_difference < 1e-10
+    assert given.summary.approach == pytest.approx(known.summary.approach, rel=1e-3)
+
+
+def test_nothing_is_overwritten_unless_told(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    (tmp_path / "matrix.h5").write_text("mine\n")
+    arguments = ["new", "matrix", "-o", str(tmp_path / "case.nml")]
+    assert main(arguments) == 2
+    assert f"{tmp_path / 'matrix.h5'}: exists already" in capsys.readouterr().err
+    assert (tmp_path / "matrix.h5").read_text() == "mine\n" and len(list(tmp_path.iterdir())) == 1
+    assert main([*arguments, "--force"]) == 0
+    assert (tmp_path / "matrix.h5").read_bytes().startswith(b"\x89HDF")
+    # What a sweep needs may be there already, the same.
+    for template_name in ("cylinder", "sweep"):
+        assert main(["new", template_name, "-o", str(tmp_path / f"{template_name}.nml")]) == 0
+    assert main(["new", "sweep", "-o", str(tmp_path / "cylinder.nml")]) == 2
+    assert "give another" in capsys.readouterr().err
+
+
+def test_new_lists_templates_and_names_what_it_does_not_have(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    assert main(["new", "--list"]) == 0
+    assert [line.split()[0] for line in capsys.readouterr().out.splitlines()] == list(template.names())
+    assert main(["new", "cube"]) == 2
+    assert "there is no template cube; there is cylinder, " in capsys.readouterr().err
+    assert main(["new"]) == 0
+    assert [path.name for path in tmp_path.iterdir()] == ["cylinder.nml"]
+
+
+@pytest.mark.parametrize("command", ["new", "plot", "info", "compare", "animate", "report", "table"])
+def test_every_command_teaches(command: str, capsys: pytest.CaptureFixture[str]) -> None:
+    with pytest.raises(SystemExit) as caught:
+        main([command, "--help"])
+    assert caught.value.code == 0
+    printed = capsys.readouterr().out
+    assert f"python -m mfv {command}" in printed.split("examples:")[1] and len(printed) > 400

@@ -1,0 +1,75 @@
+"""The wheel as a user has it: run in an environment of its own, without compilers, MFV_LIBRARY or PYTHONPATH (run.cmake)."""
+
+from __future__ import annotations
+
+import re
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import h5py
+import numpy as np
+import pytest
+
+import mfv
+from mfv import _library
+
+EXAMPLES = Path(__file__).resolve().parents[2] / "examples"
+PROGRAMS = ("mfv_run", "mfv_conventional", "mfv_stress", "mfv_sweep")
+#: What every Linux has that a wheel may be installed on (the policies of manylinux).
+BASE = re.compile(r"(linux-vdso|ld-linux\S*|lib(c|m|mvec|dl|pthread|rt|resolv|util|gcc_s|stdc\+\+|z))\.so")
+SITE = Path(mfv.__file__).resolve().parents[1]
+
+
+def binaries():
+    """The library and the programs of the package."""
+    return [Path(_library.find_library()), *((SITE / "mfv" / "bin" / name) for name in PROGRAMS)]
+
+
+def loaded(name):
+    """Paths of the shared libraries of this process whose file names begin with `name`."""
+    maps = Path("/proc/self/maps").read_text()
+    return {Path(path) for path in re.findall(r"(/\S+)$", maps, flags=re.MULTILINE) if Path(path).name.startswith(name)}
+
+
+def test_package_is_that_of_the_environment():
+    assert SITE.is_relative_to(sys.prefix)
+    assert binaries()[0].parent == SITE / "mfv" / "lib"
+    assert shutil.which("gfortran") is None and shutil.which("cc") is None
+
+
+@pytest.mark.parametrize("binary", binaries(), ids=lambda path: path.name)
+def test_everything_is_of_the_wheel_or_of_the_base_system(binary):
+    needed = subprocess.run(["/usr/bin/ldd", binary], capture_output=True, text=True, check=True).stdout.splitlines()
+    assert len(needed) > 5
+    strangers = [
+        line for line in needed if not BASE.match(Path(line.split()[0]).name) and f"=> {SITE}/" not in line
+    ]
+    assert strangers == []
+
+
+def test_library_and_h5py_share_a_process(tmp_path):
+    result = mfv.run(EXAMPLES / "mindlin.nml", output=tmp_path / "mindlin.h5")
+    with h5py.File(tmp_path / "mindlin.h5") as file:
+        assert np.array_equal(file["state/pressure"][()], result.state.pressure)
+    with h5py.File(tmp_path / "own.h5", "w") as file:
+        file["x"] = np.arange(3.0)
+    again = mfv.run(EXAMPLES / "mindlin.nml", output=tmp_path / "again.h5")
+    assert np.array_equal(mfv.read(tmp_path / "again.h5").state.shear, again.state.shear)
+    folders = {path.parent for path in loaded("libhdf5")}
+    assert SITE / "mfv.libs" in folders and len(folders) == 2
+
+
+@pytest.mark.parametrize("program", PROGRAMS)
+def test_programs_are_commands(program):
+    run = subprocess.run([program, "--version"], capture_output=True, text=True, check=True)
+    assert run.stdout.split()[:2] == [program, mfv.__version__]
+
+
+def test_a_case_from_the_command_line(tmp_path):
+    run = subprocess.run(["mfv_run", EXAMPLES / "mindlin.nml"], cwd=tmp_path, capture_output=True, text=True, check=True)
+    assert "complete" in run.stdout
+    subprocess.run(["mfv_stress", "mindlin.h5"], cwd=tmp_path, capture_output=True, check=True)
+    assert mfv.read(tmp_path / "mindlin.h5").certificate.largest < 1e-10
+    assert subprocess.run(["mfv_run", "no/such.nml"], cwd=tmp_path, capture_output=True).returncode == 2
