@@ -94,14 +94,12 @@ class Observer:
 
     @contextmanager
     def bar(self, wanted: bool) -> Iterator[None]:
-        """Show how far a run is, on a terminal or in a notebook. Raises ImportError where tqdm is missing."""
+        """Show how far a run is, on a terminal or in a notebook."""
         if not wanted:
             yield
             return
-        try:
-            from tqdm.auto import tqdm
-        except ImportError:
-            raise ImportError("progress=True needs tqdm: pip install tqdm") from None
+        from tqdm.auto import tqdm  # here: it looks whether this is a notebook
+
         with tqdm(total=1.0, disable=None, bar_format=BAR_FORMAT) as bar:
             self._bar, self.is_idle = None if bar.disable else bar, False
             try:

@@ -41,9 +41,9 @@ if TYPE_CHECKING:
 #: HDF5, which writes the result files, is in general not safe to call from two threads at once.
 _writing = threading.Lock()
 
-#: Nodes from which a single step may take long enough to be interrupted; it is then observed, which costs about 1 microsecond
-#: an increment.
-MANY_NODES = 400
+#: Nodes from which, and friction laws with which, a single step may take so long that an interrupt from the keyboard has to end
+#: it; it is then observed, which costs about 1 microsecond an increment.
+MANY_NODES, LONG_LAWS = 400, ("weakening", "dahl")
 
 #: Dimensions of fields by what the library says they run along; the companions of an error estimate and cycles come after
 #: those of the header.
@@ -175,7 +175,7 @@ class Case:
         self._loads_reference = byref(self._loads)
         self._spare_states: list[State] = []
         self._x = np.empty(0)
-        self._has_many_nodes = self._count("mesh/x") >= MANY_NODES
+        self._is_long = self._count("mesh/x") >= MANY_NODES or self._attribute("friction_law") in LONG_LAWS
 
     def __enter__(self) -> Self:
         return self
@@ -279,7 +279,7 @@ class Case:
                 1 if relative else 0,
                 steady_tolerance,
             )
-            watched = turns > 0 or self._has_many_nodes
+            watched = turns > 0 or self._is_long
             return self._lead(check, watched, self._advance, self._handle, self._step_reference)
 
     @property

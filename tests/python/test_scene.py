@@ -7,7 +7,6 @@ import os
 import pickle
 import re
 import subprocess
-import typing
 from pathlib import Path
 
 import h5py
@@ -27,7 +26,7 @@ GROUPS = {
     "solver": mfv.Solver,
     "output": mfv.Output,
 }
-KINDS = {"a text": str, ".true.": bool, "a whole number": int, "a number": float}
+KINDS = {"a text": "str", ".true.": "bool", "a whole number": "int", "a number": "float"}
 EXAMPLES = sorted(path for path in (PROJECT / "examples").glob("*.nml") if path.name != "sweep.nml")
 
 
@@ -53,17 +52,14 @@ def test_the_keys_of_the_classes_are_those_of_the_library() -> None:
 
 @pytest.mark.parametrize("group", GROUPS)
 def test_kinds_and_choices_are_those_of_the_library(group: str) -> None:
-    hints = typing.get_type_hints(GROUPS[group])
     for key, values in keys_of_the_library()[group].items():
-        kinds = typing.get_args(hints[key]) or (hints[key],)
+        kinds = GROUPS[group].__annotations__[key].split(" | ")  # as written: Python 3.9 cannot evaluate them
         if values.startswith("'"):
-            (choices,) = (
-                typing.get_args(kind) for kind in [hints[key], *kinds] if typing.get_origin(kind) is typing.Literal
-            )
-            assert list(choices) == re.findall(r"'(\w+)'", values), key
+            assert kinds[0].startswith("Literal[")
+            assert re.findall(r"[\"'](\w+)[\"']", kinds[0]) == re.findall(r"'(\w+)'", values), key
         else:
             (expected,) = (kind for words, kind in KINDS.items() if values.startswith(words))
-            assert expected in kinds, key
+            assert expected in kinds or (expected, kinds[0]) == ("float", "Coefficient"), key
 
 
 @pytest.mark.parametrize("path", EXAMPLES, ids=lambda path: path.stem)
