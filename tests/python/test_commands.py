@@ -20,6 +20,9 @@ from mfv.commands import main
 from mfv.compare import compare, relative_difference
 from mfv.load_history import kept_states, thinned, with_states_between
 
+sys.path.append(str(Path(__file__).resolve().parents[1] / "cli"))
+from terminal import shown_on_a_terminal
+
 PRESSED = """
 &scene title='{title}', coupling='{coupling}' /
 &body shape='half_plane', shear_modulus=1.0, poisson_ratio=0.3 /
@@ -222,6 +225,15 @@ def test_animate_writes_a_gif_that_moves(tmp_path: Path, capsys: pytest.CaptureF
     assert len(frames) == 8
     assert all(np.any(one != other) for one, other in zip(frames, frames[1:]))
     assert sorted(path.name for path in tmp_path.iterdir()) == ["a.gif", "a.h5"]
+
+
+def test_animate_shows_progress_on_a_terminal_alone(tmp_path: Path) -> None:
+    solved(tmp_path / "a.h5")
+    environment = {**os.environ, "PYTHONPATH": str(Path(mfv.__file__).parents[1])}
+    command = [sys.executable, "-m", "mfv", "animate", str(tmp_path / "a.h5"), "--frames", "2", "--kept"]
+    assert b"drawing" in shown_on_a_terminal(command, env=environment)
+    ended = subprocess.run(command, env=environment, capture_output=True, text=True, check=True)
+    assert ended.stderr == "" and ended.stdout.strip() == str(tmp_path / "a.gif")
 
 
 def test_animate_draws_the_states_of_the_file(tmp_path: Path) -> None:
