@@ -88,7 +88,9 @@ def test_relative_differences() -> None:
     assert relative_difference(0.0, 0.0) == relative_difference(np.inf, np.inf) == 0.0
     assert relative_difference(1.0, 2.0) == relative_difference(2.0, 1.0) == 0.5
     assert relative_difference(0.0, -3.0) == 1.0
-    assert np.isnan(relative_difference(1.0, np.nan))
+    for one, other in ((1.0, np.nan), (np.nan, 0.0), (np.nan, np.nan)):
+        assert np.isnan(relative_difference(one, other)) and np.isnan(relative_difference(other, one))
+    assert relative_difference(np.inf, 1.0) == relative_difference(-1.0, -np.inf) == np.inf
 
 
 def test_compare_writes_picture_and_table(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
@@ -187,6 +189,12 @@ def test_another_end_is_told_and_so_is_what_cannot_be_solved_again() -> None:
     result.attributes["input"] = result.attributes["input"].replace("shift", "").replace("disk", "disc")
     again, note = with_states_between(result, 40)
     assert "disc" in note and again.steps == result.steps
+    # A host that leads the contact itself has other states than the steps of the text.
+    with mfv.Case.from_text(SHEARED.format(**{**MINDLIN, "title": ""})) as case:
+        case.advance(normal_force=1.0e-3)
+        led = case.result()
+    again, note = with_states_between(led, 40)
+    assert "ends elsewhere" in note and len(again.steps) == 1
     without = mfv.run(text=SHEARED.format(**{**MINDLIN, "title": ""}) + "&output states='none' /\n")
     assert without.steps == [] and len(with_states_between(without, 8).result.steps) == 8
     steady = SHEARED.replace("cycles=1", "cycles=9, steady_tolerance=1e-6") + "&output states='none' /\n"
