@@ -6,7 +6,6 @@ import copy
 import gc
 import io
 import signal
-import subprocess
 import sys
 import threading
 import time
@@ -14,10 +13,10 @@ import weakref
 
 import numpy as np
 import pytest
-from scenes import PRESS, cylinder
 
 import mfv
 from mfv import errors
+from scenes import PRESS, cylinder
 
 NOTHING_KEPT = mfv.Output(history="none", states="none")
 SHEARED = PRESS, mfv.Step(tangential_force=2.8e-4), mfv.Step(tangential_force=-1.0e-4)
@@ -91,9 +90,7 @@ def test_the_tangent_is_what_differences_give(pressed: mfv.Case) -> None:
         with pressed.trial():
             pressed.advance(approach=h * direction[0], shift=h * direction[1], relative=True, check=True)
             after = pressed.loads
-        change = np.array(
-            [after.normal_force - before.normal_force, after.tangential_force - before.tangential_force]
-        )
+        change = np.array([after.normal_force - before.normal_force, after.tangential_force - before.tangential_force])
         np.testing.assert_allclose(tangent @ np.multiply(h, direction), change, rtol=2e-2, atol=2e-11)
     assert pressed.tangent().shape == (2, 2)
     assert pressed.tangent((0, -1))[1, 1] > pressed.tangent((0, 1))[1, 1] > 0.0
@@ -155,7 +152,7 @@ def test_a_trial_is_taken_back_unless_it_is_accepted(pressed: mfv.Case) -> None:
     assert tractions(pressed) == before
     with pytest.raises(ZeroDivisionError), pressed.trial():
         pressed.advance(tangential_force=1.0e-4)
-        1 / 0
+        raise ZeroDivisionError
     assert tractions(pressed) == before
     with pressed.trial() as trial:
         pressed.advance(tangential_force=1.0e-4)
@@ -252,7 +249,9 @@ def test_a_callback_must_not_use_its_case(pressed: mfv.Case) -> None:
 
 
 def test_an_interrupt_from_the_keyboard_ends_a_long_run_with_its_state() -> None:
-    case = cylinder(PRESS, mfv.Step(tangential_force=2.8e-4), mfv.Step(tangential_force=-2.8e-4, cycles=1000000)).contact()
+    case = cylinder(
+        PRESS, mfv.Step(tangential_force=2.8e-4), mfv.Step(tangential_force=-2.8e-4, cycles=1000000)
+    ).contact()
     timer = threading.Timer(0.3, signal.raise_signal, [signal.SIGINT])
     timer.start()
     started = time.monotonic()
@@ -276,16 +275,6 @@ def test_progress_is_quiet_in_a_pipe_and_shown_on_a_terminal(monkeypatch: pytest
     shown = scene.run(progress=True)
     assert "100%" in terminal.getvalue()
     assert shown.state.shear.tobytes() == plain.state.shear.tobytes()
-
-
-def test_progress_without_tqdm_says_what_is_missing() -> None:
-    script = (
-        "import sys; sys.modules['tqdm'] = sys.modules['tqdm.auto'] = None; import mfv\n"
-        "mfv.run(text=\"&body shape='half_plane', shear_modulus=1, poisson_ratio=0.3 /"
-        "&body shape='disk', radius=1, rigid=T / &step normal_force=1e-3 /\", progress=True)"
-    )
-    ended = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, timeout=60)
-    assert ended.returncode == 1 and ended.stderr.strip().endswith("ImportError: progress=True needs tqdm: pip install tqdm")
 
 
 def test_other_threads_go_on_during_a_run() -> None:

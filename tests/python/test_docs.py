@@ -9,9 +9,9 @@ from pathlib import Path
 
 import pytest
 from matplotlib import pyplot
-from scenes import PROJECT
 
 import mfv
+from scenes import PROJECT
 
 PAGES = ("docs/python-api.md", "README.md", "python/README.md")
 
@@ -28,7 +28,10 @@ def directory(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 def blocks(page: str) -> list[tuple[int, str]]:
     """The Python blocks of a page, each with the number of its first line."""
     text = (PROJECT / page).read_text()
-    return [(text[: m.start(1)].count("\n") + 1, m[1]) for m in re.finditer(r"^```python\n(.*?)^```", text, re.M | re.S)]
+    return [
+        (text[: m.start(1)].count("\n") + 1, m[1])
+        for m in re.finditer(r"^```python\n(.*?)^```", text, re.MULTILINE | re.DOTALL)
+    ]
 
 
 @pytest.mark.parametrize("page", PAGES)
@@ -40,7 +43,7 @@ def test_the_examples_of_a_page_run(page: str, directory: Path) -> None:
     names: dict[str, object] = {}
     for line, code in found:
         # Blank lines before it: a traceback then has the line of the page.
-        exec(compile("\n" * (line - 1) + code, str(PROJECT / page), "exec"), names)
+        exec(compile("\n" * (line - 1) + code, str(PROJECT / page), "exec"), names)  # noqa: S102 - our own page
     pyplot.close("all")
     assert any(isinstance(value, mfv.Result) for value in names.values())
 
