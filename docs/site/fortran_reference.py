@@ -1,8 +1,8 @@
 """The reference of the Fortran modules, from their sources: comments that begin with !> and the statements below them.
 
-FORD does not read this code: lengths told by functions of several arguments stop it, and comments whose first line has a colon are
-lost. What is read here is the style that fprettify and the project's rules leave: one module a file, `private` and a list of what is
-public, a comment above each entity.
+FORD does not read this code: lengths told by functions of several arguments stop it, and comments whose first line has a
+colon are lost. What is read here is the style that fprettify and the project's rules leave: one module a file, `private`
+and a list of what is public, a comment above each entity.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ WORDS_OF_FOLDERS = {
 
 @dataclass
 class Entity:
-    """What a module declares: its names (several where they stand in one statement), its comment, its statements as they are shown."""
+    """What a module declares: names (several where they stand in one statement), comment, statements as they are shown."""
 
     names: list[str]
     words: list[str]
@@ -56,7 +56,6 @@ def write_fortran_reference(root: Path, folder: Path) -> None:
         lines += [f"## {WORDS_OF_FOLDERS.get(name, name.capitalize())}", "", "| module | what it is |", "| --- | --- |"]
         lines += [f"| [`{module.name}`]({module.name}.md) | {_first_sentence(module.words)} |" for module in folders[name]]
         lines.append("")
-    lines += ["```{toctree}", ":hidden:", "", *(module.name for module in modules), "```"]
     (pages / "index.md").write_text("\n".join(lines) + "\n")
 
 
@@ -91,8 +90,8 @@ def read_module(path: Path) -> Module | None:
                 block.append(statements[i][0])
                 i += 1
             module.entities.append(Entity([name], words, _indented(block)))
-            module.entities += [Entity([match[3]], [], _indented(block)) for line in block[1:] for match in [PROCEDURE.fullmatch(line)]
-                                if match and not line.lower().startswith("end ")]
+            begun = [PROCEDURE.fullmatch(line) for line in block[1:] if not line.lower().startswith("end ")]
+            module.entities += [Entity([match[3]], [], _indented(block)) for match in begun if match]
         elif procedure and not text.lower().startswith("end "):
             inside_procedure += 1
             if inside_procedure == 1:
@@ -189,14 +188,16 @@ def _indented(block: list[str]) -> list[str]:
         if text.lower().startswith("end"):
             depth -= 1
         lines.append("   " * depth + text)
-        if re.match(r"(abstract +)?interface\b", text, re.IGNORECASE) or (PROCEDURE.fullmatch(text) and not text.lower().startswith(
-                ("end", "module procedure"))):
+        begins_procedure = PROCEDURE.fullmatch(text) and not text.lower().startswith(("end", "module procedure"))
+        if begins_procedure or re.match(r"(abstract +)?interface\b", text, re.IGNORECASE):
             depth += 1
     return lines
 
 
 def _page(root: Path, module: Module, homes: dict[str, str]) -> str:
-    lines = [f"# {module.name}", "", *_words(module.words), "", f"`{module.path.relative_to(root)}`", ""]
+    # A hundred modules would fill the side bar of every page: they are found from the table.
+    lines = ["---", "orphan: true", "---", "", f"# {module.name}", "", "[Fortran modules](index.md)", ""]
+    lines += [*_words(module.words), "", f"`{module.path.relative_to(root)}`", ""]
     own = {name.lower() for entity in module.entities for name in entity.names}
     others = [name for name in module.public if name not in own]
     if others:

@@ -24,8 +24,8 @@ from python_reference import write_python_reference
 
 PROGRAMS = ("mfv_run", "mfv_stress", "mfv_sweep", "mfv_conventional")
 PICTURES = (".png", ".gif", ".svg", ".jpg")
-LANGUAGES = {".nml": "fortran", ".f90": "fortran", ".F90": "fortran", ".py": "python", ".h": "c", ".def": "c", ".c": "c", ".sh": "sh",
-             ".cff": "yaml", ".toml": "toml"}
+LANGUAGES = {".nml": "fortran", ".f90": "fortran", ".F90": "fortran", ".py": "python", ".h": "c", ".def": "c", ".c": "c"}
+LANGUAGES |= {".sh": "sh", ".cff": "yaml", ".toml": "toml"}
 # Pages of the side bar by heading, as they are staged; pages that are not there yet are left out.
 CONTENTS = {
     "Start": ["docs/install", "docs/guide", "gallery/index", "docs/choosing"],
@@ -58,8 +58,8 @@ def main() -> int:
 
 def write_programs(programs: Path, page: Path) -> None:
     """The page of the programs' --help."""
-    lines = ["# Programs", "", "What `--help` says. The same is in the manual pages, `man mfv_run` and so on, with every key in",
-             "`man mfv_case` and `man mfv_sweep`. Options, files and quantities are completed by bash, zsh and fish.", ""]
+    lines = ["# Programs", "", "What `--help` says. The manual pages, `man mfv_run` and so on, have the same, and every key in"]
+    lines += ["`man 5 mfv_case` and `man 5 mfv_sweep`. Options, files and quantities are completed by bash, zsh and fish.", ""]
     for program in PROGRAMS:
         text = subprocess.run([programs / program, "--help"], check=True, capture_output=True, text=True).stdout
         lines += [f"## {program}", "", "```text", text.rstrip(), "```", ""]
@@ -120,9 +120,9 @@ class Site:
         self.files.append(page.removesuffix(".md"))
         here = Path(page).parent
         if source.is_dir():
-            tracked = subprocess.run(["git", "ls-files", "."], cwd=source, check=True, capture_output=True, text=True).stdout.split()
+            listed = subprocess.run(["git", "ls-files", "."], cwd=source, check=True, capture_output=True, text=True)
             lines = [f"# {target}", ""]
-            for name in sorted(name for name in tracked if "/" not in name):
+            for name in sorted(name for name in listed.stdout.split() if "/" not in name):
                 link = os.path.relpath(self.pages.get(target / name) or self._page_of(target / name), here)
                 lines += [f"![{name}]({link})", ""] if Path(name).suffix in PICTURES else [f"- [{name}]({link})"]
         else:

@@ -94,7 +94,7 @@ def predicted_turns(force: float, number: int) -> tuple[np.ndarray, np.ndarray]:
 def draw_decay(ax: Axes, program: Path | str) -> None:
     """A free decay between the turning points that quasi-static dissipation tells."""
     amplitude = 0.8
-    table, _ = simulate(program, "--amplitude", str(amplitude), "--nodes", "201", "--steps", "100", "--periods", "15")
+    table, _ = simulate(program, "--amplitude", str(amplitude), "--nodes", "201", "--periods", "15")
     turns = turning_points(table)
     number = len(turns["time"])
     _, shifts = predicted_turns(amplitude * LIMIT, number)

@@ -21,7 +21,7 @@
 
 enum { NORMAL, TANGENTIAL, MOTIONS }; /* approach with normal force, shift with tangential force */
 enum { ITERATIONS = 200 };
-static const double PI = 3.141592653589793, TOLERANCE = 1e-11; /* of the residual, in parts of mu P */
+static const double PI = 3.141592653589793, TOLERANCE = 1e-11; /* of the residual, in parts of mu P and of the first one */
 static const double MODULUS = 1.0, RADIUS = 0.25, FORCE = 1.0e-3, MU = 0.7;
 
 typedef struct settings {
@@ -174,6 +174,7 @@ static void correct(const host *self, double tangent[MOTIONS][MOTIONS], const do
 /* One time step. The number of iterations is returned. */
 static int advance(host *self, const settings *wanted, int number) {
   double position[MOTIONS], residual[MOTIONS], tangent[MOTIONS][MOTIONS];
+  double first = 0.0;
   mfv_loads before, now;
   check(self, mfv_save(self->contact, &self->start), "save");
   get_loads(self, &before);
@@ -184,7 +185,8 @@ static int advance(host *self, const settings *wanted, int number) {
       get_loads(self, &now);
       fprintf(stderr, "%d,%d,%.6e,%d\n", number, iteration, size, now.events - before.events);
     }
-    if (size <= TOLERANCE) {
+    if (iteration == 0) first = size;
+    if (size <= TOLERANCE * (1.0 + first)) {
       for (int i = self->first; i < MOTIONS; ++i) {
         const double acceleration = acceleration_at(self, i, position[i]);
         self->velocity[i] += 0.5 * self->dt * (self->acceleration[i] + acceleration);

@@ -172,7 +172,9 @@ def relative_difference(first: float, second: float) -> float:
 
 def _different_settings(first: Result, second: Result) -> list[Setting]:
     """Attributes that differ."""
-    one, other = ({name: text for name, text in r.attributes.items() if name not in NOT_SETTINGS} for r in (first, second))
+    one, other = (
+        {name: text for name, text in r.attributes.items() if name not in NOT_SETTINGS} for r in (first, second)
+    )
     return _different(one, other)
 
 

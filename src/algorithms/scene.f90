@@ -104,12 +104,14 @@ module mfv_scene
 
 contains
 
-   !> Whether the scene needs the tangential problem at all: a law with friction, and a step in which it acts.
+   !> Whether the scene needs the tangential problem at all: a law with friction, and a step in which it acts. Steps that are still to
+   !> be told, where the scene has none, may be such ones.
    pure logical function tangential(self)
       class(scene_type), intent(in) :: self
 
       tangential = self%friction%acts()
-      if (allocated(self%steps)) tangential = tangential .and. any(self%steps%friction)
+      if (.not. allocated(self%steps)) return
+      if (size(self%steps) > 0) tangential = tangential .and. any(self%steps%friction)
    end function tangential
 
    !> Whether the scene needs the rotation: a step names it or the moment.

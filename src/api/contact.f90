@@ -245,10 +245,17 @@ contains
       class(contact_type), intent(in) :: self
 
       associate (f => self%simulation%contact%state%fields, state => self%simulation%contact%state)
-         loads = loads_type(f%normal_force, f%tangential_force, f%moment, f%approach, f%shift, f%rotation, state%dissipation, &
-                            state%contact_nodes(), state%stick_nodes(), state%slip_nodes(), self%simulation%contact%events, &
-                            self%simulation%contact%system%solves)
+         loads%normal_force = f%normal_force
+         loads%tangential_force = f%tangential_force
+         loads%moment = f%moment
+         loads%approach = f%approach
+         loads%shift = f%shift
+         loads%rotation = f%rotation
+         loads%dissipation = state%dissipation
+         call state%count_nodes(loads%contact_nodes, loads%stick_nodes, loads%slip_nodes)
       end associate
+      loads%events = self%simulation%contact%events
+      loads%linear_solves = self%simulation%contact%system%solves
    end function loads
 
    !> The consistent tangent at the present state, see mfv_tangent; `tangent`: shape (2, 2), or (3, 3) with rotation. Friction acts as

@@ -506,11 +506,15 @@ contains
 
       call find(handle, self, status)
       if (status /= MFV_COMPLETE) return
-      status = refused(self, 'mfv_advance: the step is null')
-      if (.not. c_associated(step)) return
+      if (.not. c_associated(step)) then
+         status = refused(self, 'mfv_advance: the step is null')
+         return
+      end if
       call c_f_pointer(step, given)
-      status = refused(self, 'mfv_advance: size is not sizeof(mfv_step)')
-      if (given%size /= c_sizeof(given)) return
+      if (given%size /= c_sizeof(given)) then
+         status = refused(self, 'mfv_advance: size is not sizeof(mfv_step)')
+         return
+      end if
       wanted = step_type(given%normal_control, given%tangential_control, given%normal_target, given%tangential_target, &
                          given%friction /= 0, given%cycles, given%rotational_control, given%rotational_target, &
                          given%steady_tolerance)
@@ -536,11 +540,15 @@ contains
 
       call find(handle, self, status)
       if (status /= MFV_COMPLETE) return
-      status = refused(self, 'mfv_get_loads: loads is null')
-      if (.not. c_associated(loads)) return
+      if (.not. c_associated(loads)) then
+         status = refused(self, 'mfv_get_loads: loads is null')
+         return
+      end if
       call c_f_pointer(loads, given)
-      status = refused(self, 'mfv_get_loads: size is not sizeof(mfv_loads)')
-      if (given%size /= c_sizeof(given)) return
+      if (given%size /= c_sizeof(given)) then
+         status = refused(self, 'mfv_get_loads: size is not sizeof(mfv_loads)')
+         return
+      end if
       now = self%contact%loads()
       given = c_loads(given%size, now%normal_force, now%tangential_force, now%moment, now%approach, now%shift, now%rotation, &
                       now%dissipation, now%contact_nodes, now%stick_nodes, now%slip_nodes, now%events, now%linear_solves, 0)
@@ -558,23 +566,29 @@ contains
 
       call find(handle, self, status)
       if (status /= MFV_COMPLETE) return
-      status = refused(self, 'mfv_tangent: motions must be 2, or 3 with rotation')
-      if (motions /= 2 .and. motions /= 3) return
-      status = refused(self, 'mfv_tangent: tangent is null')
-      if (.not. c_associated(tangent)) return
+      if (motions /= 2 .and. motions /= 3) then
+         status = refused(self, 'mfv_tangent: motions must be 2, or 3 with rotation')
+         return
+      end if
+      if (.not. c_associated(tangent)) then
+         status = refused(self, 'mfv_tangent: tangent is null')
+         return
+      end if
       allocate (found(motions, motions))
       if (c_associated(direction)) then
          call c_f_pointer(direction, towards, [motions])
-         status = refused(self, 'mfv_tangent: the direction is not finite')
-         if (.not. all(ieee_is_finite(towards))) return
-         call self%contact%get_tangent(found, error, towards)
+         if (.not. all(ieee_is_finite(towards))) then
+            status = refused(self, 'mfv_tangent: the direction is not finite')
+            return
+         end if
+         call self%contact%get_tangent(found(:motions, :motions), error, towards)
       else
-         call self%contact%get_tangent(found, error)
+         call self%contact%get_tangent(found(:motions, :motions), error)
       end if
       status = failed(self, error)
       if (status /= MFV_COMPLETE) return
       call c_f_pointer(tangent, by_rows, [motions, motions])
-      by_rows = transpose(found)
+      by_rows = transpose(found(:motions, :motions))
    end function mfv_tangent
 
    function mfv_save(handle, state) result(status) bind(C, name='mfv_save')
@@ -586,8 +600,10 @@ contains
 
       call find(handle, self, status)
       if (status /= MFV_COMPLETE) return
-      status = refused(self, 'mfv_save: state is null')
-      if (.not. c_associated(state)) return
+      if (.not. c_associated(state)) then
+         status = refused(self, 'mfv_save: state is null')
+         return
+      end if
       call c_f_pointer(state, slot)
       if (c_associated(slot)) then
          call c_f_pointer(slot, kept)
@@ -656,8 +672,10 @@ contains
 
       call find(handle, self, status)
       if (status /= MFV_COMPLETE) return
-      status = refused(self, 'mfv_field_count: count is null')
-      if (.not. c_associated(count)) return
+      if (.not. c_associated(count)) then
+         status = refused(self, 'mfv_field_count: count is null')
+         return
+      end if
       call self%contact%field_paths(paths)
       call size_out(size(paths, kind=c_size_t), count)
       status = MFV_COMPLETE
@@ -673,8 +691,10 @@ contains
       call find(handle, self, status)
       if (status /= MFV_COMPLETE) return
       call self%contact%field_paths(paths)
-      status = refused(self, 'mfv_field_path: there are '//to_text(ubound(paths, 1))//' fields')
-      if (index < 0 .or. index >= ubound(paths, 1)) return
+      if (index < 0 .or. index >= ubound(paths, 1)) then
+         status = refused(self, 'mfv_field_path: there are '//to_text(ubound(paths, 1))//' fields')
+         return
+      end if
       status = text_out(paths(index + 1)%text, buffer, size)
    end function mfv_field_path
 
@@ -710,8 +730,10 @@ contains
       call find(handle, self, status)
       if (status /= MFV_COMPLETE) return
       call self%contact%attributes(names, texts)
-      status = refused(self, 'mfv_attribute_name: there are '//to_text(ubound(names, 1))//' attributes')
-      if (index < 0 .or. index >= ubound(names, 1)) return
+      if (index < 0 .or. index >= ubound(names, 1)) then
+         status = refused(self, 'mfv_attribute_name: there are '//to_text(ubound(names, 1))//' attributes')
+         return
+      end if
       status = text_out(names(index + 1)%text, buffer, size)
    end function mfv_attribute_name
 
@@ -726,18 +748,19 @@ contains
 
       call find(handle, self, status)
       if (status /= MFV_COMPLETE) return
-      status = refused(self, 'mfv_attribute: the name is null')
-      if (.not. c_associated(name)) return
+      if (.not. c_associated(name)) then
+         status = refused(self, 'mfv_attribute: the name is null')
+         return
+      end if
       wanted = text_in(name)
       call self%contact%attributes(names, texts)
-      status = refused(self, "there is no attribute '"//wanted//"'")
       do i = 1, ubound(names, 1)
          if (names(i)%text /= wanted) cycle
          call size_out(len(texts(i)%text, kind=c_size_t), length)
-         status = MFV_COMPLETE
          if (c_associated(buffer)) status = text_out(texts(i)%text, buffer, size)
          return
       end do
+      status = refused(self, "there is no attribute '"//wanted//"'")
    end function mfv_attribute
 
    function mfv_field_info(handle, path, count, is_integer, along, unit, unit_size, description, description_size) &
@@ -832,8 +855,10 @@ contains
       integer(c_int), intent(out) :: status
 
       nullify (across, up, values)
-      status = refused(self, 'an array is null')
-      if (.not. (c_associated(x) .and. c_associated(y) .and. c_associated(stresses))) return
+      if (.not. (c_associated(x) .and. c_associated(y) .and. c_associated(stresses))) then
+         status = refused(self, 'an array is null')
+         return
+      end if
       call c_f_pointer(x, across, [count])
       call c_f_pointer(y, up, [count])
       call c_f_pointer(stresses, values, [int(stress_count, c_size_t), count])
@@ -850,8 +875,10 @@ contains
 
       call find(handle, self, status)
       if (status /= MFV_COMPLETE) return
-      status = refused(self, 'place is null')
-      if (.not. c_associated(place)) return
+      if (.not. c_associated(place)) then
+         status = refused(self, 'place is null')
+         return
+      end if
       call self%contact%get_largest_von_mises(int(body), largest, error, int(step))
       status = failed(self, error)
       if (status == MFV_COMPLETE) call place_out(largest, place)
@@ -879,19 +906,25 @@ contains
       real(c_double), pointer, dimension(:) :: positions, widths, pressures, shears, across, up
       real(c_double), pointer :: values(:, :)
       integer(c_size_t) :: i
+      logical :: usable
 
       call find(handle, self, status)
       if (status /= MFV_COMPLETE) return
-      status = refused(self, 'mfv_stress_under: an array is null')
-      if (.not. (c_associated(arc) .and. c_associated(width) .and. c_associated(pressure) .and. c_associated(shear))) return
+      if (.not. (c_associated(arc) .and. c_associated(width) .and. c_associated(pressure) .and. c_associated(shear))) then
+         status = refused(self, 'mfv_stress_under: an array is null')
+         return
+      end if
       call c_f_pointer(arc, positions, [nodes])
       call c_f_pointer(width, widths, [nodes])
       call c_f_pointer(pressure, pressures, [nodes])
       call c_f_pointer(shear, shears, [nodes])
-      status = refused(self, 'mfv_stress_under: values must be finite and widths positive')
-      if (.not. (all(ieee_is_finite(positions)) .and. all(ieee_is_finite(widths)) .and. all(ieee_is_finite(pressures)) .and. &
-                 all(ieee_is_finite(shears)))) return
-      if (any(widths <= 0.0_wp)) return
+      usable = all(ieee_is_finite(positions)) .and. all(ieee_is_finite(widths)) .and. all(ieee_is_finite(pressures)) .and. &
+               all(ieee_is_finite(shears))
+      if (usable) usable = all(widths > 0.0_wp)
+      if (.not. usable) then
+         status = refused(self, 'mfv_stress_under: values must be finite and widths positive')
+         return
+      end if
       call self%contact%make_interior(int(body), positions, widths, pressures, shears, interior, error)
       status = failed(self, error)
       if (status == MFV_COMPLETE .and. c_associated(stresses)) then
@@ -945,8 +978,10 @@ contains
       nullify (field)
       call find(handle, self, status)
       if (status /= MFV_COMPLETE) return
-      status = refused(self, 'the path is null')
-      if (.not. c_associated(path)) return
+      if (.not. c_associated(path)) then
+         status = refused(self, 'the path is null')
+         return
+      end if
       call self%contact%find_field(text_in(path), field, error)
       status = failed(self, error)
    end subroutine field_at

@@ -41,8 +41,25 @@ contains
    pure function padded_integer(value) result(text)
       integer, intent(in) :: value
       character(len=longest_number) :: text
+      character(len=*), parameter :: digits = '0123456789'
+      character(len=longest_number) :: right_aligned
+      integer :: rest, place, digit
 
-      write (text, '(i0)') value
+      ! By hand: an internal write takes thousands of instructions, and every step of a load history has a message.
+      rest = value
+      place = longest_number
+      do
+         digit = abs(mod(rest, 10)) + 1
+         right_aligned(place:place) = digits(digit:digit)
+         rest = rest/10
+         if (rest == 0) exit
+         place = place - 1
+      end do
+      if (value < 0) then
+         place = place - 1
+         right_aligned(place:place) = '-'
+      end if
+      text = right_aligned(place:)
    end function padded_integer
 
    !> A real with up to `usual_digits` significant digits.

@@ -247,6 +247,33 @@ static void observers(void) {
   mfv_scene_free(&scene);
 }
 
+/* A message is that of the last call that failed, or of the outcome: calls that go well leave it. */
+static void success_leaves_the_message(void) {
+  mfv_scene *scene = cylinder();
+  mfv_case *handle = created(scene);
+  mfv_state *state = NULL;
+  mfv_loads loads = MFV_LOADS_INIT;
+  char reached[400] = "", message[400] = "", buffer[100];
+  double tangent[4], shear[NODES], x[1] = {0.0}, y[1] = {-0.1}, stresses[MFV_STRESS_COUNT], place[3];
+  size_t count = 0;
+  press(handle);
+  CHECK(mfv_message(handle, reached, sizeof reached) == MFV_COMPLETE && strstr(reached, "was reached") != NULL);
+  CHECK(mfv_get_loads(handle, &loads) == MFV_COMPLETE && mfv_tangent(handle, 2, NULL, tangent) == MFV_COMPLETE);
+  CHECK(mfv_save(handle, &state) == MFV_COMPLETE && mfv_restore(handle, state) == MFV_COMPLETE);
+  CHECK(mfv_field_count(handle, &count) == MFV_COMPLETE && mfv_field_path(handle, 0, buffer, sizeof buffer) == MFV_COMPLETE);
+  CHECK(mfv_attribute_name(handle, 0, buffer, sizeof buffer) == MFV_COMPLETE);
+  CHECK(mfv_attribute(handle, "outcome", buffer, sizeof buffer, NULL) == MFV_COMPLETE && strcmp(buffer, "complete") == 0);
+  CHECK(mfv_copy_real(handle, "state/shear", shear, NODES) == MFV_COMPLETE);
+  CHECK(mfv_stress(handle, MFV_LOWER, 0, 1, x, y, stresses) == MFV_COMPLETE);
+  CHECK(mfv_largest_von_mises(handle, MFV_LOWER, 0, place) == MFV_COMPLETE);
+  CHECK(mfv_message(handle, message, sizeof message) == MFV_COMPLETE && strcmp(message, reached) == 0);
+  CHECK(mfv_attribute(handle, "colour", buffer, sizeof buffer, NULL) == MFV_BAD_ARGUMENT);
+  CHECK(mfv_message(handle, message, sizeof message) == MFV_COMPLETE && strstr(message, "colour") != NULL);
+  mfv_state_free(&state);
+  mfv_free(&handle);
+  mfv_scene_free(&scene);
+}
+
 static void misuse_is_told(void) {
   mfv_scene *scene = NULL;
   mfv_case *handle = NULL, *other = NULL;
@@ -286,6 +313,7 @@ static void misuse_is_told(void) {
   CHECK(mfv_restore(other, state) == MFV_BAD_ARGUMENT);
   CHECK(mfv_message(other, message, sizeof message) == MFV_COMPLETE && strstr(message, "another scene") != NULL);
   CHECK(mfv_tangent(handle, 4, NULL, tangent) == MFV_BAD_ARGUMENT && mfv_tangent(handle, 2, NULL, NULL) == MFV_BAD_ARGUMENT);
+  CHECK(mfv_tangent(handle, 2000000, NULL, tangent) == MFV_BAD_ARGUMENT && mfv_tangent(handle, -1, NULL, tangent) == MFV_BAD_ARGUMENT);
   const double none[2] = {0, 0}, infinite[2] = {0, INFINITY};
   CHECK(mfv_tangent(handle, 2, none, tangent) == MFV_BAD_ARGUMENT && mfv_tangent(handle, 2, infinite, tangent) == MFV_BAD_ARGUMENT);
   loads.size = 3;
@@ -306,6 +334,7 @@ int main(void) {
   increments();
   newton_by_trial_steps();
   observers();
+  success_leaves_the_message();
   misuse_is_told();
   printf(failures == 0 ? "embedding: all checks passed\n" : "embedding: %d checks failed\n", failures);
   return failures != 0;

@@ -1,0 +1,50 @@
+!> The simulation without the C interface, for embedding.c to compare with: what mfv_advance stands on, called as directly as C can.
+module embedding_direct
+   use, intrinsic :: iso_c_binding
+   use mfv_case, only: case_type
+   use mfv_case_reader, only: read_case_text
+   use mfv_error, only: error_type
+   use mfv_kinds, only: wp
+   use mfv_scene, only: control_displacement, step_type
+   use mfv_simulation, only: new_simulation, simulation_type
+   implicit none
+   private
+
+   type(simulation_type), save :: simulation
+
+contains
+
+   !> Run the steps of a case anew. Returns the status.
+   integer(c_int) function direct_start(text, length) bind(C, name='direct_start') result(status)
+      integer(c_size_t), value :: length
+      character(kind=c_char), intent(in) :: text(length)
+      type(case_type) :: case
+      type(error_type), allocatable :: error
+
+      call read_case_text(transfer(text, repeat(' ', length)), 'text', case, error)
+      if (allocated(error)) then
+         status = error%status
+         return
+      end if
+      simulation = new_simulation(case%scene, case%keep_history, case%keep_states)
+      call simulation%run()
+      status = simulation%outcome
+   end function direct_start
+
+   !> Lead the shift on by an increment, length. Returns the status.
+   integer(c_int) function direct_advance(increment) bind(C, name='direct_advance') result(status)
+      real(c_double), value :: increment
+      type(step_type) :: step
+
+      step%tangential_control = control_displacement
+      step%tangential_target = simulation%contact%state%fields%shift + increment
+      call simulation%advance(step)
+      status = simulation%outcome
+   end function direct_advance
+
+   !> The tangential force now, force/length.
+   real(c_double) function direct_force() bind(C, name='direct_force') result(force)
+      force = simulation%contact%state%fields%tangential_force
+   end function direct_force
+
+end module embedding_direct
