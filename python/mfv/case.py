@@ -5,6 +5,7 @@ from __future__ import annotations
 import copy
 import ctypes
 import os
+import struct
 import threading
 import weakref
 from collections.abc import Iterator
@@ -212,6 +213,7 @@ class Case:
     def close(self) -> None:
         """Free the case; using it afterwards raises BadHandle. Closing twice does no harm."""
         with self._lock:
+            self._observer.refuse_while_leading()
             self._free()
 
     @property
@@ -261,24 +263,26 @@ class Case:
         normal_control, normal_target = _control("normal_force", normal_force, "approach", approach)
         tangential_control, tangential_target = _control("tangential_force", tangential_force, "shift", shift)
         rotational_control, rotational_target = _control("moment", moment, "rotation", rotation)
-        turns = min(index(cycles), LARGEST_INTEGER) if cycles else 0
+        turns = max(-LARGEST_INTEGER, min(index(cycles), LARGEST_INTEGER)) if cycles else 0
         with self._lock:
-            # One call in place of eleven: this is where a host program spends its time with Python.
-            StepStructure.pack(
-                self._step,
-                0,
-                _SIZE_OF_STEP,
-                normal_target,
-                tangential_target,
-                normal_control,
-                tangential_control,
-                1 if friction else 0,
-                turns,
-                rotational_target,
-                rotational_control,
-                1 if relative else 0,
-                steady_tolerance,
-            )
+            try:  # one call in place of eleven: this is where a host program spends its time with Python
+                StepStructure.pack(
+                    self._step,
+                    0,
+                    _SIZE_OF_STEP,
+                    normal_target,
+                    tangential_target,
+                    normal_control,
+                    tangential_control,
+                    1 if friction else 0,
+                    turns,
+                    rotational_target,
+                    rotational_control,
+                    1 if relative else 0,
+                    steady_tolerance,
+                )
+            except struct.error as error:
+                raise TypeError(f"targets and steady_tolerance must be numbers: {error}") from None
             watched = turns > 0 or self._is_long
             return self._lead(check, watched, self._advance, self._handle, self._step_reference)
 
