@@ -13,7 +13,7 @@ from contextlib import contextmanager
 from ctypes import POINTER, byref, c_int, c_int32, c_size_t, c_void_p, create_string_buffer
 from operator import index
 from types import TracebackType
-from typing import TYPE_CHECKING, Any, Callable, NamedTuple
+from typing import TYPE_CHECKING, Any, Callable
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -32,7 +32,8 @@ from ._library import (
     text_for,
     text_of,
 )
-from ._observer import Observer, Progress
+from ._observer import Observer
+from .loads import Loads, Progress
 from .result import Field, Result, Values
 from .scene import Scene, created
 
@@ -54,23 +55,6 @@ _DIMENSIONS: tuple[tuple[str, ...], ...] = ((), ("x",), ("record",), ("companion
 #: Plain numbers, which are quicker at hand than members of enumerations.
 _KEEP, _FORCE, _DISPLACEMENT = map(int, Control)
 _SIZE_OF_STEP = ctypes.sizeof(StepStructure)
-
-
-class Loads(NamedTuple):
-    """Loads and motions of the present state."""
-
-    normal_force: float  #: P [force/length]
-    tangential_force: float  #: Q [force/length], on the lower body to the right
-    moment: float  #: M [force], counterclockwise; 0 where rotation is not modelled
-    approach: float  #: of the upper body [length]
-    shift: float  #: of the upper body to the right [length]
-    rotation: float  #: of the upper body [radians], counterclockwise
-    dissipation: float  #: energy dissipated by friction so far [force]
-    contact_nodes: int
-    stick_nodes: int
-    slip_nodes: int
-    events: int  #: loads so far at which nodes changed their status
-    linear_solves: int  #: so far
 
 
 def run(
