@@ -7,30 +7,12 @@ import threading
 from collections.abc import Iterator
 from contextlib import contextmanager
 from ctypes import c_void_p
-from typing import Any, Callable, NamedTuple
+from typing import Any, Callable
 
 from ._library import OBSERVER, library
+from .loads import Progress
 
 BAR_FORMAT = "{percentage:3.0f}%|{bar}| {elapsed}<{remaining}{postfix}"
-
-
-class Progress(NamedTuple):
-    """What an observer is told after every increment of the load."""
-
-    fraction: float  #: of this straight part of the load history
-    segment: int  #: number of this part, from 1
-    segments: int  #: how many there are
-    contact_nodes: int
-    stick_nodes: int
-    normal_force: float  #: [force/length]
-    tangential_force: float  #: [force/length]
-    approach: float  #: [length]
-    shift: float  #: [length]
-
-    @property
-    def done(self) -> float:
-        """Part of the whole load history that is done."""
-        return (self.segment - 1 + self.fraction) / max(self.segments, 1)
 
 
 class Observer:

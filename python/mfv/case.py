@@ -5,6 +5,7 @@ from __future__ import annotations
 import copy
 import ctypes
 import os
+import struct
 import threading
 import weakref
 from collections.abc import Iterator
@@ -12,7 +13,7 @@ from contextlib import contextmanager
 from ctypes import POINTER, byref, c_int, c_int32, c_size_t, c_void_p, create_string_buffer
 from operator import index
 from types import TracebackType
-from typing import TYPE_CHECKING, Any, Callable, NamedTuple
+from typing import TYPE_CHECKING, Any, Callable
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -31,7 +32,8 @@ from ._library import (
     text_for,
     text_of,
 )
-from ._observer import Observer, Progress
+from ._observer import Observer
+from .loads import Loads, Progress
 from .result import Field, Result, Values
 from .scene import Scene, created
 
@@ -53,23 +55,6 @@ _DIMENSIONS: tuple[tuple[str, ...], ...] = ((), ("x",), ("record",), ("companion
 #: Plain numbers, which are quicker at hand than members of enumerations.
 _KEEP, _FORCE, _DISPLACEMENT = map(int, Control)
 _SIZE_OF_STEP = ctypes.sizeof(StepStructure)
-
-
-class Loads(NamedTuple):
-    """Loads and motions of the present state."""
-
-    normal_force: float  #: P [force/length]
-    tangential_force: float  #: Q [force/length], on the lower body to the right
-    moment: float  #: M [force], counterclockwise; 0 where rotation is not modelled
-    approach: float  #: of the upper body [length]
-    shift: float  #: of the upper body to the right [length]
-    rotation: float  #: of the upper body [radians], counterclockwise
-    dissipation: float  #: energy dissipated by friction so far [force]
-    contact_nodes: int
-    stick_nodes: int
-    slip_nodes: int
-    events: int  #: loads so far at which nodes changed their status
-    linear_solves: int  #: so far
 
 
 def run(
@@ -212,6 +197,7 @@ class Case:
     def close(self) -> None:
         """Free the case; using it afterwards raises BadHandle. Closing twice does no harm."""
         with self._lock:
+            self._observer.refuse_while_leading()
             self._free()
 
     @property
@@ -261,24 +247,26 @@ class Case:
         normal_control, normal_target = _control("normal_force", normal_force, "approach", approach)
         tangential_control, tangential_target = _control("tangential_force", tangential_force, "shift", shift)
         rotational_control, rotational_target = _control("moment", moment, "rotation", rotation)
-        turns = min(index(cycles), LARGEST_INTEGER) if cycles else 0
+        turns = max(-LARGEST_INTEGER, min(index(cycles), LARGEST_INTEGER)) if cycles else 0
         with self._lock:
-            # One call in place of eleven: this is where a host program spends its time with Python.
-            StepStructure.pack(
-                self._step,
-                0,
-                _SIZE_OF_STEP,
-                normal_target,
-                tangential_target,
-                normal_control,
-                tangential_control,
-                1 if friction else 0,
-                turns,
-                rotational_target,
-                rotational_control,
-                1 if relative else 0,
-                steady_tolerance,
-            )
+            try:  # one call in place of eleven: this is where a host program spends its time with Python
+                StepStructure.pack(
+                    self._step,
+                    0,
+                    _SIZE_OF_STEP,
+                    normal_target,
+                    tangential_target,
+                    normal_control,
+                    tangential_control,
+                    1 if friction else 0,
+                    turns,
+                    rotational_target,
+                    rotational_control,
+                    1 if relative else 0,
+                    steady_tolerance,
+                )
+            except struct.error as error:
+                raise TypeError(f"targets and steady_tolerance must be numbers: {error}") from None
             watched = turns > 0 or self._is_long
             return self._lead(check, watched, self._advance, self._handle, self._step_reference)
 

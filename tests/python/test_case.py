@@ -63,6 +63,10 @@ def test_loads_are_those_of_the_summary(pressed: mfv.Case) -> None:
 def test_numbers_beyond_a_c_int_are_not_wrapped(pressed: mfv.Case) -> None:
     with pytest.raises(errors.BadArgument, match="cycles must be from 0 to 1000000"):
         pressed.advance(shift=1e-5, cycles=2**32)
+    with pytest.raises(errors.BadArgument, match="cycles must be from 0 to 1000000"):
+        pressed.advance(shift=1e-5, cycles=-(2**40))
+    with pytest.raises(TypeError, match="must be numbers"):
+        pressed.advance(shift="far")  # type: ignore[arg-type]
     with pytest.raises(TypeError):
         pressed.advance(shift=1e-5, cycles=1.5)  # type: ignore[arg-type]
     pressed.advance(shift=np.float64(1e-5), cycles=np.int64(1), friction=np.bool_(True))
@@ -238,6 +242,8 @@ def test_a_callback_must_not_use_its_case(pressed: mfv.Case) -> None:
         lambda: pressed["mesh/x"],
         lambda: pressed.advance(shift=0.0),
         lambda: pressed.save(),
+        lambda: pressed.close(),
+        lambda: pressed.observe(None),
     ):
         state = pressed.save()
         pressed.observe(lambda _, use=use: use())

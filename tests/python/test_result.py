@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import copy
+import html
 import inspect
 import pickle
 import re
@@ -18,7 +19,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 import mfv
-from scenes import PRESS, cylinder
+from scenes import PRESS, cylinder, sweep_table
 
 TO_AND_FRO = (
     mfv.Step(normal_force=5.0e-4),
@@ -137,6 +138,18 @@ def test_nothing_is_drawn_where_nothing_is_loaded() -> None:
     with cylinder().contact() as case:
         assert "<svg" not in case.result()._repr_html_()
         assert "<table" in case.result()._repr_html_()
+
+
+def test_a_table_becomes_a_data_frame_and_shows_its_columns(tmp_path: Path) -> None:
+    table = mfv.read_table(sweep_table(tmp_path))
+    frame = table.to_pandas()
+    assert list(frame.columns) == list(table.columns) and len(frame) == 4
+    assert list(frame["scene%coupling"]) == ["full", "none"] * 2
+    np.testing.assert_array_equal(frame["stick_ratio"], table["stick_ratio"])
+    assert frame.attrs["units"]["shift"] == "length"
+    shown = table[:2]._repr_html_()
+    for word in ("2 cases", "scene%coupling", "stick_ratio", table.long_names["shift"]):
+        assert html.escape(word) in shown
 
 
 # --- panels ---
