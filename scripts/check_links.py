@@ -1,6 +1,6 @@
 """Links that lead nowhere: of the repository's Markdown files as read in place, or of a site. Standard library only.
 
-    python3 scripts/check_links.py                     # every Markdown file that git knows
+    python3 scripts/check_links.py                     # every Markdown file of the source tree
     python3 scripts/check_links.py build/docs/html     # every page of a site
 
 Files and anchors are looked up; addresses of the web are listed, not fetched. Exit code 1 where a link is broken.
@@ -9,7 +9,6 @@ Files and anchors are looked up; addresses of the web are listed, not fetched. E
 import argparse
 import html.parser
 import re
-import subprocess
 import sys
 from collections.abc import Iterator
 from pathlib import Path
@@ -64,8 +63,9 @@ def check(pages: dict[Path, Page]) -> tuple[list[str], set[str]]:
 
 
 def markdown_files() -> list[Path]:
-    listed = subprocess.run(["git", "ls-files", "*.md"], cwd=ROOT, check=True, capture_output=True, text=True).stdout
-    return [ROOT / name for name in listed.splitlines()]
+    """Those of the source tree, without what is built, and what is hidden."""
+    files = sorted(ROOT.rglob("*.md"))
+    return [path for path in files if not any(part == "build" or part[0] == "." for part in path.relative_to(ROOT).parts)]
 
 
 def read_markdown(files: list[Path]) -> dict[Path, Page]:

@@ -28,6 +28,8 @@ PROGRAMS = ("mfv_run", "mfv_stress", "mfv_sweep", "mfv_conventional")
 PICTURES = (".png", ".gif", ".svg", ".jpg")
 LANGUAGES = {".nml": "fortran", ".f90": "fortran", ".F90": "fortran", ".py": "python", ".h": "c", ".def": "c", ".c": "c"}
 LANGUAGES |= {".sh": "sh", ".cff": "yaml", ".toml": "toml"}
+# Files that the page of a folder names.
+SHOWN = (*PICTURES, *LANGUAGES, ".csv", ".md", ".txt")
 # Pages of the side bar by heading, as they are staged; pages that are not there yet are left out.
 CONTENTS = {
     "Start": ["docs/install", "docs/guide", "gallery/index", "docs/choosing"],
@@ -127,9 +129,8 @@ class Site:
         self.files.append(page.removesuffix(".md"))
         here = Path(page).parent
         if source.is_dir():
-            listed = subprocess.run(["git", "ls-files", "."], cwd=source, check=True, capture_output=True, text=True)
             lines = [f"# {target}", ""]
-            for name in sorted(name for name in listed.stdout.split() if "/" not in name):
+            for name in sorted(path.name for path in source.iterdir() if path.suffix in SHOWN):
                 link = os.path.relpath(self.pages.get(target / name) or self._page_of(target / name), here)
                 lines += [f"![{name}]({link})", ""] if Path(name).suffix in PICTURES else [f"- [{name}]({link})"]
         else:
