@@ -39,7 +39,7 @@ LIMIT = MU * FORCE
 
 def simulate(program: Path | str, *options: str) -> tuple[dict[str, np.ndarray], dict[str, np.ndarray]]:
     """Columns of the program's table; with --verbose those of its residuals too."""
-    done = subprocess.run([str(program), *options], capture_output=True, text=True, check=False)
+    done = subprocess.run([str(Path(program).resolve()), *options], capture_output=True, text=True, check=False)
     if done.returncode:
         raise RuntimeError(f"{program} {' '.join(options)}: {done.stderr}")
     return columns(done.stdout), columns(done.stderr)
