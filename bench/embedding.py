@@ -2,14 +2,16 @@
 
 PYTHONPATH=python build/venv/bin/python bench/embedding.py
 
-85 nodes in contact, Coulomb's friction, sheared to and fro in small increments of the shift. Three times in turn: the whole of
-`advance`; `mfv_advance` called through ctypes with steps made before; and the same function with no case, which returns at once
-and tells what a call by ctypes costs by itself. The second less the third is the library's own time.
+85 nodes in contact, Coulomb's friction, sheared to and fro in small increments of the shift. In turn: the whole of `advance`;
+`mfv_advance` called through ctypes with steps made before; and the same function with no case, which returns at once and tells what
+the call and the clock cost by themselves. The second less the third is the library's own time. Then the same with a look at the
+loads after every increment. Of every increment the least time of all repeats counts: other programs on the machine then do not.
 """
 
 from __future__ import annotations
 
 import argparse
+import functools
 import os
 import sys
 import time
@@ -21,9 +23,11 @@ os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 ROOT = Path(__file__).resolve().parents[1]
 sys.path.insert(0, str(ROOT / "python"))
 
-import mfv
 import numpy as np
-from mfv._library import Control, StepStructure, library
+from numpy.typing import NDArray
+
+import mfv
+from mfv._library import Control, LoadsStructure, StepStructure, library
 
 #: Increments of a cycle, and the shift that they go to and fro between [length].
 INCREMENTS, AMPLITUDE = 400, 2.0e-4
@@ -54,30 +58,34 @@ def increments() -> list[float]:
     return [float(increment) for increment in np.diff(to_and_fro)]
 
 
-def duration(lead: Callable[[float], object], cycles: int) -> float:
-    """Seconds that an increment takes."""
-    way = increments() * cycles
-    started = time.perf_counter()
-    for increment in way:
+def durations(lead: Callable[[float], object]) -> NDArray[np.float64]:
+    """Seconds that each increment takes."""
+    taken = []
+    for increment in increments():
+        started = time.perf_counter()
         lead(increment)
-    return (time.perf_counter() - started) / len(way)
+        taken.append(time.perf_counter() - started)
+    return np.array(taken)
 
 
-def by_advance(cycles: int, loads: bool = False) -> float:
+def by_advance(loads: bool) -> NDArray[np.float64]:
     """The whole of `advance`; with `loads` also asking for the loads."""
     with pressed() as case:
         if loads:
-            return duration(lambda shift: (case.advance(shift=shift, relative=True), case.loads), cycles)
-        return duration(lambda shift: case.advance(shift=shift, relative=True), cycles)
+            return durations(lambda shift: (case.advance(shift=shift, relative=True), case.loads))
+        return durations(lambda shift: case.advance(shift=shift, relative=True))
 
 
-def by_ctypes(cycles: int, with_case: bool) -> float:
-    """The function of the library alone."""
-    function = library().mfv_advance
+def by_ctypes(with_case: bool, loads: bool) -> NDArray[np.float64]:
+    """The functions of the library alone."""
+    advance, get_loads = library().mfv_advance, library().mfv_get_loads
     steps = {shift: byref(_step(shift)) for shift in increments()}
+    found = byref(LoadsStructure(size=sizeof(LoadsStructure)))
     with pressed() as case:
         handle = case._handle if with_case else c_void_p()
-        return duration(lambda shift: function(handle, steps[shift]), cycles)
+        if loads:
+            return durations(lambda shift: (advance(handle, steps[shift]), get_loads(handle, found)))
+        return durations(lambda shift: advance(handle, steps[shift]))
 
 
 def _step(shift: float) -> StepStructure:
@@ -92,23 +100,32 @@ def _step(shift: float) -> StepStructure:
 
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--cycles", type=int, default=5, help="cycles of one measurement (5 unless told)")
-    parser.add_argument("--repeats", type=int, default=7, help="measurements, of which the least counts (7 unless told)")
+    parser.add_argument(
+        "--repeats", type=int, default=40, help="measurements, of which the least counts (40 unless told)"
+    )
     options = parser.parse_args()
-    measures: dict[str, Callable[[], float]] = {
-        "advance": lambda: by_advance(options.cycles),
-        "advance and loads": lambda: by_advance(options.cycles, loads=True),
-        "mfv_advance": lambda: by_ctypes(options.cycles, with_case=True),
-        "ctypes": lambda: by_ctypes(options.cycles, with_case=False),
+    measures = {
+        (name, loads): measure
+        for loads in (False, True)
+        for name, measure in (
+            ("package", functools.partial(by_advance, loads)),
+            ("library", functools.partial(by_ctypes, True, loads)),
+            ("nothing", functools.partial(by_ctypes, False, loads)),
+        )
     }
-    least = dict.fromkeys(measures, float("inf"))
+    least = {name: np.full(INCREMENTS, np.inf) for name in measures}
     for _ in range(options.repeats):
         for name, measure in measures.items():
-            least[name] = min(least[name], measure())
-    own = least["mfv_advance"] - least["ctypes"]
-    print(f"{'library alone':20}{own * 1e6:8.2f} us an increment")
-    for name in ("mfv_advance", "advance", "advance and loads"):
-        print(f"{name:20}{least[name] * 1e6:8.2f} us, {100.0 * (least[name] / own - 1.0):5.1f} % more than the library alone")
+            least[name] = np.minimum(least[name], measure())
+    for loads in (False, True):
+        package, library_and_call, call = (
+            1e6 * float(np.mean(least[name, loads])) for name in ("package", "library", "nothing")
+        )
+        own = library_and_call - call
+        print(
+            f"{'advance and loads' if loads else 'advance':18}{package:7.2f} us, of which the library {own:.2f} us: "
+            f"Python adds {100.0 * (package / own - 1.0):.1f} %"
+        )
 
 
 if __name__ == "__main__":

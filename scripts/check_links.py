@@ -1,4 +1,4 @@
-"""Links that lead nowhere: of the Markdown files of the repository as read in place, or of a site of HTML files. Standard library only.
+"""Links that lead nowhere: of the repository's Markdown files as read in place, or of a site. Standard library only.
 
     python3 scripts/check_links.py                     # every Markdown file that git knows
     python3 scripts/check_links.py build/docs/html     # every page of a site

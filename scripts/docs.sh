@@ -3,7 +3,7 @@
 # gallery, checks every link. Safe to repeat. Needs no network to be read.
 . "$(dirname "$0")/common.sh"
 install_missing
-[ -x "$root/build/release/bin/mfv_sweep" ] || build release
+build release --target mfv_run mfv_stress mfv_sweep mfv_conventional
 site=$root/build/docs
 venv=$site/venv
 if [ ! "$venv/done" -nt "$root/pyproject.toml" ]; then
@@ -19,7 +19,7 @@ say "staging the pages, solving the gallery"
 "$venv/bin/python" "$root/docs/site/stage.py" --programs "$root/build/release/bin" "$site/source"
 say "building the pages"
 rm -rf "$site/html"
-"$venv/bin/python" -m sphinx -q -W --keep-going -b html -c "$root/docs/site" -d "$site/doctrees" "$site/source" "$site/html"
+"$venv/bin/python" -m sphinx -q -W --keep-going -j "$jobs" -b html -c "$root/docs/site" -d "$site/doctrees" "$site/source" "$site/html"
 say "checking the links"
 "$venv/bin/python" "$root/scripts/check_links.py"
 "$venv/bin/python" "$root/scripts/check_links.py" "$site/html"

@@ -2,9 +2,10 @@
 
     python3 scripts/manual.py build/release/bin docs/man
 
-Written are mfv_run.1, mfv_stress.1, mfv_sweep.1 and mfv_conventional.1 from --help, mfv_case.5 and mfv_sweep.5 from --keys and the
-beginnings of docs/namelist.md and docs/sweep.md. A help text consists of its usage, paragraphs, and headings that end in a colon;
-indented lines are a list where they begin with a term, two blanks or more, and an explanation, else they are kept as they stand.
+Written are mfv_run.1, mfv_stress.1, mfv_sweep.1 and mfv_conventional.1 from --help, mfv_case.5 and mfv_sweep.5 from --keys
+and the beginnings of docs/namelist.md and docs/sweep.md. A help text consists of its usage, paragraphs, and headings that
+end in a colon. Below a heading, lines of a term, two blanks or more and an explanation are a list, and others are words;
+examples, and indented lines above the first heading, stay as they are.
 """
 import argparse
 import re
@@ -96,7 +97,8 @@ def definitions(rows: list[str]) -> list[str]:
 
 def example(before: list[str], rows: list[str]) -> list[str]:
     """Lines as they stand, with a blank one between them and words before."""
-    return [*([] if before[-1].startswith(".SH") else [".sp"]), ".RS 2", ".nf", *(escaped(row.removeprefix("  ")) for row in rows), ".fi", ".RE"]
+    blank = [] if before[-1].startswith(".SH") else [".sp"]
+    return [*blank, ".RS 2", ".nf", *(escaped(row.removeprefix("  ")) for row in rows), ".fi", ".RE"]
 
 
 def paragraph(before: list[str]) -> list[str]:
@@ -116,8 +118,9 @@ def text_page(page: str, about: str, beginning: str, keys: str) -> str:
         lines.append(f".SS {escaped(title)}")
         for row in rows[3:]:
             name, value, default, unit, meaning = (cell.strip() for cell in row.strip("| ").split(" | "))
-            stated = [value, *([f"unit {unit}"] if unit else []), *([f"default {default.strip('`')}"] if default != "-" else [])]
-            lines += [".TP", f"\\fB{escaped(name.strip('`'))}\\fP", *filled("; ".join(stated)), ".br", *filled(meaning.removesuffix(".") + ".")]
+            stated = value + (f"; unit {unit}" if unit else "") + (f"; default {default.strip('`')}" if default != "-" else "")
+            lines += [".TP", f"\\fB{escaped(name.strip('`'))}\\fP", *filled(stated)]
+            lines += [".br", *filled(meaning.removesuffix(".") + ".")]
     programs = ", ".join(f"{program}(1)" for program in PROGRAMS)
     return "\n".join([*lines, ".SH SEE ALSO", *filled(programs)]) + "\n"
 

@@ -1,18 +1,24 @@
 #!/bin/sh
-# Draws the pictures of the documents anew, from the examples, into docs/pictures. Needs a release build (scripts/demo.sh).
+# Draws the pictures of the documents anew, from the examples, into docs/pictures. Needs a release build, the Python packages and the
+# chromium of scripts/test.sh.
 . "$(dirname "$0")/common.sh"
 bin=$root/build/release/bin
 pictures=$root/docs/pictures
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 cd "$work"
-draw() { PYTHONPATH=$root/python MPLBACKEND=Agg "$venv/bin/python" -m mfv plot "$@"; }
+show() { PYTHONPATH=$root/python MPLBACKEND=Agg MFV_LIBRARY=$root/build/release/lib/libmfv.so "$venv/bin/python" -m mfv "$@"; }
+draw() { show plot "$@"; }
 for example in mindlin disk_on_plane disk_in_hole two_cylinders pin_in_bore; do
   "$bin/mfv_run" "$root/examples/$example.nml" >/dev/null
   draw "$example.h5" -o "$pictures/$example.png"
 done
 "$bin/mfv_run" "$root/examples/shear_cycles.nml" >/dev/null
 draw shear_cycles.h5 --cycles -o "$pictures/shear_cycles.png"
+show animate shear_cycles.h5 --frames 50 --rate 10 -o "$pictures/cycles.gif"
+show report shear_cycles.h5 --states 120
+chromium --headless --no-sandbox --disable-gpu --hide-scrollbars --window-size=1200,1310 --virtual-time-budget=20000 \
+  --screenshot="$pictures/report.png" "file://$work/shear_cycles.html"
 for example in two_cylinders pin_in_bore; do
   "$bin/mfv_stress" "$example.h5" >/dev/null
   draw "$example.h5" --stress von_mises -o "$pictures/${example}_stress.png"

@@ -1,5 +1,6 @@
-"""Print what the Python package depends on, as pip takes it: python requirements.py [EXTRA]. From pyproject.toml, so that running
-from the source tree wants nothing installed but this."""
+"""Print what the Python package depends on, from pyproject.toml, as pip takes it: python requirements.py [EXTRA].
+
+With this installed the package runs from the source tree."""
 
 import re
 import sys

@@ -56,7 +56,7 @@ def commented(template: str, comments: Meanings) -> str:
         if group and key:
             name = group, key.group(1)
             if name not in told:
-                indent = dict(initial_indent="   ! ", subsequent_indent="   ! ", break_on_hyphens=False)
+                indent = {"initial_indent": "   ! ", "subsequent_indent": "   ! ", "break_on_hyphens": False}
                 lines += textwrap.wrap(comments[name], WIDTH, **indent)
             told.add(name)
         lines.append(line)

@@ -1,4 +1,4 @@
-"""The reference of the C interface, from include/mfv.h: a block of comment and the declarations below it, up to a blank line."""
+"""The reference of the C interface, from include/mfv.h: a comment, declarations below it, a blank line."""
 
 from __future__ import annotations
 
@@ -6,6 +6,11 @@ import re
 from pathlib import Path
 
 from docstrings import escaped
+
+CALLBACK = re.compile(r"^typedef \w+ \(\*(\w+)\)", re.MULTILINE)
+PROTOTYPE = re.compile(r"^(?!typedef|enum|#)(\w[^;{}]*\([^;{}]*\));", re.MULTILINE)
+STRUCT = re.compile(r"^typedef struct (\w+)(?: \w+;|( \{))", re.MULTILINE)
+STATUS = re.compile(r'^MFV_STATUS\((\w+), (\d+), (\d+), "(.*?)", "(.*?)"\)', re.MULTILINE)
 
 
 def write_c_reference(include: Path, page: Path) -> None:
@@ -19,31 +24,26 @@ def write_c_reference(include: Path, page: Path) -> None:
         if comment:
             lines += _described(_words(comment[1]), block[comment.end():].strip())
     lines += ["## Statuses", "", "| name | code | exit code | outcome | what it says |", "| --- | --- | --- | --- | --- |"]
-    for match in re.finditer(r'^MFV_STATUS\((\w+), (\d+), (\d+), "(.*?)", "(.*?)"\)', (include / "mfv_status.def").read_text(), re.MULTILINE):
+    for match in STATUS.finditer((include / "mfv_status.def").read_text()):
         lines.append("| `{}` | {} | {} | {} | {} |".format(*match.groups()))
     page.write_text("\n".join(lines) + "\n")
 
 
 def _described(comment: str, declarations: str) -> list[str]:
     """A comment with what it is about, as directives of Sphinx's C domain, or as it stands where that has none."""
-    signatures = [" ".join(each.split()) for each in re.findall(r"^(?!typedef|enum|#)(\w[^;{}]*\([^;{}]*\));", declarations, re.MULTILINE)]
+    signatures = [" ".join(each.split()) for each in PROTOTYPE.findall(declarations)]
     if signatures:
         declared = ["```{eval-rst}", ".. c:function:: " + "\n                ".join(signatures), ""]
         return [*declared, f"   {escaped(comment)}", "```", ""]
     words = _literal(comment)
-    opaque = re.fullmatch(r"typedef struct (\w+) \1;", declarations)
-    if opaque:
-        return [*_directive("type", opaque[1]), "", words, ":::", ""]
-    struct = re.match(r"typedef struct (\w+) \{(.*)\} \1;", declarations, re.DOTALL)
-    if struct:
-        members = re.findall(r"^ *(\w+ \w+); */\*(.*?)\*/", struct[2], re.MULTILINE | re.DOTALL)
-        inner = [line for name, meaning in members for line in ("", *_directive("member", name), _literal(_words(meaning)), ":::")]
-        return [*_directive("struct", struct[1], ":" * 4), "", words, *inner, "::::", ""]
-    return [words, "", "```c", declarations, "```", ""]
-
-
-def _directive(kind: str, signature: str, fence: str = ":::") -> list[str]:
-    return [f"{fence}{{c:{kind}}} {signature}"]
+    code = ["```c", declarations, "```", ""]
+    types = ["struct " + name if opens else "type " + name for name, opens in STRUCT.findall(declarations)]
+    types += ["type " + name for name in CALLBACK.findall(declarations)]
+    if not types:
+        return [words, "", *code]
+    shown = code if "\n" in declarations else []
+    lines = [f"::::{{c:{types[0]}".replace(" ", "} "), "", words, "", *shown, "::::", ""]
+    return lines + [line for kind in types[1:] for line in (f"::::{{c:{kind}".replace(" ", "} "), "::::", "")]
 
 
 def _words(comment: str) -> str:

@@ -1,4 +1,4 @@
-"""Sphinx's settings for the site. scripts/docs.sh stages the pages in build/docs/source (docs/site/stage.py) and builds them."""
+"""Sphinx's settings for the site: scripts/docs.sh stages the pages in build/docs/source by stage.py and builds them."""
 
 import importlib.util
 import sys

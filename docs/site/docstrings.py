@@ -1,12 +1,15 @@
-"""Sphinx extension: docstrings of this project are words with code between backquotes; what else reStructuredText would see in them
-is taken literally."""
+"""Sphinx extension: docstrings of this project are words with code between backquotes.
+
+What else reStructuredText would see in them is taken literally.
+"""
 
 from __future__ import annotations
 
 import re
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
-from sphinx.application import Sphinx
+if TYPE_CHECKING:
+    from sphinx.application import Sphinx
 
 
 def take_literally(app: Sphinx, what: str, name: str, obj: object, options: object, lines: list[str]) -> None:
@@ -18,7 +21,8 @@ def take_literally(app: Sphinx, what: str, name: str, obj: object, options: obje
         if rows[0].startswith("    "):
             made += ["::", "", *rows, ""]
         else:
-            made += [*escaped(" ".join(row.strip() for row in rows) if not block.lstrip().startswith("- ") else block).split("\n"), ""]
+            words = block if block.lstrip().startswith("- ") else " ".join(row.strip() for row in rows)
+            made += [*escaped(words).split("\n"), ""]
     lines[:] = made
 
 

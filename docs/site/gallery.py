@@ -48,11 +48,13 @@ def write_gallery(root: Path, programs: Path, folder: Path, show: object = print
     places = {name: gallery / name for name in ("examples", "scripts", "dissertation", "decoupling")}
     for place in places.values():
         place.mkdir(parents=True)
+    solved = _solved(root, programs, places["examples"], show)
+    scripts = _scripts(root, places["scripts"])
+    figures = _dissertation(root, places["dissertation"])
     sections = [
-        ("Examples", "Solved and drawn while this site was built.", "examples", _solved(root, programs, places["examples"], show)),
-        ("Scripts", "Python programs that solve many cases.", "scripts", _scripts(root, places["scripts"])),
-        ("Figures of the dissertation", "Drawn by `examples/dissertation/draw.py`.", "dissertation",
-         _dissertation(root, places["dissertation"])),
+        ("Examples", "Solved and drawn while this site was built.", "examples", solved),
+        ("Scripts", "Python programs that solve many cases.", "scripts", scripts),
+        ("Figures of the dissertation", "Drawn by `examples/dissertation/draw.py`.", "dissertation", figures),
     ]
     lines = ["# Gallery", ""]
     made = {}
@@ -66,7 +68,7 @@ def write_gallery(root: Path, programs: Path, folder: Path, show: object = print
             made[entry.source.relative_to(root)] = f"gallery/{place}/{entry.name}.md"
         lines += ["::::", ""]
     lines += _decoupling(root, places["decoupling"])
-    lines += ["```{toctree}", ":hidden:", "", *(f"examples/{entry.name}" for entry in sections[0][3]), "```", ""]
+    lines += ["```{toctree}", ":hidden:", "", *(f"examples/{entry.name}" for entry in solved), "```", ""]
     (gallery / "index.md").write_text("\n".join(lines))
     return made
 
@@ -78,7 +80,7 @@ def _solved(root: Path, programs: Path, pages: Path, show: object) -> list[Entry
         text = source.read_text()
         is_sweep = "&sweep" in text.lower()
         program = "mfv_sweep" if is_sweep else "mfv_run"
-        run = subprocess.run([programs / program, source], cwd=pages, capture_output=True, text=True)
+        run = subprocess.run([programs / program, source], cwd=pages, check=False, capture_output=True, text=True)
         if run.returncode != 0:
             raise RuntimeError(f"{source}: {program} ended with exit code {run.returncode}: {run.stderr}")
         result = re.search(r"^(?:result|table) +(\S+\.h5)", run.stdout, re.MULTILINE)[1]
@@ -153,33 +155,34 @@ def _dissertation(root: Path, pages: Path) -> list[Entry]:
         picture = root / f"examples/dissertation/pictures/{source.stem}.png"
         shutil.copy(picture, pages)
         commands = f"python examples/dissertation/draw.py --help\nmfv_run examples/dissertation/{source.name}"
-        entries.append(Entry(source, title, re.sub(r"^Figure \d+\.\d+: ", "", sentence), commands, picture.name))
+        entries.append(Entry(source, title, sentence, commands, picture.name))
     return entries
 
 
 def _decoupling(root: Path, pages: Path) -> list[str]:
     """The section of the decoupling study: its pictures, copied into `pages`, which lead to its document."""
-    lines = ["## The decoupling study", "", "Chapter 6 of the dissertation computed again, some 4,600 cases:",
-             "[what came out](../examples/decoupling/README.md), [statement by statement](../examples/decoupling/statements.md).",
-             "", *GRID]
+    study = "../examples/decoupling"
+    words = f"[what came out]({study}/README.md), [statement by statement]({study}/statements.md)."
+    lines = ["## The decoupling study", "", f"Chapter 6 computed again, some 4,600 cases: {words}", "", *GRID]
     for picture in sorted((root / "examples/decoupling/pictures").glob("*.png")):
         shutil.copy(picture, pages)
         title = re.sub(r"^figure (\d+) (\d+)$", r"figure \1.\2", picture.stem.replace("_", " ")).capitalize()
         _thumbnail(pages / picture.name)
-        lines += _framed(title, "", "../examples/decoupling/README", f"{pages.name}/{picture.name}", title)
+        lines += _framed(title, "", f"{study}/README", f"{pages.name}/{picture.name}", title)
     return [*lines, "::::", ""]
 
 
 def _words(text: str, name: str) -> tuple[str, str]:
     """Title of a case, and the first sentence of the comment that it begins with."""
     comment = re.match(r"(?:!.*\n)*", text)[0]
-    words = " ".join(line.lstrip("! ") for line in comment.splitlines())
+    words = re.sub(r"^Figure \d+\.\d+: ", "", " ".join(line.lstrip("! ") for line in comment.splitlines()))
     title = re.search(r"\btitle *= *(['\"])(.*?)\1", text, re.IGNORECASE)
     return title[2] if title else name.replace("_", " ").capitalize(), _first_sentence(words)
 
 
 def _first_sentence(words: str) -> str:
-    return re.split(r"(?<=[\w)\]]\.) (?=[A-Z0-9&])", words, maxsplit=1)[0]
+    sentence = re.split(r"(?<=[\w)\]]\.)(?<!\beq\.)(?<!\beqs\.) (?=[A-Z0-9&])", words, maxsplit=1)[0]
+    return sentence[:1].upper() + sentence[1:]
 
 
 def _card(entry: Entry, pages: Path) -> list[str]:

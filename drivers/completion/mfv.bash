@@ -1,4 +1,5 @@
-# Completion of mfv_run, mfv_stress, mfv_sweep and mfv_conventional for bash: options, what they take, and files, as --help has them.
+# Completion of mfv_run, mfv_stress, mfv_sweep and mfv_conventional for bash:
+# options, what they take, and files, as --help has them.
 
 # Files with the extension $1, and folders, that begin with $2.
 _mfv_files() {

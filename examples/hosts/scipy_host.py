@@ -154,7 +154,10 @@ def ring_down(case: mfv.Case, force: float, mass: float, half_cycles: int) -> Ri
     for _ in range(half_cycles):
         # It begins at rest too, but there the velocity leaves zero the other way.
         velocity.direction = np.sign(turns[-1].tangential_force)  # type: ignore[attr-defined]
-        start, long_enough = times[-1][-1], 10.0 * np.pi * np.sqrt(mass * abs(turns[-1].shift / turns[-1].tangential_force))
+        start, long_enough = (
+            times[-1][-1],
+            10.0 * np.pi * np.sqrt(mass * abs(turns[-1].shift / turns[-1].tangential_force)),
+        )
         way = solve_ivp(
             rates,
             (start, start + long_enough),
@@ -206,7 +209,9 @@ def draw(tops: NDArray[np.float64], forces: NDArray[np.float64], free: RingDown,
     picture = Figure(figsize=(8.4, 3.6), layout="constrained")
     left, right = picture.subplots(1, 2)
     left.plot(np.append(0.0, tops), np.append(0.0, forces) / WEIGHT, "o-", markersize=3.5, linewidth=1.0)
-    left.set(xlabel="shift of the top", ylabel="tangential force over the weight", title="Two contacts in series (root)")
+    left.set(
+        xlabel="shift of the top", ylabel="tangential force over the weight", title="Two contacts in series (root)"
+    )
     right.plot(free.time, free.shift, linewidth=1.0)
     right.set(xlabel="time", ylabel="shift of the mass", title="A mass braked by friction (solve_ivp)")
     for ax in (left, right):

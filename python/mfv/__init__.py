@@ -14,10 +14,10 @@ from types import ModuleType
 
 from . import errors, reference, stress
 from ._library import has_feature, library_version
-from ._observer import Progress
-from .case import Case, Loads, State, Trial, run
+from .case import Case, State, Trial, run
 from .codes import EventKind, NodeStatus
 from .errors import LibraryNotFound, MfvError, NotAResult
+from .loads import Loads, Progress
 from .result import Group, Result, read
 from .scene import Body, Friction, Mesh, Output, Scene, Solver, Step
 from .table import Table, read_table

@@ -7,6 +7,7 @@ import ctypes.util
 import functools
 import itertools
 import os
+import struct
 from collections.abc import Iterator
 from ctypes import POINTER, c_char_p, c_double, c_int, c_int32, c_size_t, c_void_p
 from enum import IntEnum
@@ -62,6 +63,9 @@ class StepStructure(ctypes.Structure):
         ("steady_tolerance", c_double),
     ]
 
+    #: Writes all members at once: `pack(step, 0, size, ...)`.
+    pack = struct.Struct("@N2d4id2id").pack_into
+
 
 class LoadsStructure(ctypes.Structure):
     """`mfv_loads` of the header."""
@@ -82,6 +86,9 @@ class LoadsStructure(ctypes.Structure):
         ("linear_solves", c_int),
         ("unused", c_int),
     ]
+
+    #: Reads all members at once: `unpack(loads)`.
+    unpack = struct.Struct("@N7d6i").unpack_from
 
 
 class ProgressStructure(ctypes.Structure):

@@ -7,39 +7,22 @@ import threading
 from collections.abc import Iterator
 from contextlib import contextmanager
 from ctypes import c_void_p
-from typing import Any, Callable, NamedTuple
+from typing import Any, Callable
 
 from ._library import OBSERVER, library
+from .loads import Progress
 
 BAR_FORMAT = "{percentage:3.0f}%|{bar}| {elapsed}<{remaining}{postfix}"
-
-
-class Progress(NamedTuple):
-    """What an observer is told after every increment of the load."""
-
-    fraction: float  #: of this straight part of the load history
-    segment: int  #: number of this part, from 1
-    segments: int  #: how many there are
-    contact_nodes: int
-    stick_nodes: int
-    normal_force: float  #: [force/length]
-    tangential_force: float  #: [force/length]
-    approach: float  #: [length]
-    shift: float  #: [length]
-
-    @property
-    def done(self) -> float:
-        """Part of the whole load history that is done."""
-        return (self.segment - 1 + self.fraction) / max(self.segments, 1)
 
 
 class Observer:
     """The one observer that the library knows of a case. It passes on what it is told, and ends the run when told to."""
 
     def __init__(self, handle: c_void_p) -> None:
-        self.callback: Callable[[Progress], object] | None = None
+        #: Nobody is to be told, and the library knows of no observer: a case can be led without a thought for it.
+        self.is_idle = True
         self.is_leading = False
-        self.is_installed = False
+        self._callback: Callable[[Progress], object] | None = None
         self._handle = handle
         self._bar: Any = None
         self._signals: list[tuple[Any, Any]] = []
@@ -49,21 +32,31 @@ class Observer:
 
     @property
     def is_wanted(self) -> bool:
-        """Whether someone wants to be told."""
-        return self.callback is not None or self._bar is not None
+        """Whether someone wants to be told, or is being told."""
+        return self._callback is not None or self._bar is not None or self.is_leading
+
+    def tell(self, callback: Callable[[Progress], object] | None) -> None:
+        """Whom to tell from now on."""
+        self.refuse_while_leading()
+        self._callback = callback
+        self.is_idle = False
 
     def watch(self, function: Callable[..., int], *arguments: object) -> int:
         """Call what leads the loads while observing it; return its status."""
         self.refuse_while_leading()
-        if not self.is_installed:
-            library().mfv_observe(self._handle, self._function, None)
-            self.is_installed = True
-        self._signals, self._raised, self.is_leading = [], None, True
+        library().mfv_observe(self._handle, self._function, None)
+        self._signals, self._raised, self.is_leading, self.is_idle = [], None, True, False
         try:
             with self._signals_held():
                 return function(*arguments)
         finally:
             self.is_leading = False
+
+    def rest(self, function: Callable[..., int], *arguments: object) -> int:
+        """The same without an observer, and from now on."""
+        library().mfv_observe(self._handle, OBSERVER(), None)
+        self.is_idle = True
+        return function(*arguments)
 
     def raise_what_ended_it(self) -> None:
         """Raise what a callback raised; let an interrupt from the keyboard be handled, which as a rule raises."""
@@ -74,28 +67,23 @@ class Observer:
         if raised is not None:
             raise raised
 
-    def rest(self) -> None:
-        """Let the library go on without an observer, which costs nothing."""
-        library().mfv_observe(self._handle, OBSERVER(), None)
-        self.is_installed = False
-
     def refuse_while_leading(self) -> None:
         """Raises RuntimeError in a callback, which must not use the case that calls it."""
         if self.is_leading:
-            raise RuntimeError("a callback of observe must not use the case that calls it; what it needs is in its argument")
+            raise RuntimeError(
+                "a callback of observe must not use the case that calls it; what it needs is in its argument"
+            )
 
     @contextmanager
     def bar(self, wanted: bool) -> Iterator[None]:
-        """Show how far a run is, on a terminal or in a notebook. Raises ImportError where tqdm is missing."""
+        """Show how far a run is, on a terminal or in a notebook."""
         if not wanted:
             yield
             return
-        try:
-            from tqdm.auto import tqdm
-        except ImportError:
-            raise ImportError("progress=True needs tqdm: pip install tqdm") from None
+        from tqdm.auto import tqdm  # here: it looks whether this is a notebook
+
         with tqdm(total=1.0, disable=None, bar_format=BAR_FORMAT) as bar:
-            self._bar = None if bar.disable else bar
+            self._bar, self.is_idle = None if bar.disable else bar, False
             try:
                 yield
             finally:
@@ -112,7 +100,7 @@ class Observer:
             told = Progress(*(getattr(now, name) for name in Progress._fields))
             if self._bar is not None and self._bar.update(told.done - self._bar.n):
                 self._bar.set_postfix_str(f"{told.contact_nodes} in contact, {told.stick_nodes} stuck", refresh=False)
-            return int(self.callback is not None and bool(self.callback(told)))
+            return int(self._callback is not None and bool(self._callback(told)))
         except BaseException as error:  # noqa: BLE001 - to be raised by `watch`: nothing can be raised through the library
             self._raised = error
             return 1

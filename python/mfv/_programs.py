@@ -31,5 +31,5 @@ def _become(name: str) -> None:
     """Replace this process by the program `name` of the package, with the arguments of this one."""
     program = Path(__file__).resolve().parent / "bin" / name
     if not program.is_file():
-        sys.exit(f"{name}: there is no {program}: this mfv was installed without its programs; install it with 'pip install .'")
+        sys.exit(f"{name}: there is no {program}: install mfv with 'pip install .', or a wheel")
     os.execv(program, [str(program), *sys.argv[1:]])

@@ -53,10 +53,17 @@ def movie(result: Result) -> Movie:
         picture.suptitle(result.title, fontsize=12, parse_math=False)
         zones = _zones(result) if has_friction else []
         below = CAPTION + (LEGEND if zones else 0.0)
-        picture.set_layout_engine(ConstrainedLayoutEngine(rect=(0.0, below / HEIGHT, 1.0, 1.0 - below / HEIGHT), w_pad=0.08))
+        picture.set_layout_engine(
+            ConstrainedLayoutEngine(rect=(0.0, below / HEIGHT, 1.0, 1.0 - below / HEIGHT), w_pad=0.08)
+        )
         caption = picture.text(0.5, 0.08 / HEIGHT, "", ha="center", fontsize=10, color="0.35", parse_math=False)
         if zones:
-            place = dict(loc="upper center", bbox_to_anchor=(0.5, below / HEIGHT), borderaxespad=0.0, borderpad=0.0)
+            place: dict[str, Any] = {
+                "loc": "upper center",
+                "bbox_to_anchor": (0.5, below / HEIGHT),
+                "borderaxespad": 0.0,
+                "borderpad": 0.0,
+            }
             picture.legend(handles=zones, ncols=len(zones), fontsize=10, **place)
     panels = [
         (axes[0], plot.pressure, (0.0, _largest(result, "pressure"))),
@@ -89,7 +96,7 @@ def movie(result: Result) -> Movie:
 def save(
     moving: Movie,
     path: str | os.PathLike[str],
-    frames_per_second: float = 20.0,
+    frames_per_second: int = 20,
     progress: Callable[[int, int], Any] | None = None,
 ) -> None:
     """Write a movie as a GIF or an MP4, by the suffix. `progress` is called with each frame and their number.
@@ -97,14 +104,14 @@ def save(
     Raises ValueError for another suffix and where there is no ffmpeg for an MP4; OSError.
     """
     path = os.fspath(path)
-    program = {"animation.ffmpeg_path": _ffmpeg()} if path.endswith(".mp4") else {}
+    program: dict[Any, Any] = {"animation.ffmpeg_path": _ffmpeg()} if path.endswith(".mp4") else {}
     writer = _writer(path, frames_per_second)
     frames = FuncAnimation(moving.picture, moving.draw, frames=moving.frames, init_func=lambda: None)
     with matplotlib.rc_context({**plot.STYLE, **program}):
         frames.save(path, writer=writer, progress_callback=progress)
 
 
-def _writer(path: str, frames_per_second: float) -> AbstractMovieWriter:
+def _writer(path: str, frames_per_second: int) -> AbstractMovieWriter:
     """What writes a file with that suffix."""
     suffix = os.path.splitext(path)[1]
     if suffix == ".gif":
@@ -175,8 +182,8 @@ def _draw_curve(result: Result, ax: Axes, curve: Curve) -> Any:
     with matplotlib.rc_context(plot.STYLE):
         ax.plot(across, up, color=plot.NUMBERS, linewidth=0.8)
         (point,) = ax.plot([], [], "o", color=plot.CLOSED_FORM, markersize=8, zorder=5)
-        for name, (word, symbol), label in zip(names, (curve.across_label, curve.up_label), (ax.set_xlabel, ax.set_ylabel)):
-            label(plot._label(word, symbol, result.summary.unit(name)))
+        ax.set_xlabel(plot._label(*curve.across_label, result.summary.unit(curve.across)))
+        ax.set_ylabel(plot._label(*curve.up_label, result.summary.unit(curve.up)))
         ax.locator_params(axis="x", nbins=5)
         ax.margins(0.12)
     return point

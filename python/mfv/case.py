@@ -5,6 +5,7 @@ from __future__ import annotations
 import copy
 import ctypes
 import os
+import struct
 import threading
 import weakref
 from collections.abc import Iterator
@@ -12,7 +13,7 @@ from contextlib import contextmanager
 from ctypes import POINTER, byref, c_int, c_int32, c_size_t, c_void_p, create_string_buffer
 from operator import index
 from types import TracebackType
-from typing import TYPE_CHECKING, Any, Callable, NamedTuple
+from typing import TYPE_CHECKING, Any, Callable
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -31,7 +32,8 @@ from ._library import (
     text_for,
     text_of,
 )
-from ._observer import Observer, Progress
+from ._observer import Observer
+from .loads import Loads, Progress
 from .result import Field, Result, Values
 from .scene import Scene, created
 
@@ -41,30 +43,18 @@ if TYPE_CHECKING:
 #: HDF5, which writes the result files, is in general not safe to call from two threads at once.
 _writing = threading.Lock()
 
-#: Nodes from which a single step may take long enough to be interrupted; it is then observed, which costs about 1 microsecond
-#: an increment.
-MANY_NODES = 400
+#: Nodes from which, and friction laws with which, a single step may take so long that an interrupt from the keyboard has to end
+#: it; it is then observed, which costs about 1 microsecond an increment.
+MANY_NODES, LONG_LAWS = 400, ("weakening", "dahl")
 
 #: Dimensions of fields by what the library says they run along; the companions of an error estimate and cycles come after
 #: those of the header.
 _DIMENSIONS: tuple[tuple[str, ...], ...] = ((), ("x",), ("record",), ("companion_nodes",), ("cycle",))
 
 
-class Loads(NamedTuple):
-    """Loads and motions of the present state."""
-
-    normal_force: float  #: P [force/length]
-    tangential_force: float  #: Q [force/length], on the lower body to the right
-    moment: float  #: M [force], counterclockwise; 0 where rotation is not modelled
-    approach: float  #: of the upper body [length]
-    shift: float  #: of the upper body to the right [length]
-    rotation: float  #: of the upper body [radians], counterclockwise
-    dissipation: float  #: energy dissipated by friction so far [force]
-    contact_nodes: int
-    stick_nodes: int
-    slip_nodes: int
-    events: int  #: loads so far at which nodes changed their status
-    linear_solves: int  #: so far
+#: Plain numbers, which are quicker at hand than members of enumerations.
+_KEEP, _FORCE, _DISPLACEMENT = map(int, Control)
+_SIZE_OF_STEP = ctypes.sizeof(StepStructure)
 
 
 def run(
@@ -163,13 +153,14 @@ class Case:
         self._observer = Observer(handle)
         self._advance = library().mfv_advance
         self._get_loads = library().mfv_get_loads
-        self._step = StepStructure(size=ctypes.sizeof(StepStructure))
+        self._complete = outcome_of(0)
+        self._step = StepStructure()
         self._step_reference = byref(self._step)
         self._loads = LoadsStructure(size=ctypes.sizeof(LoadsStructure))
         self._loads_reference = byref(self._loads)
         self._spare_states: list[State] = []
         self._x = np.empty(0)
-        self._has_many_nodes = self._count("mesh/x") >= MANY_NODES
+        self._is_long = self._count("mesh/x") >= MANY_NODES or self._attribute("friction_law") in LONG_LAWS
 
     def __enter__(self) -> Self:
         return self
@@ -206,6 +197,7 @@ class Case:
     def close(self) -> None:
         """Free the case; using it afterwards raises BadHandle. Closing twice does no harm."""
         with self._lock:
+            self._observer.refuse_while_leading()
             self._free()
 
     @property
@@ -252,18 +244,30 @@ class Case:
         tractions to within `steady_tolerance` times the largest one (0: never). `check`: as for `run`.
         Raises BadArgument.
         """
+        normal_control, normal_target = _control("normal_force", normal_force, "approach", approach)
+        tangential_control, tangential_target = _control("tangential_force", tangential_force, "shift", shift)
+        rotational_control, rotational_target = _control("moment", moment, "rotation", rotation)
+        turns = max(-LARGEST_INTEGER, min(index(cycles), LARGEST_INTEGER)) if cycles else 0
         with self._lock:
-            step = self._step
-            step.normal_control, step.normal_target = _control("normal_force", normal_force, "approach", approach)
-            step.tangential_control, step.tangential_target = _control(
-                "tangential_force", tangential_force, "shift", shift
-            )
-            step.rotational_control, step.rotational_target = _control("moment", moment, "rotation", rotation)
-            step.relative = 1 if relative else 0
-            step.friction = 1 if friction else 0
-            step.cycles = min(index(cycles), LARGEST_INTEGER) if cycles else 0
-            step.steady_tolerance = steady_tolerance
-            watched = self._has_many_nodes or cycles > 0
+            try:  # one call in place of eleven: this is where a host program spends its time with Python
+                StepStructure.pack(
+                    self._step,
+                    0,
+                    _SIZE_OF_STEP,
+                    normal_target,
+                    tangential_target,
+                    normal_control,
+                    tangential_control,
+                    1 if friction else 0,
+                    turns,
+                    rotational_target,
+                    rotational_control,
+                    1 if relative else 0,
+                    steady_tolerance,
+                )
+            except struct.error as error:
+                raise TypeError(f"targets and steady_tolerance must be numbers: {error}") from None
+            watched = turns > 0 or self._is_long
             return self._lead(check, watched, self._advance, self._handle, self._step_reference)
 
     @property
@@ -272,22 +276,10 @@ class Case:
         with self._lock:
             if self._observer.is_leading:
                 self._observer.refuse_while_leading()
-            self._check(self._get_loads(self._handle, self._loads_reference))
-            loads = self._loads
-            return Loads(
-                loads.normal_force,
-                loads.tangential_force,
-                loads.moment,
-                loads.approach,
-                loads.shift,
-                loads.rotation,
-                loads.dissipation,
-                loads.contact_nodes,
-                loads.stick_nodes,
-                loads.slip_nodes,
-                loads.events,
-                loads.linear_solves,
-            )
+            status = self._get_loads(self._handle, self._loads_reference)
+            if status != 0:
+                self._check(status)
+            return Loads._make(LoadsStructure.unpack(self._loads)[1:-1])  # without the size and what is unused
 
     def tangent(self, direction: ArrayLike | None = None, *, motions: int = 2) -> NDArray[np.float64]:
         """Consistent tangent at the present state: an array (motions, motions), derivatives of normal force, tangential force
@@ -350,7 +342,7 @@ class Case:
         does an exception, which is then raised by `run` or `advance`.
         """
         with self._lock:
-            self._observer.callback = callback
+            self._observer.tell(callback)
 
     def fields(self) -> list[str]:
         """Paths of the fields that the case has now, such as 'state/pressure'."""
@@ -447,18 +439,21 @@ class Case:
         `watched`: whether it may take long, so that KeyboardInterrupt has to end it.
         """
         observer = self._observer
-        is_observed = watched or observer.is_wanted or observer.is_leading
-        if is_observed:
-            status = observer.watch(function, *arguments)
-        else:
-            if observer.is_installed:
-                observer.rest()
+        if observer.is_idle and not watched:
             status = function(*arguments)
+            if status == 0:
+                self._status = 0
+                return self._complete
+        else:
+            status = (
+                observer.watch(function, *arguments)
+                if watched or observer.is_wanted
+                else observer.rest(function, *arguments)
+            )
         if status != 0:
             self._check(status, (errors.BadHandle, errors.BadArgument))
         self._status = status
-        if is_observed:
-            observer.raise_what_ended_it()
+        observer.raise_what_ended_it()
         self._raise_early_end(check)
         return outcome_of(status)
 
@@ -486,12 +481,12 @@ class Case:
 
 def _control(
     force_name: str, force: float | None, displacement_name: str, displacement: float | None
-) -> tuple[Control, float]:
+) -> tuple[int, float]:
     """What a step does with a load, and its target."""
-    if force is not None and displacement is not None:
-        raise TypeError(f"give {force_name} or {displacement_name}, not both")
     if force is not None:
-        return Control.FORCE, force
+        if displacement is not None:
+            raise TypeError(f"give {force_name} or {displacement_name}, not both")
+        return _FORCE, force
     if displacement is not None:
-        return Control.DISPLACEMENT, displacement
-    return Control.KEEP, 0.0
+        return _DISPLACEMENT, displacement
+    return _KEEP, 0.0

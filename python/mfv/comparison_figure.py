@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import Any
 
 import matplotlib
 import numpy as np
@@ -15,9 +16,9 @@ from . import plot
 from .compare import Comparison
 
 #: How the two are drawn over each other, and their difference.
-FIRST = dict(color=plot.NUMBERS, linewidth=1.0)
-SECOND = dict(color=plot.CLOSED_FORM, linewidth=1.0, linestyle=(0, (4, 2)))
-DIFFERENCE = dict(color=plot.SURFACE, linewidth=0.8)
+FIRST: dict[str, Any] = {"color": plot.NUMBERS, "linewidth": 1.0}
+SECOND: dict[str, Any] = {"color": plot.CLOSED_FORM, "linewidth": 1.0, "linestyle": (0, (4, 2))}
+DIFFERENCE: dict[str, Any] = {"color": plot.SURFACE, "linewidth": 0.8}
 
 
 def figure(comparison: Comparison, first: str = "first", second: str = "second") -> Figure:
@@ -32,7 +33,9 @@ def figure(comparison: Comparison, first: str = "first", second: str = "second")
         rows.append(plot.loop)
     over = {plot.pressure: _pressures, plot.shear: _shears, plot.surfaces: _gaps, plot.loop: _loops}
     with matplotlib.rc_context(plot.STYLE):
-        picture = Figure(figsize=(3 * plot.PANEL_WIDTH, len(rows) * 0.92 * plot.PANEL_HEIGHT + 0.9), layout="constrained")
+        picture = Figure(
+            figsize=(3 * plot.PANEL_WIDTH, len(rows) * 0.92 * plot.PANEL_HEIGHT + 0.9), layout="constrained"
+        )
         axes = picture.subplots(len(rows), 3, squeeze=False)
         for panel, row in zip(rows, axes):
             for result, ax in zip(results, row):
@@ -45,7 +48,8 @@ def figure(comparison: Comparison, first: str = "first", second: str = "second")
         for ax, name in zip(axes[0], (first, second, "both")):
             ax.set_title(name, parse_math=False)
         picture.suptitle(
-            f"Largest difference of the tractions: {comparison.largest_difference:.3g} of the largest traction", fontsize=12
+            f"Largest difference of the tractions: {comparison.largest_difference:.3g} of the largest traction",
+            fontsize=12,
         )
         _add_legend(picture)
     return picture

@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import copy
+import functools
 import os
+import re
 from collections.abc import Callable, Iterable, Iterator
 from typing import Any, NamedTuple
 
@@ -23,6 +25,9 @@ KNOWN = (*LOADS, "force_ratio", "friction", "cycles", "steady_tolerance")
 
 #: By how much the tractions at the end may differ from those of the file, in parts of the largest.
 AGREEMENT = 1.0e-9
+
+#: By how much they may differ at all; beyond it the result was not led by the steps of its case.
+LIKENESS = 1.0e-2
 
 Progress = Callable[[Iterable[Any]], Iterable[Any]]
 
@@ -45,7 +50,9 @@ class LoadHistory(NamedTuple):
 
 def kept_states(result: Result) -> Result:
     """A result whose `steps` end with its last state, also where a run ended early, or has not begun."""
-    if result.steps and all(np.array_equal(result.steps[-1][name], result.state[name]) for name in ("pressure", "shear")):
+    if result.steps and all(
+        np.array_equal(result.steps[-1][name], result.state[name]) for name in ("pressure", "shear")
+    ):
         return result
     loads = {name: _field(result.summary, name) for name in result.summary if name not in result.state}
     last = Group({**{name: _field(result.state, name) for name in result.state}, **loads})
@@ -67,8 +74,8 @@ def thinned(result: Result, states: int) -> Result:
 def with_states_between(result: Result, states: int, progress: Progress = iter) -> LoadHistory:
     """The load history of a result with about that many states, from its case solved again with targets on the way.
 
-    Where that cannot be done, the states that the result keeps, with a note that says why; a note also tells when the case
-    does not end where the result does, to within AGREEMENT. `progress` goes over the targets.
+    Where that cannot be done, or leads elsewhere, the states that the result keeps, with a note that says why; a note also
+    tells when the case does not end where the result does, to within AGREEMENT. `progress` goes over the targets.
     """
     kept = kept_states(result)
     try:
@@ -76,9 +83,10 @@ def with_states_between(result: Result, states: int, progress: Progress = iter) 
     except (MfvError, ValueError) as error:
         return LoadHistory(thinned(kept, states), f"only states that the file keeps: {error}")
     difference = compare(result, again).largest_difference
-    if difference <= AGREEMENT:
-        return LoadHistory(again, "")
-    return LoadHistory(again, f"solved again, the case ends elsewhere: tractions differ by {difference:.1e} of the largest")
+    elsewhere = f"solved again, the case ends elsewhere: tractions differ by {difference:.1e} of the largest"
+    if not difference <= LIKENESS:
+        return LoadHistory(thinned(kept, states), f"only states that the file keeps: {elsewhere}")
+    return LoadHistory(again, "" if difference <= AGREEMENT else elsewhere)
 
 
 def _solved_again(result: Result, states: int, progress: Progress) -> Result:
@@ -90,11 +98,16 @@ def _solved_again(result: Result, states: int, progress: Progress) -> Result:
     if divisions < 2:
         raise ValueError(f"{len(parts)} straight parts of the load history want {2 * len(parts)} states at least")
     name = os.path.join(result.attributes["working_directory"], result.attributes["input_file"])
-    with Case.from_text(result.attributes["input"], name) as case:
+    with Case.from_text(_keeping_states(result.attributes["input"]), name) as case:
         for part, loads in progress(list(_divided(case, parts, divisions))):
             if case.advance(friction=part.friction, **loads()) != "complete":
                 break
         return kept_states(case.result())
+
+
+def _keeping_states(text: str) -> str:
+    """The text of a case that keeps states, also where it says that it keeps none."""
+    return re.sub(r"(\bstates\s*=\s*)(['\"])none\2", r"\1\2steps\2", text, flags=re.IGNORECASE)
 
 
 def _divided(case: Case, parts: list[Part], divisions: int) -> Iterator[tuple[Part, Callable[[], dict[str, float]]]]:
@@ -115,7 +128,7 @@ def _divided(case: Case, parts: list[Part], divisions: int) -> Iterator[tuple[Pa
 
     for part in parts:
         for division in range(1, divisions + 1):
-            yield part, lambda part=part, division=division: loads(part, division)
+            yield part, functools.partial(loads, part, division)
 
 
 def _parts(result: Result) -> Iterator[Part]:
@@ -130,17 +143,24 @@ def _parts(result: Result) -> Iterator[Part]:
         normal_force = step.get("normal_force", normal_force)
         targets = {name: float(step[name]) for name in LOADS if name in step}
         if "force_ratio" in step:
-            targets["tangential_force"] = step["force_ratio"] * float(np.max(result.mesh.static_friction)) * normal_force
+            targets["tangential_force"] = (
+                step["force_ratio"] * float(np.max(result.mesh.static_friction)) * normal_force
+            )
         for reversal in range(1, _reversals(result, number, step, number <= done) + 1):
             yield Part(number, targets, reversal % 2 == 0, bool(step.get("friction", True)))
 
 
 def _reversals(result: Result, number: int, step: dict[str, Any], is_done: bool) -> int:
     """How many straight parts of a step a result has gone through, the one where it ended early among them."""
-    if step.get("cycles", 0) == 0:
+    cycles = step.get("cycles", 0)
+    if cycles == 0:
         return 1
     kept = max((int(state.reversal) for state in result.steps if state.step == number), default=0)
-    return kept if is_done else kept + 1
+    if not is_done:
+        return kept + 1
+    if kept == 0 and "steady_tolerance" in step:
+        raise ValueError(f"step {number} ended when it was steady, and no state tells after how many cycles")
+    return kept or 2 * cycles
 
 
 def _field(group: Group, name: str) -> Field:

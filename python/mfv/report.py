@@ -64,17 +64,24 @@ KEY_NUMBERS = (
 OF_FRICTION = ("tangential_force", "shift", "edge_stick_ratio", "peak_shear", "dissipation")
 
 #: Columns of the table of cycles.
-CYCLE_COLUMNS = ("dissipation", "loss_factor", "tangential_stiffness", "secant_stiffness", "stick_ratio_reversal", "change")
+CYCLE_COLUMNS = (
+    "dissipation",
+    "loss_factor",
+    "tangential_stiffness",
+    "secant_stiffness",
+    "stick_ratio_reversal",
+    "change",
+)
 
 SUPERSCRIPTS = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 
-NUMBERS = dict(color="var(--numbers)", width=1.5)
-SECOND = dict(color="var(--second)", width=1.5)
-CLOSED_FORM = dict(color="var(--closed-form)", width=1.5)
-LIMIT = dict(color="var(--limit)", width=1)
+NUMBERS = {"color": "var(--numbers)", "width": 1.5}
+SECOND = {"color": "var(--second)", "width": 1.5}
+CLOSED_FORM = {"color": "var(--closed-form)", "width": 1.5}
+LIMIT = {"color": "var(--limit)", "width": 1}
 
 #: Computed values at the nodes.
-POINTS = dict(mode="lines+markers", line={**NUMBERS, "width": 0.75}, marker=dict(size=4))
+POINTS = {"mode": "lines+markers", "line": {**NUMBERS, "width": 0.75}, "marker": {"size": 4}}
 
 
 def page(result: Result, source: str, history: LoadHistory | None = None) -> str:
@@ -141,7 +148,10 @@ def _state(result: Result, number: int, inside: slice, curve: Curve, is_kept: bo
         same_force = np.isclose(state.normal_force, result.summary.normal_force, rtol=1.0e-9, atol=0.0)
         pressures["closed form"] = _list(result.reference.pressure[inside]) if same_force else []
     if plot._has_friction(result):
-        shears: dict[str, Any] = {"zones": [state.status[inside].tolist()], "shear traction": _list(state.shear[inside])}
+        shears: dict[str, Any] = {
+            "zones": [state.status[inside].tolist()],
+            "shear traction": _list(state.shear[inside]),
+        }
         for name, coefficient in _coefficients(result):
             limit = np.where(state.status != NodeStatus.OPEN, coefficient * state.pressure, np.nan)[inside]
             shears[f"+{name}"], shears[f"\N{MINUS SIGN}{name}"] = _list(limit), _list(-limit)
@@ -227,7 +237,9 @@ def _shear_figure(result: Result, inside: slice, x: Sequence[Any], across: dict[
 def _curve_figure(result: Result, curve: Curve) -> dict[str, Any]:
     """Load over displacement, and the point that the slider moves, which comes last."""
     names = curve.across, curve.up
-    labels = (_axis(*label, result.summary.unit(name)) for name, label in zip(names, (curve.across_label, curve.up_label)))
+    labels = (
+        _axis(*label, result.summary.unit(name)) for name, label in zip(names, (curve.across_label, curve.up_label))
+    )
     figure = _figure(*labels)
     if result.history:
         chosen = _some(result.history[curve.across].size, MOST_RECORDS)
@@ -239,14 +251,14 @@ def _curve_figure(result: Result, curve: Curve) -> dict[str, Any]:
         closed = {**CLOSED_FORM, "dash": "dash"}
         shift = _list(result.reference.shift[chosen])
         figure.add_scatter(x=shift, y=values[1], name="closed form", mode="lines", line=closed)
-    figure.add_scatter(name="this state", mode="markers", marker=dict(size=13, color="var(--point)"))
+    figure.add_scatter(name="this state", mode="markers", marker={"size": 13, "color": "var(--point)"})
     return _plain(figure)
 
 
 def _map_figure(result: Result, inside: slice) -> dict[str, Any]:
     """What every node is in every state."""
     statuses = np.array([state.status[inside] for state in result.steps])
-    ticks = dict(dtick=1) if len(result.steps) <= MOST_TICKS else {}
+    ticks = {"dtick": 1} if len(result.steps) <= MOST_TICKS else {}
     figure = _figure(_axis("position", "x", result.mesh.unit("x")), {"title": {"text": "state"}, **ticks})
     figure.update_layout(margin_t=8)
     words = [STATUSES[NodeStatus(code)][0] for code in range(len(NodeStatus))]
@@ -309,24 +321,24 @@ def _cycle_figures(result: Result, inside: slice) -> dict[str, Any]:
 
 def _figure(across: dict[str, Any], up: dict[str, Any]) -> go.Figure:
     """An empty figure in the colours of the page."""
-    frame = dict(
-        showline=True, mirror=True, ticks="inside", zeroline=False, exponentformat="power", automargin=True,
-        linecolor="var(--frame)", tickcolor="var(--frame)", gridcolor="var(--grid)",
-    )  # fmt: skip
+    frame = {
+        "showline": True, "mirror": True, "ticks": "inside", "zeroline": False, "exponentformat": "power", "automargin": True,
+        "linecolor": "var(--frame)", "tickcolor": "var(--frame)", "gridcolor": "var(--grid)",
+    }  # fmt: skip
     return go.Figure(
-        layout=dict(
-            template={},
-            xaxis={**frame, **across},
-            yaxis={**frame, **up},
-            font=dict(color="var(--text)", size=13),
-            paper_bgcolor="rgba(0,0,0,0)",
-            plot_bgcolor="rgba(0,0,0,0)",
-            hoverlabel=dict(bgcolor="var(--card)", bordercolor="var(--frame)", font=dict(color="var(--text)")),
-            modebar=dict(bgcolor="rgba(0,0,0,0)", color="var(--faint)", activecolor="var(--text)"),
-            margin=dict(l=56, r=12, t=30, b=44),
-            legend=dict(orientation="h", x=0, y=1.02, yanchor="bottom", font=dict(size=12)),
-            showlegend=False,
-        )
+        layout={
+            "template": {},
+            "xaxis": {**frame, **across},
+            "yaxis": {**frame, **up},
+            "font": {"color": "var(--text)", "size": 13},
+            "paper_bgcolor": "rgba(0,0,0,0)",
+            "plot_bgcolor": "rgba(0,0,0,0)",
+            "hoverlabel": {"bgcolor": "var(--card)", "bordercolor": "var(--frame)", "font": {"color": "var(--text)"}},
+            "modebar": {"bgcolor": "rgba(0,0,0,0)", "color": "var(--faint)", "activecolor": "var(--text)"},
+            "margin": {"l": 56, "r": 12, "t": 30, "b": 44},
+            "legend": {"orientation": "h", "x": 0, "y": 1.02, "yanchor": "bottom", "font": {"size": 12}},
+            "showlegend": False,
+        }
     )
 
 
@@ -349,7 +361,7 @@ def _status_colours() -> dict[str, Any]:
     """A colour for each status, for a heat map."""
     bands = len(NodeStatus)
     scale = [[edge / bands, STATUSES[NodeStatus(code)][1]] for code in range(bands) for edge in (code, code + 1)]
-    return dict(colorscale=scale, zmin=-0.5, zmax=bands - 0.5, showscale=False)
+    return {"colorscale": scale, "zmin": -0.5, "zmax": bands - 0.5, "showscale": False}
 
 
 def _edges(result: Result, inside: slice) -> list[float]:
@@ -370,7 +382,9 @@ def _zones(result: Result) -> list[tuple[str, str]]:
 
 def _sources(result: Result) -> dict[str, str]:
     """Where the closed forms come from, by what they are of."""
-    return {name: result.reference.description(name) for name in ("pressure", "shear", "shift") if name in result.reference}
+    return {
+        name: result.reference.description(name) for name in ("pressure", "shear", "shift") if name in result.reference
+    }
 
 
 def _key_numbers(result: Result) -> list[dict[str, str]]:
@@ -382,12 +396,12 @@ def _key_numbers(result: Result) -> list[dict[str, str]]:
         if name in group and name not in left_out and not math.isnan(group[name]):
             bar = result.error_estimate.get(f"{_ESTIMATED.get(name, name)}_error")
             found.append(
-                dict(
-                    name=shown,
-                    value=_with_unit(group, name),
-                    bar="" if bar is None or not math.isfinite(bar) else f"± {bar:.2g}",
-                    meaning=group.description(name),
-                )
+                {
+                    "name": shown,
+                    "value": _with_unit(group, name),
+                    "bar": "" if bar is None or not math.isfinite(bar) else f"± {bar:.2g}",
+                    "meaning": group.description(name),
+                }
             )
     return found
 
@@ -418,11 +432,11 @@ def _cycle_table(result: Result) -> dict[str, Any]:
     names = [name for name in CYCLE_COLUMNS if name in cycles and not np.isnan(cycles[name]).all()]
     chosen = _some(cycles.cycle.size, MOST_CYCLES)
     rows = [(int(cycles.cycle[row]), [_number(cycles[name][row]) for name in names]) for row in chosen]
-    return dict(
-        names=[(name.replace("_", " "), _unit(cycles.unit(name))) for name in names],
-        rows=rows,
-        all=int(cycles.cycle.size),
-    )
+    return {
+        "names": [(name.replace("_", " "), _unit(cycles.unit(name))) for name in names],
+        "rows": rows,
+        "all": int(cycles.cycle.size),
+    }
 
 
 def _with_unit(group: Group, name: str) -> str:

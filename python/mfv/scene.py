@@ -10,7 +10,6 @@ import contextlib
 import dataclasses
 import numbers
 import os
-import re
 import sys
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from ctypes import byref, c_size_t, c_void_p, create_string_buffer
@@ -22,6 +21,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from . import _html, errors
 from ._library import LARGEST_INTEGER, library, real_pointer, text_buffer, text_for, text_of
+from .inputs import groups
 
 if TYPE_CHECKING:
     from typing_extensions import dataclass_transform
@@ -41,9 +41,6 @@ Coefficient = Union[float, Sequence[float], NDArray[np.float64]]
 Data = Mapping[str, NDArray[np.float64]]
 
 _Class = TypeVar("_Class")
-
-#: One token of the library's own form of a namelist text: a key, a text between apostrophes, or a bare value.
-_TOKEN = re.compile(r"(?P<key>\w+)=|'(?P<text>(?:[^']|'')*)'|(?P<bare>[^\s,='/&]+)")
 
 
 @dataclass_transform(kw_only_default=True, eq_default=False)
@@ -201,7 +198,9 @@ class Body(KeyGroup):
         recedes; `width` (n): surface that belongs to each node. See docs/namelist.md for signs.
         """
         arrays = {"x": x, "gap": gap, "width": width, "compliance": compliance, "stiffness": stiffness}
-        return cls(shape="matrix", data={name: _numbers(values) for name, values in arrays.items() if values is not None})
+        return cls(
+            shape="matrix", data={name: _numbers(values) for name, values in arrays.items() if values is not None}
+        )
 
 
 @_keywords_only
@@ -358,33 +357,22 @@ class Scene(KeyGroup):
 
     @classmethod
     def from_text(cls, text: str, name: str = "text") -> Scene:
-        """The scene of a namelist text; `name` as for a new one. Raises InputError."""
-        with _scene_handle(text, name) as handle:
-            canonical = _text_of_scene(handle)
-        try:
-            return cls._of_groups(_groups_of(canonical), name)
-        except (TypeError, ValueError) as unknown:
-            from .case import Case
+        """The scene of a namelist text; `name` as for a new one. Raises InputError where the library refuses the text."""
+        from .case import Case
 
-            Case.from_text(text, name).close()  # the library's message, which names line and key
-            raise errors.MfvError(None, f"{name}: {unknown}") from None
+        Case.from_text(text, name).close()  # refused here, where messages can name the line
+        with _scene_handle(text, name) as handle:
+            return cls._of_groups(groups(_text_of_scene(handle)), name)
 
     @classmethod
-    def _of_groups(cls, groups: list[tuple[str, dict[str, Any]]], name: str) -> Scene:
-        """The scene of groups by name. Raises TypeError, ValueError for what it cannot be made of."""
-        bodies = [Body(**keys) for group, keys in groups if group == "body"]
-        steps = [Step(**keys) for group, keys in groups if group == "step"]
-        single: dict[str, Any] = {}
-        for group, keys in groups:
-            if group in single or group not in ("scene", "body", "step", *_SINGLE):
-                raise ValueError(f"&{group} comes twice or is not known to the Python package")
-            if group not in ("body", "step"):
-                single[group] = _SINGLE[group](**keys) if group in _SINGLE else keys
-        keys = single.pop("scene", {})
-        if len(bodies) != 2 or not set(keys) <= set(cls.key_names()):
-            raise ValueError("there are not two bodies, or &scene has a key that is not known to the Python package")
+    def _of_groups(cls, parts: Sequence[tuple[str, dict[str, Any]]], name: str) -> Scene:
+        """The scene of groups by name."""
+        bodies = [Body(**keys) for group, keys in parts if group == "body"]
+        steps = [Step(**keys) for group, keys in parts if group == "step"]
+        single = {group: keys for group, keys in parts if group not in ("body", "step")}
+        settings: dict[str, Any] = {group: kind(**single[group]) for group, kind in _SINGLE.items() if group in single}
         lower, upper = bodies
-        return cls(lower, upper, steps=steps, name=name, **single, **keys)
+        return cls(lower, upper, steps=steps, name=name, **settings, **single.get("scene", {}))
 
     def text(self) -> str:
         """The scene as a namelist text. Arrays are not in it: `file` names them ('lower body', for one). Raises InputError."""
@@ -441,7 +429,9 @@ class Scene(KeyGroup):
                     file = keys.setdefault(_FILE_KEYS[type(part)], _NAMES_OF_DATA[group])
                     statuses += [_set_data(handle, file, dataset, values) for dataset, values in data.items()]
                 if isinstance(part, Step):
-                    keys = keys or {"friction": True}  # its default: the library has to see a step in which nothing is named
+                    keys = keys or {
+                        "friction": True
+                    }  # its default: the library has to see a step in which nothing is named
                 statuses += _set_keys(handle, group, keys)
             if any(statuses):  # mfv_create tells of the first call that failed
                 created("mfv_create", handle)
@@ -547,39 +537,11 @@ def _set_data(handle: c_void_p, file: str | os.PathLike[str], dataset: str, valu
     """Give the library an array in place of one in a file; return the status. Raises ValueError."""
     array = _numbers(values)
     if array.ndim not in (1, 2) or array.size == 0:
-        raise ValueError(f"{os.fspath(file)}: {dataset} must have values in one dimension or two, not the shape {array.shape}")
+        raise ValueError(
+            f"{os.fspath(file)}: {dataset} must have values in one dimension or two, not the shape {array.shape}"
+        )
     rows, columns = array.shape if array.ndim == 2 else (array.size, 1)
     status: int = library().mfv_scene_set_data(
         handle, text_for(file), text_for(dataset), rows, columns, real_pointer(array)
     )
     return status
-
-
-def _groups_of(text: str) -> list[tuple[str, dict[str, Any]]]:
-    """Groups with their keys of a namelist text as the library writes it: a group a line, texts between apostrophes."""
-    groups: list[tuple[str, dict[str, Any]]] = []
-    for line in filter(lambda line: line.startswith("&"), text.splitlines()):
-        name, _, rest = line.strip().removeprefix("&").partition(" ")
-        values: dict[str, list[Any]] = {}
-        for token in _TOKEN.finditer(rest):
-            if token["key"]:
-                if token["key"] in values:
-                    raise ValueError(f"&{name} {token['key']} comes twice")
-                values[token["key"]] = found = []
-            else:
-                found.append(token["text"].replace("''", "'") if token["text"] is not None else _value(token["bare"]))
-        groups.append((name, {key: items[0] if len(items) == 1 else items for key, items in values.items()}))
-    return groups
-
-
-def _value(text: str) -> bool | int | float:
-    """A truth value or a number of a namelist text. Raises ValueError."""
-    logical = text.strip(".").lower()
-    if logical in ("true", "t", "false", "f"):
-        return logical.startswith("t")
-    if "_" in text:  # which Python would take
-        raise ValueError(f"{text} is no number")
-    try:
-        return int(text)
-    except ValueError:
-        return float(text.lower().replace("d", "e"))

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from . import _html
 from .errors import NotAResult
 from .result import open_hdf5
 
@@ -39,12 +40,18 @@ class Table(np.ndarray):
 
     def describe(self) -> str:
         """The columns in words: name, values, unit, meaning."""
-        lines = [f"{self.size} cases"]
-        lines += [
-            f"  {name:28}{_values(np.asarray(self[name])):34}{_unit(self.units[name]):16}{self.long_names[name]}"
+        lines = [f"  {name:28}{values:34}{unit:16}{meaning}" for name, values, unit, meaning in self._words()]
+        return "\n".join([f"{self.size} cases", *lines])
+
+    def _repr_html_(self) -> str:
+        return _html.table(self._words(), f"{self.size} cases")
+
+    def _words(self) -> list[tuple[str, str, str, str]]:
+        """Of every column name, values, unit and meaning."""
+        return [
+            (name, _values(np.asarray(self[name])), _html.unit(self.units[name]), self.long_names[name])
             for name in self.columns
         ]
-        return "\n".join(lines)
 
     def to_pandas(self) -> pandas.DataFrame:
         """The table as a data frame; its `attrs` have the units and the meanings of the columns. Needs pandas."""
@@ -107,7 +114,3 @@ def _values(column: np.ndarray) -> str:
         return "none"
     missing = column.size - finite.size
     return f"{finite.min():.6g} to {finite.max():.6g}" + (f", {missing} none" if missing else "")
-
-
-def _unit(unit: str) -> str:
-    return "" if unit == "1" else unit

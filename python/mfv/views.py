@@ -30,7 +30,9 @@ def curve_of(result: Result) -> Curve:
 
     def moves(name: str) -> bool:
         negligible = 1.0e-9 * max(abs(state.normal_force) for state in result.steps)
-        return all(name in state for state in result.steps) and any(abs(state[name]) > negligible for state in result.steps)
+        return all(name in state for state in result.steps) and any(
+            abs(state[name]) > negligible for state in result.steps
+        )
 
     if plot._has_friction(result) and moves("tangential_force"):
         return TANGENTIAL

@@ -38,13 +38,21 @@ contains
       type(error_type), allocatable, intent(out) :: error
       real(wp), intent(in), optional :: direction(:)
       type(contact_path_type) :: copy
+      class(contact_system_type), allocatable :: system
 
-      ! The solver's work is its state: a copy leaves the digits of the original as they are.
-      copy = path
       tangent = 0.0_wp
-      if (size(tangent, 1) > along_shift) call copy%begin_rotation()
+      if (.not. present(direction) .and. (size(tangent, 1) < along_rotation .or. path%model%rotational)) then
+         ! The solver's work is its state: a copy leaves the digits of the original as they are.
+         allocate (system, source=path%system)
+         call derive(path, system, tangent, error)
+         return
+      end if
+      copy = path
+      if (size(tangent, 1) >= along_rotation) call copy%begin_rotation()
       if (present(direction)) call turn(copy, friction, direction, error)
-      if (.not. allocated(error)) call derive(copy, tangent, error)
+      if (allocated(error)) return
+      allocate (system, source=copy%system)
+      call derive(copy, system, tangent, error)
    end subroutine find_tangent
 
    !> Settle the statuses for motions that go on in a direction.
@@ -90,9 +98,10 @@ contains
       stop_wanted = .true.
    end subroutine notify
 
-   !> The derivatives with the statuses as they are.
-   subroutine derive(path, tangent, error)
-      type(contact_path_type), intent(inout) :: path
+   !> The derivatives with the statuses as they are, by a solver of its own.
+   subroutine derive(path, system, tangent, error)
+      type(contact_path_type), intent(in) :: path
+      class(contact_system_type), intent(inout) :: system
       real(wp), intent(inout) :: tangent(:, :)
       type(error_type), allocatable, intent(out) :: error
       type(constraints_type) :: constraints
@@ -108,7 +117,7 @@ contains
             constraints%tangential = load_type(control_displacement, f%shift, merge(1.0_wp, 0.0_wp, j == along_shift))
             constraints%rotational = load_type(control_displacement, f%rotation, merge(1.0_wp, 0.0_wp, j == along_rotation))
          end associate
-         call path%system%solve(path%model, constraints, path%state%fields, response, singular)
+         call system%solve(path%model, constraints, path%state%fields, response, singular)
          if (singular) then
             call set_error(error, MFV_BAD_ARGUMENT, 'the contact does not determine the tangent: the linear system is singular')
             return

@@ -22,10 +22,12 @@ int main(int argc, char **argv) {
   mfv_case *handle = NULL;
   char message[400] = "";
   int32_t nodes = 0;
+  int there = 1;
   if (argc != 2) {
     fprintf(stderr, "usage: test_without_hdf5 CASE.nml\n");
     return 2;
   }
+  CHECK(mfv_has_feature("hdf5", &there) == MFV_COMPLETE && there == 0);
   CHECK(mfv_create_from_file(argv[1], &handle, NULL, 0) == MFV_COMPLETE);
   CHECK(mfv_run(handle) == MFV_COMPLETE);
   CHECK(mfv_copy_integer(handle, "summary/contact_nodes", &nodes, 1) == MFV_COMPLETE && nodes == 87);

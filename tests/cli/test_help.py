@@ -1,4 +1,4 @@
-"""What the programs say about themselves: --help with cases that work, manual pages made from it, completion of every option."""
+"""What the programs say about themselves: --help with cases that work, manual pages made from it, completion."""
 import os
 import re
 import shutil
@@ -18,7 +18,8 @@ COMPLETE, INPUT = 0, 2
 
 
 def run(program, *arguments, cwd=ROOT):
-    return subprocess.run([BIN / program, *arguments], cwd=cwd, capture_output=True, text=True, timeout=300, env=os.environ | AS_ROOT)
+    return subprocess.run([BIN / program, *arguments], cwd=cwd, capture_output=True, text=True, timeout=300,
+                          env=os.environ | AS_ROOT)
 
 
 def help_of(program):

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import os
+import subprocess
 from pathlib import Path
 from typing import Any
 
@@ -19,3 +21,16 @@ def cylinder(*steps: mfv.Step, **keys: Any) -> mfv.Scene:
     """A rigid cylinder on a half-plane under Coulomb's friction, without coupling of shear into pressure."""
     given: dict[str, Any] = {"mesh": MESH, "friction": mfv.Friction.coulomb(0.7), "coupling": "goodman", **keys}
     return mfv.Scene(HALF_PLANE, DISK, steps=steps, **given)
+
+
+def sweep_table(directory: Path) -> Path:
+    """A small sweep in a directory: sweep.h5 of two coefficients of friction and two couplings."""
+    (directory / "base.nml").write_text((PROJECT / "examples" / "mindlin.nml").read_text())
+    (directory / "sweep.nml").write_text(
+        "&sweep base='base.nml', reference='full' /\n"
+        "&vary key='friction%mu', values=0.5, 0.7 /\n"
+        "&vary key='scene%coupling', values='full', 'none' /\n"
+    )
+    program = os.environ.get("MFV_SWEEP", str(PROJECT / "build/release/bin/mfv_sweep"))
+    subprocess.run([program, "sweep.nml"], cwd=directory, check=True, capture_output=True, timeout=60)
+    return directory / "sweep.h5"

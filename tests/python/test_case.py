@@ -6,7 +6,6 @@ import copy
 import gc
 import io
 import signal
-import subprocess
 import sys
 import threading
 import time
@@ -14,10 +13,10 @@ import weakref
 
 import numpy as np
 import pytest
-from scenes import PRESS, cylinder
 
 import mfv
 from mfv import errors
+from scenes import PRESS, cylinder
 
 NOTHING_KEPT = mfv.Output(history="none", states="none")
 SHEARED = PRESS, mfv.Step(tangential_force=2.8e-4), mfv.Step(tangential_force=-1.0e-4)
@@ -64,6 +63,10 @@ def test_loads_are_those_of_the_summary(pressed: mfv.Case) -> None:
 def test_numbers_beyond_a_c_int_are_not_wrapped(pressed: mfv.Case) -> None:
     with pytest.raises(errors.BadArgument, match="cycles must be from 0 to 1000000"):
         pressed.advance(shift=1e-5, cycles=2**32)
+    with pytest.raises(errors.BadArgument, match="cycles must be from 0 to 1000000"):
+        pressed.advance(shift=1e-5, cycles=-(2**40))
+    with pytest.raises(TypeError, match="must be numbers"):
+        pressed.advance(shift="far")  # type: ignore[arg-type]
     with pytest.raises(TypeError):
         pressed.advance(shift=1e-5, cycles=1.5)  # type: ignore[arg-type]
     pressed.advance(shift=np.float64(1e-5), cycles=np.int64(1), friction=np.bool_(True))
@@ -91,9 +94,7 @@ def test_the_tangent_is_what_differences_give(pressed: mfv.Case) -> None:
         with pressed.trial():
             pressed.advance(approach=h * direction[0], shift=h * direction[1], relative=True, check=True)
             after = pressed.loads
-        change = np.array(
-            [after.normal_force - before.normal_force, after.tangential_force - before.tangential_force]
-        )
+        change = np.array([after.normal_force - before.normal_force, after.tangential_force - before.tangential_force])
         np.testing.assert_allclose(tangent @ np.multiply(h, direction), change, rtol=2e-2, atol=2e-11)
     assert pressed.tangent().shape == (2, 2)
     assert pressed.tangent((0, -1))[1, 1] > pressed.tangent((0, 1))[1, 1] > 0.0
@@ -155,7 +156,7 @@ def test_a_trial_is_taken_back_unless_it_is_accepted(pressed: mfv.Case) -> None:
     assert tractions(pressed) == before
     with pytest.raises(ZeroDivisionError), pressed.trial():
         pressed.advance(tangential_force=1.0e-4)
-        1 / 0
+        raise ZeroDivisionError
     assert tractions(pressed) == before
     with pressed.trial() as trial:
         pressed.advance(tangential_force=1.0e-4)
@@ -241,6 +242,8 @@ def test_a_callback_must_not_use_its_case(pressed: mfv.Case) -> None:
         lambda: pressed["mesh/x"],
         lambda: pressed.advance(shift=0.0),
         lambda: pressed.save(),
+        lambda: pressed.close(),
+        lambda: pressed.observe(None),
     ):
         state = pressed.save()
         pressed.observe(lambda _, use=use: use())
@@ -252,7 +255,11 @@ def test_a_callback_must_not_use_its_case(pressed: mfv.Case) -> None:
 
 
 def test_an_interrupt_from_the_keyboard_ends_a_long_run_with_its_state() -> None:
-    case = cylinder(PRESS, mfv.Step(tangential_force=2.8e-4), mfv.Step(tangential_force=-2.8e-4, cycles=1000000)).contact()
+    # A process that a shell put into the background ignores interrupts.
+    before = signal.signal(signal.SIGINT, signal.default_int_handler)
+    case = cylinder(
+        PRESS, mfv.Step(tangential_force=2.8e-4), mfv.Step(tangential_force=-2.8e-4, cycles=1000000)
+    ).contact()
     timer = threading.Timer(0.3, signal.raise_signal, [signal.SIGINT])
     timer.start()
     started = time.monotonic()
@@ -260,7 +267,7 @@ def test_an_interrupt_from_the_keyboard_ends_a_long_run_with_its_state() -> None
         case.run()
     timer.join()
     assert time.monotonic() - started < 30.0
-    assert signal.getsignal(signal.SIGINT) is signal.default_int_handler
+    assert signal.signal(signal.SIGINT, before) is signal.default_int_handler
     assert case.outcome == "interrupted"
     assert case.loads.normal_force == pytest.approx(1.0e-3) and abs(case.loads.tangential_force) <= 2.8e-4 * (1 + 1e-9)
 
@@ -276,16 +283,6 @@ def test_progress_is_quiet_in_a_pipe_and_shown_on_a_terminal(monkeypatch: pytest
     shown = scene.run(progress=True)
     assert "100%" in terminal.getvalue()
     assert shown.state.shear.tobytes() == plain.state.shear.tobytes()
-
-
-def test_progress_without_tqdm_says_what_is_missing() -> None:
-    script = (
-        "import sys; sys.modules['tqdm'] = sys.modules['tqdm.auto'] = None; import mfv\n"
-        "mfv.run(text=\"&body shape='half_plane', shear_modulus=1, poisson_ratio=0.3 /"
-        "&body shape='disk', radius=1, rigid=T / &step normal_force=1e-3 /\", progress=True)"
-    )
-    ended = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, timeout=60)
-    assert ended.returncode == 1 and ended.stderr.strip().endswith("ImportError: progress=True needs tqdm: pip install tqdm")
 
 
 def test_other_threads_go_on_during_a_run() -> None:

@@ -2,16 +2,14 @@
 
 from __future__ import annotations
 
-import os
 import re
-import subprocess
 from pathlib import Path
 
 import pytest
 from matplotlib import pyplot
-from scenes import PROJECT
 
 import mfv
+from scenes import PROJECT, sweep_table
 
 PAGES = ("docs/python-api.md", "README.md", "python/README.md")
 
@@ -28,7 +26,10 @@ def directory(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 def blocks(page: str) -> list[tuple[int, str]]:
     """The Python blocks of a page, each with the number of its first line."""
     text = (PROJECT / page).read_text()
-    return [(text[: m.start(1)].count("\n") + 1, m[1]) for m in re.finditer(r"^```python\n(.*?)^```", text, re.M | re.S)]
+    return [
+        (text[: m.start(1)].count("\n") + 1, m[1])
+        for m in re.finditer(r"^```python\n(.*?)^```", text, re.MULTILINE | re.DOTALL)
+    ]
 
 
 @pytest.mark.parametrize("page", PAGES)
@@ -36,21 +37,10 @@ def test_the_examples_of_a_page_run(page: str, directory: Path) -> None:
     found = blocks(page)
     assert found
     if any("sweep.h5" in code for _, code in found):
-        make_table(directory)
+        sweep_table(directory)
     names: dict[str, object] = {}
     for line, code in found:
         # Blank lines before it: a traceback then has the line of the page.
-        exec(compile("\n" * (line - 1) + code, str(PROJECT / page), "exec"), names)
+        exec(compile("\n" * (line - 1) + code, str(PROJECT / page), "exec"), names)  # noqa: S102 - our own page
     pyplot.close("all")
     assert any(isinstance(value, mfv.Result) for value in names.values())
-
-
-def make_table(directory: Path) -> None:
-    """A small sweep, as sweep.h5."""
-    (directory / "sweep.nml").write_text(
-        "&sweep base='case.nml', reference='full' /\n"
-        "&vary key='friction%mu', values=0.5, 0.7 /\n"
-        "&vary key='scene%coupling', values='full', 'none' /\n"
-    )
-    program = os.environ.get("MFV_SWEEP", str(PROJECT / "build/release/bin/mfv_sweep"))
-    subprocess.run([program, "sweep.nml"], cwd=directory, check=True, capture_output=True, timeout=60)

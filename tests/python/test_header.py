@@ -6,8 +6,9 @@ import ctypes
 import re
 from pathlib import Path
 
-import mfv
 import pytest
+
+import mfv
 from mfv import _library
 
 HEADER = (Path(__file__).resolve().parents[2] / "include" / "mfv.h").read_text()
@@ -70,9 +71,7 @@ def members(body: str) -> list[tuple[str, type]]:
 
 
 def test_functions_are_those_of_the_header() -> None:
-    declared = {
-        name: (SCALARS[kind], *map(as_ctypes, inside.split(","))) for kind, name, inside in prototypes()
-    }
+    declared = {name: (SCALARS[kind], *map(as_ctypes, inside.split(","))) for kind, name, inside in prototypes()}
     assert len(declared) == len(re.findall(r"\bmfv_\w+\(", CODE)) > 40
     assert declared == _library.SIGNATURES
 
@@ -85,6 +84,16 @@ def test_structures_are_those_of_the_header() -> None:
         assert structure._fields_[0] == ("size", ctypes.c_size_t)
     assert tuple(mfv.Loads._fields) == tuple(name for name, _ in members(declared["mfv_loads"]))[1:-1]
     assert tuple(mfv.Progress._fields) == tuple(name for name, _ in members(declared["mfv_progress"]))[1:]
+
+
+def test_structures_are_packed_as_they_are_laid_out() -> None:
+    step, loads = _library.StepStructure(), _library.LoadsStructure()
+    values = list(range(1, len(step._fields_) + 1))
+    step.pack(step, 0, *values)
+    assert [getattr(step, name) for name, _ in step._fields_] == values
+    for number, (name, _) in enumerate(loads._fields_):
+        setattr(loads, name, number)
+    assert list(loads.unpack(loads)) == list(range(len(loads._fields_)))
 
 
 def test_the_size_of_a_structure_is_that_of_the_library() -> None:

@@ -21,12 +21,16 @@ from mfv.load_history import kept_states
 EXAMPLES = Path(__file__).resolve().parents[2] / "examples"
 
 #: The browser: what MFV_CHROMIUM says, else the first of the usual names on the PATH.
-CHROMIUM = os.environ.get("MFV_CHROMIUM") or shutil.which("chromium") or shutil.which("chromium-browser") or shutil.which("google-chrome")
+CHROMIUM = os.environ.get("MFV_CHROMIUM") or next(
+    filter(None, map(shutil.which, ("chromium", "chromium-browser", "google-chrome"))), None
+)
 
 #: A page that cannot be drawn fails after this time [ms].
 PATIENCE = 120_000
 
-needs_chromium = pytest.mark.skipif(not CHROMIUM, reason="there is no chromium on this machine (scripts/test.sh installs it)")
+needs_chromium = pytest.mark.skipif(
+    not CHROMIUM, reason="there is no chromium on this machine (scripts/test.sh installs it)"
+)
 
 BODIES = """
 &body shape='half_plane', shear_modulus=1.0, poisson_ratio=0.3 /
@@ -34,7 +38,9 @@ BODIES = """
 &mesh nodes=41, half_width=0.01225 /
 """
 TITLE = 'tan </script><b>bold</b> & "quoted"'
-PRESSED = "&scene length_unit='mm', force_unit='N' /" + BODIES + "&step normal_force=1.0e-3 /\n&output history='none' /\n"
+PRESSED = (
+    "&scene length_unit='mm', force_unit='N' /" + BODIES + "&step normal_force=1.0e-3 /\n&output history='none' /\n"
+)
 SHEARED = (
     f"&scene title='{TITLE}', coupling='goodman' /"
     + BODIES
@@ -81,7 +87,8 @@ class Page:
     def drawn(self, chart: str) -> list[str]:
         """What the curves of a chart look like: their paths."""
         return self.tab.evaluate(
-            "(chart) => [...document.querySelectorAll(`#${chart} .scatterlayer path`)].map((path) => path.getAttribute('d'))", chart
+            "(chart) => [...document.querySelectorAll(`#${chart} .scatterlayer path`)].map((path) => path.getAttribute('d'))",
+            chart,
         )
 
     def move_to(self, state: int) -> None:
@@ -92,7 +99,9 @@ class Page:
     def wait_for_state(self, state: int) -> None:
         """Wait for the words of a state."""
         self.tab.wait_for_function(
-            "(start) => document.getElementById('words').textContent.startsWith(start)", arg=f"state {state} of", timeout=PATIENCE
+            "(start) => document.getElementById('words').textContent.startsWith(start)",
+            arg=f"state {state} of",
+            timeout=PATIENCE,
         )
 
     def places(self, selector: str) -> list[list[int]]:
@@ -172,7 +181,10 @@ def test_the_slider_leads_through_the_states(browser: object, tmp_path: Path) ->
     for number in (len(steps), 1, 3):
         page.move_to(number)
         state = steps[number - 1]
-        for chart, trace, values in (("pressure", "pressure", state.pressure), ("shear", "shear traction", state.shear)):
+        for chart, trace, values in (
+            ("pressure", "pressure", state.pressure),
+            ("shear", "shear traction", state.shear),
+        ):
             x = page.curve(chart, trace, "x")
             shown = np.isclose(result.mesh.x[:, None], x, rtol=1e-6, atol=1e-9).any(axis=1)
             assert shown.sum() == x.size and np.all(state.status[~shown] == mfv.NodeStatus.OPEN)
@@ -207,8 +219,13 @@ def test_a_page_is_readable_light_dark_wide_and_narrow(browser: object, tmp_path
     path = written(SHEARED, tmp_path)[1]
     pictures = {}
     for scheme in ("light", "dark"):
+        page = Page(browser, path, viewport={"width": 1300, "height": 800}, color_scheme=scheme)
         for width in (1300, 390):
-            page = Page(browser, path, viewport={"width": width, "height": 800}, color_scheme=scheme)
+            page.tab.set_viewport_size({"width": width, "height": 800})
+            page.tab.wait_for_function(
+                "() => [...document.querySelectorAll('.main-svg')].every((one) => one.clientWidth <= innerWidth)",
+                timeout=PATIENCE,
+            )
             pictures[scheme, width] = picture = page.picture()
             assert picture.shape[1] == width  # nothing hangs over
             assert len(colours_of(picture)) > 200
@@ -217,17 +234,38 @@ def test_a_page_is_readable_light_dark_wide_and_narrow(browser: object, tmp_path
                 assert len(counts) > 20 and counts.max() < 0.98 * counts.sum()  # not blank
             named = page.tab.locator("[role=group]:not([aria-label]), button:not([aria-label]):not(:has-text('play'))")
             assert named.count() == 0
-            page.tab.close()
+        page.tab.close()
     for width in (1300, 390):
-        assert pictures["light", width].mean() > 200 > 80 > pictures["dark", width].mean()
+        assert pictures["light", width].mean() > 200.0 and pictures["dark", width].mean() < 80.0
     # The colours follow the system while the page is open.
     page = Page(browser, path, color_scheme="light")
     page.tab.emulate_media(color_scheme="dark")
-    page.tab.wait_for_function("() => document.getElementById('pressure').layout.font.color === '#e6e9ec'", timeout=PATIENCE)
+    page.tab.wait_for_function(
+        "() => document.getElementById('pressure').layout.font.color === '#e6e9ec'", timeout=PATIENCE
+    )
     # Paper is white, the folded is open, and nothing is cut off.
     paper = page.tab.pdf(prefer_css_page_size=True)
     assert paper.startswith(b"%PDF") and len(paper) > 50_000
     assert page.complaints == []
+    page.tab.close()
+
+
+@needs_chromium
+def test_a_chart_can_be_saved_and_cannot_be_sent_away(browser: object, tmp_path: Path) -> None:
+    path = written(SHEARED, tmp_path)[1]
+    page = Page(browser, path)
+    buttons = page.tab.evaluate(
+        "() => [...document.querySelectorAll('#shear .modebar-btn')].map((one) => one.outerHTML)"
+    )
+    assert len(buttons) == 4 and not any("hare" in button or "loud" in button for button in buttons)
+    page.tab.hover("#shear")
+    with page.tab.expect_download(timeout=PATIENCE) as saved:
+        page.tab.locator("#shear .modebar-btn").first.click()
+    saved.value.save_as(tmp_path / "shear.png")
+    assert len(colours_of(np.asarray(Image.open(tmp_path / "shear.png").convert("RGB")))) > 20
+    # Whatever asks for something is refused by the page itself.
+    assert page.tab.evaluate("() => fetch('https://example.org/').then(() => 'sent', () => 'refused')") == "refused"
+    assert all(url.startswith(("file:", "data:", "blob:")) for url in page.requests)
     page.tab.close()
 
 
@@ -237,7 +275,7 @@ def test_states_between_can_be_asked_for(browser: object, tmp_path: Path) -> Non
     page = Page(browser, path)
     assert page.tab.locator("#state").get_attribute("max") == "30"
     np.testing.assert_allclose(page.curve("curve", "computed")[-1], result.summary.tangential_force, rtol=1e-6)
-    page.move_to(8)  # the contact has grown for three fifths of the first of six parts, five states each; then three in the second
+    page.move_to(8)  # five states press; three of the next five lead to three fifths of 2.8e-4
     assert "Q = 0.000168" in page.tab.inner_text("#words")
     assert page.charts()["cycles"] == 1 and page.complaints == []
     page.tab.close()
@@ -245,7 +283,7 @@ def test_states_between_can_be_asked_for(browser: object, tmp_path: Path) -> Non
 
 def test_a_page_is_one_file_without_addresses_to_load(tmp_path: Path) -> None:
     text = written(SHEARED, tmp_path)[1].read_text(encoding="utf-8")
-    before, library = text.split('<script type="application/json"')
+    before, _ = text.split('<script type="application/json"')
     for loaded in ("src=", "href=", "@import", "url("):
         assert loaded not in before
     assert "default-src 'none'" in before

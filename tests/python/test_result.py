@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import copy
+import html
 import inspect
 import pickle
 import re
 import xml.etree.ElementTree
+from collections.abc import Callable
 from pathlib import Path
-from typing import Callable
 
 import numpy as np
 import pytest
@@ -16,9 +17,9 @@ import xarray
 from matplotlib import pyplot
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from scenes import PRESS, cylinder
 
 import mfv
+from scenes import PRESS, cylinder, sweep_table
 
 TO_AND_FRO = (
     mfv.Step(normal_force=5.0e-4),
@@ -123,7 +124,10 @@ def test_the_picture_of_tractions_is_the_tractions(cycled: mfv.Result) -> None:
     x, pressure = cycled.mesh.x, cycled.state.pressure
     lines = re.findall(r"<polyline points='(.*?)'", cycled._repr_html_())
     _, curve, _ = (np.array([point.split(",") for point in line.split()], dtype=float) for line in lines)
-    assert np.corrcoef(np.interp(np.linspace(0, 1, 50), np.linspace(0, 1, len(curve)), curve[:, 0]), np.arange(50))[0, 1] > 0.999
+    assert (
+        np.corrcoef(np.interp(np.linspace(0, 1, 50), np.linspace(0, 1, len(curve)), curve[:, 0]), np.arange(50))[0, 1]
+        > 0.999
+    )
     loaded = np.flatnonzero((pressure != 0.0) | (cycled.state.shear != 0.0))
     shown = slice(loaded[0] - 1, loaded[-1] + 2)
     assert np.corrcoef(curve[:, 1], pressure[shown])[0, 1] < -0.9999  # upwards in an svg is down
@@ -134,6 +138,18 @@ def test_nothing_is_drawn_where_nothing_is_loaded() -> None:
     with cylinder().contact() as case:
         assert "<svg" not in case.result()._repr_html_()
         assert "<table" in case.result()._repr_html_()
+
+
+def test_a_table_becomes_a_data_frame_and_shows_its_columns(tmp_path: Path) -> None:
+    table = mfv.read_table(sweep_table(tmp_path))
+    frame = table.to_pandas()
+    assert list(frame.columns) == list(table.columns) and len(frame) == 4
+    assert list(frame["scene%coupling"]) == ["full", "none"] * 2
+    np.testing.assert_array_equal(frame["stick_ratio"], table["stick_ratio"])
+    assert frame.attrs["units"]["shift"] == "length"
+    shown = table[:2]._repr_html_()
+    for word in ("2 cases", "scene%coupling", "stick_ratio", table.long_names["shift"]):
+        assert html.escape(word) in shown
 
 
 # --- panels ---
@@ -199,6 +215,8 @@ def test_panels_are_all_tested_here() -> None:
     taking_axes = {
         name
         for name, function in inspect.getmembers(mfv.plot, inspect.isfunction)
-        if not name.startswith("_") and function.__module__ == "mfv.plot" and "ax" in inspect.signature(function).parameters
+        if not name.startswith("_")
+        and function.__module__ == "mfv.plot"
+        and "ax" in inspect.signature(function).parameters
     }
     assert taking_axes == {*PANELS, "stress_contours"}

@@ -7,16 +7,15 @@ import os
 import pickle
 import re
 import subprocess
-import typing
 from pathlib import Path
 
 import h5py
 import numpy as np
 import pytest
-from scenes import DISK, HALF_PLANE, MESH, PRESS, PROJECT, cylinder
 
 import mfv
 from mfv import errors
+from scenes import DISK, HALF_PLANE, MESH, PRESS, PROJECT, cylinder
 
 GROUPS = {
     "scene": mfv.Scene,
@@ -27,7 +26,7 @@ GROUPS = {
     "solver": mfv.Solver,
     "output": mfv.Output,
 }
-KINDS = {"a text": str, ".true.": bool, "a whole number": int, "a number": float}
+KINDS = {"a text": "str", ".true.": "bool", "a whole number": "int", "a number": "float"}
 EXAMPLES = sorted(path for path in (PROJECT / "examples").glob("*.nml") if path.name != "sweep.nml")
 
 
@@ -53,15 +52,14 @@ def test_the_keys_of_the_classes_are_those_of_the_library() -> None:
 
 @pytest.mark.parametrize("group", GROUPS)
 def test_kinds_and_choices_are_those_of_the_library(group: str) -> None:
-    hints = typing.get_type_hints(GROUPS[group])
     for key, values in keys_of_the_library()[group].items():
-        kinds = typing.get_args(hints[key]) or (hints[key],)
+        kinds = GROUPS[group].__annotations__[key].split(" | ")  # as written: Python 3.9 cannot evaluate them
         if values.startswith("'"):
-            (choices,) = (typing.get_args(kind) for kind in [hints[key], *kinds] if typing.get_origin(kind) is typing.Literal)
-            assert list(choices) == re.findall(r"'(\w+)'", values), key
+            assert kinds[0].startswith("Literal[")
+            assert re.findall(r"[\"'](\w+)[\"']", kinds[0]) == re.findall(r"'(\w+)'", values), key
         else:
             (expected,) = (kind for words, kind in KINDS.items() if values.startswith(words))
-            assert expected in kinds, key
+            assert expected in kinds or (expected, kinds[0]) == ("float", "Coefficient"), key
 
 
 @pytest.mark.parametrize("path", EXAMPLES, ids=lambda path: path.stem)
@@ -81,7 +79,9 @@ def test_a_scene_runs_with_the_digits_of_its_file(name: str) -> None:
 
 
 def test_a_scene_by_hand_is_that_of_its_text() -> None:
-    scene = cylinder(PRESS, mfv.Step(tangential_force=2.8e-4), title="O'Hara's", solver=mfv.Solver(linear_solver="dgesv"))
+    scene = cylinder(
+        PRESS, mfv.Step(tangential_force=2.8e-4), title="O'Hara's", solver=mfv.Solver(linear_solver="dgesv")
+    )
     text = """
       &scene title="O'Hara's", coupling='Goodman' /
       &body shape='half_plane', shear_modulus=1, poisson_ratio=3D-1 / ! below
@@ -106,7 +106,11 @@ def test_constructors_give_the_keys() -> None:
     assert mfv.Body.hole(2.0, shear_modulus=1.0, kernel="fourier", harmonics=64).keys()["harmonics"] == 64
     assert mfv.Body.flat_punch(0.4) == mfv.Body(shape="flat_punch", rigid=True, half_width=0.4)
     assert mfv.Friction.coulomb(0.5).keys() == {"law": "coulomb", "mu": 0.5}
-    assert mfv.Friction.static_kinetic(0.7, 0.5).keys() == {"law": "static_kinetic", "mu_static": 0.7, "mu_kinetic": 0.5}
+    assert mfv.Friction.static_kinetic(0.7, 0.5).keys() == {
+        "law": "static_kinetic",
+        "mu_static": 0.7,
+        "mu_kinetic": 0.5,
+    }
     assert mfv.Friction.weakening(0.7, 0.5, 1e-5).weakening_distance == 1e-5
     assert mfv.Friction.dahl(0.7, 1.0e3, exponent=2.0).keys() == {
         "law": "dahl",
@@ -147,7 +151,10 @@ def test_the_library_judges() -> None:
 @pytest.mark.parametrize(
     ("text", "message"),
     [
-        ("&body shape='disk', radiuss=3 / &body shape='half_plane' /", "text:1: &body radiuss=3: unknown key; did you mean radius?"),
+        (
+            "&body shape='disk', radiuss=3 / &body shape='half_plane' /",
+            "text:1: &body radiuss=3: unknown key; did you mean radius?",
+        ),
         ("&body shape='disk', radius=3 /\n&mesh nodes=11 /\n&mesh nodes=13 /", "text:3: &mesh"),
         ("&body shape='disk', radius=3, radius=4 / &body shape='half_plane' /", "radius"),
         ("&body shape='disk', radius=1_0 / &body shape='half_plane' /", "radius=1_0"),
@@ -162,9 +169,13 @@ def test_a_bad_text_is_told_of_by_the_library(text: str, message: str) -> None:
 
 
 def test_values_of_a_wrong_kind_are_told_of() -> None:
-    with pytest.raises(TypeError, match=r"mesh%nodes: a text, a truth value, a number or an array is wanted, not \{1\}"):
+    with pytest.raises(
+        TypeError, match=r"mesh%nodes: a text, a truth value, a number or an array is wanted, not \{1\}"
+    ):
         cylinder(mesh=mfv.Mesh(nodes={1})).text()  # type: ignore[arg-type]
-    with pytest.raises(ValueError, match=r"upper body: x must have values in one dimension or two, not the shape \(0,\)"):
+    with pytest.raises(
+        ValueError, match=r"upper body: x must have values in one dimension or two, not the shape \(0,\)"
+    ):
         mfv.Scene(HALF_PLANE, mfv.Body.profile([], [], rigid=True)).text()
     with pytest.raises(FileNotFoundError):
         mfv.Scene.from_file("no_such_file.nml")
@@ -184,7 +195,9 @@ def test_a_step_in_which_nothing_is_named_is_not_lost() -> None:
 
 def test_coefficients_one_a_node() -> None:
     coefficients = np.linspace(0.3, 0.7, 61)
-    result = cylinder(PRESS, mfv.Step(tangential_force=1.0e-4), friction=mfv.Friction.coulomb(coefficients)).run(check=True)
+    result = cylinder(PRESS, mfv.Step(tangential_force=1.0e-4), friction=mfv.Friction.coulomb(coefficients)).run(
+        check=True
+    )
     np.testing.assert_array_equal(result.mesh.static_friction, coefficients)
 
 

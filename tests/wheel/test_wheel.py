@@ -1,4 +1,4 @@
-"""The wheel as a user has it: run in an environment of its own, without compilers, MFV_LIBRARY or PYTHONPATH (run.cmake)."""
+"""The wheel as a user has it: in an environment of its own, without compilers, MFV_LIBRARY, PYTHONPATH (run.cmake)."""
 
 from __future__ import annotations
 
@@ -68,8 +68,16 @@ def test_programs_are_commands(program):
 
 
 def test_a_case_from_the_command_line(tmp_path):
-    run = subprocess.run(["mfv_run", EXAMPLES / "mindlin.nml"], cwd=tmp_path, capture_output=True, text=True, check=True)
+    command = ["mfv_run", EXAMPLES / "mindlin.nml"]
+    run = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, check=True)
     assert "complete" in run.stdout
     subprocess.run(["mfv_stress", "mindlin.h5"], cwd=tmp_path, capture_output=True, check=True)
     assert mfv.read(tmp_path / "mindlin.h5").certificate.largest < 1e-10
     assert subprocess.run(["mfv_run", "no/such.nml"], cwd=tmp_path, capture_output=True).returncode == 2
+
+
+def test_files_of_the_package_are_there(tmp_path):
+    subprocess.run([sys.executable, "-m", "mfv", "new"], cwd=tmp_path, capture_output=True, check=True)
+    subprocess.run(["mfv_run", "cylinder.nml"], cwd=tmp_path, capture_output=True, check=True)
+    subprocess.run([sys.executable, "-m", "mfv", "report", "cylinder.h5"], cwd=tmp_path, capture_output=True, check=True)
+    assert "<html" in (tmp_path / "cylinder.html").read_text()[:1000]

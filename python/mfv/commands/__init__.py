@@ -43,7 +43,10 @@ def main(arguments: list[str] | None = None) -> int:
         print(f"mfv: {_with_file(str(error), options)}", file=sys.stderr)
         return UNUSABLE
     except ModuleNotFoundError as error:
-        print(f"mfv: this needs the Python package {error.name}, which is not there: pip install {error.name}", file=sys.stderr)
+        print(
+            f"mfv: this needs the Python package {error.name}, which is not there: pip install {error.name}",
+            file=sys.stderr,
+        )
         return UNUSABLE
     except KeyboardInterrupt:
         print("mfv: interrupted", file=sys.stderr)

@@ -5,9 +5,13 @@ from __future__ import annotations
 import argparse
 import sys
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from ..result import read
 from .files import written
+
+if TYPE_CHECKING:
+    from ..compare import Comparison
 
 NAME, HELP = "compare", "two results side by side"
 
@@ -34,7 +38,11 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("file", type=Path, metavar="FIRST.h5", help="result file")
     parser.add_argument("other", type=Path, metavar="SECOND.h5", help="result file")
     parser.add_argument(
-        "-o", "--output", type=Path, metavar="PICTURE", help="png, pdf or svg; else FIRST_SECOND.png beside the first file"
+        "-o",
+        "--output",
+        type=Path,
+        metavar="PICTURE",
+        help="png, pdf or svg; else FIRST_SECOND.png beside the first file",
     )
     parser.add_argument("--no-picture", action="store_true", help="draw nothing")
     parser.add_argument("--step", type=int, metavar="N", help="the states in steps/000N in place of the last ones")
@@ -64,7 +72,7 @@ def run(options: argparse.Namespace) -> int:
     return DIFFERENT if too_different else 0
 
 
-def _draw(comparison, options: argparse.Namespace) -> None:
+def _draw(comparison: Comparison, options: argparse.Namespace) -> None:
     """Write the picture, and say where it is unless the standard output is a table."""
     from ..comparison_figure import figure
 

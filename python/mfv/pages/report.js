@@ -5,7 +5,12 @@
   const play = document.getElementById("play");
   const dark = window.matchMedia("(prefers-color-scheme: dark)");
   const frameTime = 250; // milliseconds a state while playing
-  const config = { responsive: true, displaylogo: false };
+  const config = {
+    responsive: true,
+    displaylogo: false,
+    displayModeBar: window.matchMedia("(hover: hover)").matches ? "hover" : false,
+    modeBarButtons: [["toImage", "zoom2d", "pan2d", "resetScale2d"]],
+  };
   let playing = null;
 
   // A copy with the colours of the style sheet in place of their names.
