@@ -23,5 +23,10 @@ for example in two_cylinders pin_in_bore; do
   "$bin/mfv_stress" "$example.h5" >/dev/null
   draw "$example.h5" --stress von_mises -o "$pictures/${example}_stress.png"
 done
+# The mass on a contact of examples/hosts.
+library=$root/build/release/lib
+cc -O2 -I"$root/include" "$root/examples/hosts/newmark.c" -o newmark -L"$library" -lmfv -lm -Wl,-rpath,"$library"
+PYTHONPATH=$root/python MPLBACKEND=Agg MFV_LIBRARY=$library/libmfv.so OPENBLAS_NUM_THREADS=1 \
+  "$venv/bin/python" "$root/examples/hosts/draw_newmark.py" newmark -o "$pictures/newmark_decay.png"
 # Figures of the dissertation, into examples/dissertation/pictures.
 PYTHONPATH=$root/python MPLBACKEND=Agg MFV_LIBRARY=$root/build/release/lib/libmfv.so "$venv/bin/python" "$root/examples/dissertation/draw.py"

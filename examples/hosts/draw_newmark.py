@@ -39,7 +39,7 @@ LIMIT = MU * FORCE
 
 def simulate(program: Path | str, *options: str) -> tuple[dict[str, np.ndarray], dict[str, np.ndarray]]:
     """Columns of the program's table; with --verbose those of its residuals too."""
-    done = subprocess.run([str(program), *options], capture_output=True, text=True, check=False)
+    done = subprocess.run([str(Path(program).resolve()), *options], capture_output=True, text=True, check=False)
     if done.returncode:
         raise RuntimeError(f"{program} {' '.join(options)}: {done.stderr}")
     return columns(done.stdout), columns(done.stderr)
@@ -109,9 +109,10 @@ def draw_decay(ax: Axes, program: Path | str) -> None:
 def draw_residuals(ax: Axes, program: Path | str) -> None:
     """Residuals of one large time step, with the tangent and with the initial stiffness."""
     step = ["--amplitude", "0", "--force", "0.5", "--steps", "1", "--periods", "1", "--verbose"]
+    least = 1e-16  # in place of nothing at all
     for nodes, marker in ((101, "s"), (401, "o")):
         _, newton = simulate(program, *step, "--nodes", str(nodes))
-        ax.semilogy(newton["iteration"], newton["residual"], marker=marker, ms=4, label=f"tangent, {nodes} nodes")
+        ax.semilogy(newton["iteration"], np.maximum(newton["residual"], least), marker=marker, ms=4, label=f"tangent, {nodes} nodes")
     _, initial = simulate(program, *step, "--nodes", "101", "--initial-stiffness")
     ax.semilogy(initial["iteration"], initial["residual"], "^-", ms=3, label="initial stiffness, 101 nodes")
     ax.set(xlabel="iteration", ylabel="residual / (mu P)", title="One large time step", xticks=range(0, 20, 4))
