@@ -10,7 +10,7 @@ module embedding_direct
    implicit none
    private
 
-   type(simulation_type), save :: simulation
+   type(simulation_type), allocatable, save :: simulation
 
 contains
 
@@ -26,6 +26,7 @@ contains
          status = error%status
          return
       end if
+      if (allocated(simulation)) deallocate (simulation)
       simulation = new_simulation(case%scene, case%keep_history, case%keep_states)
       call simulation%run()
       status = simulation%outcome

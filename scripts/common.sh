@@ -49,11 +49,11 @@ python_environment() {
   touch "$stamp"
 }
 
-# Configure and build one preset.
+# Configure and build one preset. $1: its name; what follows: options of the build, such as --target mfv_run.
 build() {
   say "building preset $1 in build/$1"
   cd "$root"
   mkdir -p "build/$1"
   log=build/$1/build.log
-  { cmake --preset "$1" && cmake --build --preset "$1" --parallel "$jobs"; } >"$log" 2>&1 || { tail -n 40 "$log"; return 1; }
+  { cmake --preset "$1" && cmake --build --preset "$@" --parallel "$jobs"; } >"$log" 2>&1 || { tail -n 40 "$log"; return 1; }
 }

@@ -7,7 +7,9 @@ from pathlib import Path
 
 from docstrings import escaped
 
+CALLBACK = re.compile(r"^typedef \w+ \(\*(\w+)\)", re.MULTILINE)
 PROTOTYPE = re.compile(r"^(?!typedef|enum|#)(\w[^;{}]*\([^;{}]*\));", re.MULTILINE)
+STRUCT = re.compile(r"^typedef struct (\w+)(?: \w+;|( \{))", re.MULTILINE)
 STATUS = re.compile(r'^MFV_STATUS\((\w+), (\d+), (\d+), "(.*?)", "(.*?)"\)', re.MULTILINE)
 
 
@@ -34,21 +36,14 @@ def _described(comment: str, declarations: str) -> list[str]:
         declared = ["```{eval-rst}", ".. c:function:: " + "\n                ".join(signatures), ""]
         return [*declared, f"   {escaped(comment)}", "```", ""]
     words = _literal(comment)
-    opaque = re.fullmatch(r"typedef struct (\w+) \1;", declarations)
-    if opaque:
-        return [*_directive("type", opaque[1]), "", words, ":::", ""]
-    struct = re.match(r"typedef struct (\w+) \{(.*)\} \1;", declarations, re.DOTALL)
-    if struct:
-        members = re.findall(r"^ *(\w+ \w+); */\*(.*?)\*/", struct[2], re.MULTILINE | re.DOTALL)
-        inner = []
-        for name, meaning in members:
-            inner += ["", *_directive("member", name), _literal(_words(meaning)), ":::"]
-        return [*_directive("struct", struct[1], ":" * 4), "", words, *inner, "::::", ""]
-    return [words, "", "```c", declarations, "```", ""]
-
-
-def _directive(kind: str, signature: str, fence: str = ":::") -> list[str]:
-    return [f"{fence}{{c:{kind}}} {signature}"]
+    code = ["```c", declarations, "```", ""]
+    types = ["struct " + name if opens else "type " + name for name, opens in STRUCT.findall(declarations)]
+    types += ["type " + name for name in CALLBACK.findall(declarations)]
+    if not types:
+        return [words, "", *code]
+    shown = code if "\n" in declarations else []
+    lines = [f"::::{{c:{types[0]}".replace(" ", "} "), "", words, "", *shown, "::::", ""]
+    return lines + [line for kind in types[1:] for line in (f"::::{{c:{kind}".replace(" ", "} "), "::::", "")]
 
 
 def _words(comment: str) -> str:

@@ -35,7 +35,12 @@ class Module:
     path: Path
     words: list[str]
     public: list[str] = field(default_factory=list)
+    used: list[tuple[str, list[str]]] = field(default_factory=list)
     entities: list[Entity] = field(default_factory=list)
+    hands_on: bool = False
+
+    def entity(self, name: str) -> Entity | None:
+        return next((entity for entity in self.entities if name.lower() in map(str.lower, entity.names)), None)
 
 
 def write_fortran_reference(root: Path, folder: Path) -> None:
@@ -43,12 +48,12 @@ def write_fortran_reference(root: Path, folder: Path) -> None:
     pages = folder / "fortran"
     pages.mkdir()
     modules = [module for path in sorted((root / "src").rglob("*.[fF]90")) for module in [read_module(path)] if module]
-    homes = {name.lower(): module.name for module in modules for entity in module.entities for name in entity.names}
+    by_name = {module.name: module for module in modules}
     lines = ["# Fortran modules", "", "From the comments of the sources; what is private is left out.", ""]
     folders: dict[str, list[Module]] = {}
     for module in modules:
         folders.setdefault(module.path.relative_to(root / "src").parts[0], []).append(module)
-        (pages / f"{module.name}.md").write_text(_page(root, module, homes))
+        (pages / f"{module.name}.md").write_text(_page(root, module, by_name))
     front = [module for module in modules if module.name == "mfv"]
     if front:
         lines += ["Programs use one of them, [`mfv`](mfv.md).", "", *_words(front[0].words), ""]
@@ -75,6 +80,11 @@ def read_module(path: Path) -> Module | None:
             begins = re.fullmatch(r"module +(\w+)", text, re.IGNORECASE)
             if begins:
                 module = Module(begins[1], path, words)
+        elif re.match(r"use +\w+", text, re.IGNORECASE) and inside_procedure == 0:
+            name, _, names = text[len("use"):].partition(",")
+            module.used.append((name.strip(), re.findall(r"\w+", names.partition(":")[2])))
+        elif text.lower() == "public":
+            module.hands_on = True
         elif re.match(r"public *::", text, re.IGNORECASE):
             module.public += [name.strip().lower() for name in text.split("::")[1].split(",")]
         elif TYPE.fullmatch(text):
@@ -194,24 +204,31 @@ def _indented(block: list[str]) -> list[str]:
     return lines
 
 
-def _page(root: Path, module: Module, homes: dict[str, str]) -> str:
+def _page(root: Path, module: Module, modules: dict[str, Module]) -> str:
     # A hundred modules would fill the side bar of every page: they are found from the table.
     lines = ["---", "orphan: true", "---", "", f"# {module.name}", "", "[Fortran modules](index.md)", ""]
     lines += [*_words(module.words), "", f"`{module.path.relative_to(root)}`", ""]
-    own = {name.lower() for entity in module.entities for name in entity.names}
-    others = [name for name in module.public if name not in own]
-    if others:
-        lines += ["| public here, from | names |", "| --- | --- |"]
-        for home in sorted({homes.get(name, "") for name in others}):
-            names = ", ".join(f"`{name}`" for name in others if homes.get(name, "") == home)
-            lines.append(f"| {f'[`{home}`]({home}.md)' if home else 'elsewhere'} | {names} |")
-        lines.append("")
+    lines += _handed_on(module, modules)
     for entity in module.entities:
         shown = [name for name in entity.names if name.lower() in module.public]
         if shown:
             code = [piece for line in entity.statements for piece in _broken(line)]
             lines += [f"## {', '.join(shown)}", "", "```fortran", *code, "```", "", *_words(entity.words), ""]
     return "\n".join(lines)
+
+
+def _handed_on(module: Module, modules: dict[str, Module]) -> list[str]:
+    """What a module makes public of others: a table of names, of where they are from and of what they are."""
+    rows = []
+    for home, names in module.used:
+        source = modules.get(home)
+        for name in names or (source.public if source else []):
+            if not module.hands_on and name.lower() not in module.public:
+                continue
+            entity = source.entity(name) if source else None
+            words = (entity.words if entity else []) or (source.words if source else [])
+            rows.append(f"| `{name}` | {f'[`{home}`]({home}.md)' if source else f'`{home}`'} | {_first_sentence(words)} |")
+    return ["| name | from | what it is |", "| --- | --- | --- |", *rows, ""] if rows else []
 
 
 def _broken(line: str, width: int = 96) -> list[str]:

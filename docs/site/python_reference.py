@@ -10,8 +10,7 @@ def write_python_reference(package: Path, folder: Path) -> None:
     """Write python/index.md and a page for every public module below `folder`, the source of the site."""
     pages = folder / "python"
     pages.mkdir()
-    modules = sorted(str(path.relative_to(package.parent).with_suffix("")).replace("/", ".") for path in package.rglob("*.py"))
-    modules = [name for name in modules if "._" not in name]
+    modules = sorted(f"{package.name}.{path.stem}" for path in package.glob("*.py") if not path.stem.startswith("_"))
     lines = ["# Python modules", "", *_module(package.name, ":no-members:"), "", "| module | what it is |", "| --- | --- |"]
     for name in modules:
         source = (package.parent / name.replace(".", "/")).with_suffix(".py").read_text()

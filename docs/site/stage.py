@@ -22,6 +22,8 @@ from fortran_reference import write_fortran_reference
 from gallery import write_gallery
 from python_reference import write_python_reference
 
+from mfv.commands import COMMANDS
+
 PROGRAMS = ("mfv_run", "mfv_stress", "mfv_sweep", "mfv_conventional")
 PICTURES = (".png", ".gif", ".svg", ".jpg")
 LANGUAGES = {".nml": "fortran", ".f90": "fortran", ".F90": "fortran", ".py": "python", ".h": "c", ".def": "c", ".c": "c"}
@@ -60,9 +62,12 @@ def write_programs(programs: Path, page: Path) -> None:
     """The page of the programs' --help."""
     lines = ["# Programs", "", "What `--help` says. The manual pages, `man mfv_run` and so on, have the same, and every key in"]
     lines += ["`man 5 mfv_case` and `man 5 mfv_sweep`. Options, files and quantities are completed by bash, zsh and fish.", ""]
-    for program in PROGRAMS:
-        text = subprocess.run([programs / program, "--help"], check=True, capture_output=True, text=True).stdout
-        lines += [f"## {program}", "", "```text", text.rstrip(), "```", ""]
+    commands = {program: [programs / program] for program in PROGRAMS}
+    commands |= {f"python -m mfv {each.NAME}": [sys.executable, "-m", "mfv", each.NAME] for each in COMMANDS}
+    surroundings = os.environ | {"PYTHONPATH": str(ROOT / "python"), "COLUMNS": "100"}
+    for name, command in commands.items():
+        shown = subprocess.run([*command, "--help"], check=True, capture_output=True, text=True, env=surroundings)
+        lines += [f"## {name}", "", "```text", shown.stdout.rstrip(), "```", ""]
     page.write_text("\n".join(lines))
 
 
@@ -110,6 +115,8 @@ class Site:
     def _page_of(self, target: Path) -> str:
         """Page of a file or folder that is no document: a picture is copied, another file shown, a folder listed."""
         source = ROOT / target
+        if not source.exists():
+            raise FileNotFoundError(f"a document links to {target}, which is not there: python3 scripts/check_links.py names it")
         if source.suffix in PICTURES:
             copy = self.folder / target
             copy.parent.mkdir(parents=True, exist_ok=True)

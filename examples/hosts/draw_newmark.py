@@ -114,7 +114,7 @@ def draw_residuals(ax: Axes, program: Path | str) -> None:
         ax.semilogy(newton["iteration"], newton["residual"], marker=marker, ms=4, label=f"tangent, {nodes} nodes")
     _, initial = simulate(program, *step, "--nodes", "101", "--initial-stiffness")
     ax.semilogy(initial["iteration"], initial["residual"], "^-", ms=3, label="initial stiffness, 101 nodes")
-    ax.set(xlabel="iteration", ylabel="residual / (mu P)", title="One large time step")
+    ax.set(xlabel="iteration", ylabel="residual / (mu P)", title="One large time step", xticks=range(0, 20, 4))
     ax.legend(loc="upper right", fontsize="small")
 
 

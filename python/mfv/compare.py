@@ -164,9 +164,12 @@ def compare(first: Result, second: Result, step: int | None = None) -> Compariso
 
 
 def relative_difference(first: float, second: float) -> float:
-    """Difference of two numbers in parts of the larger; 0 where they are equal, NaN where one is not a number."""
+    """Difference of two numbers in parts of the larger; 0 where they are equal, infinite where one of them is, NaN where one is
+    not a number."""
     if first == second:
         return 0.0
+    if not np.isfinite(first + second):
+        return float(abs(second - first))
     return abs(second - first) / max(abs(first), abs(second))
 
 

@@ -26,6 +26,9 @@ KNOWN = (*LOADS, "force_ratio", "friction", "cycles", "steady_tolerance")
 #: By how much the tractions at the end may differ from those of the file, in parts of the largest.
 AGREEMENT = 1.0e-9
 
+#: By how much they may differ at all; beyond it the result was not led by the steps of its case.
+LIKENESS = 1.0e-2
+
 Progress = Callable[[Iterable[Any]], Iterable[Any]]
 
 
@@ -71,8 +74,8 @@ def thinned(result: Result, states: int) -> Result:
 def with_states_between(result: Result, states: int, progress: Progress = iter) -> LoadHistory:
     """The load history of a result with about that many states, from its case solved again with targets on the way.
 
-    Where that cannot be done, the states that the result keeps, with a note that says why; a note also tells when the case
-    does not end where the result does, to within AGREEMENT. `progress` goes over the targets.
+    Where that cannot be done, or leads elsewhere, the states that the result keeps, with a note that says why; a note also
+    tells when the case does not end where the result does, to within AGREEMENT. `progress` goes over the targets.
     """
     kept = kept_states(result)
     try:
@@ -80,11 +83,10 @@ def with_states_between(result: Result, states: int, progress: Progress = iter) 
     except (MfvError, ValueError) as error:
         return LoadHistory(thinned(kept, states), f"only states that the file keeps: {error}")
     difference = compare(result, again).largest_difference
-    if difference <= AGREEMENT:
-        return LoadHistory(again, "")
-    return LoadHistory(
-        again, f"solved again, the case ends elsewhere: tractions differ by {difference:.1e} of the largest"
-    )
+    elsewhere = f"solved again, the case ends elsewhere: tractions differ by {difference:.1e} of the largest"
+    if not difference <= LIKENESS:
+        return LoadHistory(thinned(kept, states), f"only states that the file keeps: {elsewhere}")
+    return LoadHistory(again, "" if difference <= AGREEMENT else elsewhere)
 
 
 def _solved_again(result: Result, states: int, progress: Progress) -> Result:

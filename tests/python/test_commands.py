@@ -20,6 +20,9 @@ from mfv.commands import main
 from mfv.compare import compare, relative_difference
 from mfv.load_history import kept_states, thinned, with_states_between
 
+sys.path.append(str(Path(__file__).resolve().parents[1] / "cli"))
+from terminal import shown_on_a_terminal
+
 PRESSED = """
 &scene title='{title}', coupling='{coupling}' /
 &body shape='half_plane', shear_modulus=1.0, poisson_ratio=0.3 /
@@ -85,7 +88,9 @@ def test_relative_differences() -> None:
     assert relative_difference(0.0, 0.0) == relative_difference(np.inf, np.inf) == 0.0
     assert relative_difference(1.0, 2.0) == relative_difference(2.0, 1.0) == 0.5
     assert relative_difference(0.0, -3.0) == 1.0
-    assert np.isnan(relative_difference(1.0, np.nan))
+    for one, other in ((1.0, np.nan), (np.nan, 0.0), (np.nan, np.nan)):
+        assert np.isnan(relative_difference(one, other)) and np.isnan(relative_difference(other, one))
+    assert relative_difference(np.inf, 1.0) == relative_difference(-1.0, -np.inf) == np.inf
 
 
 def test_compare_writes_picture_and_table(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
@@ -184,6 +189,12 @@ def test_another_end_is_told_and_so_is_what_cannot_be_solved_again() -> None:
     result.attributes["input"] = result.attributes["input"].replace("shift", "").replace("disk", "disc")
     again, note = with_states_between(result, 40)
     assert "disc" in note and again.steps == result.steps
+    # A host that leads the contact itself has other states than the steps of the text.
+    with mfv.Case.from_text(SHEARED.format(**{**MINDLIN, "title": ""})) as case:
+        case.advance(normal_force=1.0e-3)
+        led = case.result()
+    again, note = with_states_between(led, 40)
+    assert "ends elsewhere" in note and len(again.steps) == 1
     without = mfv.run(text=SHEARED.format(**{**MINDLIN, "title": ""}) + "&output states='none' /\n")
     assert without.steps == [] and len(with_states_between(without, 8).result.steps) == 8
     steady = SHEARED.replace("cycles=1", "cycles=9, steady_tolerance=1e-6") + "&output states='none' /\n"
@@ -222,6 +233,15 @@ def test_animate_writes_a_gif_that_moves(tmp_path: Path, capsys: pytest.CaptureF
     assert len(frames) == 8
     assert all(np.any(one != other) for one, other in zip(frames, frames[1:]))
     assert sorted(path.name for path in tmp_path.iterdir()) == ["a.gif", "a.h5"]
+
+
+def test_animate_shows_progress_on_a_terminal_alone(tmp_path: Path) -> None:
+    solved(tmp_path / "a.h5")
+    environment = {**os.environ, "PYTHONPATH": str(Path(mfv.__file__).parents[1])}
+    command = [sys.executable, "-m", "mfv", "animate", str(tmp_path / "a.h5"), "--frames", "2", "--kept"]
+    assert b"drawing" in shown_on_a_terminal(command, env=environment)
+    ended = subprocess.run(command, env=environment, capture_output=True, text=True, check=True)
+    assert ended.stderr == "" and ended.stdout.strip() == str(tmp_path / "a.gif")
 
 
 def test_animate_draws_the_states_of_the_file(tmp_path: Path) -> None:

@@ -64,6 +64,8 @@ def test_the_c_reference_has_every_function_and_status(tmp_path, site):
     assert len(functions) > 20
     for function in functions:
         assert re.search(rf"^(\.\. c:function::)? +\w+ {function}\(", page, re.MULTILINE), function
+    for name in re.findall(r"^typedef (?:struct \w+|struct \w+ \{.*?\}) (\w+);", header, re.MULTILINE | re.DOTALL):
+        assert re.search(rf"^::::\{{c:(type|struct)\}} {name}$", page, re.MULTILINE), name
     for status in re.findall(r"^MFV_STATUS\((\w+)", (ROOT / "include/mfv_status.def").read_text(), re.MULTILINE):
         assert f"| `{status}` |" in page
 
@@ -127,3 +129,4 @@ end module one
                                            "   real, intent(in) :: number(size('!', 1):), other", "end function half"]
     shown = ["type :: point_type", "contains", "   procedure :: move", "end type point_type"]
     assert entities["point_type"].statements == shown
+    assert module.used == [("two", ["three"])] and not module.hands_on

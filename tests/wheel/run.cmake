@@ -12,6 +12,10 @@ step(${PYTHON} -c ${where})
 set(dependencies ${step_output})
 step(${python} -c ${where})
 file(WRITE ${step_output}/dependencies.pth ${dependencies})
-step(env -i PATH=${WORK_DIR}/venv/bin HOME=${WORK_DIR} MPLBACKEND=Agg OPENBLAS_NUM_THREADS=1 MFV_RUN=${WORK_DIR}/venv/bin/mfv_run
-  ${python} -m pytest -q -p no:cacheprovider ${SOURCE_DIR}/tests/wheel ${SOURCE_DIR}/tests/python/test_mfv.py)
+set(suites ${SOURCE_DIR}/tests/wheel)
+foreach(suite mfv case scene result)
+  list(APPEND suites ${SOURCE_DIR}/tests/python/test_${suite}.py)
+endforeach()
+step(env -i PATH=${WORK_DIR}/venv/bin HOME=${WORK_DIR} MPLBACKEND=Agg OPENBLAS_NUM_THREADS=1
+  MFV_RUN=${WORK_DIR}/venv/bin/mfv_run ${python} -m pytest -q -p no:cacheprovider ${suites})
 message(STATUS "${step_output}")

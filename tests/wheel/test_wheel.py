@@ -74,3 +74,10 @@ def test_a_case_from_the_command_line(tmp_path):
     subprocess.run(["mfv_stress", "mindlin.h5"], cwd=tmp_path, capture_output=True, check=True)
     assert mfv.read(tmp_path / "mindlin.h5").certificate.largest < 1e-10
     assert subprocess.run(["mfv_run", "no/such.nml"], cwd=tmp_path, capture_output=True).returncode == 2
+
+
+def test_files_of_the_package_are_there(tmp_path):
+    subprocess.run([sys.executable, "-m", "mfv", "new"], cwd=tmp_path, capture_output=True, check=True)
+    subprocess.run(["mfv_run", "cylinder.nml"], cwd=tmp_path, capture_output=True, check=True)
+    subprocess.run([sys.executable, "-m", "mfv", "report", "cylinder.h5"], cwd=tmp_path, capture_output=True, check=True)
+    assert "<html" in (tmp_path / "cylinder.html").read_text()[:1000]
