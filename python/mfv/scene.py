@@ -24,13 +24,13 @@ from ._library import LARGEST_INTEGER, library, real_pointer, text_buffer, text_
 from .inputs import groups
 
 if TYPE_CHECKING:
-    from typing_extensions import dataclass_transform
+    from typing_extensions import dataclass_transform as _dataclass_transform
 
     from .case import Case
     from .result import Result
 else:
 
-    def dataclass_transform(**_: Any) -> Callable[[Any], Any]:
+    def _dataclass_transform(**_: Any) -> Callable[[Any], Any]:
         return lambda decorator: decorator
 
 
@@ -43,7 +43,7 @@ Data = Mapping[str, NDArray[np.float64]]
 _Class = TypeVar("_Class")
 
 
-@dataclass_transform(kw_only_default=True, eq_default=False)
+@_dataclass_transform(kw_only_default=True, eq_default=False)
 def _keywords_only(cls: type[_Class]) -> type[_Class]:
     """A dataclass with keywords only (before Python 3.10 arguments by position are not refused)."""
     options: dict[str, Any] = {"kw_only": True} if sys.version_info >= (3, 10) else {}
