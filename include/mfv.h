@@ -182,7 +182,7 @@ int mfv_field_count(const mfv_case *handle, size_t *count);
 int mfv_field_path(const mfv_case *handle, size_t index, char *buffer, size_t size);
 
 /* What the values of a field run along. */
-enum { MFV_ALONG_NOTHING = 0, MFV_ALONG_NODES = 1, MFV_ALONG_RECORDS = 2 };
+enum { MFV_ALONG_NOTHING = 0, MFV_ALONG_NODES = 1, MFV_ALONG_RECORDS = 2, MFV_ALONG_COMPANIONS = 3, MFV_ALONG_CYCLES = 4 };
 
 /* Of the field at `path`: number of values (1 for a scalar), whether they are whole numbers, what they run along, unit and
  * description; every out argument may be NULL. Since 0.1.0. */

@@ -44,6 +44,8 @@ class Along(IntEnum):
     NOTHING = 0
     NODES = 1
     RECORDS = 2
+    COMPANIONS = 3
+    CYCLES = 4
 
 
 class StepStructure(ctypes.Structure):
