@@ -19,7 +19,7 @@ from matplotlib.layout_engine import ConstrainedLayoutEngine
 from matplotlib.patches import Patch
 
 from . import plot
-from .result import Group, Result
+from .result import Group, Result, counts
 from .views import Curve, contact, curve_of
 
 #: What can be written, by the suffix of the file.
@@ -125,11 +125,11 @@ def _ffmpeg() -> str:
     """The program ffmpeg, or that of the package imageio-ffmpeg. Raises ValueError where there is none."""
     found = shutil.which(matplotlib.rcParams["animation.ffmpeg_path"])
     if found:
-        return found
+        return str(found)
     try:
         from imageio_ffmpeg import get_ffmpeg_exe
 
-        return get_ffmpeg_exe()
+        return str(get_ffmpeg_exe())
     except (ImportError, RuntimeError):
         raise ValueError(
             "an MP4 needs ffmpeg, which is not there: install it (apt-get install ffmpeg, or pip install imageio-ffmpeg), "
@@ -196,5 +196,5 @@ def _caption(result: Result, state: Group, number: int) -> str:
         if name in state:
             unit = state.unit(name)
             parts.append(f"{symbol} = {state[name]:.3g}{f' {unit}' if plot._is_named(unit) else ''}")
-    parts.append(plot.counts(state))
+    parts.append(counts(state))
     return " \N{MIDDLE DOT} ".join(parts)

@@ -354,7 +354,8 @@ def _axis(name: str, symbol: str, unit: str, limits: Sequence[float] | None = No
 
 def _plain(figure: go.Figure) -> dict[str, Any]:
     """A figure as plain lists and dictionaries."""
-    return json.loads(figure.to_json())
+    plain: dict[str, Any] = json.loads(figure.to_json())
+    return plain
 
 
 def _status_colours() -> dict[str, Any]:
