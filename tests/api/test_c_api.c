@@ -1,21 +1,12 @@
 /* The C interface as a host program uses it. Usage: test_c_api CASE.nml RESULT.h5. Prints what failed; exit code 0 when
  * nothing did. */
+#include "check.h"
 #include <math.h>
 #include <mfv.h>
 #include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-
-static int failures = 0;
-
-#define CHECK(condition)                                                  \
-  do {                                                                    \
-    if (!(condition)) {                                                   \
-      printf("%s:%d: failed: %s\n", __FILE__, __LINE__, #condition);      \
-      ++failures;                                                         \
-    }                                                                     \
-  } while (0)
 
 #define SCENE                                                                                    \
   "&scene coupling='goodman' / &body shape='half_plane', shear_modulus=1.0, poisson_ratio=0.3 /\n" \

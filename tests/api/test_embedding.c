@@ -1,21 +1,12 @@
 /* The C interface as somebody else's simulator uses it: scenes by calls, increments, trial steps, tangent, observers. Prints
  * what failed; exit code 0 when nothing did. */
+#include "check.h"
 #include <math.h>
 #include <mfv.h>
 #include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-
-static int failures = 0;
-
-#define CHECK(condition)                                                  \
-  do {                                                                    \
-    if (!(condition)) {                                                   \
-      printf("%s:%d: failed: %s\n", __FILE__, __LINE__, #condition);      \
-      ++failures;                                                         \
-    }                                                                     \
-  } while (0)
 
 enum { NODES = 41 };
 

@@ -1,19 +1,10 @@
 /* The C interface where MFV is built without HDF5: everything but files is there, and of files messages tell why they are not.
  * Usage: test_without_hdf5 CASE.nml. Prints what failed; exit code 0 when nothing did. */
+#include "check.h"
 #include <mfv.h>
 #include <stdint.h>
 #include <stdio.h>
 #include <string.h>
-
-static int failures = 0;
-
-#define CHECK(condition)                                                  \
-  do {                                                                    \
-    if (!(condition)) {                                                   \
-      printf("%s:%d: failed: %s\n", __FILE__, __LINE__, #condition);      \
-      ++failures;                                                         \
-    }                                                                     \
-  } while (0)
 
 static const char *const with_a_matrix =
   "&body shape='matrix', file='body.h5' /\n&body shape='disk', radius=1, rigid=.true. /\n&step normal_force=1 /\n";
