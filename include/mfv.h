@@ -101,7 +101,8 @@ int mfv_scene_text(const mfv_scene *scene, char *buffer, size_t size, size_t *le
 int mfv_scene_free(mfv_scene **scene);
 
 /* Create a case from a scene, which stays as it is and may be freed or changed afterwards; from a namelist file; or from a
- * text (`name`: as in mfv_scene_from_text). It may have no &step when mfv_advance is to lead the loads. On failure *handle is
+ * text (`name`: as in mfv_scene_from_text). It may have no &step when mfv_advance is to lead the loads; then give
+ * mesh%half_width, for without a step there is no load to choose a mesh by (it begins small, and grows). On failure *handle is
  * NULL and `message`, which may be NULL, tells why. Since 0.1.0. */
 int mfv_create(const mfv_scene *scene, mfv_case **handle, char *message, size_t message_size);
 int mfv_create_from_file(const char *path, mfv_case **handle, char *message, size_t message_size);
