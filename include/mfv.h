@@ -76,14 +76,17 @@ int mfv_scene_from_text(const char *text, const char *name, mfv_scene **scene, c
 
 /* Give a key of docs/namelist.md a value. `key`: group and key, such as "friction%mu"; of groups that may come more than once
  * with the number, from 1: "body(1)%shape" (below), "body(2)%radius" (above), "step(1)%normal_force". A key that is there
- * gets the new value, also in place of one that it is an alternative to (shift for tangential_force). Keys, kinds, ranges and
- * combinations are checked by mfv_create, with a message that names group, key, value and what is right; a call here fails
- * for a null or malformed argument. Since 0.1.0. */
+ * gets the new value. Kinds, ranges and combinations (a force and a displacement in one step) are checked by mfv_create, with a
+ * message that names group, key, value and what is right; a call here fails for a null argument, a name that is none, and
+ * a value that is not finite, which mfv_create tells too. Since 0.1.0. */
 int mfv_scene_set_text(mfv_scene *scene, const char *key, const char *value);
 int mfv_scene_set_real(mfv_scene *scene, const char *key, double value);
 int mfv_scene_set_reals(mfv_scene *scene, const char *key, const double *values, size_t count);
 int mfv_scene_set_integer(mfv_scene *scene, const char *key, int value);
 int mfv_scene_set_logical(mfv_scene *scene, const char *key, int value);
+
+/* Take a key out, as if it had never been given a value: tangential_force, say, before shift comes in. Since 0.1.0. */
+int mfv_scene_remove(mfv_scene *scene, const char *key);
 
 /* Data in memory in place of a file that a key names: where the scene says file='NAME' or mu_file='NAME', and data are there
  * for `file` = NAME, they are taken. Columns of a text file are datasets of that many rows and one column: "x" and "height" of

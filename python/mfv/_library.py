@@ -130,6 +130,7 @@ SIGNATURES: dict[str, tuple[type, ...]] = {
     "mfv_scene_set_reals": (c_int, _scene, _text, _array, c_size_t),
     "mfv_scene_set_integer": (c_int, _scene, _text, c_int),
     "mfv_scene_set_logical": (c_int, _scene, _text, c_int),
+    "mfv_scene_remove": (c_int, _scene, _text),
     "mfv_scene_set_data": (c_int, _scene, _text, _text, c_size_t, c_size_t, _array),
     "mfv_scene_text": (c_int, _scene, _text, c_size_t, _length),
     "mfv_scene_free": (c_int, _handle_slot),

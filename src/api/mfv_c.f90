@@ -236,6 +236,18 @@ contains
       status = kept(self, error)
    end function mfv_scene_set_logical
 
+   function mfv_scene_remove(scene, key) result(status) bind(C, name='mfv_scene_remove')
+      type(c_ptr), value :: scene, key
+      integer(c_int) :: status
+      type(scene_handle_type), pointer :: self
+      type(error_type), allocatable :: error
+
+      call find_scene(scene, self, status, key)
+      if (status /= MFV_COMPLETE) return
+      call self%draft%remove(text_in(key), error)
+      status = kept(self, error)
+   end function mfv_scene_remove
+
    function mfv_scene_set_data(scene, file, dataset, rows, columns, values) result(status) &
       bind(C, name='mfv_scene_set_data')
       type(c_ptr), value :: scene, file, dataset, values
@@ -606,9 +618,9 @@ contains
       end if
       call c_f_pointer(state, slot)
       if (c_associated(slot)) then
-         call c_f_pointer(slot, kept)
-         status = MFV_BAD_HANDLE
-         if (kept%mark /= state_mark) return
+         call find_state(slot, kept, status)
+         if (status /= MFV_COMPLETE) self%message = 'the state was freed, or is none'
+         if (status /= MFV_COMPLETE) return
       else
          allocate (kept)
          kept%mark = state_mark
@@ -627,10 +639,9 @@ contains
 
       call find(handle, self, status)
       if (status /= MFV_COMPLETE) return
-      status = MFV_BAD_HANDLE
-      if (.not. c_associated(state)) return
-      call c_f_pointer(state, kept)
-      if (kept%mark /= state_mark) return
+      call find_state(state, kept, status)
+      if (status /= MFV_COMPLETE) self%message = 'the state is null or was freed'
+      if (status /= MFV_COMPLETE) return
       call self%contact%come_back(kept%state, error)
       status = failed(self, error)
       if (status == MFV_COMPLETE) call self%contact%get_message(self%message)
@@ -645,14 +656,25 @@ contains
       call find_slot(state, slot)
       status = MFV_COMPLETE
       if (.not. associated(slot)) return
-      call c_f_pointer(slot, kept)
+      call find_state(slot, kept, status)
       slot = c_null_ptr
-      status = MFV_BAD_HANDLE
-      if (kept%mark /= state_mark) return
+      if (status /= MFV_COMPLETE) return
       kept%mark = 0
       deallocate (kept)
-      status = MFV_COMPLETE
    end function mfv_state_free
+
+   !> The object of a kept state; MFV_BAD_HANDLE where it is none.
+   subroutine find_state(state, kept, status)
+      type(c_ptr), intent(in) :: state
+      type(state_handle_type), pointer, intent(out) :: kept
+      integer(c_int), intent(out) :: status
+
+      nullify (kept)
+      status = MFV_BAD_HANDLE
+      if (.not. c_associated(state)) return
+      call c_f_pointer(state, kept)
+      if (kept%mark == state_mark) status = MFV_COMPLETE
+   end subroutine find_state
 
    function mfv_message(handle, buffer, size) result(status) bind(C, name='mfv_message')
       type(c_ptr), value :: handle, buffer

@@ -5,7 +5,7 @@ module mfv_case_changes
    use mfv_strings, only: to_text
    implicit none
    private
-   public :: set_value, put_entry, set_dundurs_beta, write_number, stands_for
+   public :: set_value, put_entry, remove_keys, set_dundurs_beta, write_number, stands_for
 
    !> Keys of one group of which a case has one at most: a value for one takes the place of the others.
    character(*), parameter :: alternatives(5) = [character(40) :: 'tangential_force force_ratio shift', &
@@ -30,15 +30,20 @@ contains
       call put_entry(groups, group, number, entry)
    end subroutine set_value
 
-   !> The same with a whole entry, whose line becomes that of what it takes the place of.
-   subroutine put_entry(groups, group, number, entry)
+   !> The same with a whole entry, whose line becomes that of what it takes the place of. `only_itself`: it takes the place of its own
+   !> key alone.
+   subroutine put_entry(groups, group, number, entry, only_itself)
       type(group_type), allocatable, intent(inout) :: groups(:)
       character(*), intent(in) :: group
       integer, intent(in) :: number
       type(entry_type), intent(inout) :: entry
+      logical, intent(in), optional :: only_itself
+      logical :: strict
       type(group_type) :: new
       integer :: place, i
 
+      strict = .false.
+      if (present(only_itself)) strict = only_itself
       place = place_of_group(groups, group, number)
       if (place == 0) then
          new%name = group
@@ -49,6 +54,7 @@ contains
       entry%line = groups(place)%line
       do i = 1, size(groups(place)%entries)
          if (.not. stands_for(entry%key, groups(place)%entries(i)%key)) cycle
+         if (strict .and. entry%key /= groups(place)%entries(i)%key) cycle
          entry%line = groups(place)%entries(i)%line
          groups(place)%entries(i) = entry
          return

@@ -3,7 +3,7 @@
 module mfv_draft
    use, intrinsic :: ieee_arithmetic, only: ieee_is_finite
    use mfv_case, only: case_type
-   use mfv_case_changes, only: put_entry, set_value, write_number
+   use mfv_case_changes, only: put_entry, remove_keys, write_number
    use mfv_case_data, only: case_data_type
    use mfv_case_keys, only: case_catalogue
    use mfv_case_reader, only: read_case_groups
@@ -34,6 +34,7 @@ module mfv_draft
       generic :: set => set_real, set_reals, set_integer, set_logical, set_text
       !> Data in memory in place of a file that a key names, see mfv_case_data: values of shape (rows) or (rows, columns).
       generic :: set_data => set_column, set_matrix
+      procedure :: remove
       procedure :: keep_fault
       procedure :: write_text
       procedure :: make_case
@@ -105,14 +106,34 @@ contains
       logical, intent(in) :: is_quoted
       type(error_type), allocatable, intent(out), optional :: error
       type(error_type), allocatable :: fault
+      type(entry_type) :: entry
+      character(:), allocatable :: group
+      integer :: number
+
+      call self%find_group(name, group, number, entry%key, fault)
+      if (.not. allocated(fault) .and. why /= '') call set_error(fault, MFV_INPUT_ERROR, quoted(name)//': '//why)
+      if (.not. allocated(fault)) then
+         allocate (entry%values(1))
+         entry%values(1)%text = value
+         entry%is_quoted = [is_quoted]
+         call put_entry(self%groups, group, number, entry, only_itself=.true.)
+      end if
+      call tell(self, fault, error)
+   end subroutine set_written
+
+   !> Take a key out, as if it had never been given a value; no harm where it has none. Fault and `error` as of set.
+   subroutine remove(self, name, error)
+      class(draft_type), intent(inout) :: self
+      character(*), intent(in) :: name
+      type(error_type), allocatable, intent(out), optional :: error
+      type(error_type), allocatable :: fault
       character(:), allocatable :: group, key
       integer :: number
 
       call self%find_group(name, group, number, key, fault)
-      if (.not. allocated(fault) .and. why /= '') call set_error(fault, MFV_INPUT_ERROR, quoted(name)//': '//why)
-      if (.not. allocated(fault)) call set_value(self%groups, group, number, key, value, is_quoted)
+      if (.not. allocated(fault)) call remove_keys(self%groups, group, number, key)
       call tell(self, fault, error)
-   end subroutine set_written
+   end subroutine remove
 
    !> Keep a first fault, and tell it to a caller who wants to know.
    subroutine tell(self, fault, error)
@@ -174,7 +195,7 @@ contains
          do i = 1, size(values)
             call write_number(values(i), entry%values(i)%text)
          end do
-         call put_entry(self%groups, group, number, entry)
+         call put_entry(self%groups, group, number, entry, only_itself=.true.)
       end if
       call tell(self, fault, error)
    end subroutine set_reals

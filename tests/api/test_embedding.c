@@ -83,6 +83,8 @@ static void calls_are_the_text(void) {
   CHECK(mfv_scene_text(scene, written, sizeof written, NULL) == MFV_COMPLETE && strlen(written) == length);
   CHECK(strstr(written, "shape='half_plane'") != NULL);
   /* The scene may change and go; the case stays. */
+  CHECK(mfv_scene_remove(scene, "mesh%half_width") == MFV_COMPLETE);
+  CHECK(mfv_scene_text(scene, written, sizeof written, NULL) == MFV_COMPLETE && strstr(written, "half_width") == NULL);
   CHECK(mfv_scene_set_real(scene, "friction%mu", -1) == MFV_COMPLETE);
   CHECK(mfv_scene_free(&scene) == MFV_COMPLETE && scene == NULL);
   CHECK(lead(one, MFV_KEEP, 0, MFV_FORCE, 1e-4, 1, 0) == MFV_COMPLETE);
@@ -280,6 +282,7 @@ static void misuse_is_told(void) {
   CHECK(strstr(message, "here:1") != NULL);
   scene = cylinder();
   CHECK(mfv_scene_set_text(scene, NULL, "x") == MFV_BAD_ARGUMENT && mfv_scene_set_text(scene, "scene%title", NULL) == MFV_BAD_ARGUMENT);
+  CHECK(mfv_scene_remove(scene, NULL) == MFV_BAD_ARGUMENT && mfv_scene_remove(NULL, "friction%mu") == MFV_BAD_HANDLE);
   CHECK(mfv_scene_set_reals(scene, "friction%mu", NULL, 3) == MFV_BAD_ARGUMENT);
   CHECK(mfv_scene_set_data(scene, "f", "x", 0, 1, tangent) == MFV_BAD_ARGUMENT);
   CHECK(mfv_create(scene, NULL, NULL, 0) == MFV_BAD_ARGUMENT && mfv_create(NULL, &handle, NULL, 0) == MFV_BAD_HANDLE);
