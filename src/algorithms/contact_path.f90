@@ -53,6 +53,7 @@ module mfv_contact_path
       real(wp), private :: start_force = 0.0_wp, start_shift = 0.0_wp
       logical, private :: awaits_increment = .false.
    contains
+      procedure :: copy_without_history
       procedure :: keep
       procedure :: come_back
       procedure :: await_increment
@@ -122,6 +123,19 @@ contains
       self%certificate = new_certificate(model)
       self%record_events = record_events
    end subroutine new_contact_path
+
+   !> A copy to try something on, that records nothing.
+   subroutine copy_without_history(self, copy)
+      class(contact_path_type), intent(in) :: self
+      type(contact_path_type), intent(out) :: copy
+
+      copy%model = self%model
+      allocate (copy%system, source=self%system)
+      copy%state = self%state
+      copy%certificate = self%certificate
+      copy%record_events = .false.
+      copy%trial = self%trial
+   end subroutine copy_without_history
 
    !> Keep the contact as it is between segments; the storage in `kept` is used again.
    subroutine keep(self, kept)

@@ -111,7 +111,7 @@ contains
             return
          end if
          tried = reshape([tried, path%state%status], [n, size(tried, 2) + 1])
-         call make(path, repair, moment)
+         call make(path, segment, repair, moment)
          if (is_among(path%state%status, tried)) then
             path%state%status = start
             call path%end_here(MFV_CYCLING, 'cycling: after '//to_text(iteration)//' repairs at one load the statuses are '// &
@@ -261,8 +261,9 @@ contains
    end function worst
 
    !> Make one repair.
-   subroutine make(path, repair, moment)
+   subroutine make(path, segment, repair, moment)
       class(contact_path_type), intent(inout) :: path
+      type(segment_type), intent(in) :: segment
       type(repair_type), intent(in) :: repair
       type(moment_type), intent(inout) :: moment
       logical :: mask(size(path%state%status))
@@ -270,7 +271,7 @@ contains
 
       mask = .false.
       mask(repair%node) = .true.
-      friction = any(path%state%status == node_stick .or. motion_sign(path%state%status) /= 0)
+      friction = segment%friction .and. path%model%tangential
       call note_change(moment, repair%kind, mask)
       call change(path, mask, status_after(repair%kind, path%state%status, friction, path%state%slip_direction, &
                                            path%holding(real(-motion_sign(path%state%status), wp))))

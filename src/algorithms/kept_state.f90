@@ -25,6 +25,7 @@ module mfv_kept_state
       !> The last cycle, where there is no load history, and so only this one.
       type(cycle_type), allocatable :: last_cycle
       integer :: snapshot_count = 0, cycle_count = 0, cycles_done = 0, outcome = 0, failed_step = 0, steps_done = 0
+      integer :: failed_scene_step = 0, scene_steps_done = 0
       integer(int64) :: scene = 0, trail = 0
       character(:), allocatable :: message
    contains
@@ -54,6 +55,8 @@ contains
       self%outcome = simulation%outcome
       self%failed_step = simulation%failed_step
       self%steps_done = simulation%steps_done
+      self%failed_scene_step = simulation%failed_scene_step
+      self%scene_steps_done = simulation%scene_steps_done
       self%message = simulation%message
       self%scene = scene
       self%trail = simulation%trail()
@@ -89,6 +92,8 @@ contains
       simulation%outcome = self%outcome
       simulation%failed_step = self%failed_step
       simulation%steps_done = self%steps_done
+      simulation%failed_scene_step = self%failed_scene_step
+      simulation%scene_steps_done = self%scene_steps_done
       simulation%message = self%message
       if (allocated(simulation%estimate)) deallocate (simulation%estimate)
    end subroutine come_back

@@ -30,7 +30,8 @@ module mfv_krylov_preconditioner
       private
       !> Entries by distance, length^3/force in the system's units.
       real(wp), allocatable :: kernel(:)
-      type(block_type) :: contact, held
+      !> (Allocatable each: of two that are not, gfortran 12 does not free the components of the second.)
+      type(block_type), allocatable :: contact, held
       !> Softness of the held nodes, shape (held), where there is any; weights of the levels, shape (held, 0 to levels), and the
       !> inverses there, shape (length/2 + 1, levels).
       logical :: soft = .false.

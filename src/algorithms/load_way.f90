@@ -11,8 +11,6 @@ module mfv_load_way
       integer :: steps = 0
       !> Whether a step named the rotation or the moment, and whether one had cycles.
       logical :: rotated = .false., cycled = .false.
-      !> Whether friction acted in the last step.
-      logical :: friction = .true.
       !> Pressed by forces only, ever harder, with friction from the start.
       logical :: pressed_harder = .true.
       !> Pressed without a tangential force, then sheared by forces alone with friction; whether shear has begun, and whether friction
@@ -34,12 +32,11 @@ contains
       self%steps = self%steps + 1
       self%rotated = self%rotated .or. step%rotational_control /= control_keep
       self%cycled = self%cycled .or. step%cycles > 0
-      self%friction = step%friction
       self%pressed_harder = self%pressed_harder .and. step%friction .and. step%cycles == 0 &
                             .and. step%normal_control == control_force .and. step%normal_target >= self%normal_target &
-                            .and. .not. abs(step%tangential_target) > 0.0_wp
+                            .and. .not. names_shear(step)
       self%normal_target = step%normal_target
-      self%sheared = self%sheared .or. abs(step%tangential_target) > 0.0_wp
+      self%sheared = self%sheared .or. names_shear(step)
       if (self%sheared) then
          self%pressed_then_sheared = self%pressed_then_sheared .and. step%friction .and. step%normal_control == control_keep &
                                      .and. step%tangential_control == control_force
@@ -48,5 +45,12 @@ contains
          self%friction_in_press = self%friction_in_press .or. step%friction
       end if
    end subroutine add
+
+   !> Whether a step leads to a tangential force or shift other than zero.
+   pure logical function names_shear(step)
+      type(step_type), intent(in) :: step
+
+      names_shear = step%tangential_control /= control_keep .and. abs(step%tangential_target) > 0.0_wp
+   end function names_shear
 
 end module mfv_load_way

@@ -63,6 +63,8 @@ module mfv_simulation
       character(:), allocatable :: message
       !> Step that could not be reached, 0 for none; and steps done.
       integer :: failed_step = 0, steps_done = 0
+      !> The same of the steps of the scene alone, which other steps may come between.
+      integer :: failed_scene_step = 0, scene_steps_done = 0
       integer :: keep_history = history_events
       !> See states_reversals and so on.
       integer :: keep_states = states_reversals
@@ -120,9 +122,13 @@ contains
          segment = 0
          do i = 1, size(steps)
             segment = segment + reversals(steps(i))
-            if (i <= self%steps_done) cycle
+            if (i <= self%scene_steps_done) cycle
             call self%advance(steps(i), segment - reversals(steps(i)), segments, observer)
-            if (self%outcome /= MFV_COMPLETE) return
+            if (self%outcome /= MFV_COMPLETE) then
+               self%failed_scene_step = i
+               return
+            end if
+            self%scene_steps_done = i
          end do
       end associate
    end subroutine run
@@ -339,6 +345,8 @@ contains
                                         force*self%contact%model%length())
       segment%friction = step%friction
       segment%step = self%steps_done + 1
+      segment%number = reversal
+      segment%segments = reversals(step)
       if (present(before)) segment%number = before + reversal
       if (present(segments)) segment%segments = segments
       call self%contact%await_increment()

@@ -19,21 +19,22 @@ module mfv_tangent
    private
    public :: find_tangent
 
-   !> Ends a run after its first increment.
-   type, extends(observer_type) :: one_increment_type
+   !> Ends a run when the statuses have settled: not at an increment that is round-off, or that only lets excess tractions go, after which
+   !> others change at the same load.
+   type, extends(observer_type) :: settled_type
    contains
       procedure :: notify
-   end type one_increment_type
+   end type settled_type
 
 contains
 
    !> tangent(i, j): derivative of load i (normal force and tangential force, force/length; moment, force) with respect to motion j
-   !> (approach and shift, length; rotation), shape (motions, motions), motions 2 or 3 (rotation too). `friction`: whether it acts.
-   !> `direction`: of motions to go on with, shape (motions), only its direction counts; left out, statuses are as they are.
+   !> (approach and shift, length; rotation), shape (motions, motions), motions 2 or 3 (rotation too; it is held otherwise).
+   !> `direction`: of motions to go on with, shape (motions), only its direction counts; friction acts, if the scene has any. Left
+   !> out, statuses are as they are.
    !> Errors MFV_BAD_ARGUMENT: the contact does not determine it, or a direction of zeros; others: nothing leads on in this direction.
-   subroutine find_tangent(path, friction, tangent, error, direction)
+   subroutine find_tangent(path, tangent, error, direction)
       type(contact_path_type), intent(in) :: path
-      logical, intent(in) :: friction
       real(wp), intent(out) :: tangent(:, :)
       type(error_type), allocatable, intent(out) :: error
       real(wp), intent(in), optional :: direction(:)
@@ -47,24 +48,23 @@ contains
          call derive(path, system, tangent, error)
          return
       end if
-      copy = path
+      call path%copy_without_history(copy)
       if (size(tangent, 1) >= along_rotation) call copy%begin_rotation()
-      if (present(direction)) call turn(copy, friction, direction, error)
+      if (present(direction)) call turn(copy, direction, error)
       if (allocated(error)) return
       allocate (system, source=copy%system)
       call derive(copy, system, tangent, error)
    end subroutine find_tangent
 
    !> Settle the statuses for motions that go on in a direction.
-   subroutine turn(path, friction, direction, error)
+   subroutine turn(path, direction, error)
       type(contact_path_type), intent(inout) :: path
-      logical, intent(in) :: friction
       real(wp), intent(in) :: direction(:)
       type(error_type), allocatable, intent(out) :: error
       !> So far, in parts of the mesh's length: little beside everything but round-off.
       real(wp), parameter :: little = 1.0e-9_wp
       type(segment_type) :: segment
-      type(one_increment_type) :: observer
+      type(settled_type) :: observer
       real(wp) :: motion(3), largest
 
       motion = 0.0_wp
@@ -74,14 +74,12 @@ contains
          call set_error(error, MFV_BAD_ARGUMENT, 'the direction of the tangent has no length')
          return
       end if
-      motion = motion*(little*path%model%length()/largest)
-      segment%friction = friction
+      motion = motion/largest*(little*path%model%length())
       associate (f => path%state%fields)
          segment%normal = load_type(control_displacement, f%approach, motion(along_approach))
          segment%tangential = load_type(control_displacement, f%shift, motion(along_shift))
          segment%rotational = load_type(control_displacement, f%rotation, motion(along_rotation))
       end associate
-      path%record_events = .false.
       call lead_by_violations(path, segment, observer, error)
       if (.not. allocated(error)) return
       if (error%status == MFV_INTERRUPTED) deallocate (error)
@@ -89,13 +87,14 @@ contains
 
    !> See mfv_observer.
    subroutine notify(self, state, segment, segments, fraction, stop_wanted)
-      class(one_increment_type), intent(inout) :: self
+      class(settled_type), intent(inout) :: self
       type(contact_state_type), intent(in) :: state
       integer, intent(in) :: segment, segments
       real(wp), intent(in) :: fraction
       logical, intent(out) :: stop_wanted
+      real(wp), parameter :: on_the_way = 0.01_wp
 
-      stop_wanted = .true.
+      stop_wanted = fraction > on_the_way
    end subroutine notify
 
    !> The derivatives with the statuses as they are, by a solver of its own.

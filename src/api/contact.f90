@@ -42,6 +42,7 @@ module mfv_contact
       type(simulation_type) :: simulation
       !> A checksum by which states that are kept know their scene.
       integer(int64), private :: scene = 0
+      logical, private :: is_made = .false.
       !> What was asked for last: paths of all fields, one group of them, warnings, attributes; dropped when the state changes.
       type(string_type), allocatable, private :: paths(:)
       character(:), allocatable, private :: group
@@ -66,7 +67,7 @@ module mfv_contact
       procedure :: get_largest_von_mises
       procedure :: make_interior
       procedure :: write
-      procedure, private :: get_reals, get_integers, get_real, get_integer, begin, interior_of, forget
+      procedure, private :: get_reals, get_integers, get_real, get_integer, begin, interior_of, forget, expect_made
    end type contact_type
 
 contains
@@ -105,22 +106,37 @@ contains
    subroutine begin(self)
       class(contact_type), intent(inout) :: self
       integer(int8) :: mold(1)
+      integer :: i
 
       self%simulation = new_simulation(self%case%scene, self%case%keep_history, self%case%keep_states)
       call add_text_to_checksum(self%case%text, self%scene)
       associate (model => self%simulation%contact%model)
          call add_to_checksum(transfer(model%x, mold), self%scene)
          call add_to_checksum(transfer(model%initial_gap, mold), self%scene)
-         call add_to_checksum(transfer(model%compliance%modulus, mold), self%scene)
+         call add_to_checksum(transfer([model%compliance%modulus, model%width, model%static_friction, model%kinetic_friction], &
+                                       mold), self%scene)
+         ! Of a matrix products, in which every entry has a part.
+         if (allocated(model%scene%lower%matrix)) &
+            call add_to_checksum(transfer(matmul(model%scene%lower%matrix, sqrt([(real(i, wp), &
+                                          i=1, size(model%scene%lower%matrix, 2))])), mold), self%scene)
       end associate
+      self%is_made = .true.
    end subroutine begin
+
+   !> Error MFV_BAD_HANDLE for a contact that no procedure has made, or could make.
+   subroutine expect_made(self, error)
+      class(contact_type), intent(in) :: self
+      type(error_type), allocatable, intent(out) :: error
+
+      if (.not. self%is_made) call set_error(error, MFV_BAD_HANDLE, 'the contact has not been made: see new_contact, read_contact')
+   end subroutine expect_made
 
    !> Run the steps of the case that have not been run. How it went: see status.
    subroutine run(self, observer)
       class(contact_type), intent(inout) :: self
       class(observer_type), intent(inout), optional :: observer
 
-      if (self%simulation%outcome /= MFV_COMPLETE) return
+      if (self%status() /= MFV_COMPLETE) return
       call self%forget()
       call self%simulation%run(observer)
       if (self%case%error_estimate) call estimate_error(self%simulation, observer)
@@ -129,7 +145,8 @@ contains
 
    !> Lead the loads through one more step, straight from where they are: a force or a displacement in every direction that is to
    !> change, units as in step_type. `relative`: targets are increments on the loads now. How it went: see status.
-   !> Error MFV_BAD_ARGUMENT: the step is none; nothing is done.
+   !> A contact that an observer has interrupted goes on from where it is.
+   !> Errors MFV_BAD_ARGUMENT: the step is none, nothing is done; MFV_BAD_HANDLE.
    subroutine advance(self, step, error, relative, observer)
       class(contact_type), intent(inout) :: self
       type(step_type), intent(in) :: step
@@ -138,12 +155,23 @@ contains
       class(observer_type), intent(inout), optional :: observer
       type(step_type) :: absolute
 
+      call self%expect_made(error)
+      if (allocated(error)) return
       absolute = step
+      if (step%normal_control == control_keep) absolute%normal_target = 0.0_wp
+      if (step%tangential_control == control_keep) absolute%tangential_target = 0.0_wp
+      if (step%rotational_control == control_keep) absolute%rotational_target = 0.0_wp
       if (present(relative)) then
          if (relative) call add_present(self%simulation%contact%state, absolute)
       end if
       call check_step(absolute, error)
-      if (allocated(error) .or. self%simulation%outcome /= MFV_COMPLETE) return
+      if (allocated(error)) return
+      if (self%simulation%outcome == MFV_INTERRUPTED) then
+         self%simulation%outcome = MFV_COMPLETE
+         self%simulation%failed_step = 0
+         self%simulation%failed_scene_step = 0
+      end if
+      if (self%simulation%outcome /= MFV_COMPLETE) return
       call self%forget()
       call self%simulation%advance(absolute, observer=observer)
    end subroutine advance
@@ -225,11 +253,12 @@ contains
       end if
    end subroutine check_step
 
-   !> How it has gone so far, see mfv_status: MFV_COMPLETE while nothing has gone wrong.
+   !> How it has gone so far, see mfv_status: MFV_COMPLETE while nothing has gone wrong; MFV_BAD_HANDLE before it was made.
    pure integer function status(self)
       class(contact_type), intent(in) :: self
 
-      status = self%simulation%outcome
+      status = MFV_BAD_HANDLE
+      if (self%is_made) status = self%simulation%outcome
    end function status
 
    !> What was reached, or why not.
@@ -237,13 +266,15 @@ contains
       class(contact_type), intent(in) :: self
       character(:), allocatable, intent(out) :: message
 
-      message = self%simulation%message
+      message = 'the contact has not been made'
+      if (self%is_made) message = self%simulation%message
    end subroutine get_message
 
    !> Loads and motions now.
    pure type(loads_type) function loads(self)
       class(contact_type), intent(in) :: self
 
+      if (.not. self%is_made) return
       associate (f => self%simulation%contact%state%fields, state => self%simulation%contact%state)
          loads%normal_force = f%normal_force
          loads%tangential_force = f%tangential_force
@@ -258,15 +289,30 @@ contains
       loads%linear_solves = self%simulation%contact%system%solves
    end function loads
 
-   !> The consistent tangent at the present state, see mfv_tangent; `tangent`: shape (2, 2), or (3, 3) with rotation. Friction acts as
-   !> in the last step.
+   !> The consistent tangent at the present state, see mfv_tangent; `tangent`: shape (2, 2), or (3, 3) with rotation, which is held
+   !> otherwise; `direction`: shape (2) or (3), towards which friction acts, if the scene has any. Error MFV_BAD_ARGUMENT.
    subroutine get_tangent(self, tangent, error, direction)
       class(contact_type), intent(in) :: self
       real(wp), intent(out) :: tangent(:, :)
       type(error_type), allocatable, intent(out) :: error
       real(wp), intent(in), optional :: direction(:)
 
-      call find_tangent(self%simulation%contact, self%simulation%way%friction, tangent, error, direction)
+      tangent = 0.0_wp
+      call self%expect_made(error)
+      if (allocated(error)) return
+      if (size(tangent, 1) /= size(tangent, 2) .or. size(tangent, 1) < 2 .or. size(tangent, 1) > 3) then
+         call set_error(error, MFV_BAD_ARGUMENT, 'the tangent is of 2 motions, or of 3 with rotation')
+         return
+      end if
+      if (present(direction)) then
+         if (size(direction) /= size(tangent, 1)) then
+            call set_error(error, MFV_BAD_ARGUMENT, 'the direction of the tangent must have as many motions as the tangent')
+         else if (.not. all(ieee_is_finite(direction))) then
+            call set_error(error, MFV_BAD_ARGUMENT, 'the direction of the tangent is not finite')
+         end if
+         if (allocated(error)) return
+      end if
+      call find_tangent(self%simulation%contact, tangent, error, direction)
    end subroutine get_tangent
 
    !> Keep the present state.
@@ -274,7 +320,7 @@ contains
       class(contact_type), intent(in) :: self
       type(kept_state_type), intent(inout) :: kept
 
-      call kept%keep(self%simulation, self%scene)
+      if (self%is_made) call kept%keep(self%simulation, self%scene)
    end subroutine keep
 
    !> Come back to a state that was kept, see mfv_kept_state. Error MFV_BAD_ARGUMENT.
@@ -283,7 +329,8 @@ contains
       type(kept_state_type), intent(in) :: kept
       type(error_type), allocatable, intent(out) :: error
 
-      call kept%come_back(self%simulation, self%scene, error)
+      call self%expect_made(error)
+      if (.not. allocated(error)) call kept%come_back(self%simulation, self%scene, error)
       if (.not. allocated(error)) call self%forget()
    end subroutine come_back
 
@@ -317,6 +364,8 @@ contains
       integer :: number, slash
 
       nullify (field)
+      call self%expect_made(error)
+      if (allocated(error)) return
       number = 0
       slash = index(path, '/', back=.true.)
       if (slash > 1) then
@@ -470,6 +519,8 @@ contains
       type(contact_state_type) :: state
       integer :: number
 
+      call self%expect_made(error)
+      if (allocated(error)) return
       number = 0
       if (present(step)) number = step
       if (number < 0 .or. number > self%simulation%snapshot_count) then
@@ -510,6 +561,8 @@ contains
       type(error_type), allocatable, intent(out) :: error
       character(:), allocatable :: where_to
 
+      call self%expect_made(error)
+      if (allocated(error)) return
       where_to = path
       if (path == '') where_to = self%case%result_path
       if (where_to == '') then

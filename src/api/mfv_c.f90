@@ -5,7 +5,7 @@ module mfv_c
    use mfv_contact, only: contact_type, loads_type, new_contact, read_contact, read_contact_text
    use mfv_contact_state, only: contact_state_type
    use mfv_draft, only: draft_type, read_draft
-   use mfv_error, only: error_type
+   use mfv_error, only: error_type, set_error
    use mfv_features, only: has_hdf5
    use mfv_interior, only: interior_type, largest_type, stress_count
    use mfv_kept_state, only: kept_state_type
@@ -146,6 +146,7 @@ contains
       type(draft_type) :: draft
       type(error_type), allocatable :: error
 
+      call say('a pointer is null', message, message_size)
       status = MFV_BAD_ARGUMENT
       if (.not. present(scene)) return
       scene = c_null_ptr
@@ -179,7 +180,7 @@ contains
       call find_scene(scene, self, status, key, value)
       if (status /= MFV_COMPLETE) return
       call self%draft%set(text_in(key), text_in(value), error)
-      status = kept(self, error)
+      status = merge(MFV_BAD_ARGUMENT, MFV_COMPLETE, allocated(error))
    end function mfv_scene_set_text
 
    function mfv_scene_set_real(scene, key, value) result(status) bind(C, name='mfv_scene_set_real')
@@ -192,7 +193,7 @@ contains
       call find_scene(scene, self, status, key)
       if (status /= MFV_COMPLETE) return
       call self%draft%set(text_in(key), value, error)
-      status = kept(self, error)
+      status = merge(MFV_BAD_ARGUMENT, MFV_COMPLETE, allocated(error))
    end function mfv_scene_set_real
 
    function mfv_scene_set_reals(scene, key, values, count) result(status) bind(C, name='mfv_scene_set_reals')
@@ -207,7 +208,7 @@ contains
       if (status /= MFV_COMPLETE) return
       call c_f_pointer(values, list, [count])
       call self%draft%set(text_in(key), list, error)
-      status = kept(self, error)
+      status = merge(MFV_BAD_ARGUMENT, MFV_COMPLETE, allocated(error))
    end function mfv_scene_set_reals
 
    function mfv_scene_set_integer(scene, key, value) result(status) bind(C, name='mfv_scene_set_integer')
@@ -220,7 +221,7 @@ contains
       call find_scene(scene, self, status, key)
       if (status /= MFV_COMPLETE) return
       call self%draft%set(text_in(key), int(value), error)
-      status = kept(self, error)
+      status = merge(MFV_BAD_ARGUMENT, MFV_COMPLETE, allocated(error))
    end function mfv_scene_set_integer
 
    function mfv_scene_set_logical(scene, key, value) result(status) bind(C, name='mfv_scene_set_logical')
@@ -233,7 +234,7 @@ contains
       call find_scene(scene, self, status, key)
       if (status /= MFV_COMPLETE) return
       call self%draft%set(text_in(key), value /= 0, error)
-      status = kept(self, error)
+      status = merge(MFV_BAD_ARGUMENT, MFV_COMPLETE, allocated(error))
    end function mfv_scene_set_logical
 
    function mfv_scene_remove(scene, key) result(status) bind(C, name='mfv_scene_remove')
@@ -245,7 +246,7 @@ contains
       call find_scene(scene, self, status, key)
       if (status /= MFV_COMPLETE) return
       call self%draft%remove(text_in(key), error)
-      status = kept(self, error)
+      status = merge(MFV_BAD_ARGUMENT, MFV_COMPLETE, allocated(error))
    end function mfv_scene_remove
 
    function mfv_scene_set_data(scene, file, dataset, rows, columns, values) result(status) &
@@ -254,16 +255,20 @@ contains
       integer(c_size_t), value :: rows, columns
       integer(c_int) :: status
       type(scene_handle_type), pointer :: self
+      type(error_type), allocatable :: error
       real(c_double), pointer :: by_rows(:, :)
       integer(c_size_t), parameter :: most = 2_c_size_t**31 - 1
 
       call find_scene(scene, self, status, file, dataset)
       if (status /= MFV_COMPLETE) return
       status = MFV_BAD_ARGUMENT
-      if (.not. c_associated(values) .or. rows < 1 .or. columns < 1 .or. rows > most .or. columns > most) return
+      if (.not. c_associated(values) .or. rows < 1 .or. columns < 1 .or. rows > most .or. columns > most) then
+         call keep_null(self, text_in(file))
+         return
+      end if
       call c_f_pointer(values, by_rows, [columns, rows])
-      call self%draft%set_data(text_in(file), text_in(dataset), transpose(by_rows))
-      status = MFV_COMPLETE
+      call self%draft%set_data(text_in(file), text_in(dataset), transpose(by_rows), error)
+      status = merge(MFV_BAD_ARGUMENT, MFV_COMPLETE, allocated(error))
    end function mfv_scene_set_data
 
    function mfv_scene_text(scene, buffer, size, length) result(status) bind(C, name='mfv_scene_text')
@@ -308,27 +313,29 @@ contains
       if (.not. c_associated(scene)) return
       call c_f_pointer(scene, self)
       if (self%mark /= scene_mark) return
-      status = MFV_BAD_ARGUMENT
-      if (present(first)) then
-         if (.not. c_associated(first)) return
-      end if
-      if (present(second)) then
-         if (.not. c_associated(second)) return
-      end if
       status = MFV_COMPLETE
+      if (present(first)) status = expected(first)
+      if (status /= MFV_COMPLETE .or. .not. present(second)) return
+      status = expected(second)
+      if (status /= MFV_COMPLETE) call keep_null(self, text_in(first))
    end subroutine find_scene
 
-   !> Have a scene keep the fault of a call, for mfv_create to tell; MFV_BAD_ARGUMENT where there is one.
-   function kept(self, error) result(status)
-      type(scene_handle_type), intent(inout) :: self
-      type(error_type), allocatable, intent(in) :: error
-      integer(c_int) :: status
+   !> MFV_BAD_ARGUMENT for a null pointer.
+   integer(c_int) function expected(pointer)
+      type(c_ptr), intent(in) :: pointer
 
-      status = MFV_COMPLETE
-      if (.not. allocated(error)) return
-      call self%draft%keep_fault(error)
-      status = MFV_BAD_ARGUMENT
-   end function kept
+      expected = merge(MFV_COMPLETE, MFV_BAD_ARGUMENT, c_associated(pointer))
+   end function expected
+
+   !> Have a scene keep that something was null.
+   subroutine keep_null(self, name)
+      type(scene_handle_type), intent(inout) :: self
+      character(*), intent(in) :: name
+      type(error_type), allocatable :: fault
+
+      call set_error(fault, MFV_INPUT_ERROR, name//': an argument is null or empty')
+      call self%draft%keep_fault(name, fault)
+   end subroutine keep_null
 
    function mfv_create(scene, handle, message, message_size) result(status) bind(C, name='mfv_create')
       type(c_ptr), value :: scene, message
@@ -339,6 +346,7 @@ contains
       type(handle_type), pointer :: self
       type(error_type), allocatable :: error
 
+      call say('the scene or the place for the handle is null, or the scene was freed', message, message_size)
       status = MFV_BAD_ARGUMENT
       if (.not. present(handle)) return
       handle = c_null_ptr
@@ -358,6 +366,7 @@ contains
       type(handle_type), pointer :: self
       type(error_type), allocatable :: error
 
+      call say('a pointer is null', message, message_size)
       status = MFV_BAD_ARGUMENT
       if (.not. present(handle)) return
       handle = c_null_ptr
@@ -377,6 +386,7 @@ contains
       type(handle_type), pointer :: self
       type(error_type), allocatable :: error
 
+      call say('a pointer is null', message, message_size)
       status = MFV_BAD_ARGUMENT
       if (.not. present(handle)) return
       handle = c_null_ptr
@@ -396,16 +406,24 @@ contains
       type(error_type), allocatable, intent(in) :: error
       type(c_ptr), intent(in) :: message
       integer(c_size_t), intent(in) :: message_size
-      integer(c_int) :: status, copied
+      integer(c_int) :: status
 
       status = MFV_COMPLETE
-      if (allocated(error)) then
-         status = error%status
-         if (c_associated(message)) copied = text_out(error%message, message, message_size)
-      else if (c_associated(message)) then
-         copied = text_out('', message, message_size)
-      end if
+      call say('', message, message_size)
+      if (.not. allocated(error)) return
+      status = error%status
+      call say(error%message, message, message_size)
    end function told
+
+   !> A text to a buffer, which may be null.
+   subroutine say(text, message, message_size)
+      character(*), intent(in) :: text
+      type(c_ptr), intent(in) :: message
+      integer(c_size_t), intent(in) :: message_size
+      integer(c_int) :: copied
+
+      if (c_associated(message)) copied = text_out(text, message, message_size)
+   end subroutine say
 
    !> Hand out an object whose contact was made; do away with it where `status` says that it was not.
    subroutine hand_out(self, status, handle)
@@ -589,10 +607,6 @@ contains
       allocate (found(motions, motions))
       if (c_associated(direction)) then
          call c_f_pointer(direction, towards, [motions])
-         if (.not. all(ieee_is_finite(towards))) then
-            status = refused(self, 'mfv_tangent: the direction is not finite')
-            return
-         end if
          call self%contact%get_tangent(found(:motions, :motions), error, towards)
       else
          call self%contact%get_tangent(found(:motions, :motions), error)
@@ -862,6 +876,7 @@ contains
       real(c_double), pointer :: across(:), up(:), values(:, :)
 
       call find(handle, self, status)
+      if (status == MFV_COMPLETE .and. count == 0) return
       if (status == MFV_COMPLETE) call take_points(self, count, x, y, stresses, across, up, values, status)
       if (status /= MFV_COMPLETE) return
       call self%contact%get_stresses(int(body), across, up, values, error, int(step))

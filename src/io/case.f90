@@ -34,9 +34,9 @@ contains
       character(:), allocatable :: text
 
       text = self%source//': '
-      if (simulation%failed_step >= 1 .and. simulation%failed_step <= size(self%scene%steps)) then
-         text = text//'&step '//to_text(simulation%failed_step)
-         call add_targets(self%scene%steps(simulation%failed_step), text)
+      if (simulation%failed_scene_step > 0) then
+         text = text//'&step '//to_text(simulation%failed_scene_step)
+         call add_targets(self%scene%steps(simulation%failed_scene_step), text)
          text = text//' not reached: '
       end if
       simulation%message = text//simulation%message

@@ -14,11 +14,19 @@ module mfv_draft
    use mfv_kinds, only: wp
    use mfv_namelist, only: append_group, entry_type, group_type, groups_of_name, parse_namelists, write_namelists
    use mfv_status, only: MFV_INPUT_ERROR
-   use mfv_strings, only: quoted, to_text
+   use mfv_strings, only: quoted, string_type, to_text
    use mfv_text_file, only: directory_of
    implicit none
    private
    public :: draft_type, read_draft
+
+   character(*), parameter :: line_ends = achar(10)//achar(13)
+
+   !> A fault, and the key that was named: a value for that mends it.
+   type :: fault_type
+      character(:), allocatable :: name
+      type(error_type) :: error
+   end type fault_type
 
    type :: draft_type
       private
@@ -26,11 +34,11 @@ module mfv_draft
       type(case_data_type) :: data
       !> What messages call it, and where the files are that it names.
       character(:), allocatable :: source, directory
-      !> What was wrong with the first call that could not be kept.
-      type(error_type), allocatable :: fault
+      !> What was wrong with calls that could not be kept.
+      type(fault_type), allocatable :: faults(:)
    contains
-      !> Give a key a value: `call draft%set('body(2)%radius', 0.25_wp)`. Keys: docs/namelist.md. A first fault is told by make_case, or
-      !> by `error` (MFV_INPUT_ERROR) where it is there.
+      !> Give a key a value: `call draft%set('body(2)%radius', 0.25_wp)`. Keys: docs/namelist.md. Faults are told by make_case, the
+      !> first of those that no later call for the same key has mended; and by `error` (MFV_INPUT_ERROR) where it is there.
       generic :: set => set_real, set_reals, set_integer, set_logical, set_text
       !> Data in memory in place of a file that a key names, see mfv_case_data: values of shape (rows) or (rows, columns).
       generic :: set_data => set_column, set_matrix
@@ -118,7 +126,7 @@ contains
          entry%is_quoted = [is_quoted]
          call put_entry(self%groups, group, number, entry, only_itself=.true.)
       end if
-      call tell(self, fault, error)
+      call tell(self, name, fault, error)
    end subroutine set_written
 
    !> Take a key out, as if it had never been given a value; no harm where it has none. Fault and `error` as of set.
@@ -132,30 +140,54 @@ contains
 
       call self%find_group(name, group, number, key, fault)
       if (.not. allocated(fault)) call remove_keys(self%groups, group, number, key)
-      call tell(self, fault, error)
+      call tell(self, name, fault, error)
    end subroutine remove
 
-   !> Keep a first fault, and tell it to a caller who wants to know.
-   subroutine tell(self, fault, error)
+   !> Keep a fault, and tell it to a caller who wants to know. A call for the same key that goes well mends it.
+   subroutine tell(self, name, fault, error)
       class(draft_type), intent(inout) :: self
+      character(*), intent(in) :: name
       type(error_type), allocatable, intent(in) :: fault
       type(error_type), allocatable, intent(out), optional :: error
 
+      call mend(self, name)
       if (.not. allocated(fault)) return
-      if (present(error)) then
-         error = fault
-      else
-         call self%keep_fault(fault)
-      end if
+      call self%keep_fault(name, fault)
+      if (present(error)) error = fault
    end subroutine tell
 
-   !> Keep a fault for make_case to tell, unless there is one already.
-   subroutine keep_fault(self, fault)
+   !> Keep a fault with a key for make_case to tell.
+   subroutine keep_fault(self, name, fault)
       class(draft_type), intent(inout) :: self
+      character(*), intent(in) :: name
       type(error_type), intent(in) :: fault
+      type(fault_type), allocatable :: longer(:)
+      integer :: i, n
 
-      if (.not. allocated(self%fault)) self%fault = fault
+      n = 0
+      if (allocated(self%faults)) n = size(self%faults)
+      allocate (longer(n + 1))
+      do i = 1, n
+         longer(i) = self%faults(i)
+      end do
+      longer(n + 1)%name = name
+      longer(n + 1)%error = fault
+      call move_alloc(longer, self%faults)
    end subroutine keep_fault
+
+   !> Drop the faults with a key.
+   subroutine mend(self, name)
+      class(draft_type), intent(inout) :: self
+      character(*), intent(in) :: name
+      type(fault_type), allocatable :: old(:)
+      integer :: i
+
+      if (.not. allocated(self%faults)) return
+      call move_alloc(self%faults, old)
+      do i = 1, size(old)
+         if (old(i)%name /= name) call self%keep_fault(old(i)%name, old(i)%error)
+      end do
+   end subroutine mend
 
    subroutine set_real(self, name, value, error)
       class(draft_type), intent(inout) :: self
@@ -197,7 +229,7 @@ contains
          end do
          call put_entry(self%groups, group, number, entry, only_itself=.true.)
       end if
-      call tell(self, fault, error)
+      call tell(self, name, fault, error)
    end subroutine set_reals
 
    subroutine set_integer(self, name, value, error)
@@ -222,29 +254,39 @@ contains
       class(draft_type), intent(inout) :: self
       character(*), intent(in) :: name, value
       type(error_type), allocatable, intent(out), optional :: error
-      character(len=1), parameter :: line_feed = achar(10), carriage_return = achar(13)
 
-      if (scan(value, line_feed//carriage_return) > 0) then
+      if (scan(value, line_ends) > 0) then
          call self%set_written(name, '', .true., 'a text must be of one line', error)
       else
          call self%set_written(name, value, .true., '', error)
       end if
    end subroutine set_text
 
-   subroutine set_column(self, file, name, values)
+   subroutine set_column(self, file, name, values, error)
       class(draft_type), intent(inout) :: self
       character(*), intent(in) :: file, name
       real(wp), intent(in) :: values(:)
+      type(error_type), allocatable, intent(out), optional :: error
 
-      call self%data%put(file, name, reshape(values, [size(values), 1]))
+      call self%set_matrix(file, name, reshape(values, [size(values), 1]), error)
    end subroutine set_column
 
-   subroutine set_matrix(self, file, name, values)
+   subroutine set_matrix(self, file, name, values, error)
       class(draft_type), intent(inout) :: self
       character(*), intent(in) :: file, name
       real(wp), intent(in) :: values(:, :)
+      type(error_type), allocatable, intent(out), optional :: error
+      type(error_type), allocatable :: fault
+      character(*), parameter :: known = 'x height mu mu_static mu_kinetic gap width compliance stiffness'
 
-      call self%data%put(file, name, values)
+      if (scan(file, line_ends) > 0) then
+         call set_error(fault, MFV_INPUT_ERROR, 'the name of data must be of one line')
+      else if (index(' '//known//' ', ' '//name//' ') == 0 .or. name == '') then
+         call set_error(fault, MFV_INPUT_ERROR, "the data '"//file//"': unknown dataset '"//name//"'; datasets are "//known)
+      else
+         call self%data%put(file, name, values)
+      end if
+      call tell(self, file, fault, error)
    end subroutine set_matrix
 
    !> The scene as a text of namelist groups; comments say which data were in memory.
@@ -277,16 +319,58 @@ contains
       directory = ''
       if (allocated(self%source)) source = self%source
       if (allocated(self%directory)) directory = self%directory
-      if (allocated(self%fault)) then
-         call set_error(error, self%fault%status, source//': '//self%fault%message)
+      if (allocated(self%faults)) then
+         call set_error(error, self%faults(1)%error%status, source//': '//self%faults(1)%error%message)
          return
       end if
       allocate (groups(0))
       if (allocated(self%groups)) groups = self%groups
+      call check_data(self%data, groups, source, error)
+      if (allocated(error)) return
       call read_case_groups(groups, source, directory, case, error, without_steps=.true., data=self%data)
       if (allocated(error)) return
       call self%write_text(text)
       case%text = text
    end subroutine make_case
+
+   !> Data that no key names are a mistake: error MFV_INPUT_ERROR.
+   subroutine check_data(data, groups, source, error)
+      type(case_data_type), intent(in) :: data
+      type(group_type), intent(in) :: groups(:)
+      character(*), intent(in) :: source
+      type(error_type), allocatable, intent(out) :: error
+      integer :: i
+
+      if (.not. allocated(data%datasets)) return
+      do i = 1, size(data%datasets)
+         if (is_named(data%datasets(i)%file, groups)) cycle
+         call set_error(error, MFV_INPUT_ERROR, source//": no key names the data '"//data%datasets(i)%file//"'; a body has "// &
+                        'file, &friction has mu_file')
+         return
+      end do
+   end subroutine check_data
+
+   !> Whether a key names a file.
+   pure logical function is_named(file, groups)
+      character(*), intent(in) :: file
+      type(group_type), intent(in) :: groups(:)
+      integer :: i, j
+
+      is_named = .false.
+      do i = 1, size(groups)
+         do j = 1, size(groups(i)%entries)
+            if (groups(i)%entries(j)%key /= 'file' .and. groups(i)%entries(j)%key /= 'mu_file') cycle
+            is_named = is_named .or. any(same(groups(i)%entries(j)%values, file))
+         end do
+      end do
+   end function is_named
+
+   !> Whether texts are this one.
+   elemental logical function same(one, other)
+      type(string_type), intent(in) :: one
+      character(*), intent(in) :: other
+
+      same = one%text == other
+   end function same
 
 end module mfv_draft
