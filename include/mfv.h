@@ -117,7 +117,7 @@ int mfv_copy(const mfv_case *handle, mfv_case **copy);
 /* Free a case and set *handle to NULL. Safe on NULL. Since 0.1.0. */
 int mfv_free(mfv_case **handle);
 
-/* Run the steps of the case that have not been run. The result file of its &output is not written: see mfv_write.
+/* Run the steps of the case that have not been run (steps of mfv_advance do not count). The result file of its &output is not written: see mfv_write.
  * Returns the outcome: MFV_COMPLETE, or why the load history ended early, with the state up to there. Since 0.1.0. */
 int mfv_run(mfv_case *handle);
 
@@ -148,15 +148,18 @@ typedef struct mfv_loads {
 int mfv_get_loads(const mfv_case *handle, mfv_loads *loads);
 
 /* Consistent tangent at the present state: tangent[i*motions + j] is the derivative of load i (normal force, tangential force,
- * moment) with respect to motion j (approach, shift, rotation); motions: 2, or 3 with rotation. Contact and friction have
- * corners: the tangent is the one of motions that go on towards `direction` (motions lengths, such as {0, 1} for a shift to
- * the right; only its direction counts), or, where it is NULL, on the way that led here (which zones grow and slip stays as it
- * is). The state does not change. MFV_BAD_ARGUMENT where the contact does not determine it. Since 0.1.0. */
+ * moment) with respect to motion j (approach, shift, rotation); motions: 2 (the rotation is held, also where a moment is
+ * prescribed), or 3. It is exact up to the next node that changes its status. Contact and friction have corners: the tangent
+ * is the one of motions that go on towards `direction` (motions lengths, such as {0, 1} for a shift to the right; only its
+ * direction counts; friction acts, if the scene has any), or, where it is NULL, on the way that led here, every node's status as
+ * it is. Across the direction of a step that led two motions at once it differs from the derivative of the step's end by the
+ * order of the step (docs/theory.md). The state does not change. MFV_BAD_ARGUMENT where the contact does not determine it. Since
+ * 0.1.0. */
 int mfv_tangent(mfv_case *handle, int motions, const double *direction, double *tangent);
 
 /* Keep the present state in *state (made where it is NULL, else its storage is used again), and come back to it: the case then
  * goes on with the same digits as if nothing had been done in between, also after an early end. History, steps and cycles go
- * back too. With history='none' and states='none' in &output any number of kept states can be gone to in any order, in this
+ * back too; error bars are dropped. With history='none' and states='none' in &output any number of kept states can be gone to in any order, in this
  * case and its copies; otherwise only to states on the way that led to the present one (others: MFV_BAD_ARGUMENT). A state may
  * outlive the case that it is from. Since 0.1.0. */
 int mfv_save(const mfv_case *handle, mfv_state **state);
@@ -178,7 +181,8 @@ typedef int (*mfv_observer)(const mfv_progress *progress, void *user);
 
 /* From now on tell `observer` (NULL: nobody) of every increment, with `user`. It runs in the thread of mfv_run or mfv_advance, must
  * not call functions of this handle, and ends the run by a value that is not 0: the outcome is then MFV_INTERRUPTED, with the
- * last state in place. Since 0.1.0. */
+ * last state in place, from which mfv_advance goes on (mfv_run does not: its step was left in the middle). No C++ exception may
+ * leave it. Since 0.1.0. */
 int mfv_observe(mfv_case *handle, mfv_observer observer, void *user);
 
 /* Number of fields of the case now, and the path of field `index` (from 0), such as "history/shift". Since 0.1.0. */
