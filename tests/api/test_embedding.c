@@ -215,6 +215,18 @@ static int watch(const mfv_progress *progress, void *user) {
   return ++self->calls == self->stop_at;
 }
 
+/* The last part of the load history that there was word of. */
+typedef struct {
+  int last, all;
+} parts;
+
+static int count_parts(const mfv_progress *progress, void *user) {
+  parts *self = user;
+  self->last = progress->segment;
+  self->all = progress->segments;
+  return 0;
+}
+
 static void observers(void) {
   mfv_scene *scene = cylinder();
   mfv_case *handle = created(scene);
@@ -231,6 +243,18 @@ static void observers(void) {
   CHECK(mfv_observe(handle, watch, &stopping) == MFV_COMPLETE);
   CHECK(lead(handle, MFV_KEEP, 0, MFV_FORCE, 3.5e-4, 1, 0) == MFV_INTERRUPTED);
   CHECK(stopping.calls == 3 && loads_of(handle).tangential_force > 0 && loads_of(handle).tangential_force < 3.5e-4);
+  /* An interrupted step leaves a state to go on from. */
+  CHECK(mfv_observe(handle, NULL, NULL) == MFV_COMPLETE);
+  CHECK(lead(handle, MFV_KEEP, 0, MFV_FORCE, 3.5e-4, 1, 0) == MFV_COMPLETE);
+  CHECK(fabs(loads_of(handle).tangential_force / 3.5e-4 - 1) < 1e-12);
+  /* Parts of cycles are counted. */
+  parts counted = {0, 0};
+  mfv_step cycles = MFV_STEP_INIT;
+  cycles.tangential_control = MFV_FORCE;
+  cycles.tangential_target = -3.5e-4;
+  cycles.cycles = 3;
+  CHECK(mfv_observe(handle, count_parts, &counted) == MFV_COMPLETE);
+  CHECK(mfv_advance(handle, &cycles) == MFV_COMPLETE && counted.last == 6 && counted.all == 6);
   CHECK(mfv_restore(handle, start) == MFV_COMPLETE);
   CHECK(mfv_observe(handle, NULL, NULL) == MFV_COMPLETE);
   CHECK(lead(handle, MFV_KEEP, 0, MFV_FORCE, 3.5e-4, 1, 0) == MFV_COMPLETE);
