@@ -104,7 +104,7 @@ def save(
     Raises ValueError for another suffix and where there is no ffmpeg for an MP4; OSError.
     """
     path = os.fspath(path)
-    program: dict[Any, Any] = {"animation.ffmpeg_path": _ffmpeg()} if path.endswith(".mp4") else {}
+    program: dict[Any, Any] = {"animation.ffmpeg_path": _ffmpeg()} if path.lower().endswith(".mp4") else {}
     writer = _writer(path, frames_per_second)
     frames = FuncAnimation(moving.picture, moving.draw, frames=moving.frames, init_func=lambda: None)
     with matplotlib.rc_context({**plot.STYLE, **program}):
@@ -113,7 +113,7 @@ def save(
 
 def _writer(path: str, frames_per_second: int) -> AbstractMovieWriter:
     """What writes a file with that suffix."""
-    suffix = os.path.splitext(path)[1]
+    suffix = os.path.splitext(path)[1].lower()
     if suffix == ".gif":
         return PillowWriter(fps=frames_per_second)
     if suffix == ".mp4":

@@ -143,6 +143,38 @@ def test_what_cannot_be_compared_is_named(tmp_path: Path, capsys: pytest.Capture
     assert sorted(path.name for path in tmp_path.iterdir()) == ["a.h5", "b.h5"]
 
 
+# --- where commands write ---
+
+
+def test_results_are_not_overwritten_by_what_is_drawn_of_them(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    solved(tmp_path / "a.h5")
+    solved(tmp_path / "b.png")
+    before = {path.name: path.read_bytes() for path in tmp_path.iterdir()}
+    first, other = str(tmp_path / "a.h5"), str(tmp_path / "b.png")
+    for arguments, complaint in (
+        (["plot", first, "-o", first], f"{first}: the name of what is written must end with .png or "),
+        (["plot", other], f"{other}: is what is read"),
+        (["plot", first, "-o", other], f"{other}: is HDF5"),
+        (["plot", first, "-o", str(tmp_path / "out")], f"{tmp_path / 'out'}: the name of what"),
+        (["plot", first, "-o", str(tmp_path)], f"{tmp_path}: is a directory"),
+        (["plot", first, "-o", ""], "such as a.png"),
+        (["plot", first, "-o", str(tmp_path / "no" / "x.png")], f"{tmp_path / 'no' / 'x.png'}: there is no directory"),
+        (["report", first, "-o", first], f"{first}: the name of what is written must end with .html or .htm"),
+        (["compare", first, first, "--csv", first], f"{first}: the name of what"),
+        (["animate", first, "--kept", "-o", first], f"{first}: the name of what"),
+        (["new", "--force", "-o", first], f"{first}: the name of what"),
+    ):
+        assert main(arguments) == 2, arguments
+        printed = capsys.readouterr()
+        assert complaint in printed.err and printed.err.count("\n") == 1 and printed.out == "", arguments
+        assert {path.name: path.read_bytes() for path in tmp_path.iterdir()} == before
+    assert main(["plot", first, "-o", str(tmp_path / "A.PNG")]) == 0
+    assert main(["animate", first, "--kept", "-o", str(tmp_path / "A.GIF")]) == 0
+    assert (tmp_path / "A.PNG").read_bytes()[1:4] == b"PNG" and (tmp_path / "A.GIF").read_bytes()[:3] == b"GIF"
+
+
 # --- states between those that a result keeps ---
 
 PROJECT = Path(__file__).resolve().parents[2]

@@ -77,7 +77,8 @@ def _parser() -> argparse.ArgumentParser:
 
 def _with_file(message: str, options: argparse.Namespace) -> str:
     """A message that names the file it is about: the one that was read, unless it names one of those given already."""
-    given = [str(value) for value in (getattr(options, name, None) for name in ("file", "other", "output")) if value]
+    values = (getattr(options, name, None) for name in ("file", "other", "output", "csv"))
+    given = [str(value) for value in values if value and value != "-"]
     if not given or any(name in message for name in given):
         return message
     return f"{given[0]}: {message}"

@@ -6,7 +6,7 @@ import argparse
 from pathlib import Path
 
 from ..result import read
-from .files import written
+from .files import PICTURES, target, written
 
 NAME, HELP = "plot", "draw a result"
 
@@ -37,7 +37,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "--output",
         type=Path,
         metavar="PICTURE",
-        help="png, pdf or svg; else RESULT.png, or RESULT_NAME_BODY.png for a stress, beside the file",
+        help="png, pdf, svg or eps; else RESULT.png, or RESULT_NAME_BODY.png for a stress, beside the file",
     )
     parser.add_argument(
         "--step", type=int, metavar="N", help="the state in the file's group steps/000N in place of the last"
@@ -60,16 +60,16 @@ def run(options: argparse.Namespace) -> None:
     from .. import plot  # here, so that info does not load matplotlib
 
     result = read(options.file)
+    name = f"{options.file.stem}_{options.stress}_{options.body}" if options.stress else options.file.stem
+    if options.cycles:
+        name += "_cycles"
+    output = target(options.output, options.file.with_name(f"{name}.png"), PICTURES, [options.file])
     if options.stress:
         picture = plot.stress_figure(result, options.stress, options.body, options.step)
     elif options.cycles:
         picture = plot.cycles_figure(result)
     else:
         picture = plot.figure(result, options.step)
-    name = f"{options.file.stem}_{options.stress}_{options.body}" if options.stress else options.file.stem
-    if options.cycles:
-        name += "_cycles"
-    output = options.output or options.file.with_name(f"{name}.png")
     with written(output) as part:
         picture.savefig(part, dpi=200)
     print(output)
