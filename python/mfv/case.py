@@ -97,7 +97,7 @@ class State:
         """Not to be called: see `Case.save`."""
         self._handle = c_void_p()
         self._status = 0
-        weakref.finalize(self, library().mfv_state_free, byref(self._handle))
+        _freed_with(self, library().mfv_state_free, self._handle)
 
 
 class Trial:
@@ -148,7 +148,7 @@ class Case:
         """Take a handle over, with what every call needs at hand."""
         self._handle = handle
         self._lock = threading.RLock()
-        self._free = weakref.finalize(self, library().mfv_free, byref(handle))
+        self._free = _freed_with(self, library().mfv_free, handle)
         self._status = 0
         self._observer = Observer(handle)
         self._advance = library().mfv_advance
@@ -477,6 +477,14 @@ class Case:
         buffer = text_buffer()
         library().mfv_message(self._handle, buffer, len(buffer))
         return text_of(buffer)
+
+
+def _freed_with(owner: object, free: Callable[..., object], handle: c_void_p) -> weakref.finalize[..., Any]:
+    """Free a handle when its owner goes. When the interpreter ends, what is left is for the operating system: a thread may still
+    lead a case then."""
+    finalizer = weakref.finalize(owner, free, byref(handle))
+    finalizer.atexit = False
+    return finalizer
 
 
 def _control(

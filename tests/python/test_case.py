@@ -5,11 +5,14 @@ from __future__ import annotations
 import copy
 import gc
 import io
+import os
 import signal
+import subprocess
 import sys
 import threading
 import time
 import weakref
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -189,6 +192,23 @@ def test_what_is_not_used_any_more_is_freed() -> None:
 
 
 # --- observers, progress, interrupts ---
+
+
+def test_the_interpreter_can_end_while_a_thread_leads_a_case() -> None:
+    script = """
+        import threading, time, mfv
+        from scenes import PRESS, cylinder
+        case = cylinder(PRESS, mfv.Step(tangential_force=-2.8e-4, cycles=500), mesh=mfv.Mesh(nodes=401, half_width=0.01225)).contact()
+        began = threading.Event()
+        case.observe(lambda progress: began.set())
+        threading.Thread(target=case.run, daemon=True).start()
+        began.wait()
+        """
+    command = [sys.executable, "-c", "\n".join(line.strip() for line in script.splitlines())]
+    paths = os.pathsep.join(map(str, (Path(mfv.__file__).parents[1], Path(__file__).parent)))
+    environment = {**os.environ, "PYTHONPATH": paths}
+    ended = subprocess.run(command, env=environment, capture_output=True, text=True, timeout=60, check=False)
+    assert (ended.returncode, ended.stderr) == (0, "")
 
 
 def test_an_observer_is_told_of_every_increment() -> None:
