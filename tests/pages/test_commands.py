@@ -235,6 +235,15 @@ def test_another_end_is_told_and_so_is_what_cannot_be_solved_again() -> None:
     assert "load steps" in with_states_between(result, 40).note
 
 
+@pytest.mark.parametrize("friction", ["&friction law='coulomb', mu=0.7 /\n", ""])
+def test_a_history_that_ends_unloaded_has_its_states_in_between(friction: str) -> None:
+    unloaded = PRESSED + friction + "&step normal_force=1e-3 /\n&step normal_force=0 /\n"
+    result = mfv.run(text=unloaded.format(**{**MINDLIN, "title": ""}))
+    again, note = with_states_between(result, 12)
+    assert note == "" and len(again.steps) == 12
+    assert again.steps[8].normal_force == pytest.approx(0.5e-3, rel=1e-9)
+
+
 def test_of_many_states_some_are_shown() -> None:
     result = mfv.run(text=SHEARED.format(**{**MINDLIN, "title": ""}).replace("cycles=1", "cycles=20"))
     few = thinned(result, 5).steps
