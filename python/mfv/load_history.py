@@ -4,13 +4,12 @@ from __future__ import annotations
 
 import copy
 import functools
-import os
-import re
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
 
+from .again import case_of
 from .case import Case
 from .compare import compare
 from .errors import MfvError
@@ -106,17 +105,11 @@ def _solved_again(result: Result, states: int, progress: Progress) -> Result:
     divisions = states // max(len(parts), 1)
     if divisions < 2:
         raise ValueError(f"{len(parts)} straight parts of the load history want {2 * len(parts)} states at least")
-    name = os.path.join(result.attributes["working_directory"], result.attributes["input_file"])
-    with Case.from_text(_keeping_states(result.attributes["input"]), name) as case:
+    with case_of(result, keeping_states=True) as case:
         for part, loads in progress(list(_divided(case, parts, divisions))):
             if case.advance(friction=part.friction, **loads()) != "complete":
                 break
         return kept_states(case.result())
-
-
-def _keeping_states(text: str) -> str:
-    """The text of a case that keeps states, also where it says that it keeps none."""
-    return re.sub(r"(\bstates\s*=\s*)(['\"])none\2", r"\1\2steps\2", text, flags=re.IGNORECASE)
 
 
 def _divided(case: Case, parts: list[Part], divisions: int) -> Iterator[tuple[Part, Callable[[], dict[str, float]]]]:
