@@ -5,8 +5,11 @@ from __future__ import annotations
 import copy
 import html
 import inspect
+import os
 import pickle
 import re
+import subprocess
+import sys
 import xml.etree.ElementTree
 from collections.abc import Callable
 from pathlib import Path
@@ -98,6 +101,18 @@ def test_a_result_that_grew_its_mesh_can_be_stacked() -> None:
 
 
 # --- copies and notebooks ---
+
+
+def test_modules_are_there_by_name_and_loaded_on_first_use() -> None:
+    names = {"animate", "compare", "comparison_figure", "load_history", "plot", "report", "template"}
+    script = f"""
+import sys, mfv
+assert "matplotlib" not in sys.modules and {names!r} <= set(dir(mfv))
+assert all(getattr(mfv, name).__name__ == f"mfv.{{name}}" for name in {sorted(names)!r})
+"""
+    environment = {**os.environ, "PYTHONPATH": str(Path(mfv.__file__).parents[1])}
+    subprocess.run([sys.executable, "-c", script], env=environment, check=True, timeout=60)
+    assert {"GrossSliding", "InputError", "NotAResult"} <= set(dir(mfv.errors))
 
 
 def test_results_can_be_pickled_and_copied(cycled: mfv.Result) -> None:
