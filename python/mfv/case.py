@@ -230,7 +230,7 @@ class Case:
         moment: float | None = None,
         rotation: float | None = None,
         relative: bool = False,
-        friction: bool = True,
+        friction: bool | None = None,
         cycles: int = 0,
         steady_tolerance: float = 0.0,
         check: bool = False,
@@ -239,7 +239,7 @@ class Case:
 
         Targets are reached linearly from the loads now; a load without a target keeps what it has. Give `normal_force`
         [force/length] or `approach` [length], `tangential_force` or `shift` likewise, `moment` [force] or `rotation`
-        [radians]. `relative`: targets are increments, added to the loads now. `friction`: whether it acts during this step.
+        [radians]. `relative`: targets are increments, added to the loads now. `friction`: whether it acts during this step; None: it does, as for a Step.
         `cycles`: go to the targets and back this many times, ending early when two cycles in a row end with the same
         tractions to within `steady_tolerance` times the largest one (0: never). `check`: as for `run`.
         Raises BadArgument.
@@ -258,7 +258,7 @@ class Case:
                     tangential_target,
                     normal_control,
                     tangential_control,
-                    1 if friction else 0,
+                    1 if friction or friction is None else 0,
                     turns,
                     rotational_target,
                     rotational_control,

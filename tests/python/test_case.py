@@ -53,6 +53,15 @@ def test_increments_lead_where_targets_do(pressed: mfv.Case) -> None:
     assert pressed.loads.shift == pytest.approx(other.loads.shift, rel=1e-9)
 
 
+def test_friction_acts_unless_told() -> None:
+    ended = []
+    for keys in ({}, {"friction": None}, {"friction": True}, {"friction": False}):
+        with cylinder().contact() as case:
+            case.advance(normal_force=1.0e-3, **keys)
+            ended.append(case.loads.slip_nodes + case.loads.stick_nodes)
+    assert ended[0] == ended[1] == ended[2] > 0 == ended[3]
+
+
 def test_loads_are_those_of_the_summary(pressed: mfv.Case) -> None:
     pressed.advance(tangential_force=2.8e-4)
     loads, summary = pressed.loads, pressed.result().summary
