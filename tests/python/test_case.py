@@ -42,7 +42,7 @@ def tractions(case: mfv.Case) -> bytes:
 
 
 def test_increments_lead_where_targets_do(pressed: mfv.Case) -> None:
-    other = pressed.copy()
+    other = copy.deepcopy(pressed)
     other.advance(tangential_force=3.0e-4)
     for _ in range(3):
         pressed.advance(tangential_force=1.0e-4, relative=True, check=True)
@@ -344,6 +344,24 @@ def test_fields_are_copied_into_arrays_of_the_caller(pressed: mfv.Case) -> None:
         pressed.values("state/pressure", np.empty(60))
     with pytest.raises(errors.BadArgument, match="reals"):
         pressed.values("state/pressure", status)
+
+
+def test_a_case_is_a_table_of_its_fields(pressed: mfv.Case) -> None:
+    assert list(pressed) == pressed.fields()
+    assert "state/pressure" in pressed and "state/presure" not in pressed and 0 not in pressed
+
+
+def test_arguments_of_a_wrong_kind_are_named(pressed: mfv.Case) -> None:
+    before = tractions(pressed)
+    for call, message in (
+        (lambda: pressed.advance(normal_force="1"), "must be numbers, not normal_force='1'"),
+        (lambda: pressed.advance(shift=1e-5, steady_tolerance="no"), "steady_tolerance='no'"),
+        (lambda: pressed.observe(5), "observe takes what can be called .* not 5"),
+        (lambda: pressed.values("state/pressure", out=[0.0]), "out must be a numpy array to be filled, not list"),
+    ):
+        with pytest.raises(TypeError, match=message):
+            call()
+    assert tractions(pressed) == before
 
 
 def test_positions_are_kept_until_the_mesh_grows() -> None:
