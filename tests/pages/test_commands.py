@@ -10,6 +10,7 @@ import subprocess
 import sys
 from pathlib import Path
 
+import h5py
 import numpy as np
 import pytest
 from PIL import Image
@@ -141,6 +142,21 @@ def test_what_cannot_be_compared_is_named(tmp_path: Path, capsys: pytest.Capture
         printed = capsys.readouterr().err
         assert complaint in printed and printed.count("\n") == 1
     assert sorted(path.name for path in tmp_path.iterdir()) == ["a.h5", "b.h5"]
+
+
+def test_only_a_difference_ends_with_1(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    with h5py.File(tmp_path / "a.h5", "w") as file:
+        file.attrs["mfv_version"] = "0.1.0"
+        file["state/pressure"] = [0.0]
+    arguments = ["compare", str(tmp_path / "a.h5"), str(tmp_path / "a.h5"), "--no-picture", "--tolerance", "1e-3"]
+    assert main(arguments) == 2
+    assert "it is without the group mesh, the group scene, the group summary" in capsys.readouterr().err
+    solved(tmp_path / "a.h5")
+    monkeypatch.setattr("mfv.compare.compare", lambda *_: 1 // 0)
+    assert main(arguments) == 2
+    assert "ZeroDivisionError" in capsys.readouterr().err
 
 
 # --- where commands write ---

@@ -5,6 +5,7 @@ from __future__ import annotations
 import argparse
 import os
 import sys
+import traceback
 
 from .. import __version__
 from ..errors import MfvError
@@ -47,6 +48,9 @@ def main(arguments: list[str] | None = None) -> int:
             f"mfv: this needs the Python package {error.name}, which is not there: pip install {error.name}",
             file=sys.stderr,
         )
+        return UNUSABLE
+    except Exception:  # noqa: BLE001 - a mistake of this program; 1 would mean that two results differ
+        traceback.print_exc()
         return UNUSABLE
     except KeyboardInterrupt:
         print("mfv: interrupted", file=sys.stderr)
