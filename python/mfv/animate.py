@@ -19,6 +19,7 @@ from matplotlib.layout_engine import ConstrainedLayoutEngine
 from matplotlib.patches import Patch
 
 from . import plot
+from ._packages import how_to_install
 from .result import Group, Result, counts
 from .views import Curve, contact, curve_of
 
@@ -132,8 +133,8 @@ def _ffmpeg() -> str:
         return str(get_ffmpeg_exe())
     except (ImportError, RuntimeError):
         raise ValueError(
-            "an MP4 needs ffmpeg, which is not there: install it (apt-get install ffmpeg, or pip install imageio-ffmpeg), "
-            "or write a GIF (-o NAME.gif)"
+            "an MP4 needs ffmpeg, which is not there: install it (apt-get install ffmpeg, or "
+            f"{how_to_install('imageio-ffmpeg')}), or write a GIF (-o NAME.gif)"
         ) from None
 
 

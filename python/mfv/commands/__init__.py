@@ -8,6 +8,7 @@ import sys
 import traceback
 
 from .. import __version__
+from .._packages import how_to_install
 from ..errors import MfvError
 from . import animate, compare, info, new, plot, report, table
 
@@ -44,10 +45,8 @@ def main(arguments: list[str] | None = None) -> int:
         print(f"mfv: {_with_file(str(error), options)}", file=sys.stderr)
         return UNUSABLE
     except ModuleNotFoundError as error:
-        print(
-            f"mfv: this needs the Python package {error.name}, which is not there: pip install {error.name}",
-            file=sys.stderr,
-        )
+        package = str(error.name)
+        print(f"mfv: this needs the Python package {package}, which is not there: {how_to_install(package)}", file=sys.stderr)
         return UNUSABLE
     except Exception:  # noqa: BLE001 - a mistake of this program; 1 would mean that two results differ
         traceback.print_exc()
