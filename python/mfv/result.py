@@ -64,6 +64,21 @@ class Group(Mapping[str, Values]):
             return self._fields[name].values
         raise AttributeError(f"there is no '{name}' here; there is {', '.join(self) or 'nothing'}")
 
+    def __setattr__(self, name: str, value: object) -> None:
+        if not name.startswith("_") and name in self._fields:
+            raise AttributeError(f"'{name}' is a quantity of the result and cannot be set; its values can be copied")
+        super().__setattr__(name, value)
+
+    def __eq__(self, other: object) -> bool:
+        """Whether the same quantities have the same values; NaN is the same as NaN."""
+        if not isinstance(other, Group):
+            return NotImplemented
+        return self.keys() == other.keys() and all(
+            np.array_equal(self[name], other[name], equal_nan=True) for name in self
+        )
+
+    __hash__ = None  # type: ignore[assignment]  # as of every mapping
+
     def __iter__(self) -> Iterator[str]:
         return iter(self._fields)
 

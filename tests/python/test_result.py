@@ -123,6 +123,19 @@ def test_results_can_be_pickled_and_copied(cycled: mfv.Result) -> None:
         xarray.testing.assert_identical(other.to_xarray()["steps"], cycled.to_xarray()["steps"])
 
 
+def test_groups_are_compared_by_their_values_which_cannot_be_set(cycled: mfv.Result) -> None:
+    other = pickle.loads(pickle.dumps(cycled))
+    assert other.state == cycled.state and other.history == cycled.history
+    nothing = [mfv.Group({"x": mfv.result.Field(np.array([np.nan, 1.0]), "1", "x")}) for _ in range(2)]
+    assert nothing[0] == nothing[1]
+    assert cycled.state != cycled.steps[0] and cycled.state != cycled.summary and cycled.state != 1
+    other.state.shear[30] += 1.0e-9
+    assert other.state != cycled.state
+    with pytest.raises(AttributeError, match="'pressure' is a quantity of the result and cannot be set"):
+        other.state.pressure = 1.0
+    np.testing.assert_array_equal(other.state.pressure, cycled.state.pressure)
+
+
 def test_notebooks_show_results_without_scripts(cycled: mfv.Result) -> None:
     shown = cycled._repr_html_()
     for word in ("to &amp; fro", "complete: step 3 was reached", "certificate", "<svg", "<polyline"):
@@ -162,6 +175,11 @@ def test_a_table_becomes_a_data_frame_and_shows_its_columns(tmp_path: Path) -> N
     assert list(frame["scene%coupling"]) == ["full", "none"] * 2
     np.testing.assert_array_equal(frame["stick_ratio"], table["stick_ratio"])
     assert frame.attrs["units"]["shift"] == "length"
+    for other in (pickle.loads(pickle.dumps(table)), copy.deepcopy(table)):
+        assert isinstance(other, mfv.Table) and other.describe() == table.describe()
+        assert other.attributes == table.attributes and other.tobytes() == table.tobytes()
+    assert f"{table['stick_ratio'].max():.3f}" == f"{max(table['stick_ratio'].tolist()):.3f}"
+    assert isinstance(table["stick_ratio"].mean(), float) and not isinstance(table["stick_ratio"], mfv.Table)
     shown = table[:2]._repr_html_()
     for word in ("2 cases", "scene%coupling", "stick_ratio", table.long_names["shift"]):
         assert html.escape(word) in shown
