@@ -177,6 +177,8 @@ def test_results_are_not_overwritten_by_what_is_drawn_of_them(
         (["plot", first, "-o", str(tmp_path)], f"{tmp_path}: is a directory"),
         (["plot", first, "-o", ""], "such as a.png"),
         (["plot", first, "-o", str(tmp_path / "no" / "x.png")], f"{tmp_path / 'no' / 'x.png'}: there is no directory"),
+        (["plot", first, "--body", "upper"], "give --stress NAME too"),
+        (["plot", first, "--cycles", "--step", "1"], "give one of them"),
         (["report", first, "-o", first], f"{first}: the name of what is written must end with .html or .htm"),
         (["compare", first, first, "--csv", first], f"{first}: the name of what"),
         (["animate", first, "--kept", "-o", first], f"{first}: the name of what"),

@@ -232,6 +232,21 @@ def test_panels_draw_the_state_that_is_asked_for(cycled: mfv.Result) -> None:
     np.testing.assert_array_equal(ax.lines[0].get_ydata(), cycled.cycles.friction_work)
 
 
+def test_a_legend_names_everything_once(cycled: mfv.Result) -> None:
+    labels = mfv.plot.shear(cycled, Figure().subplots()).get_legend_handles_labels()[1]
+    assert len(labels) == len(set(labels)) >= 4 and "computed" in labels
+
+
+def test_cycles_of_a_moment_are_drawn_over_the_rotation() -> None:
+    rocked = PRESS, mfv.Step(moment=1.0e-7, cycles=2)
+    axes = mfv.plot.cycles_figure(cylinder(*rocked, coupling="full").run(check=True)).axes
+    assert [ax.get_xlabel() for ax in axes] == [r"rotation $\varphi$ [rad]", "position $x$"]
+    narrow = mfv.plot.cycles_figure(cylinder(*rocked, output=mfv.Output(history="none")).run(check=True))
+    assert [ax.get_xlabel() for ax in narrow.axes] == ["position $x$"]
+    narrow.draw_without_rendering()
+    assert all(text.get_window_extent().width < narrow.bbox.width for text in narrow.texts)
+
+
 def test_contours_of_stresses_take_an_axes_or_make_one(cycled: mfv.Result) -> None:
     field = mfv.stress.grid(cycled, across=41, down=21)
     ax = Figure().subplots()
