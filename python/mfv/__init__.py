@@ -2,7 +2,9 @@
 
 `Scene` with `Body`, `Mesh`, `Friction`, `Step`, `Solver` and `Output` says what is in contact and how it is loaded; `run` solves it, `Case`
 leads it step by step; `read` reads a result file, `read_table` the table of a sweep, `stress` computes stresses inside the bodies,
-`plot` draws results, `reference` has the closed forms. Reading and drawing need no shared library.
+`plot` draws results, `animate` and `report` make films and web pages of them, `compare` and `comparison_figure` set two side by
+side, `load_history` has the states on the way, `template` cases to begin with, `reference` the closed forms. Reading and drawing
+need no shared library.
 """
 
 from __future__ import annotations
@@ -58,8 +60,15 @@ _version_file = _Path(__file__).resolve().parents[2] / "VERSION"
 __version__ = _version_file.read_text().strip() if _version_file.is_file() else _installed_version("mfv")
 
 
+#: Modules that are loaded on first use, so that matplotlib and the like are not loaded by those who do not draw.
+_ON_FIRST_USE = ("animate", "compare", "comparison_figure", "load_history", "plot", "report", "template")
+
+
 def __getattr__(name: str) -> ModuleType:
-    """`plot` on first use, so that matplotlib is not loaded by those who do not draw."""
-    if name == "plot":
-        return importlib.import_module(".plot", __name__)
+    if name in _ON_FIRST_USE:
+        return importlib.import_module(f".{name}", __name__)
     raise AttributeError(f"module 'mfv' has no attribute '{name}'")
+
+
+def __dir__() -> list[str]:
+    return sorted({*globals(), *_ON_FIRST_USE})

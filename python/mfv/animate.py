@@ -19,6 +19,7 @@ from matplotlib.layout_engine import ConstrainedLayoutEngine
 from matplotlib.patches import Patch
 
 from . import plot
+from ._packages import how_to_install
 from .result import Group, Result, counts
 from .views import Curve, contact, curve_of
 
@@ -104,7 +105,7 @@ def save(
     Raises ValueError for another suffix and where there is no ffmpeg for an MP4; OSError.
     """
     path = os.fspath(path)
-    program: dict[Any, Any] = {"animation.ffmpeg_path": _ffmpeg()} if path.endswith(".mp4") else {}
+    program: dict[Any, Any] = {"animation.ffmpeg_path": _ffmpeg()} if path.lower().endswith(".mp4") else {}
     writer = _writer(path, frames_per_second)
     frames = FuncAnimation(moving.picture, moving.draw, frames=moving.frames, init_func=lambda: None)
     with matplotlib.rc_context({**plot.STYLE, **program}):
@@ -113,7 +114,7 @@ def save(
 
 def _writer(path: str, frames_per_second: int) -> AbstractMovieWriter:
     """What writes a file with that suffix."""
-    suffix = os.path.splitext(path)[1]
+    suffix = os.path.splitext(path)[1].lower()
     if suffix == ".gif":
         return PillowWriter(fps=frames_per_second)
     if suffix == ".mp4":
@@ -132,8 +133,8 @@ def _ffmpeg() -> str:
         return str(get_ffmpeg_exe())
     except (ImportError, RuntimeError):
         raise ValueError(
-            "an MP4 needs ffmpeg, which is not there: install it (apt-get install ffmpeg, or pip install imageio-ffmpeg), "
-            "or write a GIF (-o NAME.gif)"
+            "an MP4 needs ffmpeg, which is not there: install it (apt-get install ffmpeg, or "
+            f"{how_to_install('imageio-ffmpeg')}), or write a GIF (-o NAME.gif)"
         ) from None
 
 

@@ -97,7 +97,7 @@ class State:
         """Not to be called: see `Case.save`."""
         self._handle = c_void_p()
         self._status = 0
-        weakref.finalize(self, library().mfv_state_free, byref(self._handle))
+        _freed_with(self, library().mfv_state_free, self._handle)
 
 
 class Trial:
@@ -148,7 +148,7 @@ class Case:
         """Take a handle over, with what every call needs at hand."""
         self._handle = handle
         self._lock = threading.RLock()
-        self._free = weakref.finalize(self, library().mfv_free, byref(handle))
+        self._free = _freed_with(self, library().mfv_free, handle)
         self._status = 0
         self._observer = Observer(handle)
         self._advance = library().mfv_advance
@@ -185,6 +185,9 @@ class Case:
     def __copy__(self) -> Case:
         return self.copy()
 
+    def __deepcopy__(self, memo: dict[int, Any]) -> Case:
+        return self.copy()
+
     def copy(self) -> Case:
         """A case of its own with the same scene, state and history. Who observes this one does not observe the copy."""
         handle = c_void_p()
@@ -202,7 +205,7 @@ class Case:
 
     @property
     def outcome(self) -> str:
-        """How the run has gone so far, in words: 'complete' while nothing has gone wrong."""
+        """How the run has gone so far, in words: 'complete' while nothing has gone wrong. It can be asked after `close` too."""
         return outcome_of(self._status)
 
     @property
@@ -230,7 +233,7 @@ class Case:
         moment: float | None = None,
         rotation: float | None = None,
         relative: bool = False,
-        friction: bool = True,
+        friction: bool | None = None,
         cycles: int = 0,
         steady_tolerance: float = 0.0,
         check: bool = False,
@@ -239,7 +242,7 @@ class Case:
 
         Targets are reached linearly from the loads now; a load without a target keeps what it has. Give `normal_force`
         [force/length] or `approach` [length], `tangential_force` or `shift` likewise, `moment` [force] or `rotation`
-        [radians]. `relative`: targets are increments, added to the loads now. `friction`: whether it acts during this step.
+        [radians]. `relative`: targets are increments, added to the loads now. `friction`: whether it acts during this step; None: it does, as for a Step.
         `cycles`: go to the targets and back this many times, ending early when two cycles in a row end with the same
         tractions to within `steady_tolerance` times the largest one (0: never). `check`: as for `run`.
         Raises BadArgument.
@@ -258,15 +261,24 @@ class Case:
                     tangential_target,
                     normal_control,
                     tangential_control,
-                    1 if friction else 0,
+                    1 if friction or friction is None else 0,
                     turns,
                     rotational_target,
                     rotational_control,
                     1 if relative else 0,
                     steady_tolerance,
                 )
-            except struct.error as error:
-                raise TypeError(f"targets and steady_tolerance must be numbers: {error}") from None
+            except struct.error:
+                targets = {
+                    "normal_force": normal_force,
+                    "approach": approach,
+                    "tangential_force": tangential_force,
+                    "shift": shift,
+                    "moment": moment,
+                    "rotation": rotation,
+                    "steady_tolerance": steady_tolerance,
+                }
+                raise TypeError(f"targets and steady_tolerance must be numbers, not {_not_numbers(targets)}") from None
             watched = turns > 0 or self._is_long
             return self._lead(check, watched, self._advance, self._handle, self._step_reference)
 
@@ -341,6 +353,8 @@ class Case:
         leads the case; it must not use this case. A true value from it ends the run with the outcome 'interrupted', and so
         does an exception, which is then raised by `run` or `advance`.
         """
+        if callback is not None and not callable(callback):
+            raise TypeError(f"observe takes what can be called with the progress, or None, not {callback!r}")
         with self._lock:
             self._observer.tell(callback)
 
@@ -355,6 +369,12 @@ class Case:
                 paths.append(text_of(buffer))
         return paths
 
+    def __contains__(self, path: object) -> bool:
+        return path in self.fields()
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self.fields())
+
     def __getitem__(self, path: str) -> Values:
         """Values of the field at a path, copied now. Raises KeyError."""
         try:
@@ -364,8 +384,10 @@ class Case:
 
     def values(self, path: str, out: NDArray[Any]) -> NDArray[Any]:
         """Copy the values of the field at a path into `out`, a contiguous array of float64 or int32 with the field's size,
-        and return it: nothing is allocated. Raises ValueError, BadArgument.
+        and return it: nothing is allocated. Raises TypeError, ValueError, BadArgument.
         """
+        if not isinstance(out, np.ndarray):
+            raise TypeError(f"out must be a numpy array to be filled, not {type(out).__name__}")
         if not (out.flags.c_contiguous and out.flags.writeable) or out.dtype not in (np.float64, np.int32):
             raise ValueError("out must be a contiguous, writable array of float64 or int32")
         if out.dtype == np.float64:
@@ -404,8 +426,8 @@ class Case:
         unit, description = text_buffer(), text_buffer()
         name = text_for(path)
         with self._lock:
-            numbers = byref(count), byref(is_integer), byref(along)
-            self._call("mfv_field_info", name, *numbers, unit, len(unit), description, len(description))
+            about = byref(count), byref(is_integer), byref(along)
+            self._call("mfv_field_info", name, *about, unit, len(unit), description, len(description))
             values: Values = self.values(path, np.empty(count.value, np.int32 if is_integer else np.float64))
         scalar = along.value == Along.NOTHING
         return Field(values[0] if scalar else values, text_of(unit), text_of(description), _DIMENSIONS[along.value])
@@ -477,6 +499,26 @@ class Case:
         buffer = text_buffer()
         library().mfv_message(self._handle, buffer, len(buffer))
         return text_of(buffer)
+
+
+def _not_numbers(targets: dict[str, Any]) -> str:
+    """Which of the targets, None where they were not given, are no numbers."""
+
+    def is_number(value: Any) -> bool:
+        try:
+            return bool(struct.pack("d", value))
+        except struct.error:
+            return False
+
+    return ", ".join(f"{name}={value!r}" for name, value in targets.items() if value is not None and not is_number(value))
+
+
+def _freed_with(owner: object, free: Callable[..., object], handle: c_void_p) -> weakref.finalize[..., Any]:
+    """Free a handle when its owner goes. When the interpreter ends, what is left is for the operating system: a thread may still
+    lead a case then."""
+    finalizer = weakref.finalize(owner, free, byref(handle))
+    finalizer.atexit = False
+    return finalizer
 
 
 def _control(

@@ -49,6 +49,15 @@ def _exception(outcome: str, explanation: str) -> type[MfvError]:
     return type(name, (MfvError,), {"__doc__": explanation, "__module__": __name__})
 
 
+def __dir__() -> list[str]:
+    """What there is, with the exceptions of the statuses where there is a library that has them."""
+    try:
+        kinds = [kind.__name__ for kind in failures().values()]
+    except LibraryNotFound:
+        kinds = []
+    return sorted({*globals(), *kinds})
+
+
 def __getattr__(name: str) -> type[MfvError]:
     if not name.startswith("_"):
         for kind in failures().values():

@@ -4,13 +4,12 @@ from __future__ import annotations
 
 import copy
 import functools
-import os
-import re
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
 
+from .again import case_of
 from .case import Case
 from .compare import compare
 from .errors import MfvError
@@ -75,18 +74,27 @@ def with_states_between(result: Result, states: int, progress: Progress = iter) 
     """The load history of a result with about that many states, from its case solved again with targets on the way.
 
     Where that cannot be done, or leads elsewhere, the states that the result keeps, with a note that says why; a note also
-    tells when the case does not end where the result does, to within AGREEMENT. `progress` goes over the targets.
+    tells when the case does not end where the result does, to within AGREEMENT of the largest traction of all states: one that
+    ends unloaded is no other for that. `progress` goes over the targets.
     """
     kept = kept_states(result)
     try:
         again = _solved_again(result, states, progress)
     except (MfvError, ValueError) as error:
         return LoadHistory(thinned(kept, states), f"only states that the file keeps: {error}")
-    difference = compare(result, again).largest_difference
+    difference = _difference_of_ends(result, again, [*kept.steps, *again.steps])
     elsewhere = f"solved again, the case ends elsewhere: tractions differ by {difference:.1e} of the largest"
     if not difference <= LIKENESS:
         return LoadHistory(thinned(kept, states), f"only states that the file keeps: {elsewhere}")
     return LoadHistory(again, "" if difference <= AGREEMENT else elsewhere)
+
+
+def _difference_of_ends(result: Result, again: Result, states: Sequence[Group]) -> float:
+    """The largest difference of a traction at the ends of two results, in parts of the largest one in any of the states."""
+    ends = compare(result, again)
+    difference = ends.largest_difference * max(max(traction.first, traction.second) for traction in ends.tractions)
+    largest = max(float(np.max(np.abs(state[name]))) for state in states for name in ("pressure", "shear"))
+    return difference / largest if difference != 0.0 else 0.0
 
 
 def _solved_again(result: Result, states: int, progress: Progress) -> Result:
@@ -97,17 +105,11 @@ def _solved_again(result: Result, states: int, progress: Progress) -> Result:
     divisions = states // max(len(parts), 1)
     if divisions < 2:
         raise ValueError(f"{len(parts)} straight parts of the load history want {2 * len(parts)} states at least")
-    name = os.path.join(result.attributes["working_directory"], result.attributes["input_file"])
-    with Case.from_text(_keeping_states(result.attributes["input"]), name) as case:
+    with case_of(result, keeping_states=True) as case:
         for part, loads in progress(list(_divided(case, parts, divisions))):
             if case.advance(friction=part.friction, **loads()) != "complete":
                 break
         return kept_states(case.result())
-
-
-def _keeping_states(text: str) -> str:
-    """The text of a case that keeps states, also where it says that it keeps none."""
-    return re.sub(r"(\bstates\s*=\s*)(['\"])none\2", r"\1\2steps\2", text, flags=re.IGNORECASE)
 
 
 def _divided(case: Case, parts: list[Part], divisions: int) -> Iterator[tuple[Part, Callable[[], dict[str, float]]]]:

@@ -7,6 +7,7 @@ stresses inside a body.
 
 from __future__ import annotations
 
+import textwrap
 from collections.abc import Iterator
 from typing import Any
 
@@ -69,6 +70,9 @@ STRESS_LABELS = {
 #: Sizes in inch: a panel with its labels, the space below it, a row of the legend, a row of the caption.
 PANEL_WIDTH, PANEL_HEIGHT, SPACE, LEGEND_ROW, CAPTION_ROW = 3.6, 3.3, 0.08, 0.22, 0.17
 
+#: Letters of the caption that are as wide as a panel.
+CAPTION_LETTERS = 68
+
 #: Step ends at one place of a load-displacement curve that are all named; of more, the first and the last.
 NAMED_TOGETHER = 4
 
@@ -102,6 +106,8 @@ def cycles_figure(result: Result) -> Figure:
     if not result.cycles:
         raise ValueError("there are no cycles in this result: a step with cycles=... makes them")
     panels = [panel for panel, is_there in _cycle_panels(result) if is_there]
+    if not panels:
+        raise ValueError("nothing of the cycles can be drawn: the result has no history, and without friction nothing dissipates")
     with matplotlib.rc_context(STYLE):
         picture = Figure()
         axes = np.atleast_1d(picture.subplots(1, len(panels)))
@@ -115,11 +121,24 @@ def cycles_figure(result: Result) -> Figure:
 
 def _cycle_panels(result: Result) -> list[tuple[Any, bool]]:
     """What can be drawn of cycles, and whether this result has it."""
+    turns = _turns_in_the_last_cycle(result)
     return [
-        (loop, "shift" in result.history),
+        (loop, "shift" in result.history and not turns),
+        (turning, turns),
         (nonlinear_loop, "nonlinear_shift" in result.history),
         (friction_work, "friction_work" in result.cycles),
     ]
+
+
+def _turns_in_the_last_cycle(result: Result) -> bool:
+    """Whether the moment goes to and fro in the last cycle, and not the tangential force."""
+    history = result.history
+    if "rotation" not in history:
+        return False
+    of_cycle = history.step == result.cycles.step[-1]
+    negligible = 1.0e-9 * np.max(np.abs(history.normal_force))
+    is_sheared = np.ptp(history.tangential_force[of_cycle]) > negligible and np.ptp(history.shift[of_cycle]) > 0.0
+    return bool(np.ptp(history.rotation[of_cycle]) > 0.0 and not is_sheared)
 
 
 def _cycle_caption(result: Result) -> str:
@@ -227,8 +246,8 @@ def shear(result: Result, ax: Axes | None = None, step: int | None = None) -> Ax
     _shade_zones(ax, result, state)
     for coefficient, style in _coefficients(result):
         limit = np.where(state.status != NodeStatus.OPEN, coefficient * state.pressure, np.nan)
-        for sign in (1.0, -1.0):
-            ax.plot(result.mesh.x, sign * limit, color="0.35", linewidth=0.7, **style)
+        for sign, named in ((1.0, {}), (-1.0, {"label": "_limit to the left"})):
+            ax.plot(result.mesh.x, sign * limit, color="0.35", linewidth=0.7, **{**style, **named})
     _draw_points(ax, result, state, state.shear)
     if "shear" in result.reference and _is_last(result, state):
         _draw_closed_form(ax, result, result.reference.shear)
@@ -393,13 +412,14 @@ def _points(number: int) -> dict[str, Any]:
 
 
 def _shade_zones(ax: Axes, result: Result, state: Group) -> None:
-    """Background of the stick and slip zones."""
+    """Background of the stick and slip zones; of each kind the first has the label."""
     half = 0.5 * result.mesh.interval
+    labelled: set[int] = set()
     for status, first, last in _runs(state.status):
         if status in ZONES:
-            ax.axvspan(
-                result.mesh.x[first] - half, result.mesh.x[last] + half, linewidth=0.0, zorder=0, **ZONES[status]
-            )
+            style = ZONES[status] if status not in labelled else {**ZONES[status], "label": "_another zone"}
+            ax.axvspan(result.mesh.x[first] - half, result.mesh.x[last] + half, linewidth=0.0, zorder=0, **style)
+            labelled.add(status)
 
 
 def _runs(values: np.ndarray) -> Iterator[tuple[int, int, int]]:
@@ -484,6 +504,7 @@ def _add_legend_and_caption(picture: Figure, caption: str) -> None:
             handles.setdefault(label, handle)
     labels = sorted(handles, key=lambda label: isinstance(handles[label], Patch))
     columns = 2 * len(picture.axes)
+    caption = "\n".join(textwrap.fill(line, CAPTION_LETTERS * len(picture.axes)) for line in caption.splitlines())
     legend_top = 2.0 * SPACE + CAPTION_ROW * (1 + caption.count("\n")) + LEGEND_ROW * -(-len(labels) // columns)
     height = PANEL_HEIGHT + SPACE + legend_top
     picture.set_size_inches(PANEL_WIDTH * len(picture.axes), height)

@@ -20,6 +20,10 @@ if TYPE_CHECKING:
 Values = Any
 """What a quantity is: an array of float64 or int32, or one such number."""
 
+#: Groups and texts that every result has.
+GROUPS = ("mesh", "scene", "state", "summary", "certificate")
+TEXTS = ("mfv_version", "outcome", "message", "input")
+
 #: Groups that a result can be without; they are then empty.
 OPTIONAL_GROUPS = ("history", "reference", "error_estimate", "observables", "cycles")
 
@@ -59,6 +63,21 @@ class Group(Mapping[str, Values]):
         if name in self._fields:
             return self._fields[name].values
         raise AttributeError(f"there is no '{name}' here; there is {', '.join(self) or 'nothing'}")
+
+    def __setattr__(self, name: str, value: object) -> None:
+        if not name.startswith("_") and name in self._fields:
+            raise AttributeError(f"'{name}' is a quantity of the result and cannot be set; its values can be copied")
+        super().__setattr__(name, value)
+
+    def __eq__(self, other: object) -> bool:
+        """Whether the same quantities have the same values; NaN is the same as NaN."""
+        if not isinstance(other, Group):
+            return NotImplemented
+        return self.keys() == other.keys() and all(
+            np.array_equal(self[name], other[name], equal_nan=True) for name in self
+        )
+
+    __hash__ = None  # type: ignore[assignment]  # as of every mapping
 
     def __iter__(self) -> Iterator[str]:
         return iter(self._fields)
@@ -222,9 +241,14 @@ def read(path: str | os.PathLike[str]) -> Result:
     """The result in a file. Raises OSError, NotAResult."""
     path = os.fspath(path)
     with open_hdf5(path, "result file of MFV") as file:
-        if "mfv_version" not in file.attrs or "state" not in file:
+        if "mfv_version" not in file.attrs:
             raise NotAResult(None, f"{path}: not a result file of MFV, though it is HDF5")
-        return Result(_groups(file), {name: str(value) for name, value in file.attrs.items()})
+        groups = _groups(file)
+        missing = [f"the group {name}" for name in GROUPS if name not in groups]
+        missing += [f"the attribute {name}" for name in TEXTS if name not in file.attrs]
+        if missing:
+            raise NotAResult(None, f"{path}: not a result file of MFV: it is without {', '.join(missing)}")
+        return Result(groups, {name: str(value) for name, value in file.attrs.items()})
 
 
 def open_hdf5(path: str, expected: str) -> h5py.File:

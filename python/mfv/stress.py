@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 from dataclasses import dataclass
 from typing import NamedTuple
 
@@ -10,7 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ._library import real_pointer
-from .case import Case
+from .again import case_of
 from .result import Result
 
 #: The stresses at a point, in the order of the header: in Cartesian components, across the plane, principal ones in the
@@ -64,7 +63,7 @@ def stress(result: Result, x: ArrayLike, y: ArrayLike, *, body: str = "lower", s
     """Stresses at the points (x, y), lengths, y up from the contact; NaN outside the body.
 
     `body`: 'lower' or 'upper'. `step`: the state in `result.steps[step - 1]`, not the last one. `x` and `y` are broadcast.
-    Raises ValueError for an unknown body or step, BadArgument for a body without an inside (rigid, or a matrix).
+    Raises ValueError for an unknown body or step and for a result from a file whose scene had arrays in memory, BadArgument for a body without an inside (rigid, or a matrix).
     """
     if body not in BODIES:
         raise ValueError(f"the body must be 'lower' or 'upper', not '{body}'")
@@ -73,7 +72,7 @@ def stress(result: Result, x: ArrayLike, y: ArrayLike, *, body: str = "lower", s
     arc = _arc(result)
     loads = [np.ascontiguousarray(values) for values in (arc, result.mesh.width, state.pressure, state.shear)]
     values, largest = np.empty((across.size, len(NAMES))), np.empty(3)
-    with _case(result) as case:
+    with case_of(result) as case:
         case._call(
             "mfv_stress_under",
             BODIES.index(body),
@@ -145,14 +144,6 @@ def surface(result: Result, body: str, x: Array) -> Array:
     sign = -1.0 if result.attributes[f"{body}_body"].endswith("disk") else 1.0
     with np.errstate(invalid="ignore"):
         return np.asarray(sign * x**2 / (radius + np.sqrt(radius**2 - x**2)))
-
-
-def _case(result: Result) -> Case:
-    """The case again, before its load history."""
-    if result._source is not None:
-        return Case(result._source)
-    name = os.path.join(result.attributes["working_directory"], result.attributes["input_file"])
-    return Case.from_text(result.attributes["input"], name)
 
 
 def _arc(result: Result) -> Array:

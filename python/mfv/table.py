@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 
 class Table(np.ndarray):
-    """A structured array, one row a case; texts are str. `table["stick_ratio"]` is a column, `table[3]` a row,
+    """A structured array, one row a case; texts are str. `table["stick_ratio"]` is a column, a plain array; `table[3]` a row,
     `table[table["outcome"] == "complete"]` a table of some rows, `pandas.DataFrame(table)` a data frame.
 
     `units` and `long_names` have the unit and the meaning of every column; `attributes` those of the file: the texts of the
@@ -32,6 +32,18 @@ class Table(np.ndarray):
     def __array_finalize__(self, source: Any) -> None:
         for name in ("units", "long_names", "attributes"):
             setattr(self, name, getattr(source, name, {}))
+
+    def __getitem__(self, key: Any) -> Any:
+        found = super().__getitem__(key)
+        return np.asarray(found) if isinstance(key, str) else found
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        function, arguments, state = tuple(super().__reduce__())
+        return function, arguments, (state, self.units, self.long_names, self.attributes)
+
+    def __setstate__(self, state: tuple[Any, ...]) -> None:
+        of_array, self.units, self.long_names, self.attributes = state
+        super().__setstate__(of_array)
 
     @property
     def columns(self) -> tuple[str, ...]:
@@ -49,7 +61,7 @@ class Table(np.ndarray):
     def _words(self) -> list[tuple[str, str, str, str]]:
         """Of every column name, values, unit and meaning."""
         return [
-            (name, _values(np.asarray(self[name])), _html.unit(self.units[name]), self.long_names[name])
+            (name, _values(self[name]), _html.unit(self.units[name]), self.long_names[name])
             for name in self.columns
         ]
 

@@ -10,6 +10,7 @@ import subprocess
 import sys
 from pathlib import Path
 
+import h5py
 import numpy as np
 import pytest
 from PIL import Image
@@ -143,6 +144,55 @@ def test_what_cannot_be_compared_is_named(tmp_path: Path, capsys: pytest.Capture
     assert sorted(path.name for path in tmp_path.iterdir()) == ["a.h5", "b.h5"]
 
 
+def test_only_a_difference_ends_with_1(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    with h5py.File(tmp_path / "a.h5", "w") as file:
+        file.attrs["mfv_version"] = "0.1.0"
+        file["state/pressure"] = [0.0]
+    arguments = ["compare", str(tmp_path / "a.h5"), str(tmp_path / "a.h5"), "--no-picture", "--tolerance", "1e-3"]
+    assert main(arguments) == 2
+    assert "it is without the group mesh, the group scene, the group summary" in capsys.readouterr().err
+    solved(tmp_path / "a.h5")
+    monkeypatch.setattr("mfv.compare.compare", lambda *_: 1 // 0)
+    assert main(arguments) == 2
+    assert "ZeroDivisionError" in capsys.readouterr().err
+
+
+# --- where commands write ---
+
+
+def test_results_are_not_overwritten_by_what_is_drawn_of_them(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    solved(tmp_path / "a.h5")
+    solved(tmp_path / "b.png")
+    before = {path.name: path.read_bytes() for path in tmp_path.iterdir()}
+    first, other = str(tmp_path / "a.h5"), str(tmp_path / "b.png")
+    for arguments, complaint in (
+        (["plot", first, "-o", first], f"{first}: the name of what is written must end with .png or "),
+        (["plot", other], f"{other}: is what is read"),
+        (["plot", first, "-o", other], f"{other}: is HDF5"),
+        (["plot", first, "-o", str(tmp_path / "out")], f"{tmp_path / 'out'}: the name of what"),
+        (["plot", first, "-o", str(tmp_path)], f"{tmp_path}: is a directory"),
+        (["plot", first, "-o", ""], "such as a.png"),
+        (["plot", first, "-o", str(tmp_path / "no" / "x.png")], f"{tmp_path / 'no' / 'x.png'}: there is no directory"),
+        (["plot", first, "--body", "upper"], "give --stress NAME too"),
+        (["plot", first, "--cycles", "--step", "1"], "give one of them"),
+        (["report", first, "-o", first], f"{first}: the name of what is written must end with .html or .htm"),
+        (["compare", first, first, "--csv", first], f"{first}: the name of what"),
+        (["animate", first, "--kept", "-o", first], f"{first}: the name of what"),
+        (["new", "--force", "-o", first], f"{first}: the name of what"),
+    ):
+        assert main(arguments) == 2, arguments
+        printed = capsys.readouterr()
+        assert complaint in printed.err and printed.err.count("\n") == 1 and printed.out == "", arguments
+        assert {path.name: path.read_bytes() for path in tmp_path.iterdir()} == before
+    assert main(["plot", first, "-o", str(tmp_path / "A.PNG")]) == 0
+    assert main(["animate", first, "--kept", "-o", str(tmp_path / "A.GIF")]) == 0
+    assert (tmp_path / "A.PNG").read_bytes()[1:4] == b"PNG" and (tmp_path / "A.GIF").read_bytes()[:3] == b"GIF"
+
+
 # --- states between those that a result keeps ---
 
 PROJECT = Path(__file__).resolve().parents[2]
@@ -201,6 +251,15 @@ def test_another_end_is_told_and_so_is_what_cannot_be_solved_again() -> None:
     assert "steady" in with_states_between(mfv.run(text=steady.format(**{**MINDLIN, "title": ""})), 40).note
     result.attributes["algorithm"] = "conventional"
     assert "load steps" in with_states_between(result, 40).note
+
+
+@pytest.mark.parametrize("friction", ["&friction law='coulomb', mu=0.7 /\n", ""])
+def test_a_history_that_ends_unloaded_has_its_states_in_between(friction: str) -> None:
+    unloaded = PRESSED + friction + "&step normal_force=1e-3 /\n&step normal_force=0 /\n"
+    result = mfv.run(text=unloaded.format(**{**MINDLIN, "title": ""}))
+    again, note = with_states_between(result, 12)
+    assert note == "" and len(again.steps) == 12
+    assert again.steps[8].normal_force == pytest.approx(0.5e-3, rel=1e-9)
 
 
 def test_of_many_states_some_are_shown() -> None:

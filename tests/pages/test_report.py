@@ -307,5 +307,5 @@ def test_a_missing_package_is_named(
     monkeypatch.delattr(mfv, "report", raising=False)
     monkeypatch.setitem(sys.modules, "plotly", None)
     assert main(["report", str(tmp_path / "x.h5")]) == 2
-    assert "pip install plotly" in capsys.readouterr().err
+    assert f"\"{sys.executable}\" -m pip install 'plotly' 'jinja2'" in capsys.readouterr().err
     assert sorted(path.name for path in tmp_path.iterdir()) == ["x.h5"]

@@ -5,11 +5,14 @@ from __future__ import annotations
 import copy
 import gc
 import io
+import os
 import signal
+import subprocess
 import sys
 import threading
 import time
 import weakref
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -39,7 +42,7 @@ def tractions(case: mfv.Case) -> bytes:
 
 
 def test_increments_lead_where_targets_do(pressed: mfv.Case) -> None:
-    other = pressed.copy()
+    other = copy.deepcopy(pressed)
     other.advance(tangential_force=3.0e-4)
     for _ in range(3):
         pressed.advance(tangential_force=1.0e-4, relative=True, check=True)
@@ -48,6 +51,15 @@ def test_increments_lead_where_targets_do(pressed: mfv.Case) -> None:
     pressed.advance(shift=0.0, normal_force=1.0e-4, relative=True)
     assert pressed.loads.normal_force == pytest.approx(1.1e-3, rel=1e-12)
     assert pressed.loads.shift == pytest.approx(other.loads.shift, rel=1e-9)
+
+
+def test_friction_acts_unless_told() -> None:
+    ended = []
+    for keys in ({}, {"friction": None}, {"friction": True}, {"friction": False}):
+        with cylinder().contact() as case:
+            case.advance(normal_force=1.0e-3, **keys)
+            ended.append(case.loads.slip_nodes + case.loads.stick_nodes)
+    assert ended[0] == ended[1] == ended[2] > 0 == ended[3]
 
 
 def test_loads_are_those_of_the_summary(pressed: mfv.Case) -> None:
@@ -191,6 +203,23 @@ def test_what_is_not_used_any_more_is_freed() -> None:
 # --- observers, progress, interrupts ---
 
 
+def test_the_interpreter_can_end_while_a_thread_leads_a_case() -> None:
+    script = """
+        import threading, time, mfv
+        from scenes import PRESS, cylinder
+        case = cylinder(PRESS, mfv.Step(tangential_force=-2.8e-4, cycles=500), mesh=mfv.Mesh(nodes=401, half_width=0.01225)).contact()
+        began = threading.Event()
+        case.observe(lambda progress: began.set())
+        threading.Thread(target=case.run, daemon=True).start()
+        began.wait()
+        """
+    command = [sys.executable, "-c", "\n".join(line.strip() for line in script.splitlines())]
+    paths = os.pathsep.join(map(str, (Path(mfv.__file__).parents[1], Path(__file__).parent)))
+    environment = {**os.environ, "PYTHONPATH": paths}
+    ended = subprocess.run(command, env=environment, capture_output=True, text=True, timeout=60, check=False)
+    assert (ended.returncode, ended.stderr) == (0, "")
+
+
 def test_an_observer_is_told_of_every_increment() -> None:
     seen: list[mfv.Progress] = []
     case = cylinder(*SHEARED).contact()
@@ -315,6 +344,24 @@ def test_fields_are_copied_into_arrays_of_the_caller(pressed: mfv.Case) -> None:
         pressed.values("state/pressure", np.empty(60))
     with pytest.raises(errors.BadArgument, match="reals"):
         pressed.values("state/pressure", status)
+
+
+def test_a_case_is_a_table_of_its_fields(pressed: mfv.Case) -> None:
+    assert list(pressed) == pressed.fields()
+    assert "state/pressure" in pressed and "state/presure" not in pressed and 0 not in pressed
+
+
+def test_arguments_of_a_wrong_kind_are_named(pressed: mfv.Case) -> None:
+    before = tractions(pressed)
+    for call, message in (
+        (lambda: pressed.advance(normal_force="1"), "must be numbers, not normal_force='1'"),
+        (lambda: pressed.advance(shift=1e-5, steady_tolerance="no"), "steady_tolerance='no'"),
+        (lambda: pressed.observe(5), "observe takes what can be called .* not 5"),
+        (lambda: pressed.values("state/pressure", out=[0.0]), "out must be a numpy array to be filled, not list"),
+    ):
+        with pytest.raises(TypeError, match=message):
+            call()
+    assert tractions(pressed) == before
 
 
 def test_positions_are_kept_until_the_mesh_grows() -> None:

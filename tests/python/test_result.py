@@ -5,8 +5,11 @@ from __future__ import annotations
 import copy
 import html
 import inspect
+import os
 import pickle
 import re
+import subprocess
+import sys
 import xml.etree.ElementTree
 from collections.abc import Callable
 from pathlib import Path
@@ -100,12 +103,37 @@ def test_a_result_that_grew_its_mesh_can_be_stacked() -> None:
 # --- copies and notebooks ---
 
 
+def test_modules_are_there_by_name_and_loaded_on_first_use() -> None:
+    names = {"animate", "compare", "comparison_figure", "load_history", "plot", "report", "template"}
+    script = f"""
+import sys, mfv
+assert "matplotlib" not in sys.modules and {names!r} <= set(dir(mfv))
+assert all(getattr(mfv, name).__name__ == f"mfv.{{name}}" for name in {sorted(names)!r})
+"""
+    environment = {**os.environ, "PYTHONPATH": str(Path(mfv.__file__).parents[1])}
+    subprocess.run([sys.executable, "-c", script], env=environment, check=True, timeout=60)
+    assert {"GrossSliding", "InputError", "NotAResult"} <= set(dir(mfv.errors))
+
+
 def test_results_can_be_pickled_and_copied(cycled: mfv.Result) -> None:
     for other in (pickle.loads(pickle.dumps(cycled)), copy.deepcopy(cycled)):
         assert repr(other) == repr(cycled)
         np.testing.assert_array_equal(other.steps[1].shear, cycled.steps[1].shear)
         assert other.state.shear is not cycled.state.shear
         xarray.testing.assert_identical(other.to_xarray()["steps"], cycled.to_xarray()["steps"])
+
+
+def test_groups_are_compared_by_their_values_which_cannot_be_set(cycled: mfv.Result) -> None:
+    other = pickle.loads(pickle.dumps(cycled))
+    assert other.state == cycled.state and other.history == cycled.history
+    nothing = [mfv.Group({"x": mfv.result.Field(np.array([np.nan, 1.0]), "1", "x")}) for _ in range(2)]
+    assert nothing[0] == nothing[1]
+    assert cycled.state != cycled.steps[0] and cycled.state != cycled.summary and cycled.state != 1
+    other.state.shear[30] += 1.0e-9
+    assert other.state != cycled.state
+    with pytest.raises(AttributeError, match="'pressure' is a quantity of the result and cannot be set"):
+        other.state.pressure = 1.0
+    np.testing.assert_array_equal(other.state.pressure, cycled.state.pressure)
 
 
 def test_notebooks_show_results_without_scripts(cycled: mfv.Result) -> None:
@@ -147,6 +175,11 @@ def test_a_table_becomes_a_data_frame_and_shows_its_columns(tmp_path: Path) -> N
     assert list(frame["scene%coupling"]) == ["full", "none"] * 2
     np.testing.assert_array_equal(frame["stick_ratio"], table["stick_ratio"])
     assert frame.attrs["units"]["shift"] == "length"
+    for other in (pickle.loads(pickle.dumps(table)), copy.deepcopy(table)):
+        assert isinstance(other, mfv.Table) and other.describe() == table.describe()
+        assert other.attributes == table.attributes and other.tobytes() == table.tobytes()
+    assert f"{table['stick_ratio'].max():.3f}" == f"{max(table['stick_ratio'].tolist()):.3f}"
+    assert isinstance(table["stick_ratio"].mean(), float) and not isinstance(table["stick_ratio"], mfv.Table)
     shown = table[:2]._repr_html_()
     for word in ("2 cases", "scene%coupling", "stick_ratio", table.long_names["shift"]):
         assert html.escape(word) in shown
@@ -197,6 +230,21 @@ def test_panels_draw_the_state_that_is_asked_for(cycled: mfv.Result) -> None:
     np.testing.assert_array_equal(points.get_ydata(), cycled.steps[1].shear)
     ax = mfv.plot.friction_work(cycled, Figure().subplots())
     np.testing.assert_array_equal(ax.lines[0].get_ydata(), cycled.cycles.friction_work)
+
+
+def test_a_legend_names_everything_once(cycled: mfv.Result) -> None:
+    labels = mfv.plot.shear(cycled, Figure().subplots()).get_legend_handles_labels()[1]
+    assert len(labels) == len(set(labels)) >= 4 and "computed" in labels
+
+
+def test_cycles_of_a_moment_are_drawn_over_the_rotation() -> None:
+    rocked = PRESS, mfv.Step(moment=1.0e-7, cycles=2)
+    axes = mfv.plot.cycles_figure(cylinder(*rocked, coupling="full").run(check=True)).axes
+    assert [ax.get_xlabel() for ax in axes] == [r"rotation $\varphi$ [rad]", "position $x$"]
+    narrow = mfv.plot.cycles_figure(cylinder(*rocked, output=mfv.Output(history="none")).run(check=True))
+    assert [ax.get_xlabel() for ax in narrow.axes] == ["position $x$"]
+    narrow.draw_without_rendering()
+    assert all(text.get_window_extent().width < narrow.bbox.width for text in narrow.texts)
 
 
 def test_contours_of_stresses_take_an_axes_or_make_one(cycled: mfv.Result) -> None:

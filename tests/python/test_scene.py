@@ -228,6 +228,22 @@ def test_a_profile_in_memory_is_that_of_a_file(tmp_path: Path) -> None:
     assert again["sigma_yy"] == mfv.stress.stress(expected.run(), 0.0, -0.005)["sigma_yy"] < 0.0
 
 
+def test_a_file_tells_that_its_arrays_were_in_memory(tmp_path: Path) -> None:
+    x = np.linspace(-0.02, 0.02, 81)
+    rounded = mfv.Body.profile(x, 2.0 * x**2, rigid=True)
+    scene = cylinder(PRESS, mfv.Step(tangential_force=1e-4), output=mfv.Output(states="none"))
+    scene.upper = rounded
+    ran = scene.run(output=tmp_path / "x.h5")
+    again, note = mfv.load_history.with_states_between(ran, 8)
+    assert (len(again.steps), note) == (8, "") and scene.output == mfv.Output(states="none")
+    read = mfv.read(tmp_path / "x.h5")
+    assert np.nanmax(mfv.stress.grid(ran, across=5, down=5)["von_mises"]) > 0.0
+    with pytest.raises(ValueError, match=r"arrays of the scene \(upper body\) were given in memory and are not in the file"):
+        mfv.stress.grid(read)
+    again, note = mfv.load_history.with_states_between(read, 8)
+    assert len(again.steps) == 1 and "given in memory" in note
+
+
 def test_a_matrix_in_memory_is_that_of_a_file(tmp_path: Path) -> None:
     x = (np.arange(21) - 10) * 8.0e-4
     distance = np.abs(x[:, None] - x[None, :])

@@ -5,8 +5,10 @@ from __future__ import annotations
 import argparse
 import os
 import sys
+import traceback
 
 from .. import __version__
+from .._packages import how_to_install
 from ..errors import MfvError
 from . import animate, compare, info, new, plot, report, table
 
@@ -43,10 +45,11 @@ def main(arguments: list[str] | None = None) -> int:
         print(f"mfv: {_with_file(str(error), options)}", file=sys.stderr)
         return UNUSABLE
     except ModuleNotFoundError as error:
-        print(
-            f"mfv: this needs the Python package {error.name}, which is not there: pip install {error.name}",
-            file=sys.stderr,
-        )
+        package = str(error.name)
+        print(f"mfv: this needs the Python package {package}, which is not there: {how_to_install(package)}", file=sys.stderr)
+        return UNUSABLE
+    except Exception:  # noqa: BLE001 - a mistake of this program; 1 would mean that two results differ
+        traceback.print_exc()
         return UNUSABLE
     except KeyboardInterrupt:
         print("mfv: interrupted", file=sys.stderr)
@@ -77,7 +80,8 @@ def _parser() -> argparse.ArgumentParser:
 
 def _with_file(message: str, options: argparse.Namespace) -> str:
     """A message that names the file it is about: the one that was read, unless it names one of those given already."""
-    given = [str(value) for value in (getattr(options, name, None) for name in ("file", "other", "output")) if value]
+    values = (getattr(options, name, None) for name in ("file", "other", "output", "csv"))
+    given = [str(value) for value in values if value and value != "-"]
     if not given or any(name in message for name in given):
         return message
     return f"{given[0]}: {message}"

@@ -7,7 +7,7 @@ import sys
 from pathlib import Path
 
 from ..result import read
-from .files import written
+from .files import target, written
 from .whole_numbers import at_least
 
 NAME, HELP = "animate", "the load history as a GIF or an MP4"
@@ -47,10 +47,8 @@ def run(options: argparse.Namespace) -> None:
     from ..animate import SUFFIXES, movie, save
     from ..load_history import kept_states, thinned, with_states_between
 
-    output = options.output or options.file.with_suffix(".gif")
-    if output.suffix not in SUFFIXES:
-        raise ValueError(f"{output}: an animation is written as {' or '.join(SUFFIXES)}")
     result = read(options.file)
+    output = target(options.output, options.file.with_suffix(".gif"), SUFFIXES, [options.file])
     if options.kept:
         shown, note = thinned(kept_states(result), options.frames), ""
     else:

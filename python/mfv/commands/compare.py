@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from ..result import read
-from .files import written
+from .files import PICTURES, TABLES, target, written
 
 if TYPE_CHECKING:
     from ..compare import Comparison
@@ -42,7 +42,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "--output",
         type=Path,
         metavar="PICTURE",
-        help="png, pdf or svg; else FIRST_SECOND.png beside the first file",
+        help="png, pdf, svg or eps; else FIRST_SECOND.png beside the first file",
     )
     parser.add_argument("--no-picture", action="store_true", help="draw nothing")
     parser.add_argument("--step", type=int, metavar="N", help="the states in steps/000N in place of the last ones")
@@ -59,24 +59,28 @@ def run(options: argparse.Namespace) -> int:
     from ..compare import compare
 
     comparison = compare(read(options.file), read(options.other), options.step)
+    sources = [options.file, options.other]
+    beside = options.file.with_name(f"{options.file.stem}_{options.other.stem}")
+    picture = None if options.no_picture else target(options.output, Path(f"{beside}.png"), PICTURES, sources)
     if options.csv == "-":
         comparison.write_csv(sys.stdout)
     else:
+        table = None if options.csv is None else target(options.csv, Path(f"{beside}.csv"), TABLES, sources)
         print(f"first   {options.file}\nsecond  {options.other}\n\n{comparison.describe()}")
-        if options.csv is not None:
-            with written(Path(options.csv)) as part, open(part, "w", newline="", encoding="utf-8") as file:
+        if table is not None:
+            with written(table) as part, open(part, "w", newline="", encoding="utf-8") as file:
                 comparison.write_csv(file)
-    if not options.no_picture:
-        _draw(comparison, options)
+            print(f"\n{table}")
+    if picture is not None:
+        _draw(comparison, picture, options)
     too_different = options.tolerance is not None and not comparison.largest_difference <= options.tolerance
     return DIFFERENT if too_different else 0
 
 
-def _draw(comparison: Comparison, options: argparse.Namespace) -> None:
+def _draw(comparison: Comparison, output: Path, options: argparse.Namespace) -> None:
     """Write the picture, and say where it is unless the standard output is a table."""
     from ..comparison_figure import figure
 
-    output = options.output or options.file.with_name(f"{options.file.stem}_{options.other.stem}.png")
     with written(output) as part:
         figure(comparison, str(options.file), str(options.other)).savefig(part, dpi=150)
     if options.csv != "-":

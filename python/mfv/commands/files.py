@@ -3,18 +3,43 @@
 from __future__ import annotations
 
 import contextlib
-import errno
 import os
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from pathlib import Path
+
+import h5py
+
+#: Suffixes of pictures and of comma-separated values.
+PICTURES, TABLES = (".png", ".pdf", ".svg", ".eps"), (".csv", ".txt")
+
+
+def target(given: Path | str | None, usual: Path, suffixes: Sequence[str], inputs: Sequence[Path]) -> Path:
+    """Where a command is to write: what the user gave, or the usual place where that is None.
+
+    `suffixes`: those that it may have, in small letters or capitals. `inputs`: the files that the command reads.
+    Raises OSError and ValueError, with messages that name the place, where it cannot be written to or must not be: a
+    directory, another suffix, one of the inputs, a file of HDF5, which is no such thing and may be a result.
+    """
+    path = usual if given is None else Path(given)
+    if not path.name:
+        raise ValueError(f"'{path}' is no name of a file to write; give one such as {usual.name}")
+    if path.is_dir():
+        raise IsADirectoryError(f"{path}: is a directory; give a file in it, such as {path / usual.name}")
+    if path.suffix.lower() not in suffixes:
+        raise ValueError(f"{path}: the name of what is written must end with {' or '.join(suffixes)}")
+    if not path.parent.is_dir():
+        raise FileNotFoundError(f"{path}: there is no directory {path.parent} to write to")
+    if any(path.exists() and source.exists() and path.samefile(source) for source in inputs):
+        raise ValueError(f"{path}: is what is read; give another file to write")
+    if path.is_file() and h5py.is_hdf5(path):
+        raise ValueError(f"{path}: is HDF5, perhaps a result, and is not overwritten; give another file to write")
+    return path
 
 
 @contextlib.contextmanager
 def written(path: Path) -> Iterator[Path]:
     """A path beside `path`, with the same suffix, to write to: it becomes `path` when the block ends, and is removed when
     the block fails, so that nothing half-written is left and what was there before stays. Raises OSError."""
-    if not path.parent.is_dir():
-        raise FileNotFoundError(errno.ENOENT, "no such directory to write to", str(path.parent))
     part = path.with_name(f"{path.stem}.part{os.getpid()}{path.suffix}")
     try:
         yield part

@@ -5,7 +5,7 @@ from __future__ import annotations
 import argparse
 from pathlib import Path
 
-from .files import written
+from .files import target, written
 
 NAME, HELP = "new", "a commented case from a template"
 
@@ -44,7 +44,7 @@ def run(options: argparse.Namespace) -> None:
         for name, meaning in template.names().items():
             print(f"{name:18}{meaning}")
         return
-    path = options.output or Path(f"{options.template}.nml")
+    path = target(options.output, Path(f"{options.template}.nml"), (".nml",), [])
     for place in template.write(options.template, path, written, options.force):
         print(place)
     print(f"solve it: {'mfv_sweep' if template.is_sweep(options.template) else 'mfv_run'} {path}")

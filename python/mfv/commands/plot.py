@@ -6,7 +6,7 @@ import argparse
 from pathlib import Path
 
 from ..result import read
-from .files import written
+from .files import PICTURES, target, written
 
 NAME, HELP = "plot", "draw a result"
 
@@ -37,39 +37,45 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "--output",
         type=Path,
         metavar="PICTURE",
-        help="png, pdf or svg; else RESULT.png, or RESULT_NAME_BODY.png for a stress, beside the file",
+        help="png, pdf, svg or eps; else RESULT.png, or RESULT_NAME_BODY.png for a stress, beside the file",
     )
     parser.add_argument(
         "--step", type=int, metavar="N", help="the state in the file's group steps/000N in place of the last"
     )
-    parser.add_argument(
+    kind = parser.add_mutually_exclusive_group()
+    kind.add_argument(
         "--stress",
         metavar="NAME",
         help="contours of a stress inside a body in place of the panels: von_mises, sigma_xx, sigma_yy, sigma_xy, ...",
     )
-    parser.add_argument(
+    kind.add_argument(
         "--cycles",
         action="store_true",
         help="the cycles in place of the panels: hysteresis loop, its non-linear part, where the last one dissipates",
     )
-    parser.add_argument("--body", choices=("lower", "upper"), default="lower", help="which body, with --stress")
+    parser.add_argument("--body", choices=("lower", "upper"), help="which body, with --stress; lower unless told")
 
 
 def run(options: argparse.Namespace) -> None:
     """Draw. Raises OSError, NotAResult, ValueError."""
     from .. import plot  # here, so that info does not load matplotlib
 
+    if options.body is not None and options.stress is None:
+        raise ValueError("--body says inside which body a stress is drawn: give --stress NAME too")
+    if options.step is not None and options.cycles:
+        raise ValueError("--step chooses a state, which --cycles does not draw: give one of them")
+    body = options.body or "lower"
     result = read(options.file)
+    name = f"{options.file.stem}_{options.stress}_{body}" if options.stress else options.file.stem
+    if options.cycles:
+        name += "_cycles"
+    output = target(options.output, options.file.with_name(f"{name}.png"), PICTURES, [options.file])
     if options.stress:
-        picture = plot.stress_figure(result, options.stress, options.body, options.step)
+        picture = plot.stress_figure(result, options.stress, body, options.step)
     elif options.cycles:
         picture = plot.cycles_figure(result)
     else:
         picture = plot.figure(result, options.step)
-    name = f"{options.file.stem}_{options.stress}_{options.body}" if options.stress else options.file.stem
-    if options.cycles:
-        name += "_cycles"
-    output = options.output or options.file.with_name(f"{name}.png")
     with written(output) as part:
         picture.savefig(part, dpi=200)
     print(output)

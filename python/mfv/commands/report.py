@@ -7,7 +7,7 @@ import sys
 from pathlib import Path
 
 from ..result import read
-from .files import written
+from .files import target, written
 from .whole_numbers import at_least
 
 NAME, HELP = "report", "a result as one web page"
@@ -47,13 +47,13 @@ def run(options: argparse.Namespace) -> None:
     from ..report import page
 
     result, history = read(options.file), None
+    output = target(options.output, options.file.with_suffix(".html"), (".html", ".htm"), [options.file])
     if options.states is not None:
         history = with_states_between(
             result, options.states, lambda targets: tqdm(targets, desc="solving", unit="state", disable=None)
         )
         if history.note:
             print(f"mfv: {options.file}: {history.note}", file=sys.stderr)
-    output = options.output or options.file.with_suffix(".html")
     with written(output) as part:
         part.write_text(page(result, options.file.name, history), encoding="utf-8")
     print(output)

@@ -6,7 +6,7 @@ import argparse
 from pathlib import Path
 
 from ..table import read_table
-from .files import written
+from .files import TABLES, target, written
 
 NAME, HELP = "table", "print the table of a sweep"
 
@@ -41,5 +41,7 @@ def run(options: argparse.Namespace) -> None:
     elif options.csv == "-":
         table.write_csv(None)
     else:
-        with written(Path(options.csv)) as part:
+        output = target(options.csv, options.file.with_suffix(".csv"), TABLES, [options.file])
+        with written(output) as part:
             table.write_csv(part)
+        print(output)

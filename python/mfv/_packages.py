@@ -1,0 +1,14 @@
+"""Python packages that are needed for some things only."""
+
+from __future__ import annotations
+
+import sys
+
+#: Packages that belong together, as the extras of pyproject.toml have them.
+TOGETHER = (("plotly", "jinja2"),)
+
+
+def how_to_install(package: str) -> str:
+    """The command that installs a package and those that belong to it, for the Python that runs this."""
+    packages = next((group for group in TOGETHER if package in group), (package,))
+    return f'"{sys.executable}" -m pip install {" ".join(repr(name) for name in packages)}'
