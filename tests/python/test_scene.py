@@ -304,6 +304,14 @@ def test_a_matrix_in_memory_is_that_of_a_file(tmp_path: Path) -> None:
         mfv.Scene(mfv.Body.matrix(x, compliance=transposed), DISK, steps=[step]).run()
 
 
+def test_a_result_without_a_directory_is_refused_before_solving(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(mfv.Case, "run", lambda *_, **__: pytest.fail("was solved"))
+    with pytest.raises(errors.FileError, match="x.h5: cannot be written: there is no directory .*nowhere"):
+        cylinder(PRESS).run(output=tmp_path / "nowhere" / "x.h5")
+
+
 def test_scenes_are_values() -> None:
     scene = cylinder(PRESS, friction=mfv.Friction.coulomb([0.3, 0.4], x=[-1.0, 1.0]))
     for other in (copy.deepcopy(scene), pickle.loads(pickle.dumps(scene))):
