@@ -20,6 +20,7 @@ from matplotlib.patches import Patch
 
 from . import plot
 from ._packages import how_to_install
+from .load_history import kept_states
 from .result import Group, Result, counts
 from .views import Curve, contact, curve_of
 
@@ -45,8 +46,9 @@ class Movie(NamedTuple):
 
 
 def movie(result: Result) -> Movie:
-    """The states in `result.steps` one after the other: pressure; shear traction with stick and slip zones, or the surfaces
-    without friction; the curve of load over displacement with a point where the state is."""
+    """The states in `result.steps`, without any the last one, one after the other: pressure; shear traction with stick and slip
+    zones, or the surfaces without friction; the curve of load over displacement with a point where the state is."""
+    result = result if result.steps else kept_states(result)
     has_friction = plot._has_friction(result)
     with matplotlib.rc_context(plot.STYLE):
         picture = Figure(figsize=(3 * plot.PANEL_WIDTH, HEIGHT), dpi=RESOLUTION)

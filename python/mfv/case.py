@@ -71,8 +71,11 @@ def run(
     it none is written, whatever the &output group of the case says. A run that ends early is a result, with its `outcome`
     and `message` and the state up to there; `check=True` raises the exception of the outcome instead, after writing.
     `progress`: show a bar on a terminal or in a notebook, by tqdm.
-    Raises InputError for a case that cannot be used, FileError when the result could not be written.
+    Raises InputError for a case that cannot be used, FileError when the result could not be written; before solving where there
+    is no directory for it.
     """
+    if output is not None:
+        _check_directory(output)
     if (case is None) == (text is None):
         raise TypeError("mfv.run takes a scene, the path of a case, or text=, one of them")
     if text is not None:
@@ -88,6 +91,14 @@ def run(
             made.write(output)
         made._raise_early_end(check)
         return made.result()
+
+
+def _check_directory(output: str | os.PathLike[str]) -> None:
+    """Raises FileError where there is no directory for a result."""
+    directory = os.path.dirname(os.path.abspath(output))
+    if not os.path.isdir(directory):
+        status = next(code for code, kind in errors.failures().items() if kind is errors.FileError)
+        raise errors.failure(status, f"{os.fspath(output)}: cannot be written: there is no directory {directory}")
 
 
 class State:

@@ -38,6 +38,8 @@ class Part(NamedTuple):
     targets: dict[str, float]
     is_back: bool
     friction: bool
+    #: The loads where it ended early, on the way to the targets.
+    reached: dict[str, float] | None = None
 
 
 class LoadHistory(NamedTuple):
@@ -102,6 +104,9 @@ def _solved_again(result: Result, states: int, progress: Progress) -> Result:
     if result.attributes["algorithm"].strip() != "mfv":
         raise ValueError("the conventional algorithm goes by load steps, which more states would change")
     parts = list(_parts(result))
+    if result.outcome != "complete" and parts:
+        reached = {name: float(result.summary[name]) for name in parts[-1].targets}
+        parts[-1] = parts[-1]._replace(reached=reached)
     divisions = states // max(len(parts), 1)
     if divisions < 2:
         raise ValueError(f"{len(parts)} straight parts of the load history want {2 * len(parts)} states at least")
@@ -113,7 +118,8 @@ def _solved_again(result: Result, states: int, progress: Progress) -> Result:
 
 
 def _divided(case: Case, parts: list[Part], divisions: int) -> Iterator[tuple[Part, Callable[[], dict[str, float]]]]:
-    """Every part with the loads at each of its divisions, as functions to be called when the case is there."""
+    """Every part with the loads at each of its divisions, as functions to be called when the case is there. One that ended early
+    is divided up to where it ended; the last of its divisions leads to its targets, so that it ends so again."""
     began: dict[int, dict[str, float]] = {}
     start: dict[str, float] = {}
 
@@ -122,11 +128,10 @@ def _divided(case: Case, parts: list[Part], divisions: int) -> Iterator[tuple[Pa
             start.update({name: float(case[f"summary/{name}"]) for name in part.targets})
             began.setdefault(part.step, dict(start))
         ends = began[part.step] if part.is_back else part.targets
-        share = division / divisions
-        return {
-            name: ends[name] if division == divisions else start[name] + share * (ends[name] - start[name])
-            for name in part.targets
-        }
+        if division == divisions:
+            return {name: ends[name] for name in part.targets}
+        share, shown = division / divisions, part.reached or ends
+        return {name: start[name] + share * (shown[name] - start[name]) for name in part.targets}
 
     for part in parts:
         for division in range(1, divisions + 1):

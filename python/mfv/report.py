@@ -98,7 +98,7 @@ def page(result: Result, source: str, history: LoadHistory | None = None) -> str
         "states": [_state(shown, number, inside, curve, history is None) for number in range(len(shown.steps))],
         "figures": {
             **_traction_figures(shown, inside),
-            "curve": _curve_figure(shown, curve),
+            **({"curve": _curve_figure(shown, curve)} if len(shown.steps) > 1 or shown.history else {}),
             "map": _map_figure(shown, inside),
             **_history_figures(result),
             **_cycle_figures(result, _in_view(result, limits)),

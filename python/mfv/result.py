@@ -181,7 +181,7 @@ class Result:
         if step is None:
             return self.state
         if not 1 <= step <= len(self.steps):
-            raise ValueError(f"there is no step {step}: the result has {len(self.steps)}")
+            raise ValueError(f"there is no state {step}: the result has {len(self.steps)} in steps")
         return self.steps[step - 1]
 
     def to_xarray(self) -> dict[str, xarray.Dataset]:

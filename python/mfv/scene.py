@@ -59,7 +59,13 @@ class KeyGroup:
     @classmethod
     def key_names(cls) -> list[str]:
         """Names of the keys."""
-        return [name for name in cls.__annotations__ if not name.startswith("_") and name not in cls._not_keys]
+        return [name for name in cls._names() if name not in cls._not_keys]
+
+    @classmethod
+    def _names(cls) -> list[str]:
+        """Names of the keys and of what else there is; a subclass of a group has those of the group."""
+        group = next(kind for kind in cls.__mro__ if KeyGroup in kind.__bases__)
+        return [name for name in group.__annotations__ if not name.startswith("_")]
 
     def keys(self) -> dict[str, Any]:
         """The keys that are given, with their values."""
@@ -68,11 +74,11 @@ class KeyGroup:
 
     def _everything(self) -> dict[str, Any]:
         """Keys and what else is given."""
-        values = {name: getattr(self, name) for name in type(self).__annotations__ if not name.startswith("_")}
+        values = {name: getattr(self, name) for name in self._names()}
         return {name: value for name, value in values.items() if value is not None}
 
     def __setattr__(self, name: str, value: Any) -> None:
-        if name not in type(self).__annotations__:
+        if not any(name in getattr(kind, "__annotations__", ()) for kind in type(self).__mro__):
             known = ", ".join([*self.key_names(), *self._not_keys])
             raise AttributeError(f"{type(self).__name__} has no '{name}'; it has {known}")
         super().__setattr__(name, value)
@@ -179,7 +185,7 @@ class Body(KeyGroup):
     ) -> Body:
         """A nearly flat surface through points: positions `x`, increasing, and heights above the flat surface [length]."""
         keys = _given(locals(), but=("x", "height"))
-        return cls(shape="profile", data={"x": _numbers(x), "height": _numbers(height)}, **keys)
+        return cls(shape="profile", data={"x": _numbers(x, "x"), "height": _numbers(height, "height")}, **keys)
 
     @classmethod
     def matrix(
@@ -199,7 +205,7 @@ class Body(KeyGroup):
         """
         arrays = {"x": x, "gap": gap, "width": width, "compliance": compliance, "stiffness": stiffness}
         return cls(
-            shape="matrix", data={name: _numbers(values) for name, values in arrays.items() if values is not None}
+            shape="matrix", data={name: _numbers(values, name) for name, values in arrays.items() if values is not None}
         )
 
 
@@ -335,7 +341,8 @@ class Scene(KeyGroup):
         force_unit: str | None = None,
         name: str = "scene",
     ) -> None:
-        """`name`: what messages call the scene; files that it names are looked for beside that path."""
+        """`name`: what messages call the scene; files that it names are looked for beside that path. Raises TypeError where a
+        part is not of its class."""
         self.lower = lower
         self.upper = upper
         self.friction = friction
@@ -349,6 +356,7 @@ class Scene(KeyGroup):
         self.length_unit = length_unit
         self.force_unit = force_unit
         self.name = name
+        self._check_parts()
 
     @classmethod
     def from_file(cls, path: str | os.PathLike[str]) -> Scene:
@@ -418,15 +426,26 @@ class Scene(KeyGroup):
         parts += [(name, getattr(self, name)) for name in _SINGLE if getattr(self, name) is not None]
         return parts + [(f"step({number})", step) for number, step in enumerate(self.steps, start=1)]
 
+    def _check_parts(self) -> None:
+        """Raises TypeError where a part is not of its class."""
+        for name in ("lower", "upper"):
+            _check_kind(name, getattr(self, name), Body)
+        for name, kind in _SINGLE.items():
+            if getattr(self, name) is not None:
+                _check_kind(name, getattr(self, name), kind)
+        for number, step in enumerate(self.steps):
+            _check_kind(f"steps[{number}]", step, Step)
+
     @contextlib.contextmanager
     def _handle(self) -> Iterator[c_void_p]:
-        """The library's own scene with all keys and arrays, while in use. Raises InputError."""
+        """The library's own scene with all keys and arrays, while in use. Raises TypeError, InputError."""
+        self._check_parts()
         with _scene_handle("", self.name) as handle:
             statuses = _set_keys(handle, "scene", self.keys())
             for group, part in self._parts():
                 keys, data = part.keys(), getattr(part, "data", None)
                 if data is not None:
-                    file = keys.setdefault(_FILE_KEYS[type(part)], _NAMES_OF_DATA[group])
+                    file = keys.setdefault("file" if isinstance(part, Body) else "mu_file", _NAMES_OF_DATA[group])
                     statuses += [_set_data(handle, file, dataset, values) for dataset, values in data.items()]
                 if isinstance(part, Step):
                     keys = keys or {
@@ -441,13 +460,31 @@ class Scene(KeyGroup):
 #: Groups that come at most once, but &scene.
 _SINGLE: dict[str, type[KeyGroup]] = {"mesh": Mesh, "friction": Friction, "solver": Solver, "output": Output}
 
-#: Keys that name a file for which there may be arrays; what these are called where they have no name.
-_FILE_KEYS: dict[type[KeyGroup], str] = {Body: "file", Friction: "mu_file"}
+#: What arrays are called where they have no name.
+_USUAL: dict[type[KeyGroup], str] = {
+    Body: "Body.disk(0.25, rigid=True)",
+    Mesh: "Mesh(nodes=101, half_width=0.012)",
+    Friction: "Friction.coulomb(0.7)",
+    Step: "Step(normal_force=1.0e-3)",
+    Solver: "Solver(linear_solver='fft')",
+    Output: "Output(history='none')",
+}
 _NAMES_OF_DATA = {"body(1)": "lower body", "body(2)": "upper body", "friction": "friction"}
 
 
-def _numbers(values: ArrayLike) -> NDArray[np.float64]:
-    """Numbers as the library takes them; not copied where they are so already."""
+def _check_kind(name: str, part: Any, kind: type[KeyGroup]) -> None:
+    """Raises TypeError where a part of a scene is not of its class."""
+    if not isinstance(part, kind):
+        raise TypeError(f"{name} of a Scene must be a mfv.{kind.__name__}, such as {_USUAL[kind]}, not {part!r}")
+
+
+def _numbers(values: ArrayLike, name: str = "an array") -> NDArray[np.float64]:
+    """Numbers as the library takes them; not copied where they are so already. Raises TypeError, which names them, for complex
+    ones and those of which some are masked."""
+    if np.iscomplexobj(values):
+        raise TypeError(f"{name}: real numbers are wanted, not complex ones")
+    if np.ma.is_masked(values):
+        raise TypeError(f"{name}: an array without masked values is wanted")
     return np.ascontiguousarray(values, dtype=np.float64)
 
 
@@ -460,7 +497,7 @@ def _coefficients(x: ArrayLike | None, **coefficients: Coefficient) -> dict[str,
     """Coefficients as keys or, with their positions, as arrays."""
     if x is None:
         return dict(coefficients)
-    return {"data": {"x": _numbers(x), **{name: _numbers(values) for name, values in coefficients.items()}}}
+    return {"data": {"x": _numbers(x, "x"), **{name: _numbers(values, name) for name, values in coefficients.items()}}}
 
 
 def _same(one: Any, other: Any) -> bool:
@@ -526,7 +563,7 @@ def _set_key(handle: c_void_p, key: str, value: Any) -> int:
     elif isinstance(value, numbers.Real):
         status = library().mfv_scene_set_real(handle, name, float(value))
     elif isinstance(value, (Sequence, np.ndarray)):
-        values = _numbers(np.atleast_1d(value))
+        values = _numbers(np.atleast_1d(value), key)
         status = library().mfv_scene_set_reals(handle, name, real_pointer(values), values.size)
     else:
         raise TypeError(f"{key}: a text, a truth value, a number or an array is wanted, not {value!r}")
@@ -535,7 +572,7 @@ def _set_key(handle: c_void_p, key: str, value: Any) -> int:
 
 def _set_data(handle: c_void_p, file: str | os.PathLike[str], dataset: str, values: ArrayLike) -> int:
     """Give the library an array in place of one in a file; return the status. Raises ValueError."""
-    array = _numbers(values)
+    array = _numbers(values, f"{os.fspath(file)}: {dataset}")
     if array.ndim not in (1, 2) or array.size == 0:
         raise ValueError(
             f"{os.fspath(file)}: {dataset} must have values in one dimension or two, not the shape {array.shape}"

@@ -8,6 +8,7 @@ import numpy as np
 
 from . import plot
 from .codes import NodeStatus
+from .load_history import kept_states
 from .result import Result
 
 
@@ -27,12 +28,11 @@ NORMAL = Curve("approach", "normal_force", ("approach", "h"), ("normal force", "
 
 def curve_of(result: Result) -> Curve:
     """The load that tells most: the tangential force, else the moment, else the normal force."""
+    states = result.steps or kept_states(result).steps
 
     def moves(name: str) -> bool:
-        negligible = 1.0e-9 * max(abs(state.normal_force) for state in result.steps)
-        return all(name in state for state in result.steps) and any(
-            abs(state[name]) > negligible for state in result.steps
-        )
+        negligible = 1.0e-9 * max(abs(state.normal_force) for state in states)
+        return all(name in state for state in states) and any(abs(state[name]) > negligible for state in states)
 
     if plot._has_friction(result) and moves("tangential_force"):
         return TANGENTIAL
@@ -41,7 +41,8 @@ def curve_of(result: Result) -> Curve:
 
 def contact(result: Result) -> tuple[float, float]:
     """All that is in contact in any state and a quarter of its length on either side, as far as the mesh goes."""
-    touched = np.any([state.status != NodeStatus.OPEN for state in result.steps], axis=0)
+    states = result.steps or kept_states(result).steps
+    touched = np.any([state.status != NodeStatus.OPEN for state in states], axis=0)
     x, half = result.mesh.x, 0.5 * result.mesh.interval
     if not touched.any():
         return float(x[0] - half), float(x[-1] + half)

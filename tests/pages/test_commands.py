@@ -16,10 +16,11 @@ import pytest
 from PIL import Image
 
 import mfv
-from mfv import animate, comparison_figure, template
+from mfv import animate, comparison_figure, report, template
 from mfv.commands import main
 from mfv.compare import compare, relative_difference
 from mfv.load_history import kept_states, thinned, with_states_between
+from mfv.views import curve_of
 
 sys.path.append(str(Path(__file__).resolve().parents[1] / "cli"))
 from terminal import shown_on_a_terminal
@@ -135,7 +136,7 @@ def test_what_cannot_be_compared_is_named(tmp_path: Path, capsys: pytest.Capture
     for arguments, complaint in (
         ([good, bad], f"{bad}: not a result file"),
         ([good, str(tmp_path / "c.h5")], "c.h5"),
-        ([good, good, "--step", "9"], f"{good}: there is no step 9"),
+        ([good, good, "--step", "9"], f"{good}: there is no state 9"),
         ([good, good, "-o", str(tmp_path / "nowhere" / "x.png")], "nowhere"),
     ):
         assert main(["compare", *arguments]) == 2
@@ -227,7 +228,9 @@ def test_an_early_end_is_the_end_of_the_states() -> None:
     again, note = with_states_between(result, 50)
     assert note == "" and again.outcome == "gross sliding"
     np.testing.assert_array_equal(again.steps[-1].pressure, again.state.pressure)
-    assert again.steps[-1].tangential_force == pytest.approx(result.summary.tangential_force, rel=1e-9)
+    forces = [state.tangential_force for state in again.steps[-9:]]  # of the part that ended early: from 0 to where it ended
+    assert forces[-1] == pytest.approx(result.summary.tangential_force, rel=1e-9)
+    np.testing.assert_allclose(np.diff(forces), forces[-1] / 10 - result.steps[-1].tangential_force / 10, rtol=1e-6)
     assert len(kept_states(result).steps) == len(result.steps) + 1
 
 
@@ -331,6 +334,15 @@ def test_animate_draws_what_there_is(text: str, across: str, tmp_path: Path) -> 
     assert across in animate.movie(shown).picture.axes[2].get_xlabel()
     assert main(["animate", str(tmp_path / "a.h5"), "--kept"]) == 0
     assert len(pictures(tmp_path / "a.gif")) == len(shown.steps)
+
+
+def test_a_result_without_states_has_its_last_one() -> None:
+    text = SHEARED.format(**{**MINDLIN, "title": ""}) + "&output states='none', history='none' /\n"
+    result = mfv.run(text=text)
+    assert result.steps == [] and animate.movie(result).frames == 1
+    assert curve_of(result).across == "shift"
+    shown = report.page(result, "x.h5")
+    assert 'id="pressure"' in shown and 'id="curve"' not in shown
 
 
 def test_an_mp4_needs_ffmpeg_and_says_so(

@@ -148,7 +148,7 @@ WITH_FRICTION = {"pressure": 1, "shear": 4, "curve": 2, "map": 1, "forces": 2, "
 @pytest.mark.parametrize(
     ("text", "charts"),
     [
-        (PRESSED, {"pressure": 2, "surfaces": 2, "curve": 2, "map": 1}),
+        (PRESSED, {"pressure": 2, "surfaces": 2, "map": 1}),
         (SHEARED, {**WITH_FRICTION, "pressure": 2, "shear": 5, "curve": 3, "cycles": 1, "work": 1}),
         (SLIDING, {**WITH_FRICTION, "pressure": 2, "shear": 5, "curve": 3, "cycles": 1, "work": 1}),
         (KINETIC, {**WITH_FRICTION, "pressure": 2, "shear": 6, "cycles": 1, "work": 1}),

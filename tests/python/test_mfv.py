@@ -281,6 +281,8 @@ def test_bad_arguments_leave_the_case_as_it_was() -> None:
 def test_a_file_that_cannot_be_written_is_a_file_error(tmp_path: Path) -> None:
     with pytest.raises(errors.FileError, match="nowhere"):
         mfv.run(text=SHEARED, output=tmp_path / "nowhere" / "result.h5")
+    with mfv.Case.from_text(SHEARED) as case, pytest.raises(errors.FileError, match="nowhere"):
+        case.write(tmp_path / "nowhere" / "result.h5")
 
 
 def test_two_threads_give_the_digits_of_one(sheared: mfv.Result, tmp_path: Path) -> None:
@@ -454,8 +456,8 @@ def test_unusable_input_ends_with_one_line_and_code_2(tmp_path: Path, capsys: py
         (["info", str(tmp_path / "text.h5")], "not a result file"),
         (["plot", str(tmp_path / "other.h5")], "not a result file"),
         (["info", str(tmp_path)], "directory"),
-        (["plot", good, "--step", "9"], "there is no step 9"),
-        (["plot", good, "--step", "0"], "there is no step 0"),
+        (["plot", good, "--step", "9"], "there is no state 9"),
+        (["plot", good, "--step", "0"], "there is no state 0"),
         (["plot", good, "-o", str(tmp_path / "nowhere" / "x.png")], "nowhere"),
         (["plot", good, "-o", str(tmp_path / "x.tiffany")], "tiffany"),
     ):
@@ -578,7 +580,7 @@ def test_largest_von_mises_is_not_missed_by_grids(two_disks: mfv.Result) -> None
 def test_bad_requests_for_stresses_are_told(two_disks: mfv.Result) -> None:
     with pytest.raises(ValueError, match="'lower' or 'upper'"):
         mfv.stress.stress(two_disks, 0.0, 0.0, body="left")
-    with pytest.raises(ValueError, match="there is no step 3: the result has 2"):
+    with pytest.raises(ValueError, match="there is no state 3: the result has 2 in steps"):
         mfv.stress.grid(two_disks, step=3)
     with pytest.raises(errors.BadArgument, match="upper body is rigid"):
         mfv.stress.stress(mfv.run(text=SHEARED), 0.0, 0.0, body="upper")

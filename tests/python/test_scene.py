@@ -183,6 +183,47 @@ def test_values_of_a_wrong_kind_are_told_of() -> None:
         mfv.run(cylinder(PRESS), text="&scene /")
 
 
+def test_parts_of_a_wrong_class_are_told_of() -> None:
+    for keys, message in (
+        ({"friction": "coulomb"}, r"friction of a Scene must be a mfv.Friction, such as Friction.coulomb\(0.7\), not 'coulomb'"),
+        ({"mesh": 101}, "mesh of a Scene must be a mfv.Mesh, .* not 101"),
+        ({"steps": [PRESS, {"normal_force": 1.0}]}, r"steps\[1\] of a Scene must be a mfv.Step"),
+    ):
+        with pytest.raises(TypeError, match=message):
+            mfv.Scene(HALF_PLANE, DISK, **keys)  # type: ignore[arg-type]
+    scene = cylinder(PRESS)
+    scene.upper = "disk"  # type: ignore[assignment]
+    with pytest.raises(TypeError, match="upper of a Scene must be a mfv.Body"):
+        scene.run()
+
+
+def test_bodies_can_be_subclassed() -> None:
+    class Steel(mfv.Body):
+        """A body with a name of its own."""
+
+        grade: str = "S235"
+
+    rounded = Steel.profile(x := np.linspace(-0.02, 0.02, 41), 2.0 * x**2, rigid=True)
+    rounded.grade = "S355"
+    with pytest.raises(AttributeError, match="Steel has no 'radiu'"):
+        rounded.radiu = 0.25
+    scene = cylinder(PRESS)
+    scene.upper = rounded
+    assert scene.run().outcome == "complete"
+    scene.upper = Steel.disk(0.25, rigid=True)
+    assert scene.upper.keys() == DISK.keys()
+
+
+def test_arrays_that_are_no_real_numbers_are_refused() -> None:
+    masked = np.ma.masked_less(np.linspace(0.3, 0.7, 61), 0.4)
+    with pytest.raises(TypeError, match="friction%mu: an array without masked values"):
+        cylinder(PRESS, friction=mfv.Friction.coulomb(masked)).run()
+    with pytest.raises(TypeError, match="friction%mu: real numbers are wanted, not complex ones"):
+        cylinder(PRESS, friction=mfv.Friction.coulomb(np.full(61, 0.5 + 0.1j))).run()
+    with pytest.raises(TypeError, match="height: real numbers"):
+        mfv.Body.profile([0.0, 1.0], [0.0, 1j])
+
+
 def test_numbers_of_numpy_are_numbers() -> None:
     scene = cylinder(mfv.Step(normal_force=np.float32(0.5), cycles=np.int64(2), friction=np.bool_(False)))
     assert "&step normal_force=0.5, friction=.false., cycles=2 /" in scene.text()
@@ -261,6 +302,14 @@ def test_a_matrix_in_memory_is_that_of_a_file(tmp_path: Path) -> None:
     transposed = np.asfortranarray(compliance + np.triu(np.ones_like(compliance)))
     with pytest.raises(errors.InputError, match="compliance is not symmetric"):
         mfv.Scene(mfv.Body.matrix(x, compliance=transposed), DISK, steps=[step]).run()
+
+
+def test_a_result_without_a_directory_is_refused_before_solving(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(mfv.Case, "run", lambda *_, **__: pytest.fail("was solved"))
+    with pytest.raises(errors.FileError, match="x.h5: cannot be written: there is no directory .*nowhere"):
+        cylinder(PRESS).run(output=tmp_path / "nowhere" / "x.h5")
 
 
 def test_scenes_are_values() -> None:
