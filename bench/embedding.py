@@ -29,8 +29,8 @@ from numpy.typing import NDArray
 import mfv
 from mfv._library import Control, LoadsStructure, StepStructure, library
 
-#: Increments of a cycle, and the shift that they go to and fro between [length].
-INCREMENTS, AMPLITUDE = 400, 2.0e-4
+#: Increments of a cycle, the smallest steps first, and the shift that they go to and fro between [length].
+INCREMENTS, AMPLITUDE = (400, 80, 40), 2.0e-4
 
 
 def scene() -> mfv.Scene:
@@ -52,40 +52,40 @@ def pressed() -> mfv.Case:
     return case
 
 
-def increments() -> list[float]:
-    """Increments of the shift: up, down, up again to where it began."""
-    to_and_fro = np.concatenate(([0.0], AMPLITUDE * np.sin(2.0 * np.pi * np.arange(1, INCREMENTS + 1) / INCREMENTS)))
+def increments(count: int) -> list[float]:
+    """So many increments of the shift: up, down, up again to where it began."""
+    to_and_fro = np.concatenate(([0.0], AMPLITUDE * np.sin(2.0 * np.pi * np.arange(1, count + 1) / count)))
     return [float(increment) for increment in np.diff(to_and_fro)]
 
 
-def durations(lead: Callable[[float], object]) -> NDArray[np.float64]:
+def durations(count: int, lead: Callable[[float], object]) -> NDArray[np.float64]:
     """Seconds that each increment takes."""
     taken = []
-    for increment in increments():
+    for increment in increments(count):
         started = time.perf_counter()
         lead(increment)
         taken.append(time.perf_counter() - started)
     return np.array(taken)
 
 
-def by_advance(loads: bool) -> NDArray[np.float64]:
+def by_advance(count: int, loads: bool) -> NDArray[np.float64]:
     """The whole of `advance`; with `loads` also asking for the loads."""
     with pressed() as case:
         if loads:
-            return durations(lambda shift: (case.advance(shift=shift, relative=True), case.loads))
-        return durations(lambda shift: case.advance(shift=shift, relative=True))
+            return durations(count, lambda shift: (case.advance(shift=shift, relative=True), case.loads))
+        return durations(count, lambda shift: case.advance(shift=shift, relative=True))
 
 
-def by_ctypes(with_case: bool, loads: bool) -> NDArray[np.float64]:
+def by_ctypes(count: int, with_case: bool, loads: bool) -> NDArray[np.float64]:
     """The functions of the library alone."""
     advance, get_loads = library().mfv_advance, library().mfv_get_loads
-    steps = {shift: byref(_step(shift)) for shift in increments()}
+    steps = {shift: byref(_step(shift)) for shift in increments(count)}
     found = byref(LoadsStructure(size=sizeof(LoadsStructure)))
     with pressed() as case:
         handle = case._handle if with_case else c_void_p()
         if loads:
-            return durations(lambda shift: (advance(handle, steps[shift]), get_loads(handle, found)))
-        return durations(lambda shift: advance(handle, steps[shift]))
+            return durations(count, lambda shift: (advance(handle, steps[shift]), get_loads(handle, found)))
+        return durations(count, lambda shift: advance(handle, steps[shift]))
 
 
 def _step(shift: float) -> StepStructure:
@@ -104,28 +104,29 @@ def main() -> None:
         "--repeats", type=int, default=40, help="measurements, of which the least counts (40 unless told)"
     )
     options = parser.parse_args()
+    for count in INCREMENTS:
+        print(f"{count} increments a cycle")
+        for loads in (False, True):
+            report(count, loads, options.repeats)
+
+
+def report(count: int, loads: bool, repeats: int) -> None:
+    """Measure in turn, and print what Python adds."""
     measures = {
-        (name, loads): measure
-        for loads in (False, True)
-        for name, measure in (
-            ("package", functools.partial(by_advance, loads)),
-            ("library", functools.partial(by_ctypes, True, loads)),
-            ("nothing", functools.partial(by_ctypes, False, loads)),
-        )
+        "package": functools.partial(by_advance, count, loads),
+        "library": functools.partial(by_ctypes, count, True, loads),
+        "nothing": functools.partial(by_ctypes, count, False, loads),
     }
-    least = {name: np.full(INCREMENTS, np.inf) for name in measures}
-    for _ in range(options.repeats):
+    least = {name: np.full(count, np.inf) for name in measures}
+    for _ in range(repeats):
         for name, measure in measures.items():
             least[name] = np.minimum(least[name], measure())
-    for loads in (False, True):
-        package, library_and_call, call = (
-            1e6 * float(np.mean(least[name, loads])) for name in ("package", "library", "nothing")
-        )
-        own = library_and_call - call
-        print(
-            f"{'advance and loads' if loads else 'advance':18}{package:7.2f} us, of which the library {own:.2f} us: "
-            f"Python adds {100.0 * (package / own - 1.0):.1f} %"
-        )
+    package, library_and_call, call = (1e6 * float(np.mean(least[name])) for name in measures)
+    own = library_and_call - call
+    print(
+        f"  {'advance and loads' if loads else 'advance':18}{package:7.2f} us, of which the library {own:.2f} us: "
+        f"Python adds {100.0 * (package / own - 1.0):.1f} %"
+    )
 
 
 if __name__ == "__main__":

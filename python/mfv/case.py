@@ -253,14 +253,19 @@ class Case:
 
         Targets are reached linearly from the loads now; a load without a target keeps what it has. Give `normal_force`
         [force/length] or `approach` [length], `tangential_force` or `shift` likewise, `moment` [force] or `rotation`
-        [radians]. `relative`: targets are increments, added to the loads now. `friction`: whether it acts during this step; None: it does, as for a Step.
-        `cycles`: go to the targets and back this many times, ending early when two cycles in a row end with the same
+        [radians]. `relative`: targets are increments, added to the loads now. `friction`: whether it acts during this step;
+        None: it does, as for a Step. `cycles`: go to the targets and back this many times, ending early when two cycles in a row end with the same
         tractions to within `steady_tolerance` times the largest one (0: never). `check`: as for `run`.
         Raises BadArgument.
         """
-        normal_control, normal_target = _control("normal_force", normal_force, "approach", approach)
-        tangential_control, tangential_target = _control("tangential_force", tangential_force, "shift", shift)
-        rotational_control, rotational_target = _control("moment", moment, "rotation", rotation)
+        normal_control = tangential_control = rotational_control = _KEEP
+        normal_target = tangential_target = rotational_target = 0.0
+        if normal_force is not None or approach is not None:
+            normal_control, normal_target = _control("normal_force", normal_force, "approach", approach)
+        if tangential_force is not None or shift is not None:
+            tangential_control, tangential_target = _control("tangential_force", tangential_force, "shift", shift)
+        if moment is not None or rotation is not None:
+            rotational_control, rotational_target = _control("moment", moment, "rotation", rotation)
         turns = max(-LARGEST_INTEGER, min(index(cycles), LARGEST_INTEGER)) if cycles else 0
         with self._lock:
             try:  # one call in place of eleven: this is where a host program spends its time with Python
@@ -290,8 +295,14 @@ class Case:
                     "steady_tolerance": steady_tolerance,
                 }
                 raise TypeError(f"targets and steady_tolerance must be numbers, not {_not_numbers(targets)}") from None
-            watched = turns > 0 or self._is_long
-            return self._lead(check, watched, self._advance, self._handle, self._step_reference)
+            if turns > 0 or self._is_long or not self._observer.is_idle:
+                watched = turns > 0 or self._is_long
+                return self._lead(check, watched, self._advance, self._handle, self._step_reference)
+            status = self._advance(self._handle, self._step_reference)
+            if status == 0:
+                self._status = 0
+                return self._complete
+            return self._ended(check, status)
 
     @property
     def loads(self) -> Loads:
@@ -474,19 +485,20 @@ class Case:
         observer = self._observer
         if observer.is_idle and not watched:
             status = function(*arguments)
-            if status == 0:
-                self._status = 0
-                return self._complete
         else:
             status = (
                 observer.watch(function, *arguments)
                 if watched or observer.is_wanted
                 else observer.rest(function, *arguments)
             )
+        return self._ended(check, status)
+
+    def _ended(self, check: bool, status: int) -> str:
+        """The outcome of a status. Raises as `_lead` does."""
         if status != 0:
             self._check(status, (errors.BadHandle, errors.BadArgument))
         self._status = status
-        observer.raise_what_ended_it()
+        self._observer.raise_what_ended_it()
         self._raise_early_end(check)
         return outcome_of(status)
 
