@@ -101,7 +101,7 @@ def _difference_of_ends(result: Result, again: Result, states: Sequence[Group]) 
 
 def _solved_again(result: Result, states: int, progress: Progress) -> Result:
     """The result of a case solved again, with states on the way. Raises MfvError, ValueError."""
-    if result.attributes["algorithm"].strip() != "mfv":
+    if result.attributes["algorithm"] != "mfv":
         raise ValueError("the conventional algorithm goes by load steps, which more states would change")
     parts = list(_parts(result))
     if result.outcome != "complete" and parts:

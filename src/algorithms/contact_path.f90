@@ -32,16 +32,12 @@ module mfv_contact_path
       real(wp) :: from = 0.0_wp, to = 1.0_wp
    end type segment_type
 
-   type :: contact_path_type
-      type(contact_model_type) :: model
+   !> Where a path stands: what it takes to go on from here with the same digits, but for what only grows on the way and what can be made
+   !> again.
+   type :: path_position_type
       class(contact_system_type), allocatable :: system
       type(contact_state_type) :: state
-      !> The state before the last increment.
-      type(contact_state_type), private :: before
-      type(history_type) :: history
       type(certificate_type) :: certificate
-      !> Whether every event is recorded, or only what the caller records.
-      logical :: record_events = .true.
       !> Events so far: loads at which statuses changed.
       integer :: events = 0
       !> Length of the increment to try next where friction is not linear, in parts of a segment; 0: not known yet.
@@ -49,6 +45,15 @@ module mfv_contact_path
       !> Tangential force over shift on the first increment of this segment, force/length^2; NaN where there is none yet, and of
       !> load steps and leaps, which are no first increments.
       real(wp) :: first_stiffness = 0.0_wp
+   end type path_position_type
+
+   type, extends(path_position_type) :: contact_path_type
+      type(contact_model_type) :: model
+      !> The state before the last increment.
+      type(contact_state_type), private :: before
+      type(history_type) :: history
+      !> Whether every event is recorded, or only what the caller records.
+      logical :: record_events = .true.
       !> Tangential force and shift where the segment begins, while the first increment is waited for.
       real(wp), private :: start_force = 0.0_wp, start_shift = 0.0_wp
       logical, private :: awaits_increment = .false.
@@ -81,15 +86,12 @@ module mfv_contact_path
       procedure :: close_nearest
    end type contact_path_type
 
-   !> What it takes to go on from a contact as it was, with the same digits: all but what can be made again.
+   !> A position that was kept, with what tells how much had grown by then, and what was modelled.
    type :: kept_path_type
       private
-      class(contact_system_type), allocatable :: system
-      type(contact_state_type) :: state
-      type(certificate_type) :: certificate
-      integer :: events = 0, records = 0, added = 0
+      type(path_position_type) :: position
+      integer :: records = 0, added = 0
       logical :: tangential = .false., rotational = .false.
-      real(wp) :: trial = 0.0_wp, first_stiffness = 0.0_wp
    end type kept_path_type
 
    !> What is known at one load while statuses settle.
@@ -130,29 +132,20 @@ contains
       type(contact_path_type), intent(out) :: copy
 
       copy%model = self%model
-      allocate (copy%system, source=self%system)
-      copy%state = self%state
-      copy%certificate = self%certificate
+      copy%path_position_type = self%path_position_type
       copy%record_events = .false.
-      copy%trial = self%trial
    end subroutine copy_without_history
 
-   !> Keep the contact as it is between segments; the storage in `kept` is used again.
+   !> Keep the contact as it is between segments.
    subroutine keep(self, kept)
       class(contact_path_type), intent(in) :: self
       type(kept_path_type), intent(inout) :: kept
 
-      if (allocated(kept%system)) deallocate (kept%system)
-      allocate (kept%system, source=self%system)
-      kept%state = self%state
-      kept%certificate = self%certificate
-      kept%events = self%events
+      kept%position = self%path_position_type
       kept%records = self%history%records
       kept%added = self%model%added
       kept%tangential = self%model%tangential
       kept%rotational = self%model%rotational
-      kept%trial = self%trial
-      kept%first_stiffness = self%first_stiffness
    end subroutine keep
 
    !> Come back to what was kept of this contact, or of one with the same scene. History records since then are dropped. A mesh
@@ -169,14 +162,8 @@ contains
          if (kept%rotational) call self%model%add_rotation()
          if (kept%added > 0) call self%model%grow(kept%added)
       end if
-      deallocate (self%system)
-      allocate (self%system, source=kept%system)
-      self%state = kept%state
-      self%certificate = kept%certificate
-      self%events = kept%events
+      self%path_position_type = kept%position
       self%history%records = min(kept%records, self%history%records)
-      self%trial = kept%trial
-      self%first_stiffness = kept%first_stiffness
    end subroutine come_back
 
    !> A segment begins: have its first_stiffness found.

@@ -6,11 +6,9 @@
 module mfv_kept_state
    use, intrinsic :: iso_fortran_env, only: int64
    use mfv_contact_path, only: kept_path_type
-   use mfv_contact_system, only: load_type
    use mfv_cycle, only: cycle_type
    use mfv_error, only: error_type, set_error
-   use mfv_load_way, only: load_way_type
-   use mfv_simulation
+   use mfv_simulation, only: history_none, position_type, simulation_type
    use mfv_status, only: MFV_BAD_ARGUMENT
    implicit none
    private
@@ -19,15 +17,11 @@ module mfv_kept_state
    type :: kept_state_type
       private
       type(kept_path_type) :: contact
-      type(load_type) :: normal, tangential, rotational
-      type(load_way_type) :: way
-      type(snapshot_type) :: marks(mark_count)
+      type(position_type) :: position
       !> The last cycle, where there is no load history, and so only this one.
       type(cycle_type), allocatable :: last_cycle
-      integer :: snapshot_count = 0, cycle_count = 0, cycles_done = 0, outcome = 0, failed_step = 0, steps_done = 0
-      integer :: failed_scene_step = 0, scene_steps_done = 0
       integer(int64) :: scene = 0, trail = 0
-      character(:), allocatable :: message
+      logical :: is_kept = .false.
    contains
       procedure :: keep
       procedure :: come_back
@@ -35,29 +29,17 @@ module mfv_kept_state
 
 contains
 
-   !> Keep the present state of a simulation; the storage there is is used again. `scene`: a checksum by which the scene is known.
+   !> Keep the present state of a simulation. `scene`: a checksum by which the scene is known.
    subroutine keep(self, simulation, scene)
       class(kept_state_type), intent(inout) :: self
       type(simulation_type), intent(in) :: simulation
       integer(int64), intent(in) :: scene
 
       call simulation%contact%keep(self%contact)
-      self%normal = simulation%normal
-      self%tangential = simulation%tangential
-      self%rotational = simulation%rotational
-      self%way = simulation%way
-      if (simulation%marks(mark_loading)%step > 0 .or. self%marks(mark_loading)%step > 0) self%marks = simulation%marks
+      self%position = simulation%position_type
       if (allocated(self%last_cycle)) deallocate (self%last_cycle)
       if (simulation%cycle_count > 0 .and. simulation%keep_history == history_none) self%last_cycle = simulation%cycles(1)
-      self%snapshot_count = simulation%snapshot_count
-      self%cycle_count = simulation%cycle_count
-      self%cycles_done = simulation%cycles_done
-      self%outcome = simulation%outcome
-      self%failed_step = simulation%failed_step
-      self%steps_done = simulation%steps_done
-      self%failed_scene_step = simulation%failed_scene_step
-      self%scene_steps_done = simulation%scene_steps_done
-      self%message = simulation%message
+      self%is_kept = .true.
       self%scene = scene
       self%trail = simulation%trail()
    end subroutine keep
@@ -70,31 +52,18 @@ contains
       integer(int64), intent(in) :: scene
       type(error_type), allocatable, intent(out) :: error
 
-      if (.not. allocated(self%message)) then
+      if (.not. self%is_kept) then
          call set_error(error, MFV_BAD_ARGUMENT, 'nothing has been kept in this state')
       else if (scene /= self%scene) then
          call set_error(error, MFV_BAD_ARGUMENT, 'the state is of another scene')
-      else if (.not. simulation%came_through(self%way%steps, self%trail)) then
+      else if (.not. simulation%came_through(self%position%way%steps, self%trail)) then
          call set_error(error, MFV_BAD_ARGUMENT, 'the state is not on the way that led to the present one, of which history '// &
                         "or states are kept; with &output history='none', states='none' any state can be gone to")
       end if
       if (allocated(error)) return
       call simulation%contact%come_back(self%contact)
-      simulation%normal = self%normal
-      simulation%tangential = self%tangential
-      simulation%rotational = self%rotational
-      simulation%way = self%way
-      if (simulation%marks(mark_loading)%step > 0 .or. self%marks(mark_loading)%step > 0) simulation%marks = self%marks
+      simulation%position_type = self%position
       if (allocated(self%last_cycle) .and. simulation%keep_history == history_none) simulation%cycles = [self%last_cycle]
-      simulation%snapshot_count = self%snapshot_count
-      simulation%cycle_count = self%cycle_count
-      simulation%cycles_done = self%cycles_done
-      simulation%outcome = self%outcome
-      simulation%failed_step = self%failed_step
-      simulation%steps_done = self%steps_done
-      simulation%failed_scene_step = self%failed_scene_step
-      simulation%scene_steps_done = self%scene_steps_done
-      simulation%message = self%message
       if (allocated(simulation%estimate)) deallocate (simulation%estimate)
    end subroutine come_back
 

@@ -24,7 +24,7 @@ module mfv_load_way
 
 contains
 
-   !> One step more.
+   !> One step more; its targets of what it keeps are zero.
    pure subroutine add(self, step)
       class(load_way_type), intent(inout) :: self
       type(step_type), intent(in) :: step
@@ -34,9 +34,9 @@ contains
       self%cycled = self%cycled .or. step%cycles > 0
       self%pressed_harder = self%pressed_harder .and. step%friction .and. step%cycles == 0 &
                             .and. step%normal_control == control_force .and. step%normal_target >= self%normal_target &
-                            .and. .not. names_shear(step)
+                            .and. .not. abs(step%tangential_target) > 0.0_wp
       self%normal_target = step%normal_target
-      self%sheared = self%sheared .or. names_shear(step)
+      self%sheared = self%sheared .or. abs(step%tangential_target) > 0.0_wp
       if (self%sheared) then
          self%pressed_then_sheared = self%pressed_then_sheared .and. step%friction .and. step%normal_control == control_keep &
                                      .and. step%tangential_control == control_force
@@ -45,12 +45,5 @@ contains
          self%friction_in_press = self%friction_in_press .or. step%friction
       end if
    end subroutine add
-
-   !> Whether a step leads to a tangential force or shift other than zero.
-   pure logical function names_shear(step)
-      type(step_type), intent(in) :: step
-
-      names_shear = step%tangential_control /= control_keep .and. abs(step%tangential_target) > 0.0_wp
-   end function names_shear
 
 end module mfv_load_way

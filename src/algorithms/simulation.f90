@@ -22,8 +22,8 @@ module mfv_simulation
    use mfv_strings, only: to_text
    implicit none
    private
-   public :: simulation_type, new_simulation, snapshot_type, history_events, history_steps, history_none
-   public :: states_reversals, states_steps, states_none, mark_count
+   public :: simulation_type, position_type, new_simulation, snapshot_type, history_events, history_steps, history_none
+   public :: states_reversals, states_steps, states_none
    public :: mark_loading, mark_reversal, mark_return, mark_cycle_start
 
    !> What the load history keeps: a record an event, a record a step end, nothing.
@@ -46,16 +46,10 @@ module mfv_simulation
       integer :: added = 0
    end type snapshot_type
 
-   type :: simulation_type
-      type(contact_path_type) :: contact
-      !> States at the end of every step and reversal so far: the first `snapshot_count` entries are in use.
-      type(snapshot_type), allocatable :: snapshots(:)
-      integer :: snapshot_count = 0
-      !> Whole cycles so far, the first `cycle_count` entries in use; without a load history the last one only.
-      type(cycle_type), allocatable :: cycles(:)
-      integer :: cycle_count = 0
-      !> Whole cycles of all steps so far.
-      integer :: cycles_done = 0
+   !> Where a simulation stands, but for its contact and what only grows on the way.
+   type :: position_type
+      !> Snapshots and cycles so far, see simulation_type; and whole cycles of all steps.
+      integer :: snapshot_count = 0, cycle_count = 0, cycles_done = 0
       !> See mark_loading and so on; `step` is 0 where there is none.
       type(snapshot_type) :: marks(mark_count)
       !> How it ended (see mfv_status): MFV_COMPLETE while nothing has gone wrong, and why in words.
@@ -65,16 +59,24 @@ module mfv_simulation
       integer :: failed_step = 0, steps_done = 0
       !> The same of the steps of the scene alone, which other steps may come between.
       integer :: failed_scene_step = 0, scene_steps_done = 0
-      integer :: keep_history = history_events
-      !> See states_reversals and so on.
-      integer :: keep_states = states_reversals
       !> What is known of the steps that were taken, the last one perhaps not to its end.
       type(load_way_type) :: way
-      !> Checksums of the way up to the end of every step taken, where something is kept of it; the first `way%steps` are in use.
-      integer(int64), allocatable, private :: trails(:)
       !> What the loads control now.
       type(load_type) :: normal, tangential
       type(load_type) :: rotational = load_type(control_displacement)
+   end type position_type
+
+   type, extends(position_type) :: simulation_type
+      type(contact_path_type) :: contact
+      !> States at the end of every step and reversal so far: the first `snapshot_count` entries are in use.
+      type(snapshot_type), allocatable :: snapshots(:)
+      !> Whole cycles so far, the first `cycle_count` entries in use; without a load history the last one only.
+      type(cycle_type), allocatable :: cycles(:)
+      integer :: keep_history = history_events
+      !> See states_reversals and so on.
+      integer :: keep_states = states_reversals
+      !> Checksums of the way up to the end of every step taken, where something is kept of it; the first `way%steps` are in use.
+      integer(int64), allocatable, private :: trails(:)
       !> The discretisation error of the present state, where it has been estimated (see mfv_discretisation_error).
       type(error_estimate_type), allocatable :: estimate
    contains

@@ -48,6 +48,8 @@ module mfv_c
 
    integer, parameter :: valid_mark = 1297499699, scene_mark = 1297499700, state_mark = 1297499701
 
+   character(*), parameter :: unnamed = 'text'
+
    !> mfv_step of the header.
    type, bind(C) :: c_step
       integer(c_size_t) :: size
@@ -151,11 +153,7 @@ contains
       if (.not. present(scene)) return
       scene = c_null_ptr
       if (.not. c_associated(text)) return
-      if (c_associated(name)) then
-         call read_draft(text_in(text), text_in(name), draft, error)
-      else
-         call read_draft(text_in(text), 'text', draft, error)
-      end if
+      call read_draft(text_in(text), name_in(name), draft, error)
       status = told(error, message, message_size)
       if (status == MFV_COMPLETE) call hand_out_scene(draft, scene)
    end function mfv_scene_from_text
@@ -392,11 +390,7 @@ contains
       handle = c_null_ptr
       if (.not. c_associated(text)) return
       allocate (self)
-      if (c_associated(name)) then
-         call read_contact_text(text_in(text), text_in(name), self%contact, error)
-      else
-         call read_contact_text(text_in(text), 'text', self%contact, error)
-      end if
+      call read_contact_text(text_in(text), name_in(name), self%contact, error)
       status = told(error, message, message_size)
       call hand_out(self, status, handle)
    end function mfv_create_from_text
@@ -633,8 +627,10 @@ contains
       call c_f_pointer(state, slot)
       if (c_associated(slot)) then
          call find_state(slot, kept, status)
-         if (status /= MFV_COMPLETE) self%message = 'the state was freed, or is none'
-         if (status /= MFV_COMPLETE) return
+         if (status /= MFV_COMPLETE) then
+            self%message = 'the state was freed, or is none'
+            return
+         end if
       else
          allocate (kept)
          kept%mark = state_mark
@@ -654,8 +650,10 @@ contains
       call find(handle, self, status)
       if (status /= MFV_COMPLETE) return
       call find_state(state, kept, status)
-      if (status /= MFV_COMPLETE) self%message = 'the state is null or was freed'
-      if (status /= MFV_COMPLETE) return
+      if (status /= MFV_COMPLETE) then
+         self%message = 'the state is null or was freed'
+         return
+      end if
       call self%contact%come_back(kept%state, error)
       status = failed(self, error)
       if (status == MFV_COMPLETE) call self%contact%get_message(self%message)
@@ -1067,6 +1065,22 @@ contains
          text(i:i) = characters(i)
       end do
    end function text_in
+
+   !> What messages call a text: its name, or 'text' where the pointer is null.
+   function name_in(pointer_to_name) result(name)
+      type(c_ptr), intent(in) :: pointer_to_name
+      character(len=length_of_name(pointer_to_name)) :: name
+
+      name = unnamed
+      if (c_associated(pointer_to_name)) name = text_in(pointer_to_name)
+   end function name_in
+
+   pure integer function length_of_name(pointer_to_name) result(length)
+      type(c_ptr), intent(in) :: pointer_to_name
+
+      length = len(unnamed)
+      if (c_associated(pointer_to_name)) length = int(c_strlen(pointer_to_name))
+   end function length_of_name
 
    !> Text into a caller's buffer; MFV_BAD_ARGUMENT where there is none.
    function text_out(text, buffer, size) result(status)

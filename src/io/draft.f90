@@ -8,8 +8,7 @@ module mfv_draft
    use mfv_case_keys, only: case_catalogue
    use mfv_case_reader, only: read_case_groups
    use mfv_error, only: error_type, set_error
-   use mfv_key_path, only: split_key
-   use mfv_key_reader, only: suggest
+   use mfv_key_path, only: read_key_name
    use mfv_keys, only: catalogue_type
    use mfv_kinds, only: wp
    use mfv_namelist, only: append_group, entry_type, group_type, groups_of_name, parse_namelists, write_namelists
@@ -72,32 +71,18 @@ contains
       type(error_type), allocatable, intent(out) :: error
       type(catalogue_type) :: catalogue
       type(group_type) :: new
-      character(:), allocatable :: written, why
+      character(:), allocatable :: why
       integer :: there
 
       if (.not. allocated(self%groups)) allocate (self%groups(0))
       catalogue = case_catalogue()
-      call split_key(name, group, written, number, key, why)
+      call read_key_name(name, catalogue, group, number, key, why)
+      there = groups_of_name(self%groups, group)
+      if (why == '' .and. (number < 1 .or. number > max(2, there + 1))) &
+         why = quoted(name)//': there are '//to_text(there)//' of &'//group//' so far; the next one is '//group//'('// &
+               to_text(there + 1)//')'
       if (why /= '') then
          call set_error(error, MFV_INPUT_ERROR, why)
-         return
-      end if
-      there = groups_of_name(self%groups, group)
-      if (.not. catalogue%has_group(group)) then
-         call suggest(group, catalogue%groups(), '', why)
-         why = 'unknown group'//why//'; groups are '//catalogue%group_list
-      else if (catalogue%place(group, key) == 0) then
-         call suggest(key, catalogue%names(group), '', why)
-         why = 'unknown key of &'//group//why
-      else if (catalogue%repeats(group) .and. written == '') then
-         why = 'which &'//group//'? write '//group//'(1)%'//key
-      else if (.not. catalogue%repeats(group) .and. number /= 1) then
-         why = 'there is one &'//group//' only'
-      else if (number < 1 .or. number > max(2, there + 1)) then
-         why = 'there are '//to_text(there)//' of &'//group//' so far; the next one is '//group//'('//to_text(there + 1)//')'
-      end if
-      if (why /= '') then
-         call set_error(error, MFV_INPUT_ERROR, quoted(name)//': '//why)
          return
       end if
       do there = there + 1, number

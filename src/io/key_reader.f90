@@ -47,7 +47,7 @@ contains
 
       do i = 1, size(reader%groups)
          associate (group => reader%groups(i))
-            if (.not. any_equal(reader%catalogue%groups(), group%name)) then
+            if (.not. reader%catalogue%has_group(group%name)) then
                call suggest(group%name, reader%catalogue%groups(), '&', why)
                call fail(reader, group%line, '&'//group%name//': unknown group'// &
                          why//'; groups are '//reader%catalogue%group_list, error)

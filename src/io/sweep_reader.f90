@@ -7,7 +7,7 @@ module mfv_sweep_reader
    use mfv_case_reader, only: read_case_groups
    use mfv_checksum, only: add_text_to_checksum
    use mfv_error, only: error_type
-   use mfv_key_path, only: split_key
+   use mfv_key_path, only: read_key_name
    use mfv_key_reader
    use mfv_keys
    use mfv_kinds, only: wp
@@ -200,51 +200,32 @@ contains
       type(target_type), intent(out) :: target
       character(:), allocatable, intent(out) :: why
       type(catalogue_type) :: catalogue
-      character(:), allocatable :: number
 
       catalogue = case_catalogue()
       why = ''
       target%group = ''
       target%key = lower_case(written)
       if (target%key == dundurs_key) return
-      call split_key(written, target%group, number, target%number, target%key, why)
+      call read_key_name(written, catalogue, target%group, target%number, target%key, why)
       if (why /= '') then
          if (index(written, '%') == 0) why = why//' or '//quoted(dundurs_key)
          return
       end if
-      call check_target(catalogue, sweep, number, target, why)
+      target%is_whole = catalogue%keys(catalogue%place(target%group, target%key))%kind == kind_integer
+      call check_target(catalogue, sweep, target, why)
       if (why /= '') why = quoted(written)//': '//why
    end subroutine read_target
 
-   !> A key that is known, in a group that every base has. `number`: the number of the group as written, empty for none.
-   subroutine check_target(catalogue, sweep, number, target, why)
+   !> A key that a sweep can vary, in a group that every base has.
+   subroutine check_target(catalogue, sweep, target, why)
       type(catalogue_type), intent(in) :: catalogue
       type(sweep_type), intent(in) :: sweep
-      character(*), intent(in) :: number
-      type(target_type), intent(inout) :: target
+      type(target_type), intent(in) :: target
       character(:), allocatable, intent(out) :: why
       integer :: i, there
 
-      if (.not. catalogue%has_group(target%group)) then
-         call suggest(target%group, catalogue%groups(), '', why)
-         why = 'unknown group'//why//'; groups are '//catalogue%group_list
-         return
-      end if
-      i = catalogue%place(target%group, target%key)
-      if (i == 0) then
-         call suggest(target%key, catalogue%names(target%group), '', why)
-         why = 'unknown key of &'//target%group//why
-         return
-      end if
-      target%is_whole = catalogue%keys(i)%kind == kind_integer
       why = ''
-      if (target%group == 'output' .and. target%key == 'file') then
-         why = 'the sweep names its files itself'
-      else if (catalogue%repeats(target%group) .and. number == '') then
-         why = 'which &'//target%group//'? write '//target%group//'(1)%'//target%key
-      else if (.not. catalogue%repeats(target%group) .and. target%number /= 1) then
-         why = 'there is one &'//target%group//' only'
-      end if
+      if (target%group == 'output' .and. target%key == 'file') why = 'the sweep names its files itself'
       if (why /= '' .or. .not. catalogue%repeats(target%group)) return
       do i = 1, size(sweep%bases)
          there = groups_of_name(sweep%bases(i)%groups, target%group)
