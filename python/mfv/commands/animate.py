@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import argparse
-import sys
 from pathlib import Path
 
 from ..result import read
@@ -45,18 +44,15 @@ def run(options: argparse.Namespace) -> None:
     from tqdm import tqdm
 
     from ..animate import SUFFIXES, movie, save
-    from ..load_history import kept_states, thinned, with_states_between
+    from ..load_history import kept_states, thinned
+    from .between import solved_between
 
     result = read(options.file)
     output = target(options.output, options.file.with_suffix(".gif"), SUFFIXES, [options.file])
     if options.kept:
-        shown, note = thinned(kept_states(result), options.frames), ""
+        shown = thinned(kept_states(result), options.frames)
     else:
-        shown, note = with_states_between(
-            result, options.frames, lambda targets: tqdm(targets, desc="solving", unit="state", disable=None)
-        )
-    if note:
-        print(f"mfv: {options.file}: {note}", file=sys.stderr)
+        shown = solved_between(options, result, options.frames).result
     with written(output) as part, tqdm(total=len(shown.steps), desc="drawing", unit="picture", disable=None) as bar:
         save(movie(shown), part, options.rate, lambda frame, number: bar.update())
     print(output)

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import argparse
-import sys
 from pathlib import Path
 
 from ..result import read
@@ -41,19 +40,13 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(options: argparse.Namespace) -> None:
     """Write the page. Raises OSError, NotAResult, ModuleNotFoundError."""
-    from tqdm import tqdm
-
-    from ..load_history import with_states_between
     from ..report import page
+    from .between import solved_between
 
     result, history = read(options.file), None
     output = target(options.output, options.file.with_suffix(".html"), (".html", ".htm"), [options.file])
     if options.states is not None:
-        history = with_states_between(
-            result, options.states, lambda targets: tqdm(targets, desc="solving", unit="state", disable=None)
-        )
-        if history.note:
-            print(f"mfv: {options.file}: {history.note}", file=sys.stderr)
+        history = solved_between(options, result, options.states)
     with written(output) as part:
         part.write_text(page(result, options.file.name, history), encoding="utf-8")
     print(output)
