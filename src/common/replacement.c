@@ -152,6 +152,21 @@ int mfv_begin_replacement(const char *path, char **target, char **part, int *des
   return code;
 }
 
+/* Append bytes to the part, all of them or an error. */
+int mfv_write_replacement(int descriptor, const char *bytes, size_t count) {
+  /* More at once is not written by every system. */
+  const size_t most = 1 << 30;
+  ssize_t done;
+  while (count > 0) {
+    done = write(descriptor, bytes, count < most ? count : most);
+    if (done < 0 && errno == EINTR) continue;
+    if (done < 0) return errno;
+    bytes += done;
+    count -= (size_t)done;
+  }
+  return 0;
+}
+
 /* Have the disk take the entries of the folder of `path`. File systems that cannot are no failure, nor is a folder that may
    be written and not read. */
 static int sync_folder(const char *path) {
@@ -164,7 +179,7 @@ static int sync_folder(const char *path) {
   return code;
 }
 
-/* Give the part, which has been written and closed by others, the name `target`: its bytes are on the disk before it has the
+/* Give the part, which has been written, and closed by others that have had it open, the name `target`: its bytes are on the disk before it has the
    name, so that also after a power cut there is the old file or the new one. The descriptor is closed, and the part is gone
    in any case. `is_in_place`: whether the new file has the name, which it has where only the last step, the folder, failed. */
 int mfv_finish_replacement(int descriptor, const char *part, const char *target, int *is_in_place) {

@@ -2,20 +2,24 @@
 !> to the disk, and renamed. Whatever happens, a kill or a power cut, there is the old file or the new one under the name.
 !>
 !>     call begin_replacement(path, replacement, error)
-!>     ... open replacement%part, which is there and empty, write it, close it ...
-!>     call finish_replacement(replacement, error)       ! or, where writing failed: call drop_replacement(replacement)
+!>     call write_replacement(replacement, bytes, error)     ! as often as wanted
+!>     call finish_replacement(replacement, error)
+!>
+!> What fails leaves the old file; drop_replacement ends what shall not be finished. The part may also be opened by its name,
+!> written and closed in between.
 !>
 !> A symbolic link stays one: the file that it names is replaced. The new file has the mode (and owner, where that may be)
 !> of the old one. Parts that killed processes have left, PATH.part and a number, are removed by the next run that writes PATH,
 !> when they are an hour old.
 module mfv_safe_file
    use, intrinsic :: iso_c_binding
+   use, intrinsic :: iso_fortran_env, only: int8
    use mfv_error, only: error_type, set_error
    use mfv_status, only: MFV_FILE_ERROR
    use mfv_strings, only: from_c
    implicit none
    private
-   public :: replacement_type, begin_replacement, finish_replacement, drop_replacement
+   public :: replacement_type, begin_replacement, write_replacement, finish_replacement, drop_replacement
 
    !> A file that is being written and will take the place of another.
    type :: replacement_type
@@ -34,6 +38,14 @@ module mfv_safe_file
          integer(c_int), intent(out) :: descriptor
          integer(c_int) :: code
       end function c_begin
+
+      function c_write(descriptor, bytes, count) bind(C, name='mfv_write_replacement') result(code)
+         import :: c_int, c_int8_t, c_size_t
+         integer(c_int), value :: descriptor
+         integer(c_int8_t), intent(in) :: bytes(*)
+         integer(c_size_t), value :: count
+         integer(c_int) :: code
+      end function c_write
 
       function c_finish(descriptor, part, target, is_in_place) bind(C, name='mfv_finish_replacement') result(code)
          import :: c_char, c_int
@@ -85,8 +97,21 @@ contains
       call c_free(part)
    end subroutine begin_replacement
 
+   !> Append bytes. Error MFV_FILE_ERROR, a full disk for one: the part is then removed.
+   subroutine write_replacement(replacement, bytes, error)
+      type(replacement_type), intent(inout) :: replacement
+      integer(int8), intent(in) :: bytes(:)
+      type(error_type), allocatable, intent(out) :: error
+      integer(c_int) :: code
+
+      code = c_write(replacement%descriptor, bytes, size(bytes, kind=c_size_t))
+      if (code == 0) return
+      call drop_replacement(replacement)
+      call explain(replacement%path//' cannot be written', code, error)
+   end subroutine write_replacement
+
    !> Have the disk take the part, and give it its name. Error MFV_FILE_ERROR: the file that was there still is, and the part
-   !> is removed; or, as the message then says, the new one is there and only its entry in the folder is not sure to be on the disk.
+   !> is removed; or, as the message then says, the new one is there and only its entry in the folder is perhaps not on the disk.
    subroutine finish_replacement(replacement, error)
       type(replacement_type), intent(inout) :: replacement
       type(error_type), allocatable, intent(out) :: error

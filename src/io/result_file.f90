@@ -1,15 +1,14 @@
 !> The result file: HDF5, for people. Named datasets with units and descriptions, dimension scales, the input text,
-!> versions and the certificate. It is written under another name and renamed at the end, so that a failed run leaves
-!> an earlier result as it was and nothing half-written. docs/file-format.md describes it.
+!> versions and the certificate. It takes its place when it is whole and on the disk, so that a failed run leaves an earlier
+!> result as it was and nothing half-written. docs/file-format.md describes it.
 module mfv_result_file
    use hdf5
    use h5ds
    use mfv_case, only: case_type
-   use mfv_error, only: error_type, set_error
+   use mfv_error, only: error_type
    use mfv_hdf5_writer
    use mfv_result_fields
    use mfv_simulation, only: simulation_type
-   use mfv_status, only: MFV_FILE_ERROR
    use mfv_strings, only: string_type
    implicit none
    private
@@ -27,18 +26,13 @@ contains
       type(error_type), allocatable, intent(out) :: error
       type(writer_type) :: writer
 
-      call check_writable(path, error)
-      if (allocated(error)) then
-         error%status = MFV_FILE_ERROR
-         return
-      end if
-      call create_file(path, writer)
+      call create_file(path, writer, error)
+      if (allocated(error)) return
       if (writer%code == 0) then
          call write_attributes(writer, case, simulation, warnings)
          call write_groups(writer, case, simulation)
       end if
-      call finish_file(path, writer)
-      if (writer%code /= 0) call set_error(error, MFV_FILE_ERROR, path//': the result could not be written')
+      call finish_file(path, 'the result', writer, error)
    end subroutine write_result
 
    !> Attributes of the whole file.

@@ -10,7 +10,7 @@ module mfv_stress_file
    use mfv_interior
    use mfv_kinds, only: wp
    use mfv_result_fields, only: step_group
-   use mfv_status, only: MFV_FILE_ERROR, MFV_INPUT_ERROR
+   use mfv_status, only: MFV_INPUT_ERROR
    use mfv_strings, only: list_of_words, string_type
    use mfv_text_file, only: path_from
    implicit none
@@ -167,11 +167,6 @@ contains
       type(writer_type) :: writer
       character(:), allocatable :: state
 
-      call check_writable(path, error)
-      if (allocated(error)) then
-         error%status = MFV_FILE_ERROR
-         return
-      end if
       state = 'stress/last'
       if (request%step > 0) then
          state = step_group(request%step)
@@ -179,13 +174,13 @@ contains
       end if
       result%group = state//'/'//body_name(request)
       if (allocated(request%x)) result%group = result%group//'_points'
-      call copy_and_open(path, writer)
+      call copy_and_open(path, writer, error)
+      if (allocated(error)) return
       if (writer%code == 0) then
          call make_way(writer, state, result%group)
          call write_group(writer, case, request, result)
       end if
-      call finish_file(path, writer)
-      if (writer%code /= 0) call set_error(error, MFV_FILE_ERROR, path//': the stresses could not be written')
+      call finish_file(path, 'the stresses', writer, error)
    end subroutine write_stresses
 
    !> The groups above the wanted one; and away with what was there.

@@ -42,19 +42,14 @@ contains
       type(error_type), allocatable, intent(out) :: error
       type(writer_type) :: writer
 
-      call check_writable(sweep%result_path, error)
-      if (allocated(error)) then
-         error%status = MFV_FILE_ERROR
-         return
-      end if
-      call create_file(sweep%result_path, writer)
+      call create_file(sweep%result_path, writer, error)
+      if (allocated(error)) return
       if (writer%code == 0) then
          call write_file_attributes(writer, sweep, records)
          call write_rows(writer, sweep, records)
          if (sweep%keeps_states) call write_links(writer, sweep, records)
       end if
-      call finish_file(sweep%result_path, writer)
-      if (writer%code /= 0) call set_error(error, MFV_FILE_ERROR, sweep%result_path//': the table could not be written')
+      call finish_file(sweep%result_path, 'the table', writer, error)
    end subroutine write_table
 
    !> Whether the table can be written to its place. Error MFV_INPUT_ERROR where not, or where there is a file that is no table
