@@ -152,8 +152,8 @@ int mfv_begin_replacement(const char *path, char **target, char **part, int *des
   return code;
 }
 
-/* Append bytes to the part, all of them or an error. */
-int mfv_write_replacement(int descriptor, const char *bytes, size_t count) {
+/* Write bytes where the open file is, all of them or an error. */
+int mfv_write_all(int descriptor, const char *bytes, size_t count) {
   /* More at once is not written by every system. */
   const size_t most = 1 << 30;
   ssize_t done;

@@ -19,7 +19,8 @@ module mfv_safe_file
    use mfv_strings, only: from_c
    implicit none
    private
-   public :: replacement_type, begin_replacement, write_replacement, finish_replacement, drop_replacement
+   public :: replacement_type, begin_replacement, write_replacement, finish_replacement, drop_replacement, &
+             write_all
 
    !> A file that is being written and will take the place of another.
    type :: replacement_type
@@ -39,7 +40,7 @@ module mfv_safe_file
          integer(c_int) :: code
       end function c_begin
 
-      function c_write(descriptor, bytes, count) bind(C, name='mfv_write_replacement') result(code)
+      function c_write(descriptor, bytes, count) bind(C, name='mfv_write_all') result(code)
          import :: c_int, c_int8_t, c_size_t
          integer(c_int), value :: descriptor
          integer(c_int8_t), intent(in) :: bytes(*)
@@ -110,6 +111,17 @@ contains
       call explain(replacement%path//' cannot be written', code, error)
    end subroutine write_replacement
 
+   !> Write a text to an open file of the system. `why`: allocated where that failed, in the system's words.
+   subroutine write_all(descriptor, text, why)
+      integer, intent(in) :: descriptor
+      character(*), intent(in) :: text
+      character(:), allocatable, intent(out) :: why
+      integer(c_int) :: code
+
+      code = c_write(int(descriptor, c_int), transfer(text, [0_c_int8_t]), len(text, kind=c_size_t))
+      if (code /= 0) call describe(code, why)
+   end subroutine write_all
+
    !> Have the disk take the part, and give it its name. Error MFV_FILE_ERROR: the file that was there still is, and the part
    !> is removed; or, as the message then says, the new one is there and only its entry in the folder is perhaps not on the disk.
    subroutine finish_replacement(replacement, error)
@@ -141,12 +153,22 @@ contains
       character(*), intent(in) :: what
       integer(c_int), intent(in) :: code
       type(error_type), allocatable, intent(out) :: error
-      integer(c_size_t), parameter :: longest = 200
-      character(kind=c_char) :: why(longest)
+      character(:), allocatable :: why
 
-      call c_describe(code, why, longest)
-      call set_error(error, MFV_FILE_ERROR, what//': '//from_c(why))
+      call describe(code, why)
+      call set_error(error, MFV_FILE_ERROR, what//': '//why)
    end subroutine explain
+
+   !> The words of the system for its error `code`.
+   subroutine describe(code, words)
+      integer(c_int), intent(in) :: code
+      character(:), allocatable, intent(out) :: words
+      integer(c_size_t), parameter :: longest = 200
+      character(kind=c_char) :: buffer(longest)
+
+      call c_describe(code, buffer, longest)
+      words = from_c(buffer)
+   end subroutine describe
 
    !> A text of C.
    subroutine take_text(text_of_c, text)
