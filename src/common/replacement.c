@@ -6,6 +6,7 @@
 #include <fcntl.h>
 #include <limits.h>
 #include <signal.h>
+#include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -20,8 +21,8 @@ enum { MOST_NAMES = 10000 };
 /* Seconds after which the part of a process that is not on this machine, or no more, is taken for left behind. */
 enum { STALE_AGE = 3600 };
 
-/* In place of an errno: what is there is a device, a pipe or the like. */
-enum { NOT_REGULAR = -1 };
+/* In place of an errno: what is there is a device, a pipe or the like; what is there is no longer what was there. */
+enum { NOT_REGULAR = -1, CHANGED = -2 };
 
 static const char ending[] = ".part";
 
@@ -167,6 +168,19 @@ int mfv_write_all(int descriptor, const char *bytes, size_t count) {
   return 0;
 }
 
+/* What tells whether a file is still the same: device, number, size, time of its last change; all -1 where there is none. */
+void mfv_identify_file(const char *path, int64_t identity[5]) {
+  struct stat found;
+  int i;
+  for (i = 0; i < 5; i++) identity[i] = -1;
+  if (stat(path, &found) != 0) return;
+  identity[0] = (int64_t)found.st_dev;
+  identity[1] = (int64_t)found.st_ino;
+  identity[2] = (int64_t)found.st_size;
+  identity[3] = (int64_t)found.st_mtim.tv_sec;
+  identity[4] = (int64_t)found.st_mtim.tv_nsec;
+}
+
 /* Have the disk take the entries of the folder of `path`. File systems that cannot are no failure, nor is a folder that may
    be written and not read. */
 static int sync_folder(const char *path) {
@@ -181,10 +195,16 @@ static int sync_folder(const char *path) {
 
 /* Give the part, which has been written, and closed by others that have had it open, the name `target`: its bytes are on the disk before it has the
    name, so that also after a power cut there is the old file or the new one. The descriptor is closed, and the part is gone
-   in any case. `is_in_place`: whether the new file has the name, which it has where only the last step, the folder, failed. */
-int mfv_finish_replacement(int descriptor, const char *part, const char *target, int *is_in_place) {
+   in any case. `expected`: what `target` must still be, null: anything. `is_in_place`: whether the new file has the name, which
+   it has where only the last step, the folder, failed. */
+int mfv_finish_replacement(int descriptor, const char *part, const char *target, const int64_t *expected, int *is_in_place) {
+  int64_t found[5];
   int code = fsync(descriptor) == 0 ? 0 : errno;
   if (close(descriptor) != 0 && code == 0) code = errno;
+  if (code == 0 && expected != NULL) {
+    mfv_identify_file(target, found);
+    if (memcmp(found, expected, sizeof found) != 0) code = CHANGED;
+  }
   if (code == 0 && rename(part, target) != 0) code = errno;
   *is_in_place = code == 0;
   if (code == 0) return sync_folder(target);
@@ -202,5 +222,7 @@ void mfv_drop_replacement(int descriptor, const char *part) {
 void mfv_describe_error(int code, char *text, size_t length) {
   if (code == NOT_REGULAR)
     snprintf(text, length, "it is no regular file");
+  else if (code == CHANGED)
+    snprintf(text, length, "another process has replaced it in the meantime; start again");
   else if (strerror_r(code, text, length) != 0) snprintf(text, length, "error %d", code);
 }

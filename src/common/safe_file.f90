@@ -13,14 +13,17 @@
 !> when they are an hour old.
 module mfv_safe_file
    use, intrinsic :: iso_c_binding
-   use, intrinsic :: iso_fortran_env, only: int8
+   use, intrinsic :: iso_fortran_env, only: int8, int64
    use mfv_error, only: error_type, set_error
    use mfv_status, only: MFV_FILE_ERROR
    use mfv_strings, only: from_c
    implicit none
    private
    public :: replacement_type, begin_replacement, write_replacement, finish_replacement, drop_replacement, &
-             write_all
+             identify_file, identity_length, write_all
+
+   !> Numbers by which a file is known.
+   integer, parameter :: identity_length = 5
 
    !> A file that is being written and will take the place of another.
    type :: replacement_type
@@ -48,10 +51,17 @@ module mfv_safe_file
          integer(c_int) :: code
       end function c_write
 
-      function c_finish(descriptor, part, target, is_in_place) bind(C, name='mfv_finish_replacement') result(code)
-         import :: c_char, c_int
+      subroutine c_identify(path, identity) bind(C, name='mfv_identify_file')
+         import :: c_char, c_int64_t, identity_length
+         character(kind=c_char), intent(in) :: path(*)
+         integer(c_int64_t), intent(out) :: identity(identity_length)
+      end subroutine c_identify
+
+      function c_finish(descriptor, part, target, expected, is_in_place) bind(C, name='mfv_finish_replacement') result(code)
+         import :: c_char, c_int, c_int64_t, identity_length
          integer(c_int), value :: descriptor
          character(kind=c_char), intent(in) :: part(*), target(*)
+         integer(c_int64_t), intent(in), optional :: expected(identity_length)
          integer(c_int), intent(out) :: is_in_place
          integer(c_int) :: code
       end function c_finish
@@ -122,14 +132,25 @@ contains
       if (code /= 0) call describe(code, why)
    end subroutine write_all
 
+   !> By what the file at `path` is known until something changes or replaces it; the same for all that is not there.
+   subroutine identify_file(path, identity)
+      character(*), intent(in) :: path
+      integer(int64), intent(out) :: identity(identity_length)
+
+      call c_identify(path//c_null_char, identity)
+   end subroutine identify_file
+
    !> Have the disk take the part, and give it its name. Error MFV_FILE_ERROR: the file that was there still is, and the part
    !> is removed; or, as the message then says, the new one is there and only its entry in the folder is perhaps not on the disk.
-   subroutine finish_replacement(replacement, error)
+   !> `expected`: the file that must still be there, as identify_file has found it; else that it is not is an error.
+   subroutine finish_replacement(replacement, error, expected)
       type(replacement_type), intent(inout) :: replacement
       type(error_type), allocatable, intent(out) :: error
+      integer(int64), intent(in), optional :: expected(identity_length)
       integer(c_int) :: code, is_in_place
 
-      code = c_finish(replacement%descriptor, replacement%part//c_null_char, replacement%target//c_null_char, is_in_place)
+      code = c_finish(replacement%descriptor, replacement%part//c_null_char, replacement%target//c_null_char, expected, &
+                      is_in_place)
       replacement%descriptor = -1
       if (code == 0) return
       if (is_in_place /= 0) then

@@ -22,6 +22,8 @@ module mfv_hdf5_writer
       !> First failure of an HDF5 call, 0 for none.
       integer :: code = 0
       type(replacement_type), private :: replacement
+      !> What the file must still be when it is replaced, for a copy with additions.
+      integer(int64), allocatable, private :: expected(:)
    end type writer_type
 
    !> Bytes by which a file in memory grows.
@@ -79,9 +81,12 @@ contains
       call h5pclose_f(access, code)
    end subroutine create_file
 
-   !> Copy the HDF5 file at `path` and open the copy, which is to take its place. Error MFV_FILE_ERROR.
-   subroutine copy_and_open(path, writer, error)
+   !> Copy the HDF5 file at `path` and open the copy, which is to take its place. `identity`: the file as it was when what is
+   !> to be added was made from it, see identify_file; where it is another one in the end, it is not replaced. Error
+   !> MFV_FILE_ERROR.
+   subroutine copy_and_open(path, identity, writer, error)
       character(*), intent(in) :: path
+      integer(int64), intent(in) :: identity(:)
       type(writer_type), intent(out) :: writer
       type(error_type), allocatable, intent(out) :: error
       character(len=200) :: why
@@ -92,6 +97,7 @@ contains
 
       call begin_checked(path, writer%replacement, error)
       if (allocated(error)) return
+      writer%expected = identity
       open (newunit=unit, file=path, access='stream', form='unformatted', action='read', status='old', iostat=code, iomsg=why)
       if (code == 0) then
          inquire (unit=unit, size=length)
@@ -148,7 +154,7 @@ contains
          return
       end if
       call write_replacement(writer%replacement, bytes, error)
-      if (.not. allocated(error)) call finish_replacement(writer%replacement, error)
+      if (.not. allocated(error)) call finish_replacement(writer%replacement, error, writer%expected)
    end subroutine finish_file
 
    !> The bytes of the file in memory.
