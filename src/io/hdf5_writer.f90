@@ -13,8 +13,14 @@ module mfv_hdf5_writer
    use mfv_strings, only: string_type, to_text
    implicit none
    private
-   public :: writer_type, check_writable, create_file, copy_and_open, finish_file, create_group, write_dataset, write_values, &
-             write_text, write_texts, write_whole, write_hdf5_version, note
+   public :: writer_type, file_kind_type, check_writable, create_file, copy_and_open, finish_file, create_group, write_dataset, &
+             write_values, write_text, write_texts, write_whole, write_hdf5_version, note
+
+   !> A kind of files: its name, and an attribute of the root that every file of the kind has, and no other.
+   type :: file_kind_type
+      character(20) :: name = ''
+      character(20) :: attribute = ''
+   end type file_kind_type
 
    !> An open file.
    type :: writer_type
@@ -31,47 +37,73 @@ module mfv_hdf5_writer
 
 contains
 
-   !> Whether a result could be written to `path`: error MFV_INPUT_ERROR where not, found out before a long run. A file that
-   !> is no HDF5 file, the case itself for one, is not replaced.
-   subroutine check_writable(path, error)
+   !> Whether a file could be written to `path`: error MFV_INPUT_ERROR where not, found out before a long run. Of what is
+   !> there only a file of the same kind is replaced; the case itself, a matrix that it names, or data of others are not.
+   subroutine check_writable(path, kind, error)
       character(*), intent(in) :: path
+      type(file_kind_type), intent(in) :: kind
       type(error_type), allocatable, intent(out) :: error
       type(replacement_type) :: replacement
 
-      call begin_checked(path, replacement, error)
+      call begin_checked(path, kind, replacement, error)
       call drop_replacement(replacement)
       if (allocated(error)) error%status = MFV_INPUT_ERROR
    end subroutine check_writable
 
-   !> Begin a file that is to become `path`. Error MFV_FILE_ERROR.
-   subroutine begin_checked(path, replacement, error)
+   !> Begin a file that is to become `path`. Error MFV_FILE_ERROR; see check_writable.
+   subroutine begin_checked(path, kind, replacement, error)
       character(*), intent(in) :: path
+      type(file_kind_type), intent(in) :: kind
       type(replacement_type), intent(out) :: replacement
       type(error_type), allocatable, intent(out) :: error
-      logical :: is_there, is_hdf5
-      integer :: code
+      logical :: is_there
 
       call begin_replacement(path, replacement, error)
       if (allocated(error)) return
       inquire (file=path, exist=is_there)
-      if (.not. is_there) return
+      if (is_there) call check_kind(path, kind, error)
+      if (allocated(error)) call drop_replacement(replacement)
+   end subroutine begin_checked
+
+   !> Whether the file that is there may be replaced. Error MFV_FILE_ERROR.
+   subroutine check_kind(path, kind, error)
+      character(*), intent(in) :: path
+      type(file_kind_type), intent(in) :: kind
+      type(error_type), allocatable, intent(out) :: error
+      character(*), parameter :: so = '; it is not replaced: name another file, or move this one away'
+      integer(hid_t) :: file
+      logical :: is_hdf5, is_of_kind
+      integer :: code
+
       call h5open_f(code)
       call h5eset_auto_f(0, code)
       call h5fis_hdf5_f(path, is_hdf5, code)
-      if (code == 0 .and. is_hdf5) return
-      call drop_replacement(replacement)
-      call set_error(error, MFV_FILE_ERROR, path//' is there and is no HDF5 file; it is not replaced')
-   end subroutine begin_checked
+      if (code /= 0 .or. .not. is_hdf5) then
+         call set_error(error, MFV_FILE_ERROR, path//' is there and is no HDF5 file'//so)
+         return
+      end if
+      call h5fopen_f(path, H5F_ACC_RDONLY_F, file, code)
+      if (code /= 0) then
+         call set_error(error, MFV_FILE_ERROR, path//' is there and cannot be read: it is broken, or another program has it '// &
+                        'open to write'//so)
+         return
+      end if
+      call h5aexists_f(file, trim(kind%attribute), is_of_kind, code)
+      if (code /= 0 .or. .not. is_of_kind) call set_error(error, MFV_FILE_ERROR, path//' is there and is no '//trim(kind%name)// &
+                                                          ' (no attribute '//trim(kind%attribute)//')'//so)
+      call h5fclose_f(file, code)
+   end subroutine check_kind
 
    !> Begin the file that is to become `path`, empty. Error MFV_FILE_ERROR; see check_writable for what is not replaced.
-   subroutine create_file(path, writer, error)
+   subroutine create_file(path, kind, writer, error)
       character(*), intent(in) :: path
+      type(file_kind_type), intent(in) :: kind
       type(writer_type), intent(out) :: writer
       type(error_type), allocatable, intent(out) :: error
       integer(hid_t) :: access
       integer :: code
 
-      call begin_checked(path, writer%replacement, error)
+      call begin_checked(path, kind, writer%replacement, error)
       if (allocated(error)) return
       call h5open_f(code)
       call h5eset_auto_f(0, code)
@@ -95,7 +127,7 @@ contains
       integer(hid_t) :: access
       integer :: code, unit
 
-      call begin_checked(path, writer%replacement, error)
+      call begin_replacement(path, writer%replacement, error)
       if (allocated(error)) return
       writer%expected = identity
       open (newunit=unit, file=path, access='stream', form='unformatted', action='read', status='old', iostat=code, iomsg=why)

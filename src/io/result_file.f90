@@ -6,7 +6,7 @@ module mfv_result_file
    use h5ds
    use mfv_case, only: case_type
    use mfv_error, only: error_type
-   use mfv_hdf5_writer
+   use mfv_hdf5_writer, check_place => check_writable
    use mfv_result_fields
    use mfv_simulation, only: simulation_type
    use mfv_strings, only: string_type
@@ -14,10 +14,21 @@ module mfv_result_file
    private
    public :: check_writable, write_result
 
+   type(file_kind_type), parameter :: result_kind = file_kind_type('result of MFV', 'outcome')
+
 contains
 
-   !> Write the result of a case to `path`, with its `warnings` (see mfv_validity). Error MFV_FILE_ERROR; what was at `path` before is then still there. See
-   !> check_writable for what is not replaced.
+   !> Whether the result of a case could be written to `path`: error MFV_INPUT_ERROR where not, found out before a long run.
+   !> What is there and is no result, the case itself or a matrix that it names, is not replaced.
+   subroutine check_writable(path, error)
+      character(*), intent(in) :: path
+      type(error_type), allocatable, intent(out) :: error
+
+      call check_place(path, result_kind, error)
+   end subroutine check_writable
+
+   !> Write the result of a case to `path`, with its `warnings` (see mfv_validity). Error MFV_FILE_ERROR; what was at `path`
+   !> before is then still there. See check_writable for what is not replaced.
    subroutine write_result(path, case, simulation, warnings, error)
       character(*), intent(in) :: path
       type(case_type), intent(in) :: case
@@ -26,7 +37,7 @@ contains
       type(error_type), allocatable, intent(out) :: error
       type(writer_type) :: writer
 
-      call create_file(path, writer, error)
+      call create_file(path, result_kind, writer, error)
       if (allocated(error)) return
       if (writer%code == 0) then
          call write_attributes(writer, case, simulation, warnings)
