@@ -1,8 +1,8 @@
 !> mfv_conventional CASE.nml: solve one case with the conventional algorithm (dissertation section 2.2), whatever algorithm it
 !> names, to compare with mfv_run.
 program mfv_conventional
-   use, intrinsic :: iso_fortran_env, only: output_unit
    use mfv_help, only: print_lines, refuse, refuse_option
+   use mfv_output, only: begin_program, print_line
    use mfv_run_case, only: run_case
    use mfv_scene, only: algorithm_conventional
    use mfv_terminal
@@ -46,13 +46,14 @@ program mfv_conventional
       ]
    character(:), allocatable :: argument
 
+   call begin_program()
    if (command_argument_count() /= 1) call refuse('mfv_conventional', usage, 'one case file is wanted')
    call get_argument(1, argument)
    select case (argument)
    case ('--help', '-h')
       call print_lines([usage, help])
    case ('--version')
-      write (output_unit, '(a)') 'mfv_conventional '//library_version
+      call print_line('mfv_conventional '//library_version)
    case default
       if (index(argument, '-') == 1) call refuse_option('mfv_conventional', usage, help, argument)
       call run_case(argument, algorithm_conventional, '_conventional')

@@ -1,6 +1,5 @@
 !> mfv_run CASE.nml: solve one case and write its result.
 program mfv_run
-   use, intrinsic :: iso_fortran_env, only: output_unit
    use mfv_advise_case, only: advise_case
    use mfv_case, only: case_type
    use mfv_case_keys, only: case_catalogue
@@ -8,6 +7,7 @@ program mfv_run
    use mfv_error, only: error_type
    use mfv_help, only: print_lines, refuse, refuse_option
    use mfv_keys, only: list_keys_as_markdown
+   use mfv_output, only: begin_program, print_line, print_text
    use mfv_run_case, only: run_case
    use mfv_summary, only: summarize_check
    use mfv_terminal
@@ -87,15 +87,16 @@ program mfv_run
       ]
    character(:), allocatable :: argument, option, text
 
+   call begin_program()
    call get_argument(1, option)
    select case (option)
    case ('--help', '-h')
       call print_lines([usage, help])
    case ('--version')
-      write (output_unit, '(a)') 'mfv_run '//library_version
+      call print_line('mfv_run '//library_version)
    case ('--keys')
       call list_keys_as_markdown(case_catalogue(), text)
-      write (output_unit, '(a)', advance='no') text
+      call print_text(text)
    case ('--estimate')
       call get_argument(2, argument)
       call expect_arguments(2)
@@ -133,7 +134,7 @@ contains
       call read_case_file(path, case, error)
       if (allocated(error)) call fail(error)
       call summarize_check(case, text)
-      write (output_unit, '(a)', advance='no') text
+      call print_text(text)
    end subroutine check_case
 
 end program mfv_run

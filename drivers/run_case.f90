@@ -1,6 +1,6 @@
 !> What the programs that solve a case have in common.
 module mfv_run_case
-   use, intrinsic :: iso_fortran_env, only: error_unit, output_unit
+   use, intrinsic :: iso_fortran_env, only: error_unit
    use mfv_case, only: case_type
    use mfv_case_reader, only: read_case_file
    use mfv_clock, only: seconds_now
@@ -9,6 +9,7 @@ module mfv_run_case
    use mfv_features, only: has_hdf5, hdf5_is_left_out
    use mfv_kinds, only: wp
    use mfv_one_thread, only: use_one_thread
+   use mfv_output, only: print_line, print_text
    use mfv_result_file, only: check_writable, write_result
    use mfv_simulation, only: new_simulation, simulation_type
    use mfv_status
@@ -66,11 +67,11 @@ contains
       if (has_hdf5) call write_result(case%result_path, case, simulation, warnings, error)
       if (allocated(error)) call fail(error)
       call summarize(case, simulation, warnings, seconds_now() - started, text)
-      write (output_unit, '(a)', advance='no') text
+      call print_text(text)
       if (has_hdf5) then
-         write (output_unit, '(a)') 'result              '//case%result_path
+         call print_line('result              '//case%result_path)
       else
-         write (output_unit, '(a)') 'result              no file: '//hdf5_is_left_out
+         call print_line('result              no file: '//hdf5_is_left_out)
       end if
       if (simulation%outcome /= MFV_COMPLETE) write (error_unit, '(a)') simulation%message
       if (was_interrupted(simulation)) call end_program(status_exit_code(MFV_INTERRUPTED))
