@@ -76,7 +76,7 @@ contains
       self%kernel = kernel
       self%harmonics = harmonics
       if (present(radial)) self%radial = radial
-      if (harmonics == 0) self%harmonics = default_harmonics*circle_intervals(radius, interval)
+      if (harmonics == 0) self%harmonics = default_harmonics*min(circle_intervals(radius, interval), huge(0)/default_harmonics)
       self%modulus = material%plane_modulus()
       call self%choose_blocks(coupling, tangential)
       call set_translations(self)
