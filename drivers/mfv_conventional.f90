@@ -1,6 +1,6 @@
 !> mfv_conventional CASE.nml: solve one case with the conventional algorithm (dissertation section 2.2), whatever algorithm it
 !> names, to compare with mfv_run.
-program mfv_conventional
+program run_conventional
    use, intrinsic :: iso_fortran_env, only: output_unit
    use mfv_help, only: print_lines, refuse, refuse_option
    use mfv_run_case, only: run_case
@@ -58,4 +58,4 @@ program mfv_conventional
       call run_case(argument, algorithm_conventional, '_conventional')
    end select
 
-end program mfv_conventional
+end program run_conventional
