@@ -11,6 +11,9 @@ import tempfile
 from dataclasses import dataclass
 from pathlib import Path
 
+#: Signature of a case without an answer.
+HANG = "no answer in time"
+
 HERE = Path(__file__).resolve().parent
 
 
@@ -43,7 +46,7 @@ class Child:
             "OPENBLAS_NUM_THREADS": "1",
             "ASAN_OPTIONS": f"detect_leaks={int(finds_leaks)}:allocator_may_return_null=1:max_allocation_size_mb=3000:handle_abort=1",
             "LSAN_OPTIONS": f"suppressions={HERE / 'leaks.supp'}:print_suppressions=0",
-            "UBSAN_OPTIONS": "print_stacktrace=1:halt_on_error=1",
+            "UBSAN_OPTIONS": "print_stacktrace=1",
         }
         self._process: subprocess.Popen[bytes] | None = None
 
@@ -96,7 +99,7 @@ class Child:
         assert process.stdout
         if not select.select([process.stdout], [], [], self._patience)[0]:
             self.stop()
-            raise Finding(f"no answer in {self._patience:.0f} s")
+            raise Finding(HANG)
         line = process.stdout.readline()
         if line:
             return line.decode(errors="replace")
@@ -107,7 +110,21 @@ class Child:
 
 
 def signature_of(report: str) -> str:
-    """The cause in the report of a sanitizer or of the Fortran library: its summary, and the first procedures of MFV in it."""
-    match = re.search(r"SUMMARY: (.*)|(.*runtime error: .*)|(Fortran runtime error: .*)|(Error allocating.*)", report)
-    procedures = re.findall(r"in (__mfv_\w+|mfv_\w+|fuzz_\w+)", report)[:2]
-    return " < ".join([match[0].strip()[:200], *procedures]) if match else ""
+    """The cause in the report of a sanitizer or of the Fortran library: its summary, and the first procedures of MFV in it.
+
+    An overflow of an integer(kind=8) is none: gfortran computes the old size of an allocatable that is not allocated from whatever
+    its bounds are when it is assigned to, and drops the number.
+    """
+    errors = [line for line in report.splitlines() if "runtime error: " in line and "type 'integer(kind=8)'" not in line]
+    match = re.search(r"SUMMARY: (.*)|Error allocating.*", report)
+    cause = errors[0] if errors else match[0] if match else ""
+    return " < ".join([re.sub(r"\d{4,}", "N", cause.strip()[:200]), *_procedures(report)]) if cause else ""
+
+
+def leak_of(report: str) -> str:
+    """The procedures that leak, the first ones that are not those of libraries."""
+    return " < ".join(_procedures(report)) or "outside MFV"
+
+
+def _procedures(report: str) -> list[str]:
+    return re.findall(r"in (__mfv_\w+|mfv_\w+|fuzz_\w+)", report)[:2]

@@ -121,7 +121,9 @@ def odd_attributes(random: Any, data: bytes) -> bytes:
             else:
                 paths: list[str] = []
                 file.visit(paths.append)
-                path = random.choice(paths)
+                path = random.choice(paths or ["/"])
+                if path == "/":
+                    continue
                 item = file[path]
                 values = item[()] if isinstance(item, h5py.Dataset) else None
                 del file[path]

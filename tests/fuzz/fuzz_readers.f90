@@ -2,11 +2,13 @@
 module fuzz_readers
    use, intrinsic :: iso_c_binding, only: c_char, c_int, c_size_t
    use, intrinsic :: iso_fortran_env, only: int64, int8
+   use hdf5, only: H5I_ATTR_F, H5I_DATASET_F, H5I_DATASPACE_F, H5I_DATATYPE_F, H5I_FILE_F, H5I_GENPROP_LST_F, H5I_GROUP_F, hsize_t
    use mfv_body, only: body_type
    use mfv_case, only: case_type
    use mfv_error, only: error_type
    use mfv_kinds, only: wp
    use mfv_matrix_file, only: read_matrix_body
+   use mfv_observables, only: moment_count
    use mfv_profile_file, only: read_profile, read_table
    use mfv_status, only: MFV_COMPLETE
    use mfv_stress_file, only: add_stresses, stress_request_type, stress_result_type
@@ -22,6 +24,15 @@ module fuzz_readers
    !> Checksum of the sweep that journals are looked into for, and its cases.
    integer(int64), parameter :: journal_checksum = 1234567890123456789_int64
    integer, parameter :: journal_cases = 5
+
+   interface
+      function c_members(type, members) bind(C, name='H5Inmembers') result(code)
+         import :: c_int, hsize_t
+         integer(c_int), value :: type
+         integer(hsize_t), intent(out) :: members
+         integer(c_int) :: code
+      end function c_members
+   end interface
 
 contains
 
@@ -82,7 +93,7 @@ contains
       call tell(error, message, size, fuzz_journal)
    end function fuzz_journal
 
-   !> Write a valid journal to begin with: every second case, with tractions at one moment of two.
+   !> Write a valid journal to begin with: every second case, with tractions at one moment.
    integer(c_int) function fuzz_write_journal(path, message, size) bind(C)
       character(kind=c_char), intent(in) :: path(*)
       character(kind=c_char), intent(inout) :: message(*)
@@ -99,7 +110,7 @@ contains
          record%number = i
          record%message = 'every step was reached'
          if (allocated(record%tractions)) deallocate (record%tractions)
-         allocate (record%tractions(2))
+         allocate (record%tractions(moment_count))
          record%tractions(1)%pressure = [0.0_wp, 1.0_wp, 2.0_wp]
          record%tractions(1)%shear = [0.0_wp, 0.5_wp, 1.0_wp]
          call pack_record(record, bytes)
@@ -138,6 +149,20 @@ contains
       call read_profile(from_c(path), body, error)
       call tell(error, message, size, fuzz_columns)
    end function fuzz_columns
+
+   !> Objects of HDF5 that are open: files, groups, types, spaces, datasets, attributes, lists of properties.
+   integer(c_int) function fuzz_open_objects() bind(C)
+      integer, parameter :: kinds = 7
+      integer :: types(kinds), i, code
+      integer(hsize_t) :: members
+
+      fuzz_open_objects = 0
+      types = [H5I_FILE_F, H5I_GROUP_F, H5I_DATATYPE_F, H5I_DATASPACE_F, H5I_DATASET_F, H5I_ATTR_F, H5I_GENPROP_LST_F]
+      do i = 1, kinds
+         code = c_members(types(i), members)
+         if (code == 0) fuzz_open_objects = fuzz_open_objects + int(members)
+      end do
+   end function fuzz_open_objects
 
    !> Status and message of what was done.
    subroutine tell(error, message, size, status)

@@ -27,9 +27,10 @@ from typing import Any
 
 import files
 import texts
-from child import Answer, Child, Finding, signature_of
+from child import HANG, Answer, Child, Finding, leak_of, signature_of
 from hypothesis import HealthCheck, Phase, given, seed, settings
 from hypothesis import strategies as st
+from hypothesis.errors import Flaky
 
 HERE = Path(__file__).resolve().parent
 ROOT = HERE.parents[1]
@@ -121,12 +122,12 @@ class Fuzzer:
         path = self.folder / f"{name}.{target.ending}"
         path.write_bytes(data)
         answer = child.do(target.command, path)
-        if "runtime error" in (report := child.errors()):
-            raise Finding(signature_of(report), report)
+        if signature := signature_of(report := child.errors()):
+            raise Finding(signature, report)
         if looks_for_leaks and not target.in_python and child.ask("leaks").strip() == "1":
             report = child.errors()
             child.stop()
-            raise Finding("leak: " + signature_of(report), report)
+            raise Finding("leak: " + leak_of(report), report)
         if answer.status < 0:
             raise Finding(answer.message)
         if answer.status == MFV_COMPLETE and answer.residual > self.options.residual:
@@ -150,7 +151,7 @@ class Fuzzer:
                 report = self.child.errors()
                 self._chunk(name, target, number, chunk_seed, shrinks=True, looks_for_leaks=True)
                 if not any(signature.startswith("leak") for signature in count.findings):
-                    self._keep(name, chunk_seed, Finding("leak of more than one case: " + signature_of(report), report), b"")
+                    self._keep(name, chunk_seed, Finding("leak of more than one case: " + leak_of(report), report), b"")
                 self.child.stop()
             count.cases += number
             chunk += 1
@@ -180,6 +181,9 @@ class Fuzzer:
             try:
                 self.try_case(name, data, looks_for_leaks)
             except Finding as finding:
+                if finding.signature == HANG:  # too slow to shrink
+                    self._keep(name, chunk_seed, finding, data)
+                    return
                 if finding.signature in known:
                     known[finding.signature] += 1
                     return
@@ -193,14 +197,15 @@ class Fuzzer:
             try:
                 one()
                 return
-            except Finding:
+            except (Finding, Flaky):  # flaky: what depends on the cases before it is kept as it is
                 self._keep(name, chunk_seed, *worst[0])
 
     def _keep(self, name: str, chunk_seed: str, finding: Finding, data: bytes) -> None:
         """Keep the smallest case of a finding, with its report."""
         self.counts[name].findings[finding.signature] += 1
         self.options.findings.mkdir(parents=True, exist_ok=True)
-        stem = self.options.findings / f"{name}-{hashlib.sha256(finding.signature.encode()).hexdigest()[:8]}"
+        distinct = data if finding.signature == HANG else finding.signature.encode()
+        stem = self.options.findings / f"{name}-{hashlib.sha256(distinct).hexdigest()[:8]}"
         path = stem.with_suffix("." + self.targets[name].ending)
         path.write_bytes(data)
         stem.with_suffix(".report").write_text(f"seed {chunk_seed}\n{finding.signature}\n{finding.details}\n")

@@ -19,6 +19,8 @@ int fuzz_write_journal(const char *path, char *message, size_t size);
 int fuzz_table(const char *path, char *message, size_t size);
 int fuzz_columns(const char *path, char *message, size_t size);
 
+int fuzz_open_objects(void);
+
 /* Of the sanitizers, where they are linked in. */
 int __lsan_do_recoverable_leak_check(void) __attribute__((weak));
 
@@ -108,6 +110,7 @@ static void run(const char *target, const char *path, outcome *answer) {
   } readers[] = {{"sweep", fuzz_sweep}, {"matrix", fuzz_matrix}, {"stress", fuzz_stress}, {"journal", fuzz_journal},
                  {"write_journal", fuzz_write_journal},
                  {"table", fuzz_table}, {"columns", fuzz_columns}};
+  static int open_objects = 0;
   size_t i;
   answer->residual = -1.0;
   answer->message[0] = '\0';
@@ -118,6 +121,9 @@ static void run(const char *target, const char *path, outcome *answer) {
   for (i = 0; i < sizeof readers / sizeof readers[0]; i++) {
     if (strcmp(target, readers[i].name) == 0) {
       answer->status = readers[i].read(path, answer->message, sizeof answer->message);
+      /* The first time HDF5 makes objects of its own, which stay. */
+      if (open_objects > 0 && fuzz_open_objects() > open_objects) fail("objects of HDF5 are left open");
+      open_objects = fuzz_open_objects();
       return;
     }
   }
