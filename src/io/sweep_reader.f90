@@ -18,7 +18,7 @@ module mfv_sweep_reader
    use mfv_sweep_keys, only: sweep_catalogue
    use mfv_sweep_plan
    use mfv_sweep_record, only: record_layout
-   use mfv_text_file, only: directory_of, path_beside, read_text, stem_of
+   use mfv_text_file, only: directory_of, path_beside, read_bytes, read_text, stem_of
    use mfv_version, only: library_version
    implicit none
    private
@@ -703,7 +703,7 @@ contains
       character(:), allocatable :: path, bytes
 
       path = path_beside(base%directory, name)
-      call read_text(path, bytes, error)
+      call read_bytes(path, bytes, error)
       if (.not. allocated(error)) call add_text_to_checksum(bytes, checksum)
    end subroutine add_file
 
