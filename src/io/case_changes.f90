@@ -126,7 +126,8 @@ contains
       text = to_text(value, digits_needed(value))
    end subroutine write_number
 
-   !> How many significant digits tell a number from its neighbours.
+   !> How many significant digits tell a number from its neighbours, or 15 where fewer do: these end with zeros, which to_text leaves
+   !> out.
    pure integer function digits_needed(value) result(digits)
       real(wp), intent(in) :: value
       integer, parameter :: enough = 17
@@ -134,7 +135,7 @@ contains
       real(wp) :: again
       logical :: is_right
 
-      do digits = 6, enough - 1
+      do digits = precision(value), enough - 1
          text = to_text(value, digits)
          call read_real(trim(text), again, is_right)
          if (.not. is_right) cycle

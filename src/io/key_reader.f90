@@ -107,7 +107,7 @@ contains
    subroutine check_entries(reader, error)
       type(reader_type), intent(in) :: reader
       type(error_type), allocatable, intent(out) :: error
-      character(:), allocatable :: why, written
+      character(:), allocatable :: why, written, other
       integer :: i, j, k
 
       do i = 1, size(reader%groups)
@@ -116,6 +116,8 @@ contains
                k = reader%catalogue%place(group, entry%key)
                if (k == 0) then
                   call suggest(entry%key, reader%catalogue%names(group), '', why)
+                  call find_group_of(reader%catalogue, entry%key, other)
+                  if (other /= '') why = '; it is one of &'//other
                   why = 'unknown key'//why
                else if (any([(reader%groups(i)%entries(k)%key == entry%key, k=1, j - 1)])) then
                   why = 'the key is there twice'
@@ -132,6 +134,19 @@ contains
       end do
    end subroutine check_entries
 
+   !> The first group that has a key of this name, empty for none.
+   pure subroutine find_group_of(catalogue, name, group)
+      type(catalogue_type), intent(in) :: catalogue
+      character(*), intent(in) :: name
+      character(:), allocatable, intent(out) :: group
+      integer :: i
+
+      group = ''
+      do i = 1, size(catalogue%keys)
+         if (catalogue%keys(i)%name == name .and. group == '') group = catalogue%keys(i)%group
+      end do
+   end subroutine find_group_of
+
    !> What is wrong with the value of an entry; empty when nothing is.
    subroutine find_fault(key, entry, why)
       type(key_type), intent(in) :: key
@@ -139,9 +154,10 @@ contains
       character(:), allocatable, intent(out) :: why
       real(wp) :: value
       integer :: code
-      logical :: right
+      logical :: right, reasonable
       integer :: i
 
+      reasonable = .true.
       right = size(entry%values) == 1 .or. (key%is_list .and. size(entry%values) > 1)
       do i = 1, size(entry%values)
          if (.not. right) exit
@@ -156,6 +172,8 @@ contains
             call read_number(entry%values(i)%text, key%kind, value, code)
             right = code == 0 .and. value >= key%lower .and. value <= key%upper
             if (right .and. key%lower_open) right = value > key%lower
+            if (right .and. key%kind == kind_real) reasonable = is_reasonable(value)
+            right = right .and. reasonable
          end select
       end do
       why = ''
@@ -163,6 +181,7 @@ contains
       call describe_allowed(key, why)
       why = 'must be '//why
       if (key%unit /= '') why = why//' ('//key%unit//')'
+      if (.not. reasonable) why = why//'; '//reasonable_sizes
    end subroutine find_fault
 
    !> A finite number; `code` is not 0 where the text is none.

@@ -264,8 +264,8 @@ contains
          end if
          call read_repeats(cursor, repeats)
          if (repeats < 1 .or. repeats > most_values - n) then
-            call complain(cursor, place//": '"//rest_of_line(cursor)//"': the number before * must be a whole number from 1 to "// &
-                          to_text(most_values - n), error)
+            call complain(cursor, place//": '"//rest_of_line(cursor)//"': the number before * must be a whole number from 1 "// &
+                          'to '//to_text(most_values - n), error)
             return
          end if
          mark = next(cursor)
