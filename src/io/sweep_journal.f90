@@ -50,6 +50,7 @@ contains
       if (size(bytes) < header_length .or. again) then
          call cut_file(journal%file, 0_int64, code)
          if (code == 0) call append_bytes(journal%file, header_of(checksum), code)
+         if (code == 0) call sync_name(path, code)
       else
          call read_records(bytes, records, whole)
          journal%dropped = size(bytes, kind=int64) - whole
@@ -181,18 +182,23 @@ contains
       if (code /= 0) call set_error(error, MFV_FILE_ERROR, journal%path//': the journal cannot be written; what it has is safe')
    end subroutine append_to_journal
 
-   !> Make the journal safe from the end of the machine.
-   subroutine sync_journal(journal)
+   !> Make the journal safe from the end of the machine. Error MFV_FILE_ERROR.
+   subroutine sync_journal(journal, error)
       type(journal_type), intent(in) :: journal
+      type(error_type), allocatable, intent(inout) :: error
+      integer :: code
 
-      call sync_file(journal%file)
+      call sync_file(journal%file, code)
+      if (code /= 0 .and. .not. allocated(error)) &
+         call set_error(error, MFV_FILE_ERROR, journal%path//': the journal cannot be brought to the disk')
    end subroutine sync_journal
 
-   !> Close the journal, safe from the end of the machine.
-   subroutine close_journal(journal)
+   !> Close the journal, safe from the end of the machine. Error MFV_FILE_ERROR where it is not; an error that is there stays.
+   subroutine close_journal(journal, error)
       type(journal_type), intent(inout) :: journal
+      type(error_type), allocatable, intent(inout) :: error
 
-      call sync_file(journal%file)
+      call sync_journal(journal, error)
       call close_file(journal%file)
    end subroutine close_journal
 
