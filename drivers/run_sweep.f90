@@ -7,6 +7,7 @@ module mfv_run_sweep
    use mfv_one_thread, only: use_one_thread
    use mfv_output, only: print_line
    use mfv_ranks
+   use mfv_safe_file, only: describe_code
    use mfv_status
    use mfv_strings, only: add_text, from_c, string_type, to_text
    use mfv_sweep_journal
@@ -147,11 +148,14 @@ contains
    subroutine make_states_folder(sweep, error)
       type(sweep_type), intent(in) :: sweep
       type(error_type), allocatable, intent(out) :: error
+      character(:), allocatable :: why
       integer :: code
 
       call make_directory(sweep%states_folder())
       call sync_name(sweep%result_path, code)
-      if (code /= 0) call set_error(error, MFV_FILE_ERROR, sweep%states_folder()//' cannot be brought to the disk')
+      if (code == 0) return
+      call describe_code(code, why)
+      call set_error(error, MFV_FILE_ERROR, sweep%states_folder()//' cannot be brought to the disk: '//why)
    end subroutine make_states_folder
 
    !> Where the table is complete: whether there is nothing to do, and the user has been told so. There is where --again has

@@ -162,8 +162,8 @@ contains
       code = c_fflush(file%stream)
    end subroutine append_bytes
 
-   !> Have the operating system write to the disk what it has: it is then safe from the end of the machine. `code` is not 0
-   !> where that failed.
+   !> Have the operating system write to the disk what it has: it is then safe from the end of the machine. `code` is
+   !> the system's where that failed, else 0 (see describe_code of mfv_safe_file).
    subroutine sync_file(file, code)
       type(locked_file_type), intent(in) :: file
       integer, intent(out) :: code
@@ -171,7 +171,7 @@ contains
       code = c_sync(c_fileno(file%stream))
    end subroutine sync_file
 
-   !> The same for the name of a file or directory that has been made. `code` is not 0 where that failed.
+   !> The same for the name of a file or directory that has been made.
    subroutine sync_name(path, code)
       character(*), intent(in) :: path
       integer, intent(out) :: code

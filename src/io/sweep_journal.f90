@@ -5,6 +5,7 @@ module mfv_sweep_journal
    use mfv_checksum, only: checksum_of
    use mfv_error, only: error_type, set_error
    use mfv_locked_file
+   use mfv_safe_file, only: describe_code
    use mfv_status, only: MFV_FILE_ERROR, MFV_INPUT_ERROR
    use mfv_sweep_record, only: record_number, record_type, unpack_record
    implicit none
@@ -186,11 +187,13 @@ contains
    subroutine sync_journal(journal, error)
       type(journal_type), intent(in) :: journal
       type(error_type), allocatable, intent(inout) :: error
+      character(:), allocatable :: why
       integer :: code
 
       call sync_file(journal%file, code)
-      if (code /= 0 .and. .not. allocated(error)) &
-         call set_error(error, MFV_FILE_ERROR, journal%path//': the journal cannot be brought to the disk')
+      if (code == 0 .or. allocated(error)) return
+      call describe_code(code, why)
+      call set_error(error, MFV_FILE_ERROR, journal%path//': the journal cannot be brought to the disk: '//why)
    end subroutine sync_journal
 
    !> Close the journal, safe from the end of the machine. Error MFV_FILE_ERROR where it is not; an error that is there stays.
