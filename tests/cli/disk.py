@@ -17,7 +17,7 @@ CASE = """&body shape='half_plane', shear_modulus=1.0, poisson_ratio=0.3 /
 &output file='case.h5' /
 """
 STUDY = """&sweep base='case.nml', states='all' /
-&vary key='friction%mu', values=0.4, 0.5 /
+&vary key='step(2)%tangential_force', values=1.0e-4, 2.0e-4 /
 """
 
 
