@@ -2,11 +2,12 @@
 module mfv_run_sweep
    use, intrinsic :: iso_c_binding
    use, intrinsic :: iso_fortran_env, only: error_unit, int64
-   use mfv_error, only: error_type
-   use mfv_locked_file, only: delete_path, make_directory
+   use mfv_error, only: error_type, set_error
+   use mfv_locked_file, only: delete_path, make_directory, sync_name
    use mfv_one_thread, only: use_one_thread
    use mfv_output, only: print_line
    use mfv_ranks
+   use mfv_safe_file, only: describe_code
    use mfv_status
    use mfv_strings, only: add_text, from_c, string_type, to_text
    use mfv_sweep_journal
@@ -139,9 +140,23 @@ contains
       if (allocated(error)) return
       allocate (parts(0))
       if (options%parts == 0) call gather_parts(sweep, options, parts, records, error)
-      if (allocated(error)) call close_journal(journal)
-      if (.not. allocated(error) .and. sweep%keeps_states) call make_directory(sweep%states_folder())
+      if (allocated(error)) call close_journal(journal, error)
+      if (.not. allocated(error) .and. sweep%keeps_states) call make_states_folder(sweep, error)
    end subroutine prepare
+
+   !> The folder of the states, beside the table. Error MFV_FILE_ERROR where a power cut could take it away again.
+   subroutine make_states_folder(sweep, error)
+      type(sweep_type), intent(in) :: sweep
+      type(error_type), allocatable, intent(out) :: error
+      character(:), allocatable :: why
+      integer :: code
+
+      call make_directory(sweep%states_folder())
+      call sync_name(sweep%result_path, code)
+      if (code == 0) return
+      call describe_code(code, why)
+      call set_error(error, MFV_FILE_ERROR, sweep%states_folder()//' cannot be brought to the disk: '//why)
+   end subroutine make_states_folder
 
    !> Where the table is complete: whether there is nothing to do, and the user has been told so. There is where --again has
    !> begun anew, so that there is a journal of this sweep without all its cases, or one of a part. A journal with all cases,
@@ -281,13 +296,13 @@ contains
       call solve_cases(sweep, pending, threads_for(options, ranks), ranks, journal, records, error)
       code = 0
       if (allocated(error)) then
-         call close_journal(journal)
+         call close_journal(journal, error)
       else if (any(records(wanted)%number == 0)) then
          code = status_exit_code(MFV_INTERRUPTED)
          call leave(sweep, options, size(wanted), journal, records, error)
       else if (options%parts > 0) then
-         call close_journal(journal)
-         call print_line('part '//to_text(options%part)//' of '//to_text(options%parts)//': '// &
+         call close_journal(journal, error)
+         if (.not. allocated(error)) call print_line('part '//to_text(options%part)//' of '//to_text(options%parts)//': '// &
             to_text(size(wanted))//' cases in '//journal%path//'; mfv_sweep '//sweep%source//' gathers the parts')
       else
          call finish(sweep, journal, records, parts, error)
@@ -308,7 +323,8 @@ contains
       type(error_type), allocatable, intent(out) :: error
       integer :: state
 
-      call close_journal(journal)
+      call close_journal(journal, error)
+      if (allocated(error)) return
       write (error_unit, '(a)') 'interrupted: '//to_text(count(records%number > 0))//' of '//to_text(wanted)// &
          ' cases are kept in '//journal%path//'; the same command'// &
          trim(merge(' without --again', '                ', options%again))//' goes on'
@@ -328,7 +344,7 @@ contains
 
       call write_table(sweep, records, error)
       if (allocated(error)) then
-         call close_journal(journal)
+         call close_journal(journal, error)
          return
       end if
       do i = 1, size(parts)

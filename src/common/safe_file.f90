@@ -20,7 +20,7 @@ module mfv_safe_file
    implicit none
    private
    public :: replacement_type, begin_replacement, write_replacement, finish_replacement, drop_replacement, &
-             identify_file, identity_length, write_all
+             identify_file, identity_length, write_all, describe_code
 
    !> Numbers by which a file is known.
    integer, parameter :: identity_length = 5
@@ -129,7 +129,7 @@ contains
       integer(c_int) :: code
 
       code = c_write(int(descriptor, c_int), transfer(text, [0_c_int8_t]), len(text, kind=c_size_t))
-      if (code /= 0) call describe(code, why)
+      if (code /= 0) call describe_code(code, why)
    end subroutine write_all
 
    !> By what the file at `path` is known until something changes or replaces it; the same for all that is not there.
@@ -176,12 +176,12 @@ contains
       type(error_type), allocatable, intent(out) :: error
       character(:), allocatable :: why
 
-      call describe(code, why)
+      call describe_code(code, why)
       call set_error(error, MFV_FILE_ERROR, what//': '//why)
    end subroutine explain
 
    !> The words of the system for its error `code`.
-   subroutine describe(code, words)
+   subroutine describe_code(code, words)
       integer(c_int), intent(in) :: code
       character(:), allocatable, intent(out) :: words
       integer(c_size_t), parameter :: longest = 200
@@ -189,7 +189,7 @@ contains
 
       call c_describe(code, buffer, longest)
       words = from_c(buffer)
-   end subroutine describe
+   end subroutine describe_code
 
    !> A text of C.
    subroutine take_text(text_of_c, text)

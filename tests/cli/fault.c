@@ -169,6 +169,40 @@ int close(int descriptor) {
   return -1;
 }
 
+/* Streams of C: a flush is their write. */
+FILE *fopen(const char *path, const char *mode) {
+  FILE *(*next)(const char *, const char *) = (FILE * (*)(const char *, const char *)) dlsym(RTLD_NEXT, "fopen");
+  char whole[PATH_MAX];
+  FILE *stream;
+  const int inside = in_folder(path, whole) && mode[0] != 'r';
+  if (inside && fails("open", whole, "", 1)) return NULL;
+  stream = next(path, mode);
+  if (stream != NULL && inside && fileno(stream) < MOST_DESCRIPTORS) {
+    strcpy(names[fileno(stream)], whole);
+    writes[fileno(stream)] = 1;
+  }
+  return stream;
+}
+
+int fflush(FILE *stream) {
+  int (*next)(FILE *) = (int (*)(FILE *))dlsym(RTLD_NEXT, "fflush");
+  if (stream != NULL && tracked(fileno(stream)) && fails("write", names[fileno(stream)], "", 1)) return EOF;
+  return next(stream);
+}
+
+int fclose(FILE *stream) {
+  int (*next)(FILE *) = (int (*)(FILE *))dlsym(RTLD_NEXT, "fclose");
+  if (tracked(fileno(stream))) names[fileno(stream)][0] = '\0';
+  return next(stream);
+}
+
+int remove(const char *path) {
+  int (*next)(const char *) = (int (*)(const char *))dlsym(RTLD_NEXT, "remove");
+  char whole[PATH_MAX];
+  if (in_folder(path, whole)) write_down("unlink", whole, "");
+  return next(path);
+}
+
 int rename(const char *from, const char *to) {
   int (*next)(const char *, const char *) = (int (*)(const char *, const char *))dlsym(RTLD_NEXT, "rename");
   char whole[PATH_MAX], other[PATH_MAX];

@@ -108,7 +108,7 @@ def _bring_to_disk(path: Path) -> None:
     try:
         os.fsync(descriptor)
     except OSError as error:
-        if error.errno not in (errno.EINVAL, errno.ENOTSUP):
+        if error.errno not in (errno.EINVAL, errno.ENOTSUP, errno.ENOSYS):
             raise OSError(error.errno, f"{path}: cannot be brought to the disk: {error.strerror}") from error
     finally:
         os.close(descriptor)
