@@ -1,5 +1,5 @@
-!> The C interface of include/mfv.h: thin walls around the library. Unpack, call, return the status. Calls with a handle come from
-!> guards.c, which has looked the handle up: they have the address of its object in its place, and no other call uses it.
+!> The C interface of include/mfv.h: thin walls around the library. Unpack, call, return the status. Calls with a handle
+!> come from guards.c, which has looked the handle up: they have the address of its object in its place, and no other call uses it.
 module mfv_c
    use, intrinsic :: ieee_arithmetic, only: ieee_is_finite
    use, intrinsic :: iso_c_binding
@@ -45,6 +45,9 @@ module mfv_c
    end type state_handle_type
 
    character(*), parameter :: unnamed = 'text'
+
+   !> Sizes of arrays beyond this are a mistake: (size_t)-1, say.
+   integer(c_size_t), parameter :: most = 2_c_size_t**31 - 1
 
    !> mfv_step of the header.
    type, bind(C) :: c_step
@@ -120,7 +123,7 @@ contains
       status = MFV_BAD_ARGUMENT
       if (.not. c_associated(feature) .or. .not. c_associated(there)) return
       call integer_out(0, there)
-      if (text_in(feature) /= 'hdf5') return
+      if (text_in(feature) /= 'hdf5' .or. c_strlen(feature) /= 4) return
       call integer_out(merge(1, 0, has_hdf5), there)
       status = MFV_COMPLETE
    end function mfv_has_feature
@@ -200,6 +203,11 @@ contains
 
       call find_scene(scene, self, status, key, values)
       if (status /= MFV_COMPLETE) return
+      if (.not. is_size(count)) then
+         status = MFV_BAD_ARGUMENT
+         call keep_null(self, text_in(key))
+         return
+      end if
       call c_f_pointer(values, list, [count])
       call self%draft%set(text_in(key), list, error)
       status = merge(MFV_BAD_ARGUMENT, MFV_COMPLETE, allocated(error))
@@ -251,12 +259,11 @@ contains
       type(scene_handle_type), pointer :: self
       type(error_type), allocatable :: error
       real(c_double), pointer :: by_rows(:, :)
-      integer(c_size_t), parameter :: most = 2_c_size_t**31 - 1
 
       call find_scene(scene, self, status, file, dataset)
       if (status /= MFV_COMPLETE) return
       status = MFV_BAD_ARGUMENT
-      if (.not. c_associated(values) .or. rows < 1 .or. columns < 1 .or. rows > most .or. columns > most) then
+      if (.not. (c_associated(values) .and. is_size(rows) .and. is_size(columns))) then
          call keep_null(self, text_in(file))
          return
       end if
@@ -309,13 +316,20 @@ contains
       expected = merge(MFV_COMPLETE, MFV_BAD_ARGUMENT, c_associated(pointer))
    end function expected
 
+   !> Whether this can be the size of an array that a caller has. (The upper half of size_t is below 0 here.)
+   pure logical function is_size(count)
+      integer(c_size_t), intent(in) :: count
+
+      is_size = count > 0 .and. count <= most
+   end function is_size
+
    !> Have a scene keep that something was null.
    subroutine keep_null(self, name)
       type(scene_handle_type), intent(inout) :: self
       character(*), intent(in) :: name
       type(error_type), allocatable :: fault
 
-      call set_error(fault, MFV_INPUT_ERROR, name//': an argument is null or empty')
+      call set_error(fault, MFV_INPUT_ERROR, name//': an argument is null, empty or too large')
       call self%draft%keep_fault(name, fault)
    end subroutine keep_null
 
@@ -746,7 +760,7 @@ contains
       wanted = text_in(name)
       call self%contact%attributes(names, texts)
       do i = 1, ubound(names, 1)
-         if (names(i)%text /= wanted) cycle
+         if (names(i)%text /= wanted .or. len(names(i)%text) /= len(wanted)) cycle
          call size_out(len(texts(i)%text, kind=c_size_t), length)
          if (c_associated(buffer)) status = text_out(texts(i)%text, buffer, size)
          if (status /= MFV_COMPLETE) status = refused(self, 'mfv_attribute: the buffer has no room')
@@ -853,6 +867,10 @@ contains
          status = refused(self, 'an array is null')
          return
       end if
+      if (count < 0 .or. count > most) then
+         status = refused(self, 'count is too large: there must be that many points')
+         return
+      end if
       call c_f_pointer(x, across, [count])
       call c_f_pointer(y, up, [count])
       call c_f_pointer(stresses, values, [int(stress_count, c_size_t), count])
@@ -906,6 +924,10 @@ contains
       status = MFV_COMPLETE
       if (.not. (c_associated(arc) .and. c_associated(width) .and. c_associated(pressure) .and. c_associated(shear))) then
          status = refused(self, 'mfv_stress_under: an array is null')
+         return
+      end if
+      if (.not. is_size(nodes)) then
+         status = refused(self, 'mfv_stress_under: nodes must be at least 1 and the number of tractions')
          return
       end if
       call c_f_pointer(arc, positions, [nodes])
