@@ -1,6 +1,6 @@
 !> mfv_conventional CASE.nml: solve one case with the conventional algorithm (dissertation section 2.2), whatever algorithm it
 !> names, to compare with mfv_run.
-program mfv_conventional
+program run_conventional
    use mfv_help, only: print_lines, refuse, refuse_option
    use mfv_output, only: begin_program, print_line
    use mfv_run_case, only: run_case
@@ -63,4 +63,4 @@ program mfv_conventional
       call run_case(argument, algorithm_conventional, '_conventional', resume=resume)
    end select
 
-end program mfv_conventional
+end program run_conventional

@@ -6,9 +6,10 @@ program mfv_stress
    use mfv_interior, only: stress_count, stress_names
    use mfv_kinds, only: wp
    use mfv_output, only: begin_program, print_line
+   use mfv_numbers, only: read_real
    use mfv_profile_file, only: read_table
    use mfv_stress_file
-   use mfv_strings, only: to_text
+   use mfv_strings, only: shortened, to_text
    use mfv_summary, only: unit_suffix
    use mfv_terminal, only: end_program, fail, get_argument
    use mfv_version, only: library_version
@@ -141,17 +142,15 @@ contains
       logical, intent(in), optional :: whole
       real(wp), parameter :: most = 1.0e5_wp
       character(:), allocatable :: text, kind
-      integer :: code
+      logical :: is_right
 
       kind = ' a number above 0'
       if (present(whole)) kind = ' a whole number of at least '//to_text(nint(lower))
       call get_argument(i, text)
-      number = 0.0_wp
-      code = 1
-      if (text /= '' .and. verify(text, '0123456789+-.eEdD') == 0) read (text, *, iostat=code) number
-      if (code == 0 .and. present(whole)) code = merge(0, 1, abs(number - anint(number)) <= 0.0_wp)
-      if (code == 0) code = merge(0, 1, number >= lower .and. number <= most)
-      if (code /= 0) call refuse('mfv_stress', usage, option//' needs'//kind//", not '"//text//"'")
+      call read_real(text, number, is_right)
+      if (is_right .and. present(whole)) is_right = .not. abs(number - anint(number)) > 0.0_wp
+      if (.not. (is_right .and. number >= lower .and. number <= most)) &
+         call refuse('mfv_stress', usage, option//" needs"//kind//", not '"//shortened(text)//"'")
    end function number
 
    subroutine print_points()

@@ -5,6 +5,7 @@ program mfv_sweep
    use mfv_keys, only: list_keys_as_markdown
    use mfv_namelist, only: group_type, write_namelists
    use mfv_output, only: begin_program, print_line, print_text
+   use mfv_numbers, only: read_whole
    use mfv_ranks, only: has_ranks
    use mfv_run_sweep, only: run_sweep, sweep_options_type
    use mfv_strings, only: to_text
@@ -151,12 +152,10 @@ contains
    !> A whole number, 0 where the text is none.
    integer function whole(digits)
       character(*), intent(in) :: digits
-      integer :: code
+      logical :: is_right
 
       whole = 0
-      if (len(digits) == 0 .or. verify(digits, '0123456789') > 0) return
-      read (digits, *, iostat=code) whole
-      if (code /= 0) whole = 0
+      if (verify(digits, '0123456789') == 0) call read_whole(digits, whole, is_right)
    end function whole
 
    !> Validate, and say what there is to do.

@@ -74,8 +74,8 @@ contains
       ! Positive definite on surfaces shorter than four times the distance at which a force leaves no displacement.
       least = factor*(2.0_wp*log(16.0_wp*n) + 2.0_wp)
       self%kernel = [(max(near(1, 1), least) - factor*log_kernel(2.0_wp*distance), distance=0, 4*n)]/unit
-      self%contact = block_type()
-      self%held = block_type()
+      if (allocated(self%contact)) deallocate (self%contact, self%held)
+      allocate (self%contact, self%held)
    end subroutine prepare
 
    !> About the smallest eigenvalue of the blocks, in the system's units.

@@ -28,7 +28,7 @@ module mfv_contact
 
    integer, parameter :: body_lower = 0, body_upper = 1
    !> What step_to makes of a force and a displacement for one direction.
-   integer, parameter :: control_both = -1
+   integer, parameter :: control_both = -huge(1)
 
    !> Loads and motions of a state: forces [force/length], moment and dissipation [force], lengths, radians; and counts.
    type :: loads_type
@@ -361,7 +361,7 @@ contains
             call group_fields(self%case, self%simulation, path(:slash - 1), self%fields)
             self%group = path(:slash - 1)
          end if
-         number = field_named(self%fields, path(slash + 1:))
+         if (len_trim(path) == len(path)) number = field_named(self%fields, path(slash + 1:))
       end if
       if (number == 0) then
          call set_error(error, MFV_BAD_ARGUMENT, "there is no field '"//path//"'")

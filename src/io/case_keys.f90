@@ -13,7 +13,8 @@ module mfv_case_keys
    character(*), parameter :: group_list = 'scene body mesh friction step solver output'
    character(*), parameter :: repeated_groups = 'body step'
 
-   real(wp), parameter :: most_nodes = 1.0e8_wp, most_harmonics = 2.0e9_wp
+   !> Terms of a Fourier series: 4 for each of the most intervals that a circle can have with it (mfv_mesh_reader).
+   real(wp), parameter :: most_nodes = 1.0e8_wp, most_harmonics = 2.0e8_wp
 
 contains
 

@@ -7,7 +7,7 @@ module mfv_sweep_journal
    use mfv_locked_file
    use mfv_safe_file, only: describe_code
    use mfv_status, only: MFV_FILE_ERROR, MFV_INPUT_ERROR
-   use mfv_sweep_record, only: record_number, record_type, unpack_record
+   use mfv_sweep_record, only: is_record, record_number, record_type, unpack_record
    implicit none
    private
    public :: journal_type, open_journal, append_to_journal, sync_journal, close_journal, delete_journal, gather_journal
@@ -158,6 +158,7 @@ contains
          last = whole + frame_length + length
          if (last + checksum_length > size(bytes, kind=int64)) return
          if (checksum_of(bytes(whole + 1:last)) /= transfer(bytes(last + 1:last + checksum_length), 0_int64)) return
+         if (.not. is_record(bytes(first:last))) return
          number = record_number(bytes(first:last))
          if (number >= 1 .and. number <= size(records)) then
             if (records(number)%number == 0) call unpack_record(bytes(first:last), records(number))
