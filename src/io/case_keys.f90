@@ -193,6 +193,9 @@ contains
                           'step with cycles, only at the end of every step, or none but the last')
       call add_logical_key(keys, 'output', 'error_estimate', '.false.', 'whether the case is also solved on coarser meshes, to '// &
                            'tell the discretisation error of half-width, stick ratio, peak tractions and dissipation')
+      call add_real_key(keys, 'output', 'checkpoint_minutes', 'minutes', 'mfv_run: time from one checkpoint to the next, '// &
+                        'from which mfv_run --resume goes on; 0: only where the run is interrupted', lower=0.0_wp, upper=1.0e6_wp)
+      keys(size(keys))%default = '10'
    end subroutine add_output_keys
 
 end module mfv_case_keys
