@@ -226,6 +226,7 @@ CASE: dict[tuple[str, str], Row] = {
     ("output", "history"): choice("output", "cylinder", "'events'", "events steps none"),
     ("output", "states"): choice("output", "cylinder", "'reversals'", "reversals steps none"),
     ("output", "error_estimate"): logical("output", "cylinder", ".false."),
+    ("output", "checkpoint_minutes"): real("output", "cylinder", "10", "minutes", lower=0.0, upper=1e6),
 }
 
 TOO_SMALL = "a number other than 0 must be of a size from 1e-100 to 1e100"
