@@ -9,6 +9,7 @@ program mfv_run
    use mfv_keys, only: list_keys_as_markdown
    use mfv_output, only: begin_program, print_line, print_text
    use mfv_run_case, only: run_case
+   use mfv_strings, only: shortened
    use mfv_summary, only: summarize_check
    use mfv_terminal
    use mfv_version, only: library_version
@@ -155,7 +156,7 @@ contains
       if (command_argument_count() < number) call refuse('mfv_run', usage, 'a case file is missing')
       if (command_argument_count() <= number) return
       call get_argument(number + 1, surplus)
-      call refuse('mfv_run', usage, "too many arguments: '"//surplus//"'")
+      call refuse('mfv_run', usage, "too many arguments: '"//shortened(surplus)//"'")
    end subroutine expect_arguments
 
    subroutine check_case()
