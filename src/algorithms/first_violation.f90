@@ -49,7 +49,8 @@ module mfv_first_violation
 
 contains
 
-   !> Lead the loads along one segment. `observer` is told of every increment.
+   !> Lead the loads along one segment. `observer` is told of every increment; and, within one load, where the mesh has
+   !> grown or the changes are many.
    !> Errors, each leaving the last admissible state in place: MFV_GROSS_SLIDING, MFV_SEPARATED, MFV_NO_CONTINUATION,
    !> MFV_MESH_EXCEEDED, MFV_INADMISSIBLE_STEP, MFV_INTERRUPTED.
    subroutine lead_by_violations(path, segment, observer, error)
@@ -61,8 +62,8 @@ contains
       type(constraints_type) :: constraints
       type(increment_type) :: increment
       real(wp) :: done, milestone
-      integer :: creeping, standing, since
-      logical :: settled, stop_wanted, drop, last, snapped
+      integer :: creeping, standing, since, nodes
+      logical :: settled, drop, last, snapped
 
       call path%start_segment(segment, error)
       if (allocated(error)) return
@@ -71,12 +72,18 @@ contains
       standing = 0
       milestone = 0.0_wp
       since = 0
+      nodes = size(path%state%status)
       do
          standing = standing + 1
          if (standing > most_tiny_steps + 10*size(path%state%status)) then
             call path%no_continuation('the load does not advance', error)
             return
          end if
+         ! Where one load takes long (a mesh that grows under an absurd force), the run can be ended too.
+         if ((standing > patience .or. size(path%state%status) > nodes) .and. present(observer)) &
+            call tell(path, segment, done, observer, error)
+         if (allocated(error)) return
+         nodes = size(path%state%status)
          if (standing == patience + size(path%state%status) .and. .not. moment%solved) then
             call settle_at_once(path, segment, done, settled)
             moment%solved = .true.
@@ -106,12 +113,8 @@ contains
             call advance(path, increment, drop, error)
             if (allocated(error)) return
             if (.not. drop) done = done + increment%step
-            if (present(observer)) then
-               call observer%notify(path%state, segment%number, segment%segments, &
-                                    segment%from + (segment%to - segment%from)*done, stop_wanted)
-               if (stop_wanted) call path%end_here(MFV_INTERRUPTED, 'stopped on request', error)
-               if (allocated(error)) return
-            end if
+            if (present(observer)) call tell(path, segment, done, observer, error)
+            if (allocated(error)) return
             if (last) return
             call renew(moment)
             standing = 0
@@ -131,6 +134,20 @@ contains
          if (allocated(error)) return
       end do
    end subroutine lead_by_violations
+
+   !> Tell the observer where the path stands. Error MFV_INTERRUPTED: it wants the run to end.
+   subroutine tell(path, segment, done, observer, error)
+      class(contact_path_type), intent(inout) :: path
+      type(segment_type), intent(in) :: segment
+      real(wp), intent(in) :: done
+      class(observer_type), intent(inout) :: observer
+      type(error_type), allocatable, intent(out) :: error
+      logical :: stop_wanted
+
+      call observer%notify(path%state, segment%number, segment%segments, segment%from + (segment%to - segment%from)*done, &
+                           stop_wanted)
+      if (stop_wanted) call path%end_here(MFV_INTERRUPTED, 'stopped on request', error)
+   end subroutine tell
 
    !> Take a step of the load (of the drop) with the rates of the increment, and check it; the increment's state goes along.
    !> Errors MFV_NO_CONTINUATION: the statuses would make the tractions jump, or the certificate fails by far (loads out of
