@@ -496,7 +496,7 @@ class Case:
     def _ended(self, check: bool, status: int) -> str:
         """The outcome of a status. Raises as `_lead` does."""
         if status != 0:
-            self._check(status, (errors.BadHandle, errors.BadArgument))
+            self._check(status, (errors.BadHandle, errors.BadArgument, errors.InUse))
         self._status = status
         self._observer.raise_what_ended_it()
         self._raise_early_end(check)

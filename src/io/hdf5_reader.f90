@@ -8,6 +8,7 @@ module mfv_hdf5_reader
    use mfv_kinds, only: wp
    use mfv_status, only: MFV_INPUT_ERROR
    use mfv_strings, only: from_c, to_text
+   use mfv_text_file, only: check_is_file
    implicit none
    private
    public :: open_to_read, close_read, has, read_vector, read_matrix, read_text_attribute, read_whole_attribute
@@ -37,6 +38,9 @@ contains
       integer :: code
       logical :: is_there, is_hdf5
 
+      file = -1
+      call check_is_file(path, error)
+      if (allocated(error)) return
       inquire (file=path, exist=is_there)
       is_hdf5 = .false.
       if (is_there) then
@@ -44,7 +48,6 @@ contains
          call h5eset_auto_f(0, code)
          call h5fis_hdf5_f(path, is_hdf5, code)
       end if
-      file = -1
       if (.not. is_hdf5) then
          call set_error(error, MFV_INPUT_ERROR, path//trim(merge(' is no HDF5 file       ', ': there is no such file', is_there)))
          return
