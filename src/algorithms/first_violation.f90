@@ -51,7 +51,7 @@ module mfv_first_violation
 contains
 
    !> Lead the loads along one segment. `observer` is told of every increment; where it wants a pause, `march` keeps what it takes
-   !> to go on.
+   !> to go on. It is asked too where one load takes long, because the mesh grows (under an absurd force, far) or changes are many.
    !> Errors, each leaving the last admissible state in place: MFV_GROSS_SLIDING, MFV_SEPARATED, MFV_NO_CONTINUATION,
    !> MFV_MESH_EXCEEDED, MFV_INADMISSIBLE_STEP, MFV_INTERRUPTED.
    subroutine lead_by_violations(path, segment, march, observer, error)
@@ -61,6 +61,7 @@ contains
       class(observer_type), intent(inout), optional :: observer
       type(error_type), allocatable, intent(out) :: error
       logical :: moved
+      integer :: nodes
 
       moved = march%paused
       if (.not. march%paused) then
@@ -68,11 +69,15 @@ contains
          if (allocated(error)) return
          call begin(march)
       end if
+      nodes = size(path%state%status)
       do
          if (.not. march%paused) then
             call make_increment(path, segment, march, moved, error)
             if (allocated(error)) return
-            if (moved .and. present(observer)) call tell(path, segment, march, observer, error)
+            if (present(observer) .and. (moved .or. march%standing > patience .or. size(path%state%status) > nodes)) &
+               call tell(path, segment, march, observer, error)
+            nodes = size(path%state%status)
+            march%paused = march%paused .and. moved
             if (march%paused .or. allocated(error)) return
          end if
          march%paused = .false.
@@ -176,7 +181,7 @@ contains
       if (.not. snapped) call path%no_continuation('the equations of friction have no solution nearby', error)
    end subroutine look_for_solution
 
-   !> Tell the observer of an increment. Error MFV_INTERRUPTED: it wants an end.
+   !> Tell the observer where the load is. Error MFV_INTERRUPTED: it wants an end.
    subroutine tell(path, segment, march, observer, error)
       class(contact_path_type), intent(in) :: path
       type(segment_type), intent(in) :: segment
