@@ -3,7 +3,7 @@
  *
  *   soak [--seconds S | --cases N] [--threads T] [--seed S] [--record FILE] [--folder DIR] | --seed S --case K
  *
- * --record: a line for every round: seconds, cases, bytes in use, bytes resident. --folder: for result files and the texts of
+ * --cases: these, and the same again, when nothing is new that a cache would keep. --record: a line for every round: seconds, cases, bytes in use, bytes resident. --folder: for result files and the texts of
  * cases that failed (soak-SEED-NUMBER.nml). --case: this one alone. Exit code 0 when all is well. */
 #define _GNU_SOURCE
 #include "life.h"
@@ -167,7 +167,7 @@ static double mean(int from, int to, int of_resident) {
   return sum / (to - from);
 }
 
-/* Whether memory stayed flat after the first half: the last quarter against the third one. Between rounds nothing is alive, so what
+/* Whether memory stayed flat in the second half: its second half against its first one. Between rounds nothing is alive, so what
  * is in use is the library's cache of transforms and the table of handles alone. */
 static int is_flat(int rounds) {
   int half = rounds / 2, last = half + (rounds - half) / 2;
@@ -204,7 +204,8 @@ static int soak(void) {
   }
   for (; done < rounds && !interrupted; ++done) {
     round_ends = start + (done + 1) * part;
-    round_cases = options.cases / rounds;
+    round_cases = 2 * options.cases / rounds;
+    if (options.cases > 0 && 2 * done == rounds) next_case = 1;
     go_round(&sum);
     sample(done, now() - start, sum.cases, record);
   }
