@@ -1,6 +1,7 @@
 !> What the programs say about themselves: --help, and refusals of wrong arguments.
 module mfv_help
-   use, intrinsic :: iso_fortran_env, only: error_unit, output_unit
+   use, intrinsic :: iso_fortran_env, only: error_unit
+   use mfv_output, only: print_line
    use mfv_status, only: MFV_INPUT_ERROR, status_exit_code
    use mfv_strings, only: add_text, list_of_words, nearest_name, string_type
    use mfv_terminal, only: end_program
@@ -15,7 +16,9 @@ contains
       character(*), intent(in) :: lines(:)
       integer :: i
 
-      write (output_unit, '(a)') (trim(lines(i)), i=1, size(lines))
+      do i = 1, size(lines)
+         call print_line(trim(lines(i)))
+      end do
    end subroutine print_lines
 
    !> End `program` because of its arguments: say why, and how it is used. `usage`: lines of text.

@@ -83,11 +83,12 @@ contains
       call self%resize(nodes)
    end function new_circle
 
-   !> How many intervals of the arc length `interval` the circle has, to the nearest whole number.
+   !> How many intervals of the arc length `interval` the circle has, to the nearest whole number; of more than 4e8, 4e8: the
+   !> harmonics, some for each, are counted by an integer too.
    pure integer function circle_intervals(radius, interval)
       real(wp), intent(in) :: radius, interval
 
-      circle_intervals = nint(min(2.0_wp*pi*radius/interval, real(huge(0), wp)))
+      circle_intervals = nint(min(2.0_wp*pi*radius/interval, 4.0e8_wp))
    end function circle_intervals
 
    !> The translations that bring displacements to their datum (docs/theory.md).

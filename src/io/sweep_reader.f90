@@ -18,7 +18,7 @@ module mfv_sweep_reader
    use mfv_sweep_keys, only: sweep_catalogue
    use mfv_sweep_plan
    use mfv_sweep_record, only: record_layout
-   use mfv_text_file, only: directory_of, path_beside, read_text, stem_of
+   use mfv_text_file, only: directory_of, path_beside, read_bytes, read_text, stem_of
    use mfv_version, only: library_version
    implicit none
    private
@@ -347,8 +347,11 @@ contains
       last = reader%real_value('vary', number, 'to')
       n = reader%integer_value('vary', number, 'count')
       is_log = reader%text_value('vary', number, 'spacing') == 'log'
-      if (is_log .and. .not. (first*last > 0.0_wp)) then
+      if (is_log .and. .not. ((first > 0.0_wp .and. last > 0.0_wp) .or. (first < 0.0_wp .and. last < 0.0_wp))) then
          call reader%complain('vary', number, 'spacing', 'needs from and to above 0, or both below', error)
+         return
+      else if (abs(0.5_wp*last - 0.5_wp*first) > 0.5_wp*huge(1.0_wp) .or. (is_log .and. are_too_far_apart(first, last))) then
+         call reader%complain('vary', number, 'to', 'is too far from from='//to_text(first), error)
          return
       end if
       axis%is_row = .true.
@@ -404,6 +407,11 @@ contains
                axis%numbers(j) = logical_code(axis%values(j)%text)
                if (key%kind /= kind_logical) call read_number(axis%values(j)%text, kind_real, axis%numbers(j), code)
             end if
+            if (is_too_large(axis%targets(i)%factor, axis%numbers(j))) then
+               call reader%complain('vary', number, 'factor', 'times '//to_text(axis%numbers(j))//' is too large for a number', &
+                                    error)
+               return
+            end if
             call find_value_fault(axis, i, j, key, why)
             if (why == '') cycle
             call complain_of_value(reader, number, why, error)
@@ -411,6 +419,21 @@ contains
          end do
       end do
    end subroutine check_kinds
+
+   !> Whether the ratio of two numbers of one sign is beyond what a real can be.
+   pure logical function are_too_far_apart(first, last)
+      real(wp), intent(in) :: first, last
+
+      are_too_far_apart = abs(log(abs(last)) - log(abs(first))) > log(huge(1.0_wp))
+   end function are_too_far_apart
+
+   !> Whether a product is beyond what a real can be.
+   pure logical function is_too_large(one, other)
+      real(wp), intent(in) :: one, other
+
+      is_too_large = .false.
+      if (abs(one) > 1.0_wp) is_too_large = abs(other) > huge(1.0_wp)/abs(one)
+   end function is_too_large
 
    !> Error about a value of &vary `number`, at the line of the values.
    subroutine complain_of_value(reader, number, why, error)
@@ -703,7 +726,7 @@ contains
       character(:), allocatable :: path, bytes
 
       path = path_beside(base%directory, name)
-      call read_text(path, bytes, error)
+      call read_bytes(path, bytes, error)
       if (.not. allocated(error)) call add_text_to_checksum(bytes, checksum)
    end subroutine add_file
 
