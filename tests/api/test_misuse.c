@@ -1,9 +1,11 @@
 /* Misuse of the C interface. A table has a row for every function of the header; each is called with null for each of its pointers,
  * with handles that are none, and in a callback of its own handle. Then sizes, numbers and names that are wrong, calls
- * in the wrong order, observers that end runs, two threads on one handle, and fork. After each the handles still work. Usage:
+ * in the wrong order, observers that end runs, two threads on one handle, fork, and a host that has changed the arithmetic. After each the
+ * handles still work. Usage:
  * test_misuse mfv.h. Prints what failed; exit code 0 when nothing did. */
-#define _POSIX_C_SOURCE 200809L
+#define _GNU_SOURCE
 #include "check.h"
+#include <fenv.h>
 #include <limits.h>
 #include <math.h>
 #include <mfv.h>
@@ -14,6 +16,9 @@
 #include <string.h>
 #include <sys/wait.h>
 #include <unistd.h>
+#ifdef __SSE__
+#include <xmmintrin.h>
+#endif
 
 enum { NODES = 15, ROOM = 2000 };
 
@@ -775,6 +780,45 @@ static void after_fork(void) {
   free_bench(&b);
 }
 
+/* --- a host that has changed the arithmetic --- */
+
+/* Shear tractions of the whole case, and its certificate. */
+static double solve(double *shear) {
+  mfv_case *handle = NULL;
+  double certificate = NAN;
+  CHECK(mfv_create_from_text(text, NULL, &handle, NULL, 0) == MFV_COMPLETE && mfv_run(handle) == MFV_COMPLETE);
+  CHECK(mfv_copy_real(handle, "state/shear", shear, NODES) == MFV_COMPLETE);
+  CHECK(mfv_copy_real(handle, "certificate/largest", &certificate, 1) == MFV_COMPLETE);
+  CHECK(mfv_free(&handle) == MFV_COMPLETE);
+  return certificate;
+}
+
+/* Traps and numbers flushed to zero change no digit; other rounding does, and the certificate stays small. The library leaves all as
+ * it was. The rounding comes last: tables of sines that are made under it stay. */
+static void changed_arithmetic(void) {
+  double shear[NODES], other[NODES];
+  CHECK(solve(shear) < 1e-12);
+#ifdef __GLIBC__
+  CHECK(feenableexcept(FE_INVALID | FE_DIVBYZERO | FE_OVERFLOW) != -1);
+  CHECK(solve(other) < 1e-12 && memcmp(shear, other, sizeof shear) == 0);
+  CHECK(fegetexcept() == (FE_INVALID | FE_DIVBYZERO | FE_OVERFLOW) && fedisableexcept(FE_ALL_EXCEPT) != -1);
+#endif
+#ifdef __SSE__
+  const unsigned flush = 0x8040, before = _mm_getcsr();
+  _mm_setcsr(before | flush);
+  CHECK(solve(other) < 1e-12 && memcmp(shear, other, sizeof shear) == 0 && (_mm_getcsr() & flush) == flush);
+  _mm_setcsr(before);
+#endif
+#if defined(FE_UPWARD) && defined(FE_DOWNWARD) && defined(FE_TOWARDZERO)
+  static const int roundings[] = {FE_UPWARD, FE_DOWNWARD, FE_TOWARDZERO};
+  for (size_t i = 0; i < sizeof roundings / sizeof roundings[0]; ++i) {
+    CHECK(fesetround(roundings[i]) == 0);
+    CHECK(solve(other) < 1e-11 && fegetround() == roundings[i]);
+    CHECK(fesetround(FE_TONEAREST) == 0);
+  }
+#endif
+}
+
 int main(int argc, char **argv) {
   if (argc != 2) {
     fprintf(stderr, "usage: test_misuse mfv.h\n");
@@ -794,6 +838,7 @@ int main(int argc, char **argv) {
   ended_at_every_call();
   two_threads();
   after_fork();
+  changed_arithmetic();
   printf(failures == 0 ? "misuse: all checks passed\n" : "misuse: %d checks failed\n", failures);
   return failures != 0;
 }

@@ -176,10 +176,7 @@ static int is_flat(int rounds) {
   double held = mean(half, last, 1), held_then = mean(last, rounds, 1);
   printf("memory in use between cases: %.0f kB, then %.0f kB; resident: %.0f kB, then %.0f kB\n", in_use / 1024, in_use_then / 1024,
          held / 1024, held_then / 1024);
-  if (in_use_then - in_use > 0.02 * in_use + 65536) printf("memory in use grows\n");
-  else if (held_then - held > 0.02 * held + 1048576) printf("resident memory grows\n");
-  else return 1;
-  return 0;
+  return in_use_then - in_use <= 0.02 * in_use + 65536 && held_then - held <= 0.02 * held + 1048576;
 }
 
 static void sample(int i, double seconds, long cases, FILE *record) {
@@ -211,9 +208,11 @@ static int soak(void) {
   }
   if (isatty(STDERR_FILENO)) fprintf(stderr, "\n");
   if (record != NULL) fclose(record);
-  printf("seed %llu, threads %d, %.0f s\n", (unsigned long long)options.seed, options.threads, now() - start);
   print_tally(&sum);
-  return is_flat(done) && sum.failures == 0 && sum.cases > 0;
+  const int flat = is_flat(done);
+  printf("%ld cases in %.0f s, %ld failed, memory %s (seed %llu)\n", sum.cases, now() - start, sum.failures, flat ? "flat" : "grows",
+         (unsigned long long)options.seed);
+  return flat && sum.failures == 0 && sum.cases > 0;
 }
 
 static int read_options(int count, char **words) {
