@@ -467,8 +467,7 @@ static void wrong_numbers(void) {
     mfv_scene_set_real(scene, "friction%mu", odd[i]);
     status = mfv_create(scene, &none, b.buffer, ROOM);
     CHECK(mfv_scene_free(&scene) == MFV_COMPLETE);
-    CHECK(status == (isfinite(odd[i]) && odd[i] >= 0 ? MFV_COMPLETE : MFV_INPUT_ERROR));
-    CHECK(status == MFV_COMPLETE || strstr(b.buffer, "mu") != NULL);
+    CHECK(status == MFV_INPUT_ERROR && strstr(b.buffer, "mu") != NULL); /* sizes are from 1e-100 to 1e100 */
     mfv_free(&none);
     for (int k = 0; k < 4; ++k) {
       double list[4][NODES];
@@ -504,6 +503,13 @@ static void wrong_numbers(void) {
   }
   still_works(&b, "wrong numbers");
   free_bench(&b);
+}
+
+/* Whether there are ends of lines or bytes beyond ASCII in it (none of those above is UTF-8). */
+static int is_no_text(const char *name) {
+  for (; *name != '\0'; ++name)
+    if (*name == '\n' || (unsigned char)*name > 127) return 1;
+  return 0;
 }
 
 static void wrong_names(void) {
@@ -544,7 +550,7 @@ static void wrong_names(void) {
     mfv_case *none = NULL;
     CHECK(mfv_scene_from_text(text, NULL, &scene, NULL, 0) == MFV_COMPLETE);
     int status = mfv_scene_set_text(scene, "scene%coupling", names[i]);
-    CHECK(status == MFV_COMPLETE || strchr(names[i], '\n') != NULL);
+    CHECK(status == MFV_COMPLETE || (status == MFV_BAD_ARGUMENT && is_no_text(names[i])));
     CHECK(mfv_create(scene, &none, b.other, ROOM) == MFV_INPUT_ERROR && none == NULL && strstr(b.other, "coupling") != NULL);
     mfv_scene_free(&scene);
   }
