@@ -10,6 +10,7 @@
 #include <math.h>
 #include <mfv.h>
 #include <pthread.h>
+#include <sched.h>
 #include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -726,7 +727,8 @@ static void *disturb(void *argument) {
     for (int i = 0; i < ROWS; ++i) {
       if (rows[i].of != CASE || rows[i].frees || rows[i].call == row_mfv_observe) continue;
       int status = rows[i].call(&own, -1);
-      odd += status != rows[i].good && status != MFV_IN_USE;
+      if (status == rows[i].good || status == MFV_IN_USE) continue;
+      if (odd++ == 0) printf("  %s beside another thread: %d\n", rows[i].name, status);
     }
   return (void *)odd;
 }
@@ -741,17 +743,18 @@ static void two_threads(void) {
   bench b = new_bench();
   pthread_t thread;
   void *odd = NULL;
-  int in_use = 0, complete = 0;
+  int in_use = 0, complete = 0, calls = 0;
   done = 0;
   CHECK(pthread_create(&thread, NULL, disturb, &b) == 0);
-  for (int i = 0; i < TIMES; ++i) {
+  for (; calls < TIMES || (complete < 2 && calls < 1000 * TIMES); ++calls) {
     int status = mfv_advance(b.handle, &b.step);
     in_use += status == MFV_IN_USE;
     complete += status == MFV_COMPLETE;
+    if (status == MFV_IN_USE) sched_yield();
   }
   done = 1;
   pthread_join(thread, &odd);
-  CHECK(odd == NULL && in_use + complete == TIMES && complete > 0);
+  CHECK(odd == NULL && in_use + complete == calls && complete > 1);
   still_works(&b, "two threads on one handle");
   /* Both free the same case: one does. */
   for (int i = 0; i < 50; ++i) {
@@ -805,14 +808,17 @@ static void changed_arithmetic(void) {
   double shear[NODES], other[NODES];
   CHECK(solve(shear) < 1e-12);
 #ifdef __GLIBC__
+  const int before_traps = fegetexcept();
   CHECK(feenableexcept(FE_INVALID | FE_DIVBYZERO | FE_OVERFLOW) != -1);
+  const int traps = fegetexcept(); /* none in valgrind */
   CHECK(solve(other) < 1e-12 && memcmp(shear, other, sizeof shear) == 0);
-  CHECK(fegetexcept() == (FE_INVALID | FE_DIVBYZERO | FE_OVERFLOW) && fedisableexcept(FE_ALL_EXCEPT) != -1);
+  CHECK(fegetexcept() == traps && fedisableexcept(FE_ALL_EXCEPT) != -1 && feenableexcept(before_traps) != -1);
 #endif
 #ifdef __SSE__
   const unsigned flush = 0x8040, before = _mm_getcsr();
   _mm_setcsr(before | flush);
-  CHECK(solve(other) < 1e-12 && memcmp(shear, other, sizeof shear) == 0 && (_mm_getcsr() & flush) == flush);
+  const unsigned flushed = _mm_getcsr() & flush; /* 0 in valgrind */
+  CHECK(solve(other) < 1e-12 && memcmp(shear, other, sizeof shear) == 0 && (_mm_getcsr() & flush) == flushed);
   _mm_setcsr(before);
 #endif
 #if defined(FE_UPWARD) && defined(FE_DOWNWARD) && defined(FE_TOWARDZERO)
