@@ -60,10 +60,8 @@ contains
       type(march_type), intent(inout) :: march
       class(observer_type), intent(inout), optional :: observer
       type(error_type), allocatable, intent(out) :: error
-      logical :: moved
       integer :: nodes
 
-      moved = march%paused
       if (.not. march%paused) then
          call path%start_segment(segment, error)
          if (allocated(error)) return
@@ -72,16 +70,15 @@ contains
       nodes = size(path%state%status)
       do
          if (.not. march%paused) then
-            call make_increment(path, segment, march, moved, error)
+            call make_increment(path, segment, march, error)
             if (allocated(error)) return
-            if (present(observer) .and. (moved .or. march%standing > patience .or. size(path%state%status) > nodes)) &
+            if (present(observer) .and. (march%moved .or. march%standing > patience .or. size(path%state%status) > nodes)) &
                call tell(path, segment, march, observer, error)
             nodes = size(path%state%status)
-            march%paused = march%paused .and. moved
             if (march%paused .or. allocated(error)) return
          end if
          march%paused = .false.
-         if (moved .and. march%at_end) return
+         if (march%moved .and. march%at_end) return
          if (march%creeping > most_tiny_steps .or. march%since > most_events + 10*size(path%state%status)) then
             call path%no_continuation('the load does not advance', error)
             return
@@ -105,18 +102,16 @@ contains
       march%milestone = 0.0_wp
    end subroutine begin
 
-   !> With the statuses as they are, the next increment, and the way to its end. `moved`: it has a length; else only
-   !> statuses are to change, or are to be looked at again.
-   !> Errors as lead_by_violations.
-   subroutine make_increment(path, segment, march, moved, error)
+   !> With the statuses as they are, the next increment, and the way to its end. Where it has no length (not `march%moved`) only
+   !> statuses are to change. Errors as lead_by_violations.
+   subroutine make_increment(path, segment, march, error)
       class(contact_path_type), intent(inout) :: path
       type(segment_type), intent(in) :: segment
       type(march_type), intent(inout) :: march
-      logical, intent(out) :: moved
       type(error_type), allocatable, intent(out) :: error
       logical :: drop, ready
 
-      moved = .false.
+      march%moved = .false.
       do
          march%standing = march%standing + 1
          if (march%standing > most_tiny_steps + 10*size(path%state%status)) then
@@ -146,7 +141,7 @@ contains
          if (drop .and. step*(1.0_wp + tie_of(path)) + no_step_of(path) >= 1.0_wp) step = 1.0_wp
          call advance(path, march%increment, drop, error)
          if (allocated(error)) return
-         moved = .true.
+         march%moved = .true.
          if (.not. drop) march%done = march%done + step
          if (march%at_end) return
          call renew(march%moment)
