@@ -14,7 +14,7 @@ module mfv_checkpoint
    use mfv_locked_file, only: delete_path
    use mfv_safe_file, only: begin_replacement, finish_replacement, replacement_type, write_replacement
    use mfv_simulation, only: simulation_type
-   use mfv_status, only: MFV_INPUT_ERROR
+   use mfv_status, only: MFV_FILE_ERROR, MFV_INPUT_ERROR
    use mfv_strings, only: to_text
    use mfv_text_file, only: directory_of, stem_of
    use mfv_version, only: library_version
@@ -79,7 +79,7 @@ contains
    end subroutine remove
 
    !> Write where a simulation of the case is (it stays as it is: one procedure writes and reads). Error MFV_FILE_ERROR: a
-   !> checkpoint that was there still is.
+   !> checkpoint that was there still is; so is a file that is none, which is not replaced.
    subroutine write_checkpoint(self, simulation, error)
       class(checkpoint_type), intent(in) :: self
       type(simulation_type), intent(inout) :: simulation
@@ -89,7 +89,13 @@ contains
       integer(int8), allocatable :: image(:), header(:)
       integer(int8) :: mold(1)
       integer(int64) :: checksum
+      logical :: exists
 
+      inquire (file=self%path, exist=exists)
+      if (exists .and. .not. self%is_there()) then
+         call set_error(error, MFV_FILE_ERROR, self%path//' is there and is no checkpoint; it is not replaced')
+         return
+      end if
       call new_archive(archive)
       call simulation%carry(archive)
       call archive%take_bytes(image)

@@ -136,8 +136,11 @@ def test_a_checkpoint_goes_with_a_complete_run(tmp_path):
     assert not (tmp_path / "case.checkpoint").exists()
 
 
-def test_a_checkpoint_that_cannot_be_written_does_not_end_the_run(tmp_path):
+@pytest.mark.parametrize("what", ["folder", "file"])
+def test_a_checkpoint_that_cannot_be_written_does_not_end_the_run(tmp_path, what):
     write_case(tmp_path, nodes=61, cycles=5)
-    (tmp_path / "case.checkpoint").mkdir()
+    path = tmp_path / "case.checkpoint"
+    path.mkdir() if what == "folder" else path.write_text("notes")
     code, _, errors = run(tmp_path)
     assert code == COMPLETE and "no checkpoint: case.checkpoint" in errors
+    assert path.is_dir() if what == "folder" else path.read_text() == "notes"
