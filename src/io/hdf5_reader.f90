@@ -345,7 +345,8 @@ contains
          call h5pclose_f(properties, ignored)
       end if
       bytes = 0
-      if (code == 0) call h5dget_storage_size_f(dataset, bytes, code)
+      ! Of a dataset without values this tells a failure; then there are no bytes, too.
+      if (code == 0) call h5dget_storage_size_f(dataset, bytes, ignored)
       if (code /= 0) then
          call set_error(error, MFV_INPUT_ERROR, name//' cannot be read')
       else if (files > 0 .or. layout == H5D_VIRTUAL_F) then
