@@ -45,8 +45,9 @@ program mfv_run
       'Options:', &
       '  --estimate   solve the case on coarser meshes too, and put error bars on half-width, stick ratio,', &
       '               peak tractions and dissipation; takes about twice the time', &
-      '  --resume     go on from the checkpoint that an interrupted or killed run of the case has left, with', &
-      '               the same digits as if it had not stopped; where there is none, from the beginning', &
+      '  --resume     go on from the checkpoint that an interrupted or killed run of the case has left,', &
+      '               with the same digits as if it had not stopped; where there is none, from its', &
+      '               beginning', &
       '  --advise     print the number of nodes, and the linear solver, that an error takes, from coarse', &
       '               meshes; the case itself is not solved. error=E: the wanted error, relative, such as', &
       '               1e-2. of=LIST: quantities that it is for, separated by commas: pressure, shear,', &

@@ -155,8 +155,8 @@ int mfv_get_loads(const mfv_case *handle, mfv_loads *loads);
  * is the one of motions that go on towards `direction` (motions lengths, such as {0, 1} for a shift to the right; only its
  * direction counts; friction acts, if the scene has any), or, where it is NULL, on the way that led here, every node's status as
  * it is. Across the direction of a step that led two motions at once it differs from the derivative of the step's end by the
- * order of the step (docs/theory.md). The state does not change. MFV_BAD_ARGUMENT where the contact does not determine it. Since
- * 0.1.0. */
+ * order of the step (docs/theory.md). The state does not change. MFV_BAD_ARGUMENT where the contact does not determine it; where
+ * nothing leads on in that direction what mfv_advance would return, such as MFV_NO_CONTINUATION. Since 0.1.0. */
 int mfv_tangent(mfv_case *handle, int motions, const double *direction, double *tangent);
 
 /* Keep the present state in *state (made where it is NULL, else its storage is used again), and come back to it: the case then
@@ -181,10 +181,10 @@ typedef struct mfv_progress {
 } mfv_progress;
 typedef int (*mfv_observer)(const mfv_progress *progress, void *user);
 
-/* From now on tell `observer` (NULL: nobody) of every increment, with `user`. It runs in the thread of mfv_run or mfv_advance; calls
- * on this handle return MFV_IN_USE in it, mfv_free too. It ends the run by a value that is not 0: the outcome is then MFV_INTERRUPTED, with the
- * last state in place, from which mfv_advance goes on (mfv_run does not: its step was left in the middle). No C++ exception and no
- * longjmp may leave it: the handle would stay in use for ever. Since 0.1.0. */
+/* From now on tell `observer` (NULL: nobody) of every increment, with `user`. It runs in the thread of mfv_run or mfv_advance;
+ * calls on this handle return MFV_IN_USE in it, mfv_free too. It ends the run by a value that is not 0: the outcome is then
+ * MFV_INTERRUPTED, with the last state in place, from which mfv_advance goes on (mfv_run does not: its step was left in the
+ * middle). No C++ exception and no longjmp may leave it: the handle would stay in use for ever. Since 0.1.0. */
 int mfv_observe(mfv_case *handle, mfv_observer observer, void *user);
 
 /* Number of fields of the case now, and the path of field `index` (from 0), such as "history/shift". Since 0.1.0. */

@@ -3,7 +3,7 @@
  *
  *   soak [--seconds S | --cases N] [--threads T] [--seed S] [--record FILE] [--folder DIR] | --seed S --case K
  *
- * --record: a line for every round: seconds, cases, bytes in use, bytes resident. --folder: for result files and the texts of
+ * --cases: these, and the same again, when nothing is new that a cache would keep. --record: a line for every round: seconds, cases, bytes in use, bytes resident. --folder: for result files and the texts of
  * cases that failed (soak-SEED-NUMBER.nml). --case: this one alone. Exit code 0 when all is well. */
 #define _GNU_SOURCE
 #include "life.h"
@@ -167,7 +167,7 @@ static double mean(int from, int to, int of_resident) {
   return sum / (to - from);
 }
 
-/* Whether memory stayed flat after the first half: the last quarter against the third one. Between rounds nothing is alive, so what
+/* Whether memory stayed flat in the second half: its second half against its first one. Between rounds nothing is alive, so what
  * is in use is the library's cache of transforms and the table of handles alone. */
 static int is_flat(int rounds) {
   int half = rounds / 2, last = half + (rounds - half) / 2;
@@ -176,10 +176,7 @@ static int is_flat(int rounds) {
   double held = mean(half, last, 1), held_then = mean(last, rounds, 1);
   printf("memory in use between cases: %.0f kB, then %.0f kB; resident: %.0f kB, then %.0f kB\n", in_use / 1024, in_use_then / 1024,
          held / 1024, held_then / 1024);
-  if (in_use_then - in_use > 0.02 * in_use + 65536) printf("memory in use grows\n");
-  else if (held_then - held > 0.02 * held + 1048576) printf("resident memory grows\n");
-  else return 1;
-  return 0;
+  return in_use_then - in_use <= 0.02 * in_use + 65536 && held_then - held <= 0.02 * held + 1048576;
 }
 
 static void sample(int i, double seconds, long cases, FILE *record) {
@@ -204,15 +201,18 @@ static int soak(void) {
   }
   for (; done < rounds && !interrupted; ++done) {
     round_ends = start + (done + 1) * part;
-    round_cases = options.cases / rounds;
+    round_cases = 2 * options.cases / rounds;
+    if (options.cases > 0 && 2 * done == rounds) next_case = 1;
     go_round(&sum);
     sample(done, now() - start, sum.cases, record);
   }
   if (isatty(STDERR_FILENO)) fprintf(stderr, "\n");
   if (record != NULL) fclose(record);
-  printf("seed %llu, threads %d, %.0f s\n", (unsigned long long)options.seed, options.threads, now() - start);
   print_tally(&sum);
-  return is_flat(done) && sum.failures == 0 && sum.cases > 0;
+  const int flat = is_flat(done);
+  printf("%ld cases in %.0f s, %ld failed, memory %s (seed %llu)\n", sum.cases, now() - start, sum.failures, flat ? "flat" : "grows",
+         (unsigned long long)options.seed);
+  return flat && sum.failures == 0 && sum.cases > 0;
 }
 
 static int read_options(int count, char **words) {
