@@ -17,7 +17,7 @@ function(mfv_compile_options target)
   target_compile_options(${target} PRIVATE
     $<${gnu_fortran}:-std=f2018 -frecursive -fimplicit-none -Wall -Wextra -Wcharacter-truncation
       -Wno-unused-dummy-argument ${MFV_UNHEARD_WARNINGS}>
-    $<${gnu_c}:-std=c11 -Wall -Wextra -Wpedantic -Wconversion -Wshadow -Wstrict-prototypes>)
+    $<${gnu_c}:-std=gnu11 -Wall -Wextra -Wconversion -Wshadow -Wstrict-prototypes>)
   if(MFV_STRICT)
     target_compile_options(${target} PRIVATE
       $<${gnu_fortran}:-Werror -fcheck=all,no-array-temps,no-recursion -fbacktrace -ffpe-trap=${traps}>

@@ -1,6 +1,5 @@
 !> What mfv_run --advise does.
 module mfv_advise_case
-   use, intrinsic :: iso_fortran_env, only: output_unit
    use mfv_advice, only: advice_count, advice_type, advise
    use mfv_advice_text, only: read_wanted_error, read_wanted_quantities, write_advice
    use mfv_case, only: case_type
@@ -8,8 +7,10 @@ module mfv_advise_case
    use mfv_error, only: error_type, set_error
    use mfv_help, only: refuse
    use mfv_kinds, only: wp
-   use mfv_status, only: MFV_COMPLETE
    use mfv_one_thread, only: use_one_thread
+   use mfv_output, only: print_text
+   use mfv_status, only: MFV_COMPLETE
+   use mfv_strings, only: shortened
    use mfv_terminal
    implicit none
    private
@@ -43,7 +44,7 @@ contains
          call fail(error)
       end if
       call write_advice(case, advice, text)
-      write (output_unit, '(a)', advance='no') text
+      call print_text(text)
    end subroutine advise_case
 
    !> error=..., of=... and the case, in any order.
@@ -64,14 +65,15 @@ contains
          call get_argument(i, argument)
          why = ''
          if (index(argument, 'error=') == 1) then
-            has_error = .true.
             call read_wanted_error(argument(len('error=') + 1:), wanted_error, why)
+            if (has_error) why = shortened(argument)//': error is there twice'
+            has_error = .true.
          else if (index(argument, 'of=') == 1) then
             call read_wanted_quantities(argument(len('of=') + 1:), wanted, why)
          else if (path == '') then
             path = argument
          else
-            why = "too many arguments: '"//argument//"'"
+            why = "too many arguments: '"//shortened(argument)//"'"
          end if
          if (why /= '') call refuse('mfv_run', usage, '--advise '//why)
       end do

@@ -1,8 +1,9 @@
 !> What the programs say about themselves: --help, and refusals of wrong arguments.
 module mfv_help
-   use, intrinsic :: iso_fortran_env, only: error_unit, output_unit
+   use, intrinsic :: iso_fortran_env, only: error_unit
+   use mfv_output, only: print_line
    use mfv_status, only: MFV_INPUT_ERROR, status_exit_code
-   use mfv_strings, only: add_text, list_of_words, nearest_name, string_type
+   use mfv_strings, only: add_text, list_of_words, nearest_name, shortened, string_type
    use mfv_terminal, only: end_program
    implicit none
    private
@@ -15,7 +16,9 @@ contains
       character(*), intent(in) :: lines(:)
       integer :: i
 
-      write (output_unit, '(a)') (trim(lines(i)), i=1, size(lines))
+      do i = 1, size(lines)
+         call print_line(trim(lines(i)))
+      end do
    end subroutine print_lines
 
    !> End `program` because of its arguments: say why, and how it is used. `usage`: lines of text.
@@ -37,7 +40,7 @@ contains
       call find_options(help, names)
       nearest = nearest_name(option(max(verify(option, '-'), 1):), names)
       if (nearest /= '') nearest = '; did you mean --'//nearest//'?'
-      call refuse(program, usage, "unknown option '"//option//"'"//nearest)
+      call refuse(program, usage, "unknown option '"//shortened(option)//"'"//nearest)
    end subroutine refuse_option
 
    !> The options that a help text explains, without their dashes: the first --name of lines that begin with an option.

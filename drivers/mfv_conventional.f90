@@ -1,8 +1,8 @@
 !> mfv_conventional CASE.nml: solve one case with the conventional algorithm (dissertation section 2.2), whatever algorithm it
 !> names, to compare with mfv_run.
 program run_conventional
-   use, intrinsic :: iso_fortran_env, only: output_unit
    use mfv_help, only: print_lines, refuse, refuse_option
+   use mfv_output, only: begin_program, print_line
    use mfv_run_case, only: run_case
    use mfv_scene, only: algorithm_conventional
    use mfv_terminal
@@ -11,7 +11,7 @@ program run_conventional
 
    !> How it is used, and what --help adds: one line an element. The manual page is made from both (docs/man).
    character(*), parameter :: usage(*) = [character(len=100) :: &
-      'usage: mfv_conventional CASE.nml', &
+      'usage: mfv_conventional [--resume] CASE.nml', &
       '       mfv_conventional --version | --help' &
       ]
    character(*), parameter :: help(*) = [character(len=100) :: &
@@ -25,6 +25,7 @@ program run_conventional
       "done by mfv_run with algorithm='conventional' in &solver.", &
       '', &
       'Options:', &
+      '  --resume     go on from the checkpoint that an interrupted or killed run has left, as mfv_run', &
       '  --version    print the version', &
       '  -h, --help   print this text', &
       '', &
@@ -34,7 +35,7 @@ program run_conventional
       '  3     the computation ended early, with the result up to there: as mfv_run, and cycling (the', &
       '        repairs go round in circles) or inadmissible (they do not end, or the system is singular)', &
       '  4     a file could not be read or written', &
-      '  130   interrupted, with the result up to there', &
+      '  130   interrupted, with the result up to there and a checkpoint; --resume goes on', &
       '', &
       'Examples:', &
       '  mfv_run case.nml                        # writes case.h5', &
@@ -45,17 +46,21 @@ program run_conventional
       '  docs/guide.md, section Comparing with the conventional algorithm. mfv_run(1), mfv_case(5).' &
       ]
    character(:), allocatable :: argument
+   logical :: resume
 
-   if (command_argument_count() /= 1) call refuse('mfv_conventional', usage, 'one case file is wanted')
+   call begin_program()
    call get_argument(1, argument)
+   resume = argument == '--resume'
+   if (command_argument_count() /= merge(2, 1, resume)) call refuse('mfv_conventional', usage, 'one case file is wanted')
+   if (resume) call get_argument(2, argument)
    select case (argument)
    case ('--help', '-h')
       call print_lines([usage, help])
    case ('--version')
-      write (output_unit, '(a)') 'mfv_conventional '//library_version
+      call print_line('mfv_conventional '//library_version)
    case default
       if (index(argument, '-') == 1) call refuse_option('mfv_conventional', usage, help, argument)
-      call run_case(argument, algorithm_conventional, '_conventional')
+      call run_case(argument, algorithm_conventional, '_conventional', resume=resume)
    end select
 
 end program run_conventional

@@ -1,6 +1,5 @@
 !> mfv_run CASE.nml: solve one case and write its result.
 program mfv_run
-   use, intrinsic :: iso_fortran_env, only: output_unit
    use mfv_advise_case, only: advise_case
    use mfv_case, only: case_type
    use mfv_case_keys, only: case_catalogue
@@ -8,7 +7,9 @@ program mfv_run
    use mfv_error, only: error_type
    use mfv_help, only: print_lines, refuse, refuse_option
    use mfv_keys, only: list_keys_as_markdown
+   use mfv_output, only: begin_program, print_line, print_text
    use mfv_run_case, only: run_case
+   use mfv_strings, only: shortened
    use mfv_summary, only: summarize_check
    use mfv_terminal
    use mfv_version, only: library_version
@@ -16,8 +17,7 @@ program mfv_run
 
    !> How it is used, and what --help adds: one line an element. The manual page is made from both (docs/man).
    character(*), parameter :: usage(*) = [character(len=100) :: &
-      'usage: mfv_run CASE.nml', &
-      '       mfv_run --estimate CASE.nml', &
+      'usage: mfv_run [--estimate] [--resume] CASE.nml', &
       '       mfv_run --advise error=1e-2 [of=stick_ratio,dissipation] CASE.nml', &
       '       mfv_run --check CASE.nml', &
       '       mfv_run --keys | --version | --help' &
@@ -45,6 +45,9 @@ program mfv_run
       'Options:', &
       '  --estimate   solve the case on coarser meshes too, and put error bars on half-width, stick ratio,', &
       '               peak tractions and dissipation; takes about twice the time', &
+      '  --resume     go on from the checkpoint that an interrupted or killed run of the case has left,', &
+      '               with the same digits as if it had not stopped; where there is none, from its', &
+      '               beginning', &
       '  --advise     print the number of nodes, and the linear solver, that an error takes, from coarse', &
       '               meshes; the case itself is not solved. error=E: the wanted error, relative, such as', &
       '               1e-2. of=LIST: quantities that it is for, separated by commas: pressure, shear,', &
@@ -59,10 +62,13 @@ program mfv_run
       '  of the case with .h5 for its extension. It is HDF5: tractions, displacements, slip and status of', &
       '  every node, the history of the loads, the certificate. It is written under another name and', &
       '  renamed when it is whole; a run that fails leaves an older result as it was.', &
+      '  A checkpoint is beside it, with .checkpoint for its extension: written every 10 minutes (the', &
+      '  checkpoint_minutes of &output), and when the run is interrupted; removed when it is complete.', &
       '', &
       'Output:', &
       '  The summary goes to standard output; messages go to standard error, and so does progress, on a', &
-      '  terminal only. Ctrl-C ends the run at its next event, with the result up to there.', &
+      '  terminal only. Ctrl-C or SIGTERM ends the run at its next event, with the result up to there and', &
+      '  a checkpoint.', &
       '', &
       'Exit codes:', &
       '  0     complete: every step was reached', &
@@ -71,7 +77,7 @@ program mfv_run
       '        continuation, separated, inadmissible step, mesh exceeded; of the conventional algorithm', &
       '        also cycling, inadmissible', &
       '  4     a file could not be read or written', &
-      '  130   interrupted, with the result up to there', &
+      '  130   interrupted, with the result up to there and a checkpoint; --resume goes on', &
       '', &
       'Examples:', &
       '  mfv_run --check case.nml                      # is it valid, and what will be solved?', &
@@ -85,34 +91,62 @@ program mfv_run
       '  mfv_case(5) has every key of a case, as mfv_run --keys. docs/guide.md goes from a question to a', &
       '  picture; examples/*.nml are cases to begin with. mfv_stress(1), mfv_sweep(1), mfv_conventional(1).' &
       ]
-   character(:), allocatable :: argument, option, text
+   character(:), allocatable :: option, text
 
+   call begin_program()
    call get_argument(1, option)
    select case (option)
    case ('--help', '-h')
       call print_lines([usage, help])
    case ('--version')
-      write (output_unit, '(a)') 'mfv_run '//library_version
+      call print_line('mfv_run '//library_version)
    case ('--keys')
       call list_keys_as_markdown(case_catalogue(), text)
-      write (output_unit, '(a)', advance='no') text
-   case ('--estimate')
-      call get_argument(2, argument)
-      call expect_arguments(2)
-      call run_case(argument, estimate=.true.)
+      call print_text(text)
    case ('--advise')
       call advise_case(usage)
    case ('--check')
-      call get_argument(2, argument)
-      call expect_arguments(2)
-      call check_case(argument)
+      call check_case()
    case default
-      if (index(option, '-') == 1) call refuse_option('mfv_run', usage, help, option)
-      call expect_arguments(1)
-      call run_case(option)
+      call solve_case()
    end select
 
 contains
+
+   !> Solve the case that is the last argument, after options in any order.
+   subroutine solve_case()
+      character(:), allocatable :: path, argument
+      logical :: estimate, resume
+      integer :: i
+
+      estimate = .false.
+      resume = .false.
+      do i = 1, command_argument_count() - 1
+         call get_argument(i, argument)
+         select case (argument)
+         case ('--estimate')
+            estimate = .true.
+         case ('--resume')
+            resume = .true.
+         case default
+            if (index(argument, '-') == 1) call refuse_option('mfv_run', usage, help, argument)
+            call expect_arguments(i)
+         end select
+      end do
+      call get_case(max(command_argument_count(), 1), path)
+      call run_case(path, estimate=estimate, resume=resume)
+   end subroutine solve_case
+
+   !> Argument `number`, which must be the case and the last one.
+   subroutine get_case(number, path)
+      integer, intent(in) :: number
+      character(:), allocatable, intent(out) :: path
+
+      call expect_arguments(number)
+      call get_argument(number, path)
+      if (any(path == ['--estimate', '--resume  '])) call refuse('mfv_run', usage, 'a case file is missing')
+      if (index(path, '-') == 1) call refuse_option('mfv_run', usage, help, path)
+   end subroutine get_case
 
    !> Refuse any other number of arguments.
    subroutine expect_arguments(number)
@@ -122,18 +156,20 @@ contains
       if (command_argument_count() < number) call refuse('mfv_run', usage, 'a case file is missing')
       if (command_argument_count() <= number) return
       call get_argument(number + 1, surplus)
-      call refuse('mfv_run', usage, "too many arguments: '"//surplus//"'")
+      call refuse('mfv_run', usage, "too many arguments: '"//shortened(surplus)//"'")
    end subroutine expect_arguments
 
-   subroutine check_case(path)
-      character(*), intent(in) :: path
+   subroutine check_case()
+      character(:), allocatable :: path
       type(case_type) :: case
       type(error_type), allocatable :: error
+
+      call get_case(2, path)
 
       call read_case_file(path, case, error)
       if (allocated(error)) call fail(error)
       call summarize_check(case, text)
-      write (output_unit, '(a)', advance='no') text
+      call print_text(text)
    end subroutine check_case
 
 end program mfv_run

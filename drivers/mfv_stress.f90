@@ -1,13 +1,15 @@
 !> mfv_stress: stresses inside the bodies of a result, into its file.
 program mfv_stress
-   use, intrinsic :: iso_fortran_env, only: error_unit, output_unit
+   use, intrinsic :: iso_fortran_env, only: error_unit
    use mfv_error, only: error_type
    use mfv_help, only: print_lines, refuse, refuse_option
    use mfv_interior, only: stress_count, stress_names
    use mfv_kinds, only: wp
+   use mfv_output, only: begin_program, print_line
+   use mfv_numbers, only: read_real
    use mfv_profile_file, only: read_table
    use mfv_stress_file
-   use mfv_strings, only: to_text
+   use mfv_strings, only: shortened, to_text
    use mfv_summary, only: unit_suffix
    use mfv_terminal, only: end_program, fail, get_argument
    use mfv_version, only: library_version
@@ -68,13 +70,14 @@ program mfv_stress
    type(error_type), allocatable :: error
    character(:), allocatable :: option, path
 
+   call begin_program()
    call get_argument(1, option)
    select case (option)
    case ('--help', '-h')
       call print_lines([usage, help])
       call end_program(0)
    case ('--version')
-      write (output_unit, '(a)') 'mfv_stress '//library_version
+      call print_line('mfv_stress '//library_version)
       call end_program(0)
    end select
    call read_arguments()
@@ -100,7 +103,7 @@ contains
          case ('--body')
             call get_argument(i, argument)
             if (argument /= 'lower' .and. argument /= 'upper') &
-               call refuse('mfv_stress', usage, "--body must be lower or upper, not '"//argument//"'")
+               call refuse('mfv_stress', usage, "--body must be lower or upper, not '"//shortened(argument)//"'")
             request%upper = argument == 'upper'
          case ('--step')
             request%step = nint(number(i, '--step', 1.0_wp, whole=.true.))
@@ -116,11 +119,12 @@ contains
             call get_argument(i, argument)
             call read_table(argument, 'x and y', 2, .false., points, error)
             if (allocated(error)) call refuse('mfv_stress', usage, error%message)
+            if (size(points, 2) == 0) call refuse('mfv_stress', usage, argument//': has no points')
             request%x = points(1, :)
             request%y = points(2, :)
          case default
             if (index(argument, '-') == 1) call refuse_option('mfv_stress', usage, help, argument)
-            if (path /= '') call refuse('mfv_stress', usage, "too many arguments: '"//argument//"'")
+            if (path /= '') call refuse('mfv_stress', usage, "too many arguments: '"//shortened(argument)//"'")
             path = argument
             cycle
          end select
@@ -139,25 +143,25 @@ contains
       logical, intent(in), optional :: whole
       real(wp), parameter :: most = 1.0e5_wp
       character(:), allocatable :: text, kind
-      integer :: code
+      logical :: is_right
 
-      kind = ' a number above 0'
-      if (present(whole)) kind = ' a whole number of at least '//to_text(nint(lower))
+      kind = ' a number above 0 and at most '//to_text(most)
+      if (present(whole)) kind = ' a whole number from '//to_text(nint(lower))//' to '//to_text(nint(most))
       call get_argument(i, text)
-      number = 0.0_wp
-      code = 1
-      if (text /= '' .and. verify(text, '0123456789+-.eEdD') == 0) read (text, *, iostat=code) number
-      if (code == 0 .and. present(whole)) code = merge(0, 1, abs(number - anint(number)) <= 0.0_wp)
-      if (code == 0) code = merge(0, 1, number >= lower .and. number <= most)
-      if (code /= 0) call refuse('mfv_stress', usage, option//' needs'//kind//", not '"//text//"'")
+      call read_real(text, number, is_right)
+      if (is_right .and. present(whole)) is_right = .not. abs(number - anint(number)) > 0.0_wp
+      if (.not. (is_right .and. number >= lower .and. number <= most)) &
+         call refuse('mfv_stress', usage, option//" needs"//kind//", not '"//shortened(text)//"'")
    end function number
 
    subroutine print_points()
+      character(len=25*(stress_count + 2)) :: line
       integer :: i
 
-      write (output_unit, '(a)') '# x y '//stress_names
+      call print_line('# x y '//stress_names)
       do i = 1, size(result%x)
-         write (output_unit, '(*(es24.16e3, :, 1x))') result%x(i), result%y(i), result%stress(:, i)
+         write (line, '(*(es24.16e3, :, 1x))') result%x(i), result%y(i), result%stress(:, i)
+         call print_line(trim(line))
       end do
    end subroutine print_points
 
@@ -166,15 +170,15 @@ contains
 
       unit = unit_suffix(result%stress_unit)
       place = to_text(result%largest%x)//', '//to_text(result%largest%y)//unit_suffix(result%length_unit)
-      write (output_unit, '(a)') 'largest von Mises   '//to_text(result%largest%value)//unit//' = '// &
+      call print_line('largest von Mises   '//to_text(result%largest%value)//unit//' = '// &
          to_text(result%largest%value/result%largest_pressure, 4)//' p0, at x, y = '//place//' = '// &
-         to_text(result%largest%x/result%half_width, 4)//', '//to_text(result%largest%y/result%half_width, 4)//' a'
+         to_text(result%largest%x/result%half_width, 4)//', '//to_text(result%largest%y/result%half_width, 4)//' a')
       if (result%yield_strength > 0.0_wp .and. result%largest%value > result%yield_strength) &
          write (error_unit, '(a)') 'warning: the largest von Mises stress, '//to_text(result%largest%value, 4)//unit// &
          ', is beyond the yield_strength '//to_text(result%yield_strength)//unit//' of the '// &
          trim(merge('upper', 'lower', request%upper))//' body: elasticity no longer holds'
-      write (output_unit, '(a)') 'stresses            '//to_text(stress_count)//' quantities at '// &
-         to_text(size(result%stress, 2))//' points, in '//path//' under /'//result%group
+      call print_line('stresses            '//to_text(stress_count)//' quantities at '// &
+         to_text(size(result%stress, 2))//' points, in '//path//' under /'//result%group)
    end subroutine print_summary
 
 end program mfv_stress

@@ -1,13 +1,14 @@
 !> mfv_sweep SWEEP.nml: solve the cases of a sweep, on all processors, and write one table.
 program mfv_sweep
-   use, intrinsic :: iso_fortran_env, only: output_unit
    use mfv_error, only: error_type
    use mfv_help, only: print_lines, refuse, refuse_option
    use mfv_keys, only: list_keys_as_markdown
    use mfv_namelist, only: group_type, write_namelists
+   use mfv_output, only: begin_program, print_line, print_text
+   use mfv_numbers, only: read_whole
    use mfv_ranks, only: has_ranks
    use mfv_run_sweep, only: run_sweep, sweep_options_type
-   use mfv_strings, only: to_text
+   use mfv_strings, only: shortened, to_text
    use mfv_sweep_keys, only: sweep_catalogue
    use mfv_sweep_plan, only: sweep_type
    use mfv_sweep_reader, only: read_sweep_file
@@ -82,6 +83,7 @@ program mfv_sweep
    number = 0
    only_check = .false.
    i = 1
+   call begin_program()
    if (command_argument_count() == 0) call refuse('mfv_sweep', usage, 'a sweep file is missing')
    do while (i <= command_argument_count())
       call get_argument(i, argument)
@@ -90,11 +92,11 @@ program mfv_sweep
          call print_lines([usage, help])
          call end_program(0)
       case ('--version')
-         write (output_unit, '(a)') 'mfv_sweep '//library_version//trim(merge(' with MPI   ', ' without MPI', has_ranks))
+         call print_line('mfv_sweep '//library_version//trim(merge(' with MPI   ', ' without MPI', has_ranks)))
          call end_program(0)
       case ('--keys')
          call list_keys_as_markdown(sweep_catalogue(), text)
-         write (output_unit, '(a)', advance='no') text
+         call print_text(text)
          call end_program(0)
       case ('--again')
          options%again = .true.
@@ -105,7 +107,7 @@ program mfv_sweep
          call read_option(argument, i)
       case default
          if (index(argument, '-') == 1) call refuse_option('mfv_sweep', usage, help, argument)
-         if (path /= '') call refuse('mfv_sweep', usage, "too many arguments: '"//argument//"'")
+         if (path /= '') call refuse('mfv_sweep', usage, "too many arguments: '"//shortened(argument)//"'")
          path = argument
       end select
       i = i + 1
@@ -138,11 +140,12 @@ contains
             options%parts = whole(value(slash + 1:))
             right = options%part >= 1 .and. options%part <= options%parts
          end if
-         if (.not. right) call refuse('mfv_sweep', usage, "--part '"//value//"': must be I/N with I from 1 to N, such as 3/16")
+         if (.not. right) call refuse('mfv_sweep', usage, "--part '"//shortened(value)//"': must be I/N with I from 1 to N, "// &
+                                      'such as 3/16')
          return
       end if
       read_number = whole(value)
-      if (read_number < 1) call refuse('mfv_sweep', usage, option//" '"//value//"': must be a whole number above 0")
+      if (read_number < 1) call refuse('mfv_sweep', usage, option//" '"//shortened(value)//"': must be a whole number above 0")
       if (option == '--threads') options%threads = read_number
       if (option == '--case') number = read_number
    end subroutine read_option
@@ -150,12 +153,10 @@ contains
    !> A whole number, 0 where the text is none.
    integer function whole(digits)
       character(*), intent(in) :: digits
-      integer :: code
+      logical :: is_right
 
       whole = 0
-      if (len(digits) == 0 .or. verify(digits, '0123456789') > 0) return
-      read (digits, *, iostat=code) whole
-      if (code /= 0) whole = 0
+      if (verify(digits, '0123456789') == 0) call read_whole(digits, whole, is_right)
    end function whole
 
    !> Validate, and say what there is to do.
@@ -170,15 +171,15 @@ contains
       call read_sweep_file(sweep_path, sweep, error)
       if (.not. allocated(error)) call check_place(sweep, error)
       if (allocated(error)) call fail(error)
-      write (output_unit, '(a)') sweep%source//' is valid: '//to_text(sweep%cases())//' cases, into '//sweep%result_path
+      call print_line(sweep%source//' is valid: '//to_text(sweep%cases())//' cases, into '//sweep%result_path)
       do place = 1, size(sweep%axes)
-         write (output_unit, '(a)') '  '//sweep%axes(place)%name//': '//to_text(size(sweep%axes(place)%values))//' values'
+         call print_line('  '//sweep%axes(place)%name//': '//to_text(size(sweep%axes(place)%values))//' values')
       end do
       do place = 1, min(shown, sweep%cases())
          call sweep%describe(sweep%places(place), words)
-         write (output_unit, '(a)') '  case '//to_text(place)//': '//words
+         call print_line('  case '//to_text(place)//': '//words)
       end do
-      if (sweep%cases() > shown) write (output_unit, '(a)') '  ...'
+      if (sweep%cases() > shown) call print_line('  ...')
    end subroutine check_sweep
 
    !> A case of the sweep as text.
@@ -198,7 +199,7 @@ contains
       if (allocated(error)) call fail(error)
       call sweep%describe(sweep%places(case_number), words)
       call write_namelists(groups, text)
-      write (output_unit, '(a)', advance='no') '! case '//to_text(case_number)//' of '//sweep%source//': '//words//line_feed//text
+      call print_text('! case '//to_text(case_number)//' of '//sweep%source//': '//words//line_feed//text)
    end subroutine print_case
 
 end program mfv_sweep

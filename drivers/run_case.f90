@@ -1,14 +1,17 @@
 !> What the programs that solve a case have in common.
 module mfv_run_case
-   use, intrinsic :: iso_fortran_env, only: error_unit, output_unit
+   use, intrinsic :: iso_fortran_env, only: error_unit
    use mfv_case, only: case_type
    use mfv_case_reader, only: read_case_file
+   use mfv_checkpoint, only: checkpoint_type
+   use mfv_checkpointed_run, only: keep_run, run_with_checkpoints
    use mfv_clock, only: seconds_now
    use mfv_discretisation_error, only: estimate_error, has_coarser_meshes
    use mfv_error, only: error_type, set_error
    use mfv_features, only: has_hdf5, hdf5_is_left_out
    use mfv_kinds, only: wp
    use mfv_one_thread, only: use_one_thread
+   use mfv_output, only: print_line, print_text
    use mfv_result_file, only: check_writable, write_result
    use mfv_simulation, only: new_simulation, simulation_type
    use mfv_status
@@ -24,19 +27,22 @@ contains
 
    !> Read the case in the file `path`, solve it, write its result (where the library has HDF5) and print the summary; the program
    !> then ends with the exit code of the outcome. `algorithm`: in place of the case's own; `suffix` then comes to the name of the result file.
-   !> `estimate`: whether the discretisation error is estimated even where the case does not ask for it.
-   subroutine run_case(path, algorithm, suffix, estimate)
+   !> `estimate`: whether the discretisation error is estimated even where the case does not ask for it; `resume`: whether to go on
+   !> from a checkpoint.
+   subroutine run_case(path, algorithm, suffix, estimate, resume)
       character(*), intent(in) :: path
       integer, intent(in), optional :: algorithm
       character(*), intent(in), optional :: suffix
-      logical, intent(in), optional :: estimate
+      logical, intent(in), optional :: estimate, resume
       type(case_type) :: case
+      type(checkpoint_type) :: checkpoint
       type(simulation_type) :: simulation
       type(string_type), allocatable :: warnings(:)
       type(terminal_observer_type) :: observer
       type(error_type), allocatable :: error
       character(:), allocatable :: text
       real(wp) :: started
+      logical :: ended_early, is_resumed
 
       call read_case_file(path, case, error)
       if (allocated(error)) call fail(error)
@@ -54,26 +60,31 @@ contains
       simulation = new_simulation(case%scene, case%keep_history, case%keep_states)
       call catch_interrupts()
       call observer%start()
-      call simulation%run(observer)
+      is_resumed = .false.
+      if (present(resume)) is_resumed = resume
+      call run_with_checkpoints(case, is_resumed, observer, simulation, checkpoint)
       if (case%error_estimate) then
          observer%work = 'coarser meshes: '
          call estimate_error(simulation, observer)
       end if
       call observer%clear()
+      if (was_interrupted(simulation)) call keep_run(checkpoint, simulation, observer)
+      ended_early = simulation%outcome == MFV_INTERRUPTED .or. was_interrupted(simulation)
       if (simulation%outcome /= MFV_COMPLETE) call case%explain(simulation)
 
       call validity_warnings(simulation, warnings)
       if (has_hdf5) call write_result(case%result_path, case, simulation, warnings, error)
       if (allocated(error)) call fail(error)
+      if (.not. ended_early) call checkpoint%remove()
       call summarize(case, simulation, warnings, seconds_now() - started, text)
-      write (output_unit, '(a)', advance='no') text
+      call print_text(text)
       if (has_hdf5) then
-         write (output_unit, '(a)') 'result              '//case%result_path
+         call print_line('result              '//case%result_path)
       else
-         write (output_unit, '(a)') 'result              no file: '//hdf5_is_left_out
+         call print_line('result              no file: '//hdf5_is_left_out)
       end if
       if (simulation%outcome /= MFV_COMPLETE) write (error_unit, '(a)') simulation%message
-      if (was_interrupted(simulation)) call end_program(status_exit_code(MFV_INTERRUPTED))
+      if (ended_early) call end_program(status_exit_code(MFV_INTERRUPTED))
       call end_program(status_exit_code(simulation%outcome))
    end subroutine run_case
 
@@ -88,11 +99,12 @@ contains
          call set_error(error, MFV_INPUT_ERROR, case%source//": --estimate: a body with shape='matrix' has no coarser mesh")
    end subroutine ask_for_estimate
 
-   !> Whether a run that was complete was ended while its error was estimated.
+   !> Whether a run that was complete was interrupted while its error was estimated.
    pure logical function was_interrupted(simulation)
       type(simulation_type), intent(in) :: simulation
 
       was_interrupted = .false.
+      if (simulation%outcome == MFV_INTERRUPTED) return
       if (allocated(simulation%estimate)) was_interrupted = simulation%estimate%status == MFV_INTERRUPTED
    end function was_interrupted
 

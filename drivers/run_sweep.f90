@@ -1,11 +1,13 @@
 !> What mfv_sweep does with a sweep: solve what is not there yet, and write the table when all is there.
 module mfv_run_sweep
    use, intrinsic :: iso_c_binding
-   use, intrinsic :: iso_fortran_env, only: error_unit, int64, output_unit
-   use mfv_error, only: error_type
-   use mfv_locked_file, only: delete_path, make_directory
+   use, intrinsic :: iso_fortran_env, only: error_unit, int64
+   use mfv_error, only: error_type, set_error
+   use mfv_locked_file, only: delete_path, make_directory, sync_name
    use mfv_one_thread, only: use_one_thread
+   use mfv_output, only: print_line
    use mfv_ranks
+   use mfv_safe_file, only: describe_code
    use mfv_status
    use mfv_strings, only: add_text, from_c, string_type, to_text
    use mfv_sweep_journal
@@ -138,9 +140,23 @@ contains
       if (allocated(error)) return
       allocate (parts(0))
       if (options%parts == 0) call gather_parts(sweep, options, parts, records, error)
-      if (allocated(error)) call close_journal(journal)
-      if (.not. allocated(error) .and. sweep%keeps_states) call make_directory(sweep%states_folder())
+      if (allocated(error)) call close_journal(journal, error)
+      if (.not. allocated(error) .and. sweep%keeps_states) call make_states_folder(sweep, error)
    end subroutine prepare
+
+   !> The folder of the states, beside the table. Error MFV_FILE_ERROR where a power cut could take it away again.
+   subroutine make_states_folder(sweep, error)
+      type(sweep_type), intent(in) :: sweep
+      type(error_type), allocatable, intent(out) :: error
+      character(:), allocatable :: why
+      integer :: code
+
+      call make_directory(sweep%states_folder())
+      call sync_name(sweep%result_path, code)
+      if (code == 0) return
+      call describe_code(code, why)
+      call set_error(error, MFV_FILE_ERROR, sweep%states_folder()//' cannot be brought to the disk: '//why)
+   end subroutine make_states_folder
 
    !> Where the table is complete: whether there is nothing to do, and the user has been told so. There is where --again has
    !> begun anew, so that there is a journal of this sweep without all its cases, or one of a part. A journal with all cases,
@@ -169,7 +185,7 @@ contains
       end if
       is_complete = .true.
       if (has_journal) call delete_path(journal_path(sweep, options))
-      write (output_unit, '(a)') sweep%result_path//' is complete: '//to_text(sweep%cases())//' cases; --again solves them anew'
+      call print_line(sweep%result_path//' is complete: '//to_text(sweep%cases())//' cases; --again solves them anew')
    end subroutine leave_complete_alone
 
    !> Add what a journal has to `records`. `found`: whether it is there, and of this sweep.
@@ -274,21 +290,20 @@ contains
       ! Every so many cases belong to a part: each has some of the hard ones.
       wanted = [(i, i=max(options%part, 1), size(records), max(options%parts, 1))]
       pending = pack(wanted, records(wanted)%number == 0)
-      if (size(pending) < size(wanted)) write (output_unit, '(a)') to_text(size(wanted) - size(pending))//' of '// &
-         to_text(size(wanted))//' cases were there'
+      if (size(pending) < size(wanted)) call print_line(to_text(size(wanted) - size(pending))//' of '// &
+         to_text(size(wanted))//' cases were there')
       if (journal%dropped > 0) call tell_of_dropped(journal%path, journal%dropped)
-      flush (output_unit)
       call solve_cases(sweep, pending, threads_for(options, ranks), ranks, journal, records, error)
       code = 0
       if (allocated(error)) then
-         call close_journal(journal)
+         call close_journal(journal, error)
       else if (any(records(wanted)%number == 0)) then
          code = status_exit_code(MFV_INTERRUPTED)
          call leave(sweep, options, size(wanted), journal, records, error)
       else if (options%parts > 0) then
-         call close_journal(journal)
-         write (output_unit, '(a)') 'part '//to_text(options%part)//' of '//to_text(options%parts)//': '// &
-            to_text(size(wanted))//' cases in '//journal%path//'; mfv_sweep '//sweep%source//' gathers the parts'
+         call close_journal(journal, error)
+         if (.not. allocated(error)) call print_line('part '//to_text(options%part)//' of '//to_text(options%parts)//': '// &
+            to_text(size(wanted))//' cases in '//journal%path//'; mfv_sweep '//sweep%source//' gathers the parts')
       else
          call finish(sweep, journal, records, parts, error)
       end if
@@ -308,7 +323,8 @@ contains
       type(error_type), allocatable, intent(out) :: error
       integer :: state
 
-      call close_journal(journal)
+      call close_journal(journal, error)
+      if (allocated(error)) return
       write (error_unit, '(a)') 'interrupted: '//to_text(count(records%number > 0))//' of '//to_text(wanted)// &
          ' cases are kept in '//journal%path//'; the same command'// &
          trim(merge(' without --again', '                ', options%again))//' goes on'
@@ -328,7 +344,7 @@ contains
 
       call write_table(sweep, records, error)
       if (allocated(error)) then
-         call close_journal(journal)
+         call close_journal(journal, error)
          return
       end if
       do i = 1, size(parts)
@@ -353,18 +369,18 @@ contains
          words = words//separator//to_text(number)//' '//status_outcome(i)
          separator = ', '
       end do
-      write (output_unit, '(a)') 'cases               '//to_text(size(records))//words
+      call print_line('cases               '//to_text(size(records))//words)
       if (any(records%outcome == MFV_INPUT_ERROR)) then
          i = findloc(records%outcome, MFV_INPUT_ERROR, dim=1)
          call sweep%describe(sweep%places(i), words)
-         write (output_unit, '(a)') 'first input error   '//sweep%source//': case '//to_text(i)//' ('//words//'): '// &
-            records(i)%message
+         call print_line('first input error   '//sweep%source//': case '//to_text(i)//' ('//words//'): '// &
+            records(i)%message)
       end if
       if (any(records%outcome /= MFV_INPUT_ERROR)) &
-         write (output_unit, '(a)') 'certificate         largest relative residual '// &
-         to_text(maxval(records%largest_residual, mask=records%outcome /= MFV_INPUT_ERROR))
-      write (output_unit, '(a)') 'table               '//sweep%result_path//" (Python: mfv.read_table('"// &
-         sweep%result_path//"'))"
+         call print_line('certificate         largest relative residual '// &
+         to_text(maxval(records%largest_residual, mask=records%outcome /= MFV_INPUT_ERROR)))
+      call print_line('table               '//sweep%result_path//" (Python: mfv.read_table('"// &
+         sweep%result_path//"'))")
    end subroutine summarize
 
    !> How many threads solve in this process: as the user says, by option or OMP_NUM_THREADS; else one for each processor of a

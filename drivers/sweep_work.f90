@@ -182,8 +182,9 @@ contains
          return
       end if
       if (seconds_now() > manager%next_sync) then
-         call sync_journal(journal)
+         call sync_journal(journal, error)
          manager%next_sync = seconds_now() + sync_pause
+         if (allocated(error)) call request_interrupt()
       end if
       call unpack_record(bytes, record)
       records(record%number) = record

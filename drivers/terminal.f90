@@ -14,8 +14,11 @@ module mfv_terminal
    public :: get_argument, terminal_observer_type, catch_interrupts, is_interrupted, request_interrupt, is_terminal, end_program, &
              fail
 
-   !> Shows progress on a terminal, and ends the run after Ctrl-C.
+   !> Shows progress on a terminal, and ends the run after Ctrl-C, or has it paused then.
    type, extends(observer_type) :: terminal_observer_type
+      !> Whether the run can be paused: after Ctrl-C, and every so many seconds where that is not 0.
+      logical :: can_pause = .false.
+      real(wp) :: pause_seconds = 0.0_wp, next_pause = 0.0_wp
       logical :: visible = .false.
       logical :: shown = .false.
       real(wp) :: next_time = 0.0_wp
@@ -24,6 +27,8 @@ module mfv_terminal
    contains
       procedure :: notify
       procedure :: start
+      procedure :: allow_pauses
+      procedure :: end_pause
       procedure :: clear
    end type terminal_observer_type
 
@@ -62,6 +67,24 @@ contains
       self%next_time = seconds_now() + pause
    end subroutine start
 
+   !> From now on the run can be paused; every so many seconds, where that is not 0.
+   subroutine allow_pauses(self, seconds)
+      class(terminal_observer_type), intent(inout) :: self
+      real(wp), intent(in) :: seconds
+
+      self%can_pause = .true.
+      self%pause_seconds = seconds
+      call self%end_pause()
+   end subroutine allow_pauses
+
+   !> The run goes on; the time to the next pause begins.
+   subroutine end_pause(self)
+      class(terminal_observer_type), intent(inout) :: self
+
+      self%pause_wanted = .false.
+      self%next_pause = seconds_now() + self%pause_seconds
+   end subroutine end_pause
+
    !> Whether messages go to a terminal.
    logical function is_terminal()
       integer(c_int), parameter :: standard_error = 2
@@ -76,11 +99,14 @@ contains
       integer, intent(in) :: segment, segments
       real(wp), intent(in) :: fraction
       logical, intent(out) :: stop_wanted
+      real(wp) :: now
 
-      stop_wanted = interrupted
-      if (.not. self%visible) return
-      if (seconds_now() < self%next_time) return
-      self%next_time = seconds_now() + pause
+      stop_wanted = interrupted .and. .not. self%can_pause
+      now = 0.0_wp
+      if (self%visible .or. self%pause_seconds > 0.0_wp) now = seconds_now()
+      self%pause_wanted = self%can_pause .and. (interrupted .or. (self%pause_seconds > 0.0_wp .and. now >= self%next_pause))
+      if (.not. self%visible .or. now < self%next_time) return
+      self%next_time = now + pause
       self%shown = .true.
       write (error_unit, '(a)', advance='no') achar(13)//'  '//self%work(:len_trim(self%work) + min(1, len_trim(self%work)))// &
          to_text(floor(100*(segment - 1 + fraction)/segments))//' %, part '//to_text(segment)//' of '// &

@@ -5,8 +5,10 @@
  * for one; the scales that the file repeats in every group are "mesh/x", "history/record" and "cycles/cycle" alone.
  *
  * Units: any consistent set; forces and energies per unit thickness. Every call returns a status; mfv_message tells more.
- * The library never prints, never stops the process and has no global state: handles are independent of each other, one
- * thread a handle at a time (mfv_write in two threads at once needs an HDF5 that is thread-safe, as Debian's is). Texts go
+ * The library never prints and never stops the process. Handles are independent of each other; a handle is used by one call at a
+ * time, and others that come meanwhile return MFV_IN_USE and do nothing (mfv_write in two threads at once needs an HDF5 that is
+ * thread-safe, as Debian's is). A handle that is null, was freed, is of another sort or is no handle at all is told by
+ * MFV_BAD_HANDLE, always: handles are numbers that are looked up and never come again, not addresses. Texts go
  * out through the caller's buffer with its size, cut where they do not fit, always null-terminated. Structures begin with
  * their size: later versions may append members, and take the shorter ones of programs that do not know them.
  */
@@ -153,8 +155,8 @@ int mfv_get_loads(const mfv_case *handle, mfv_loads *loads);
  * is the one of motions that go on towards `direction` (motions lengths, such as {0, 1} for a shift to the right; only its
  * direction counts; friction acts, if the scene has any), or, where it is NULL, on the way that led here, every node's status as
  * it is. Across the direction of a step that led two motions at once it differs from the derivative of the step's end by the
- * order of the step (docs/theory.md). The state does not change. MFV_BAD_ARGUMENT where the contact does not determine it. Since
- * 0.1.0. */
+ * order of the step (docs/theory.md). The state does not change. MFV_BAD_ARGUMENT where the contact does not determine it; where
+ * nothing leads on in that direction what mfv_advance would return, such as MFV_NO_CONTINUATION. Since 0.1.0. */
 int mfv_tangent(mfv_case *handle, int motions, const double *direction, double *tangent);
 
 /* Keep the present state in *state (made where it is NULL, else its storage is used again), and come back to it: the case then
@@ -179,10 +181,10 @@ typedef struct mfv_progress {
 } mfv_progress;
 typedef int (*mfv_observer)(const mfv_progress *progress, void *user);
 
-/* From now on tell `observer` (NULL: nobody) of every increment, with `user`. It runs in the thread of mfv_run or mfv_advance, must
- * not call functions of this handle, and ends the run by a value that is not 0: the outcome is then MFV_INTERRUPTED, with the
- * last state in place, from which mfv_advance goes on (mfv_run does not: its step was left in the middle). No C++ exception may
- * leave it. Since 0.1.0. */
+/* From now on tell `observer` (NULL: nobody) of every increment, with `user`. It runs in the thread of mfv_run or mfv_advance;
+ * calls on this handle return MFV_IN_USE in it, mfv_free too. It ends the run by a value that is not 0: the outcome is then
+ * MFV_INTERRUPTED, with the last state in place, from which mfv_advance goes on (mfv_run does not: its step was left in the
+ * middle). No C++ exception and no longjmp may leave it: the handle would stay in use for ever. Since 0.1.0. */
 int mfv_observe(mfv_case *handle, mfv_observer observer, void *user);
 
 /* Number of fields of the case now, and the path of field `index` (from 0), such as "history/shift". Since 0.1.0. */

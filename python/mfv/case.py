@@ -13,7 +13,7 @@ from contextlib import contextmanager
 from ctypes import POINTER, byref, c_int, c_int32, c_size_t, c_void_p, create_string_buffer
 from operator import index
 from types import TracebackType
-from typing import TYPE_CHECKING, Any, Callable
+from typing import TYPE_CHECKING, Any, Callable, NoReturn
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -110,6 +110,9 @@ class State:
         self._status = 0
         _freed_with(self, library().mfv_state_free, self._handle)
 
+    def __reduce__(self) -> NoReturn:
+        raise TypeError("a State lives in this process and cannot be pickled or copied")
+
 
 class Trial:
     """What `Case.trial` gives: unless it is accepted, the case goes back to where the `with` statement began."""
@@ -198,6 +201,9 @@ class Case:
 
     def __deepcopy__(self, memo: dict[int, Any]) -> Case:
         return self.copy()
+
+    def __reduce__(self) -> NoReturn:
+        raise TypeError("a Case lives in this process and cannot be pickled; its scene and its result can")
 
     def copy(self) -> Case:
         """A case of its own with the same scene, state and history. Who observes this one does not observe the copy."""
@@ -496,7 +502,7 @@ class Case:
     def _ended(self, check: bool, status: int) -> str:
         """The outcome of a status. Raises as `_lead` does."""
         if status != 0:
-            self._check(status, (errors.BadHandle, errors.BadArgument))
+            self._check(status, (errors.BadHandle, errors.BadArgument, errors.InUse))
         self._status = status
         self._observer.raise_what_ended_it()
         self._raise_early_end(check)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import os
 from collections.abc import Iterator, Mapping
 from typing import TYPE_CHECKING, Any, NamedTuple
@@ -10,7 +11,7 @@ import h5py
 import numpy as np
 
 from . import _html
-from .errors import NotAResult
+from .errors import MfvError, NotAResult
 
 if TYPE_CHECKING:
     import xarray
@@ -251,13 +252,30 @@ def read(path: str | os.PathLike[str]) -> Result:
         return Result(groups, {name: str(value) for name, value in file.attrs.items()})
 
 
-def open_hdf5(path: str, expected: str) -> h5py.File:
-    """An HDF5 file to read; `expected`: what it should be, for the message. Raises OSError, NotAResult."""
+@contextlib.contextmanager
+def open_hdf5(path: str, expected: str) -> Iterator[h5py.File]:
+    """An HDF5 file to read in a `with`; `expected`: what it should be, for the message. Raises OSError, NotAResult."""
+    if os.path.exists(path) and not os.path.isfile(path) and not os.path.isdir(path):
+        raise NotAResult(None, f"{path}: not a {expected}, but a pipe or a device")
     with open(path, "rb"):  # a missing file and the like are Python's to report
         pass
     if not h5py.is_hdf5(path):
         raise NotAResult(None, f"{path}: not a {expected} (not even HDF5)")
-    return h5py.File(path, "r")
+    try:
+        with h5py.File(path, "r") as file:
+            yield file
+    except MfvError:
+        raise
+    except Exception as error:  # of every kind: h5py and numpy meet what is damaged wherever it is
+        raise NotAResult(None, f"{path}: not a {expected}, or damaged: {error}") from error
+
+
+def values_of(dataset: h5py.Dataset) -> Values:
+    """The values of a dataset. Raises ValueError where it says that it is larger than what the file holds can be: no memory is
+    taken for what is not there. (Deflate makes at most 1032 bytes of one; a value can come from one byte.)"""
+    if dataset.nbytes > 2**20 and dataset.size > 1032 * dataset.id.get_storage_size():
+        raise ValueError(f"{dataset.name} has fewer values in the file than its size says")
+    return dataset[()]
 
 
 def _groups(file: h5py.File) -> dict[str, dict[str, Field]]:
@@ -280,7 +298,7 @@ def _field(dataset: h5py.Dataset) -> Field:
     name = dataset.name.rsplit("/", 1)[1]
     dimensions = (name,) if dataset.is_scale else tuple(d[0].name.rsplit("/", 1)[1] for d in dataset.dims if len(d) > 0)
     unit, description = (str(dataset.attrs.get(attribute, "")) for attribute in ("units", "long_name"))
-    return Field(dataset[()], unit, description, dimensions)
+    return Field(values_of(dataset), unit, description, dimensions)
 
 
 def _dataset(fields: Mapping[str, Field], coordinates: Mapping[str, Field]) -> xarray.Dataset:

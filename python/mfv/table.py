@@ -11,7 +11,7 @@ import numpy as np
 
 from . import _html
 from .errors import NotAResult
-from .result import open_hdf5
+from .result import open_hdf5, values_of
 
 if TYPE_CHECKING:
     import pandas
@@ -94,7 +94,7 @@ def read_table(path: str | os.PathLike[str]) -> Table:
         if "table" not in file or "input_checksum" not in file.attrs:
             raise NotAResult(None, f"{path}: not a table of mfv_sweep, though it is HDF5")
         dataset = file["table"]
-        table = _with_text(dataset[()]).view(Table)
+        table = _with_text(values_of(dataset)).view(Table)
         names = [str(name) for name in dataset.attrs["columns"]]
         table.units = dict(zip(names, map(str, dataset.attrs["units"])))
         table.long_names = dict(zip(names, map(str, dataset.attrs["long_names"])))

@@ -6,6 +6,7 @@
 
 from __future__ import annotations
 
+import io
 import re
 from collections.abc import Callable
 from importlib.resources import files
@@ -89,7 +90,9 @@ def _write_matrix(path: Path) -> None:
     logarithm = (ends[0] * np.log(np.abs(ends[0])) - ends[1] * np.log(np.abs(ends[1]))) / interval - 1.0 - np.log(DATUM)
     direct = -(1.0 - POISSON_RATIO) / (np.pi * SHEAR_MODULUS) * logarithm
     coupling = (1.0 - 2.0 * POISSON_RATIO) / (4.0 * SHEAR_MODULUS) * np.sign(distance)
-    with h5py.File(path, "w") as file:
+    memory = io.BytesIO()
+    with h5py.File(memory, "w") as file:  # HDF5 does not come back from a full disk: it is kept away from disks
         file["x"] = x
         file["width"] = np.full(NODES, interval)
         file["compliance"] = np.block([[direct, coupling], [-coupling, direct]])
+    path.write_bytes(memory.getvalue())

@@ -5,6 +5,7 @@
 module mfv_certificate
    use, intrinsic :: ieee_arithmetic, only: ieee_is_finite
    use mfv_compliance, only: block_up, coupling_goodman
+   use mfv_archive, only: archive_type
    use mfv_contact_fields, only: contact_fields_type
    use mfv_contact_model, only: along_approach, along_rotation, along_shift, contact_model_type
    use mfv_contact_state, only: contact_state_type
@@ -64,6 +65,7 @@ module mfv_certificate
       procedure :: claim
       procedure :: check_increment
       procedure :: note_jump
+      procedure :: carry
       procedure, private :: note
    end type certificate_type
 
@@ -377,5 +379,25 @@ contains
       end if
       self%worst_increment(kind) = self%increments
    end subroutine note
+
+   !> See mfv_archive.
+   subroutine carry(self, archive)
+      class(certificate_type), intent(inout) :: self
+      type(archive_type), intent(inout) :: archive
+
+      call archive%fill(self%residual)
+      call archive%fill(self%claimed)
+      call archive%fill(self%worst_increment)
+      call archive%carry(self%increments)
+      call archive%carry(self%leaps)
+      call archive%carry(self%traction)
+      call archive%carry(self%normal)
+      call archive%carry(self%tangential)
+      call archive%carry(self%normal_force)
+      call archive%carry(self%tangential_force)
+      call archive%carry(self%moment)
+      call archive%carry(self%energy)
+      call archive%carry(self%work)
+   end subroutine carry
 
 end module mfv_certificate

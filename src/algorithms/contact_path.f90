@@ -2,6 +2,7 @@
 !> straight part of the history, hold what nothing determines, change statuses, record.
 module mfv_contact_path
    use, intrinsic :: ieee_arithmetic, only: ieee_quiet_nan, ieee_value
+   use mfv_archive, only: archive_type
    use mfv_certificate, only: certificate_type, new_certificate
    use mfv_contact_fields, only: contact_fields_type
    use mfv_contact_model, only: along_rotation, along_shift, contact_model_type, new_contact_model
@@ -30,6 +31,8 @@ module mfv_contact_path
       integer :: number = 1, segments = 1, step = 1
       !> Where this one begins and ends in parts of the whole that it belongs to, for progress.
       real(wp) :: from = 0.0_wp, to = 1.0_wp
+   contains
+      procedure :: carry => carry_segment
    end type segment_type
 
    !> Where a path stands: what it takes to go on from here with the same digits, but for what only grows on the way and what can be made
@@ -45,6 +48,8 @@ module mfv_contact_path
       !> Tangential force over shift on the first increment of this segment, force/length^2; NaN where there is none yet, and of
       !> load steps and leaps, which are no first increments.
       real(wp) :: first_stiffness = 0.0_wp
+   contains
+      procedure, private :: carry_position
    end type path_position_type
 
    type, extends(path_position_type) :: contact_path_type
@@ -61,6 +66,8 @@ module mfv_contact_path
       procedure :: copy_without_history
       procedure :: keep
       procedure :: come_back
+      procedure :: carry
+      procedure, private :: model_as
       procedure :: await_increment
       procedure :: begin_rotation
       procedure :: record
@@ -107,6 +114,8 @@ module mfv_contact_path
       logical :: snapped = .false., solved = .false.
       !> First change at this load: event and node; and how many nodes changed with it.
       integer :: event = event_none, node = 0, count = 0
+   contains
+      procedure :: carry => carry_moment
    end type moment_type
 
 contains
@@ -155,16 +164,89 @@ contains
       type(kept_path_type), intent(in) :: kept
 
       call self%history%move_nodes(kept%added - self%model%added)
-      if (self%model%added /= kept%added .or. (self%model%tangential .neqv. kept%tangential) .or. &
-          (self%model%rotational .neqv. kept%rotational)) then
-         self%model = new_contact_model(self%model%scene)
-         if (kept%tangential .and. .not. self%model%tangential) call self%model%add_tangential()
-         if (kept%rotational) call self%model%add_rotation()
-         if (kept%added > 0) call self%model%grow(kept%added)
-      end if
+      call self%model_as(kept%added, kept%tangential, kept%rotational)
       self%path_position_type = kept%position
       self%history%records = min(kept%records, self%history%records)
    end subroutine come_back
+
+   !> Model the contact with so many nodes added at either end, and with the problems that are named; anew where it was otherwise.
+   subroutine model_as(self, added, tangential, rotational)
+      class(contact_path_type), intent(inout) :: self
+      integer, intent(in) :: added
+      logical, intent(in) :: tangential, rotational
+
+      if (self%model%added == added .and. (self%model%tangential .eqv. tangential) .and. &
+          (self%model%rotational .eqv. rotational)) return
+      self%model = new_contact_model(self%model%scene)
+      if (tangential .and. .not. self%model%tangential) call self%model%add_tangential()
+      if (rotational) call self%model%add_rotation()
+      if (added > 0) call self%model%grow(added)
+   end subroutine model_as
+
+   !> See mfv_archive. It is read into a path of the same scene.
+   subroutine carry(self, archive)
+      class(contact_path_type), intent(inout) :: self
+      type(archive_type), intent(inout) :: archive
+      integer :: added
+      logical :: tangential, rotational
+
+      added = self%model%added
+      tangential = self%model%tangential
+      rotational = self%model%rotational
+      call archive%carry(added)
+      call archive%carry(tangential)
+      call archive%carry(rotational)
+      if (archive%is_damaged()) return
+      call self%model_as(added, tangential, rotational)
+      call self%carry_position(archive)
+      call self%history%carry(archive)
+      call archive%carry(self%record_events)
+      call archive%carry(self%start_force)
+      call archive%carry(self%start_shift)
+      call archive%carry(self%awaits_increment)
+   end subroutine carry
+
+   subroutine carry_position(self, archive)
+      class(path_position_type), intent(inout) :: self
+      type(archive_type), intent(inout) :: archive
+
+      call self%system%carry(archive)
+      call self%state%carry(archive)
+      call self%certificate%carry(archive)
+      call archive%carry(self%events)
+      call archive%carry(self%trial)
+      call archive%carry(self%first_stiffness)
+   end subroutine carry_position
+
+   subroutine carry_segment(self, archive)
+      class(segment_type), intent(inout) :: self
+      type(archive_type), intent(inout) :: archive
+
+      call self%normal%carry(archive)
+      call self%tangential%carry(archive)
+      call self%rotational%carry(archive)
+      call archive%carry(self%friction)
+      call archive%carry(self%number)
+      call archive%carry(self%segments)
+      call archive%carry(self%step)
+      call archive%carry(self%from)
+      call archive%carry(self%to)
+   end subroutine carry_segment
+
+   subroutine carry_moment(self, archive)
+      class(moment_type), intent(inout) :: self
+      type(archive_type), intent(inout) :: archive
+
+      call archive%carry(self%tried)
+      call archive%carry(self%tries)
+      call archive%carry(self%round_off)
+      call archive%carry(self%one_at_a_time)
+      call archive%carry(self%snapped)
+      call archive%carry(self%solved)
+      call archive%carry(self%event)
+      call archive%carry(self%node)
+      call archive%carry(self%count)
+   end subroutine carry_moment
 
    !> A segment begins: have its first_stiffness found.
    subroutine await_increment(self)

@@ -1,6 +1,7 @@
 !> What is kept of a cycle of the load history: its three turning points, and what it did.
 module mfv_cycle
    use, intrinsic :: ieee_arithmetic, only: ieee_quiet_nan, ieee_value
+   use mfv_archive, only: archive_type
    use mfv_contact_model, only: contact_model_type
    use mfv_contact_state, only: contact_state_type
    use mfv_kinds, only: pi, wp
@@ -17,6 +18,8 @@ module mfv_cycle
       !> Tangential force over shift on the first event increment of the way to it, that is right after the turning point before,
       !> where all sticks: tangential stiffness, force/length^2. NaN where no such increment was made.
       real(wp) :: stiffness_on_leaving = 0.0_wp
+   contains
+      procedure :: carry => carry_turning_point
    end type turning_point_type
 
    type :: cycle_type
@@ -35,6 +38,7 @@ module mfv_cycle
       procedure, private :: is_sheared
       procedure :: secant_stiffness
       procedure :: loss_factor
+      procedure :: carry
    end type cycle_type
 
 contains
@@ -126,5 +130,33 @@ contains
       number = number + 1
       cycles(number) = cycle
    end subroutine append_cycle
+
+   !> See mfv_archive.
+   subroutine carry(self, archive)
+      class(cycle_type), intent(inout) :: self
+      type(archive_type), intent(inout) :: archive
+
+      call archive%carry(self%step)
+      call archive%carry(self%number)
+      call archive%carry(self%overall)
+      call self%start%carry(archive)
+      call self%reversal%carry(archive)
+      call self%return%carry(archive)
+      call archive%carry(self%change)
+      call archive%carry(self%first_dissipation)
+   end subroutine carry
+
+   subroutine carry_turning_point(self, archive)
+      class(turning_point_type), intent(inout) :: self
+      type(archive_type), intent(inout) :: archive
+
+      call archive%carry(self%normal_force)
+      call archive%carry(self%tangential_force)
+      call archive%carry(self%approach)
+      call archive%carry(self%shift)
+      call archive%carry(self%dissipation)
+      call self%edges%carry(archive)
+      call archive%carry(self%stiffness_on_leaving)
+   end subroutine carry_turning_point
 
 end module mfv_cycle

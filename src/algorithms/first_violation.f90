@@ -20,6 +20,7 @@ module mfv_first_violation
    use mfv_event_search, only: corners_type, status_after, violations_type
    use mfv_increment
    use mfv_kinds, only: wp
+   use mfv_march, only: march_type
    use mfv_node_status
    use mfv_observer, only: observer_type
    use mfv_rate_problem, only: settle_by_rates
@@ -49,88 +50,149 @@ module mfv_first_violation
 
 contains
 
-   !> Lead the loads along one segment. `observer` is told of every increment.
+   !> Lead the loads along one segment. `observer` is told of every increment; where it wants a pause, `march` keeps what it takes
+   !> to go on. It is asked too where one load takes long, because the mesh grows (under an absurd force, far) or changes are many.
    !> Errors, each leaving the last admissible state in place: MFV_GROSS_SLIDING, MFV_SEPARATED, MFV_NO_CONTINUATION,
    !> MFV_MESH_EXCEEDED, MFV_INADMISSIBLE_STEP, MFV_INTERRUPTED.
-   subroutine lead_by_violations(path, segment, observer, error)
+   subroutine lead_by_violations(path, segment, march, observer, error)
       class(contact_path_type), intent(inout) :: path
       type(segment_type), intent(in) :: segment
+      type(march_type), intent(inout) :: march
       class(observer_type), intent(inout), optional :: observer
       type(error_type), allocatable, intent(out) :: error
-      type(moment_type) :: moment
-      type(constraints_type) :: constraints
-      type(increment_type) :: increment
-      real(wp) :: done, milestone
-      integer :: creeping, standing, since
-      logical :: settled, stop_wanted, drop, last, snapped
+      integer :: nodes
 
-      call path%start_segment(segment, error)
-      if (allocated(error)) return
-      done = 0.0_wp
-      creeping = 0
-      standing = 0
-      milestone = 0.0_wp
-      since = 0
+      if (.not. march%paused) then
+         call path%start_segment(segment, error)
+         if (allocated(error)) return
+         call begin(march)
+      end if
+      nodes = size(path%state%status)
       do
-         standing = standing + 1
-         if (standing > most_tiny_steps + 10*size(path%state%status)) then
+         if (.not. march%paused) then
+            call make_increment(path, segment, march, error)
+            if (allocated(error)) return
+            if (present(observer) .and. (march%moved .or. march%standing > patience .or. size(path%state%status) > nodes)) &
+               call tell(path, segment, march, observer, error)
+            nodes = size(path%state%status)
+            if (march%paused .or. allocated(error)) return
+         end if
+         march%paused = .false.
+         if (march%moved .and. march%at_end) return
+         if (march%creeping > most_tiny_steps .or. march%since > most_events + 10*size(path%state%status)) then
             call path%no_continuation('the load does not advance', error)
             return
          end if
-         if (standing == patience + size(path%state%status) .and. .not. moment%solved) then
-            call settle_at_once(path, segment, done, settled)
-            moment%solved = .true.
-            if (settled) moment%tries = 0
-         end if
-         drop = path%dropping()
-         call path%settle_loads(segment, done, moment, constraints, settled, error)
-         if (allocated(error)) return
-         if (.not. settled) cycle
-         call find_increment(path, constraints, merge(1.0_wp, 1.0_wp - done, drop), drop, moment%round_off, increment)
-         if (increment%singular) then
-            call path%no_continuation('the linear system is singular', error)
-            return
-         else if (increment%diverges) then
-            snapped = .false.
-            if (.not. moment%snapped) call path%snap(snapped)
-            moment%snapped = snapped
-            if (snapped) cycle
-            call path%no_continuation('the equations of friction have no solution nearby', error)
-            return
-         end if
-         if (increment%step > no_step_of(path)) then
-            call path%keep_settled(segment, moment)
-            last = .not. drop .and. increment%step*(1.0_wp + tie_of(path)) + no_step_of(path) >= 1.0_wp - done
-            if (last) increment%step = 1.0_wp - done
-            if (drop .and. increment%step*(1.0_wp + tie_of(path)) + no_step_of(path) >= 1.0_wp) increment%step = 1.0_wp
-            call advance(path, increment, drop, error)
-            if (allocated(error)) return
-            if (.not. drop) done = done + increment%step
-            if (present(observer)) then
-               call observer%notify(path%state, segment%number, segment%segments, &
-                                    segment%from + (segment%to - segment%from)*done, stop_wanted)
-               if (stop_wanted) call path%end_here(MFV_INTERRUPTED, 'stopped on request', error)
-               if (allocated(error)) return
-            end if
-            if (last) return
-            call renew(moment)
-            standing = 0
-            if (.not. drop) creeping = merge(creeping + 1, 0, increment%step < tie_of(path))
-            since = since + 1
-            if (done > milestone + worth_telling) then
-               milestone = done
-               since = 0
-            end if
-            if (creeping > most_tiny_steps .or. since > most_events + 10*size(path%state%status)) then
-               call path%no_continuation('the load does not advance', error)
-               return
-            end if
-         end if
-         if (.not. increment%ends_in_event) cycle
-         call change_statuses(path, segment, done, increment, moment, error)
+         if (.not. march%increment%ends_in_event) cycle
+         call change_statuses(path, segment, march%done, march%increment, march%moment, error)
          if (allocated(error)) return
       end do
    end subroutine lead_by_violations
+
+   !> At the start of a segment.
+   subroutine begin(march)
+      type(march_type), intent(inout) :: march
+
+      march%moment = moment_type()
+      march%done = 0.0_wp
+      march%at_end = .false.
+      march%standing = 0
+      march%creeping = 0
+      march%since = 0
+      march%milestone = 0.0_wp
+   end subroutine begin
+
+   !> With the statuses as they are, the next increment, and the way to its end. Where it has no length (not `march%moved`) only
+   !> statuses are to change. Errors as lead_by_violations.
+   subroutine make_increment(path, segment, march, error)
+      class(contact_path_type), intent(inout) :: path
+      type(segment_type), intent(in) :: segment
+      type(march_type), intent(inout) :: march
+      type(error_type), allocatable, intent(out) :: error
+      logical :: drop, ready
+
+      march%moved = .false.
+      do
+         march%standing = march%standing + 1
+         if (march%standing > most_tiny_steps + 10*size(path%state%status)) then
+            call path%no_continuation('the load does not advance', error)
+            return
+         end if
+         if (march%standing == patience + size(path%state%status) .and. .not. march%moment%solved) then
+            call settle_at_once(path, segment, march%done, ready)
+            march%moment%solved = .true.
+            if (ready) march%moment%tries = 0
+         end if
+         drop = path%dropping()
+         call path%settle_loads(segment, march%done, march%moment, march%constraints, ready, error)
+         if (allocated(error)) return
+         if (.not. ready) cycle
+         call find_increment(path, march%constraints, merge(1.0_wp, 1.0_wp - march%done, drop), drop, &
+                             march%moment%round_off, march%increment)
+         call look_for_solution(path, march, ready, error)
+         if (allocated(error)) return
+         if (ready) exit
+      end do
+      if (.not. march%increment%step > no_step_of(path)) return
+      call path%keep_settled(segment, march%moment)
+      associate (step => march%increment%step)
+         march%at_end = .not. drop .and. step*(1.0_wp + tie_of(path)) + no_step_of(path) >= 1.0_wp - march%done
+         if (march%at_end) step = 1.0_wp - march%done
+         if (drop .and. step*(1.0_wp + tie_of(path)) + no_step_of(path) >= 1.0_wp) step = 1.0_wp
+         call advance(path, march%increment, drop, error)
+         if (allocated(error)) return
+         march%moved = .true.
+         if (.not. drop) march%done = march%done + step
+         if (march%at_end) return
+         call renew(march%moment)
+         march%standing = 0
+         if (.not. drop) march%creeping = merge(march%creeping + 1, 0, step < tie_of(path))
+      end associate
+      march%since = march%since + 1
+      if (march%done > march%milestone + worth_telling) then
+         march%milestone = march%done
+         march%since = 0
+      end if
+   end subroutine make_increment
+
+   !> Whether the increment could be found. `found`: it was; else nodes have been let snap, and it is to be found again.
+   !> Error MFV_NO_CONTINUATION.
+   subroutine look_for_solution(path, march, found, error)
+      class(contact_path_type), intent(inout) :: path
+      type(march_type), intent(inout) :: march
+      logical, intent(out) :: found
+      type(error_type), allocatable, intent(out) :: error
+      logical :: snapped
+
+      found = .not. (march%increment%singular .or. march%increment%diverges)
+      if (found) return
+      if (march%increment%singular) then
+         call path%no_continuation('the linear system is singular', error)
+         return
+      end if
+      snapped = .false.
+      if (.not. march%moment%snapped) call path%snap(snapped)
+      march%moment%snapped = snapped
+      if (.not. snapped) call path%no_continuation('the equations of friction have no solution nearby', error)
+   end subroutine look_for_solution
+
+   !> Tell the observer where the load is. Error MFV_INTERRUPTED: it wants an end.
+   subroutine tell(path, segment, march, observer, error)
+      class(contact_path_type), intent(in) :: path
+      type(segment_type), intent(in) :: segment
+      type(march_type), intent(inout) :: march
+      class(observer_type), intent(inout) :: observer
+      type(error_type), allocatable, intent(out) :: error
+      logical :: stop_wanted
+
+      call observer%notify(path%state, segment%number, segment%segments, &
+                           segment%from + (segment%to - segment%from)*march%done, stop_wanted)
+      if (stop_wanted) then
+         call path%end_here(MFV_INTERRUPTED, 'stopped on request', error)
+      else
+         march%paused = observer%pause_wanted
+      end if
+   end subroutine tell
 
    !> Take a step of the load (of the drop) with the rates of the increment, and check it; the increment's state goes along.
    !> Errors MFV_NO_CONTINUATION: the statuses would make the tractions jump, or the certificate fails by far (loads out of

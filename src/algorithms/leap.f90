@@ -19,6 +19,7 @@ module mfv_leap
    use mfv_error, only: error_type
    use mfv_first_violation, only: lead_by_violations
    use mfv_kinds, only: wp
+   use mfv_march, only: march_type
    use mfv_node_status
    use mfv_observer, only: observer_type
    use mfv_scene, only: control_force
@@ -48,57 +49,102 @@ module mfv_leap
 
 contains
 
-   !> Lead the loads along one segment by leaps. `observer` is told of every leap.
+   !> Lead the loads along one segment by leaps. `observer` is told of every leap, and can have a pause there.
    !> Errors, each leaving the last admissible state in place: those of mfv_first_violation.
-   subroutine lead_by_leaps(path, segment, observer, error)
+   subroutine lead_by_leaps(path, segment, march, observer, error)
       class(contact_path_type), intent(inout) :: path
       type(segment_type), intent(in) :: segment
+      type(march_type), intent(inout) :: march
+      class(observer_type), intent(inout), optional :: observer
+      type(error_type), allocatable, intent(out) :: error
+      real(wp) :: goal
+
+      if (.not. (segment%friction .and. path%model%scene%friction%acts())) then
+         call lead_straight(path, segment, march, observer, error)
+         return
+      end if
+      if (.not. march%paused) then
+         call path%start_segment(segment, error)
+         if (allocated(error)) return
+         march%part = 0.0_wp
+         march%by_violations = .false.
+         march%goal = before_separation(segment)
+         if (carries_nothing_yet(path, segment)) march%goal = 0.0_wp
+         march%length = march%goal
+         march%violations_length = shortest
+         march%traction = path%certificate%traction_scale()
+         march%work = path%state%dissipation
+      else if (march%part < march%goal .and. .not. march%by_violations) then
+         march%paused = .false.
+      end if
+      goal = march%goal
+      do while (march%part < goal)
+         if (march%by_violations) then
+            call go_by_violations(path, segment, march, observer, error)
+         else
+            call leap_on(path, segment, march, observer, error)
+         end if
+         if (allocated(error) .or. march%paused) return
+      end do
+      if (goal < 1.0_wp) call lead_by_violations(path, part_of(segment, goal, 1.0_wp), march, observer, error)
+   end subroutine lead_by_leaps
+
+   !> Try a leap, and take it where it is right; else the next is shorter, or violations lead on (`march%by_violations`).
+   subroutine leap_on(path, segment, march, observer, error)
+      class(contact_path_type), intent(inout) :: path
+      type(segment_type), intent(in) :: segment
+      type(march_type), intent(inout) :: march
       class(observer_type), intent(inout), optional :: observer
       type(error_type), allocatable, intent(out) :: error
       type(leap_type) :: leap
-      real(wp) :: done, goal, length, by_events, traction, work, error_ratio
-      logical :: grown, accepted
+      real(wp) :: error_ratio
+      logical :: accepted, grown
 
-      if (.not. (segment%friction .and. path%model%scene%friction%acts())) then
-         call lead_straight(path, segment, observer, error)
-         return
-      end if
-      call path%start_segment(segment, error)
-      if (allocated(error)) return
-      goal = before_separation(segment)
-      if (carries_nothing_yet(path, segment)) goal = 0.0_wp
-      done = 0.0_wp
-      length = goal
-      by_events = shortest
-      traction = path%certificate%traction_scale()
-      work = path%state%dissipation
-      do while (done < goal)
+      associate (done => march%part, goal => march%goal, length => march%length)
          if (length >= (1.0_wp - shortest)*(goal - done)) length = goal - done
          call try_leap(path, segment, done, length, leap)
-         traction = max(traction, leap%traction)
-         work = max(work, path%state%dissipation + leap%work)
+         march%traction = max(march%traction, leap%traction)
+         march%work = max(march%work, path%state%dissipation + leap%work)
          if (leap%exceeded) then
             call grow_mesh(path, grown)
-            if (grown) cycle
+            if (grown) return
          end if
-         error_ratio = ratio(leap, path%model%scene%method%leap_tolerance, traction, work)
+         error_ratio = ratio(leap, path%model%scene%method%leap_tolerance, march%traction, march%work)
          accepted = leap%settled .and. error_ratio <= 1.0_wp
+         march%factor = change(leap%settled, accepted, error_ratio)
          if (accepted) then
             call take(path, leap)
             done = merge(goal, done + length, length >= goal - done)
-            by_events = shortest
+            march%violations_length = shortest
             call close_leap(path, segment, done, observer, error)
+            if (allocated(error)) return
+            if (present(observer)) march%paused = observer%pause_wanted .and. done < goal
          else if (length <= shortest) then
-            length = min(by_events, goal - done)
-            call lead_by_violations(path, part_of(segment, done, done + length), observer, error)
-            done = merge(goal, done + length, length >= goal - done)
-            by_events = 2.0_wp*by_events
+            length = min(march%violations_length, goal - done)
+            march%by_violations = .true.
+            return
          end if
-         if (allocated(error)) return
-         length = max(length*change(leap%settled, accepted, error_ratio), shortest)
-      end do
-      if (goal < 1.0_wp) call lead_by_violations(path, part_of(segment, goal, 1.0_wp), observer, error)
-   end subroutine lead_by_leaps
+         length = max(length*march%factor, shortest)
+      end associate
+   end subroutine leap_on
+
+   !> Go by violations where leaps do not lead on.
+   subroutine go_by_violations(path, segment, march, observer, error)
+      class(contact_path_type), intent(inout) :: path
+      type(segment_type), intent(in) :: segment
+      type(march_type), intent(inout) :: march
+      class(observer_type), intent(inout), optional :: observer
+      type(error_type), allocatable, intent(out) :: error
+
+      associate (done => march%part, goal => march%goal, length => march%length)
+         call lead_by_violations(path, part_of(segment, done, done + length), march, observer, error)
+         if (allocated(error) .or. march%paused) return
+         march%by_violations = .false.
+         done = merge(goal, done + length, length >= goal - done)
+         march%violations_length = 2.0_wp*march%violations_length
+         length = max(length*march%factor, shortest)
+      end associate
+   end subroutine go_by_violations
 
    !> By how much a leap errs, in parts of what it may: tractions of the largest so far, dissipation of that so far.
    pure real(wp) function ratio(leap, tolerance, traction, work)

@@ -7,6 +7,8 @@ module mfv_observer
    public :: observer_type, relay_type
 
    type, abstract :: observer_type
+      !> Set to leave the run where it is, at its next increment: the same call then goes on from there (mfv_simulation).
+      logical :: pause_wanted = .false.
    contains
       procedure(notify_interface), deferred :: notify
    end type observer_type

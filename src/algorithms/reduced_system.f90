@@ -16,6 +16,7 @@
 !> after the other, each with an inverse of its own. Goodman's coupling with rotation or radial normals is not symmetric: there
 !> the augmented system takes over.
 module mfv_reduced_system
+   use mfv_archive, only: archive_type
    use mfv_augmented_system, only: augmented_system_type
    use mfv_compliance, only: block_up, block_ut, block_wp, block_wt
    use mfv_constrained_inverse, only: constrained_inverse_type
@@ -40,6 +41,8 @@ module mfv_reduced_system
       integer, allocatable :: sort(:), of(:)
       !> Right side and solution of the rows, and values of the constraints.
       real(wp), allocatable :: right(:), solution(:), values(:)
+   contains
+      procedure :: carry => carry_part
    end type part_type
 
    !> Magnitudes that what is missing is measured by: normal and tangential displacements, length; tractions, force/length^2;
@@ -69,6 +72,7 @@ module mfv_reduced_system
    contains
       procedure :: solve
       procedure :: rebuilds
+      procedure :: carry
       procedure, private :: match
       procedure, private :: undetermined
       procedure, private :: follow
@@ -774,12 +778,13 @@ contains
                   value = merge(load%rate, load%value, rates)
                   if (self%motion_constraint(node) > 0) then
                      value = (value - motion_of(fields, node))*arm_unit(length, node)
-                     largest = max(largest, abs(value)/scales%normal)
+                     largest = max(largest, relative(abs(value), scales%normal))
                      part%values(self%motion_constraint(node)) = value*by_length
                      part%right(i) = 0.0_wp
                   else
                      missing = (model%resultant(node, fields%pressure, fields%shear) - value)/arm_unit(length, node)
-                     largest = max(largest, abs(missing)/merge(scales%shear_force, scales%force, node == along_shift))
+                     largest = max(largest, relative(abs(missing), merge(scales%shear_force, scales%force, &
+                                                                         node == along_shift)))
                      part%right(i) = missing*by_stress
                   end if
                else if (constraints%status(node) == node_stick) then
@@ -842,6 +847,14 @@ contains
       shear_force = max(shear_force, model%grip*force, least*first%shear_force)
       scales = scales_type(normal, tangential, traction, max(force, shear_force), shear_force)
    end subroutine find_scales
+
+   !> A magnitude over its scale, or the largest real where that is less: of a load on a contact that carries nothing yet.
+   pure real(wp) function relative(magnitude, scale)
+      real(wp), intent(in) :: magnitude, scale
+
+      relative = huge(1.0_wp)
+      if (magnitude < min(scale, 1.0_wp)*huge(1.0_wp)) relative = magnitude/scale
+   end function relative
 
    !> What is missing to the shear traction of a slipping or creeping node.
    pure real(wp) function missing_shear(constraints, rates, fields, node)
@@ -918,5 +931,38 @@ contains
          end do
       end associate
    end subroutine apply
+
+   !> See mfv_archive.
+   subroutine carry(self, archive)
+      class(reduced_system_type), intent(inout) :: self
+      type(archive_type), intent(inout) :: archive
+
+      call self%carry_counts(archive)
+      call self%part(1)%carry(archive)
+      call self%part(2)%carry(archive)
+      call archive%carry(self%apart)
+      call archive%carry(self%place)
+      call archive%fill(self%motion_place)
+      call archive%carry(self%constraint_of)
+      call archive%fill(self%motion_constraint)
+      call archive%carry(self%length)
+      call archive%fill(self%block)
+      call archive%carry(self%rotational)
+      call self%augmented%carry(archive)
+      call archive%carry(self%refinements)
+   end subroutine carry
+
+   subroutine carry_part(self, archive)
+      class(part_type), intent(inout) :: self
+      type(archive_type), intent(inout) :: archive
+
+      call self%system%carry(archive)
+      call archive%carry(self%unknowns)
+      call archive%carry(self%sort)
+      call archive%carry(self%of)
+      call archive%carry(self%right)
+      call archive%carry(self%solution)
+      call archive%carry(self%values)
+   end subroutine carry_part
 
 end module mfv_reduced_system

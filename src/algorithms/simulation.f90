@@ -2,6 +2,7 @@
 module mfv_simulation
    use, intrinsic :: ieee_arithmetic, only: ieee_quiet_nan, ieee_value
    use, intrinsic :: iso_fortran_env, only: int64, int8
+   use mfv_archive, only: archive_type
    use mfv_checksum, only: add_to_checksum
    use mfv_contact_model, only: new_contact_model
    use mfv_contact_state, only: contact_state_type
@@ -14,10 +15,11 @@ module mfv_simulation
    use mfv_kinds, only: wp
    use mfv_leap, only: lead_by_leaps
    use mfv_load_way, only: load_way_type
+   use mfv_march, only: march_type
    use mfv_node_status, only: event_none, event_step_end, event_stopped
    use mfv_observer, only: observer_type
    use mfv_scene
-   use mfv_status, only: MFV_COMPLETE
+   use mfv_status, only: MFV_COMPLETE, MFV_INTERRUPTED
    use mfv_straight, only: lead_straight
    use mfv_strings, only: to_text
    implicit none
@@ -44,6 +46,8 @@ module mfv_simulation
       integer :: step = 0, reversal = 0
       !> Nodes added to the mesh at either end when it was taken.
       integer :: added = 0
+   contains
+      procedure :: carry => carry_snapshot
    end type snapshot_type
 
    !> Where a simulation stands, but for its contact and what only grows on the way.
@@ -64,7 +68,21 @@ module mfv_simulation
       !> What the loads control now.
       type(load_type) :: normal, tangential
       type(load_type) :: rotational = load_type(control_displacement)
+   contains
+      procedure, private :: carry_position
    end type position_type
+
+   !> The step that is being taken: where its loads lead and come from (normal, tangential, rotational), its cycle, and the straight
+   !> part of it that is next or under way.
+   type :: leg_type
+      !> 0: no step is under way.
+      integer :: number = 0
+      type(load_type) :: there(3), back(3)
+      type(cycle_type) :: cycle
+      type(segment_type) :: segment
+   contains
+      procedure :: carry => carry_leg
+   end type leg_type
 
    type, extends(position_type) :: simulation_type
       type(contact_path_type) :: contact
@@ -79,20 +97,30 @@ module mfv_simulation
       integer(int64), allocatable, private :: trails(:)
       !> The discretisation error of the present state, where it has been estimated (see mfv_discretisation_error).
       type(error_estimate_type), allocatable :: estimate
+      !> Where a pause has left it; nothing of meaning between steps.
+      type(leg_type), private :: leg
+      type(march_type), private :: march
+      logical, private :: paused = .false.
    contains
       procedure :: run
       procedure :: advance
+      procedure :: is_paused
+      procedure :: interrupt
+      procedure :: carry
       procedure :: trail
       procedure :: came_through
       procedure :: padded_state
       procedure :: padded
       procedure, private :: lead_to
+      procedure, private :: begin_segment
       procedure, private :: take_snapshot
       procedure, private :: begin_cycles
       procedure, private :: end_of_leg
       procedure, private :: set_mark
       procedure, private :: change_since
       procedure, private :: note_trail
+      procedure, private :: begin_step
+      procedure, private :: end_step_early
    end type simulation_type
 
 contains
@@ -113,7 +141,8 @@ contains
       if (keep_history /= history_none) call self%contact%record(event_none, 0, 0, 0)
    end function new_simulation
 
-   !> Run the steps of the scene that have not been run yet. The outcome is in the object; `observer` watches.
+   !> Run the steps of the scene that have not been run yet. The outcome is in the object; `observer` watches. Where it wants a
+   !> pause the run is left between two increments (`is_paused`), and the next call goes on from there with the same digits.
    subroutine run(self, observer)
       class(simulation_type), intent(inout) :: self
       class(observer_type), intent(inout), optional :: observer
@@ -126,11 +155,14 @@ contains
             segment = segment + reversals(steps(i))
             if (i <= self%scene_steps_done) cycle
             call self%advance(steps(i), segment - reversals(steps(i)), segments, observer)
+            if (self%paused) return
             if (self%outcome /= MFV_COMPLETE) then
                self%failed_scene_step = i
                return
             end if
             self%scene_steps_done = i
+            if (present(observer) .and. i < size(steps)) self%paused = observer%pause_wanted
+            if (self%paused) return
          end do
       end associate
    end subroutine run
@@ -142,53 +174,196 @@ contains
       reversals = max(1, 2*step%cycles)
    end function reversals
 
-   !> Lead the loads through one more step, from wherever they are. `before`, `segments`: for progress, how many straight
-   !> parts of the load history are done and how many there are.
+   !> Whether an observer's pause has left it between two increments.
+   pure logical function is_paused(self)
+      class(simulation_type), intent(in) :: self
+
+      is_paused = self%paused
+   end function is_paused
+
+   !> End a run that is paused, as an observer does that stops it.
+   subroutine interrupt(self)
+      class(simulation_type), intent(inout) :: self
+      type(error_type), allocatable :: error
+      integer :: next
+
+      if (.not. self%paused) return
+      self%paused = .false.
+      self%march%paused = .false.
+      next = self%scene_steps_done + 1
+      self%failed_scene_step = next
+      call self%contact%end_here(MFV_INTERRUPTED, 'stopped on request', error)
+      if (self%leg%number == 0) call self%way%add(self%contact%model%scene%steps(next))
+      if (self%keep_history /= history_none) call self%contact%record(event_stopped, 0, 0, self%steps_done + 1)
+      call self%end_step_early(self%contact%model%scene%steps(next), error)
+   end subroutine interrupt
+
+   !> See mfv_archive. It is read into a new simulation of the same scene, of which the same is kept.
+   subroutine carry(self, archive)
+      class(simulation_type), intent(inout) :: self
+      type(archive_type), intent(inout) :: archive
+      integer :: i, cycles, trails
+
+      call archive%carry(self%paused)
+      call self%contact%carry(archive)
+      call self%carry_position(archive)
+      if (archive%is_damaged()) return
+      if (archive%is_reading()) then
+         if (self%snapshot_count > size(self%snapshots)) then
+            deallocate (self%snapshots)
+            allocate (self%snapshots(self%snapshot_count))
+         end if
+      end if
+      do i = 1, self%snapshot_count
+         call self%snapshots(i)%carry(archive)
+      end do
+      cycles = 0
+      if (allocated(self%cycles)) cycles = self%cycle_count
+      call archive%carry(cycles)
+      if (archive%is_damaged()) return
+      if (archive%is_reading() .and. cycles > 0) allocate (self%cycles(cycles))
+      do i = 1, cycles
+         call self%cycles(i)%carry(archive)
+      end do
+      trails = 0
+      ! The trail of a step comes at its end: while one is taken there may be no place for it yet.
+      if (allocated(self%trails)) trails = min(self%way%steps, size(self%trails))
+      call archive%carry(trails)
+      if (archive%is_damaged()) return
+      if (archive%is_reading() .and. trails > 0) allocate (self%trails(trails))
+      do i = 1, trails
+         call archive%carry(self%trails(i))
+      end do
+      call self%leg%carry(archive)
+      call self%march%carry(archive)
+   end subroutine carry
+
+   subroutine carry_position(self, archive)
+      class(position_type), intent(inout) :: self
+      type(archive_type), intent(inout) :: archive
+      integer :: i
+
+      call archive%carry(self%snapshot_count)
+      call archive%carry(self%cycle_count)
+      call archive%carry(self%cycles_done)
+      do i = 1, mark_count
+         call self%marks(i)%carry(archive)
+      end do
+      call archive%carry(self%outcome)
+      call archive%carry(self%message)
+      call archive%carry(self%failed_step)
+      call archive%carry(self%steps_done)
+      call archive%carry(self%failed_scene_step)
+      call archive%carry(self%scene_steps_done)
+      call self%way%carry(archive)
+      call self%normal%carry(archive)
+      call self%tangential%carry(archive)
+      call self%rotational%carry(archive)
+   end subroutine carry_position
+
+   subroutine carry_snapshot(self, archive)
+      class(snapshot_type), intent(inout) :: self
+      type(archive_type), intent(inout) :: archive
+
+      call self%state%carry(archive)
+      call archive%carry(self%step)
+      call archive%carry(self%reversal)
+      call archive%carry(self%added)
+   end subroutine carry_snapshot
+
+   subroutine carry_leg(self, archive)
+      class(leg_type), intent(inout) :: self
+      type(archive_type), intent(inout) :: archive
+      integer :: i
+
+      call archive%carry(self%number)
+      do i = 1, size(self%there)
+         call self%there(i)%carry(archive)
+         call self%back(i)%carry(archive)
+      end do
+      call self%cycle%carry(archive)
+      call self%segment%carry(archive)
+   end subroutine carry_leg
+
+   !> Lead the loads through one more step, from wherever they are; after a pause, the rest of the same step. `before`, `segments`:
+   !> for progress, how many straight parts of the load history are done and how many there are.
    subroutine advance(self, step, before, segments, observer)
       class(simulation_type), intent(inout) :: self
       type(step_type), intent(in) :: step
       integer, intent(in), optional :: before, segments
       class(observer_type), intent(inout), optional :: observer
-      type(load_type) :: there(3), back(3)
       type(error_type), allocatable :: error
-      type(cycle_type) :: cycle
       logical :: is_last
       integer :: i, cycles
 
       if (self%outcome /= MFV_COMPLETE) return
+      self%paused = .false.
       if (allocated(self%estimate)) deallocate (self%estimate)
-      call self%way%add(step)
-      there(1) = target_of(self%normal, step%normal_control, step%normal_target)
-      there(2) = target_of(self%tangential, step%tangential_control, step%tangential_target)
-      there(3) = target_of(self%rotational, step%rotational_control, step%rotational_target)
-      if (step%rotational_control /= control_keep) call self%contact%begin_rotation()
-      back = [(start_of(self%contact%state, there(i), i), i=1, 3)]
+      if (self%leg%number == 0) call self%begin_step(step)
       cycles = 0
-      if (step%cycles > 0) call self%begin_cycles(cycle)
-      do i = 1, reversals(step)
-         call self%lead_to(merge(there, back, mod(i, 2) == 1), step, i, before, segments, observer, error)
+      do i = self%leg%number, reversals(step)
+         self%leg%number = i
+         call self%lead_to(step, before, segments, observer, error)
+         self%paused = self%march%paused
+         if (self%paused) return
          if (allocated(error)) then
-            self%outcome = error%status
-            self%message = error%message
-            self%failed_step = self%steps_done + 1
-            call self%note_trail(step)
+            call self%end_step_early(step, error)
             return
          end if
          cycles = i/2
          is_last = i == reversals(step)
-         if (step%cycles > 0) call self%end_of_leg(i, cycle)
+         if (step%cycles > 0) call self%end_of_leg(i, self%leg%cycle)
          if (mod(i, 2) == 0 .and. i > 2 .and. step%steady_tolerance > 0.0_wp) &
-            is_last = is_last .or. cycle%change <= step%steady_tolerance
+            is_last = is_last .or. self%leg%cycle%change <= step%steady_tolerance
          if (is_last .and. self%keep_states /= states_none .or. self%keep_states == states_reversals) &
             call self%take_snapshot(self%steps_done + 1, i)
          if (is_last) exit
+         if (present(observer)) self%paused = observer%pause_wanted
+         if (self%paused) then
+            self%leg%number = i + 1
+            return
+         end if
       end do
+      self%leg%number = 0
       self%steps_done = self%steps_done + 1
       self%message = 'step '//to_text(self%steps_done)//' was reached'
       if (step%cycles > cycles) self%message = self%message//', steady after '//to_text(cycles)//' of '// &
                                                to_text(step%cycles)//' cycles'
       call self%note_trail(step)
    end subroutine advance
+
+   !> A step begins: where its loads lead, and where they come back to.
+   subroutine begin_step(self, step)
+      class(simulation_type), intent(inout) :: self
+      type(step_type), intent(in) :: step
+      integer :: i
+
+      call self%way%add(step)
+      associate (leg => self%leg)
+         leg%number = 1
+         leg%there(1) = target_of(self%normal, step%normal_control, step%normal_target)
+         leg%there(2) = target_of(self%tangential, step%tangential_control, step%tangential_target)
+         leg%there(3) = target_of(self%rotational, step%rotational_control, step%rotational_target)
+         if (step%rotational_control /= control_keep) call self%contact%begin_rotation()
+         do i = 1, size(leg%back)
+            leg%back(i) = start_of(self%contact%state, leg%there(i), i)
+         end do
+         if (step%cycles > 0) call self%begin_cycles(leg%cycle)
+      end associate
+   end subroutine begin_step
+
+   !> The step cannot be led to its end, and why.
+   subroutine end_step_early(self, step, error)
+      class(simulation_type), intent(inout) :: self
+      type(step_type), intent(in) :: step
+      type(error_type), intent(in) :: error
+
+      self%leg%number = 0
+      self%outcome = error%status
+      self%message = error%message
+      self%failed_step = self%steps_done + 1
+      call self%note_trail(step)
+   end subroutine end_step_early
 
    !> Add the step that has just been taken to the checksum of the way: what it was to do, and where it led.
    subroutine note_trail(self, step)
@@ -328,43 +503,55 @@ contains
                                                load%control == control_force))
    end function start_of
 
-   !> Lead the loads straight to `targets` (normal, tangential, rotational), and keep the state there.
-   subroutine lead_to(self, targets, step, reversal, before, segments, observer, error)
+   !> Lead the loads straight to where the leg goes, and keep the state there; unless there is a pause on the way.
+   subroutine lead_to(self, step, before, segments, observer, error)
       class(simulation_type), intent(inout) :: self
-      type(load_type), intent(in) :: targets(3)
       type(step_type), intent(in) :: step
-      integer, intent(in) :: reversal
       integer, intent(in), optional :: before, segments
       class(observer_type), intent(inout), optional :: observer
       type(error_type), allocatable, intent(out) :: error
-      type(segment_type) :: segment
-      real(wp) :: force
+      type(load_type) :: targets(3)
 
-      force = self%contact%certificate%force_scale()
-      segment%normal = load_towards(start_of(self%contact%state, targets(1), 1), targets(1), force)
-      segment%tangential = load_towards(start_of(self%contact%state, targets(2), 2), targets(2), force)
-      segment%rotational = load_towards(start_of(self%contact%state, targets(3), 3), targets(3), &
-                                        force*self%contact%model%length())
-      segment%friction = step%friction
-      segment%step = self%steps_done + 1
-      segment%number = reversal
-      segment%segments = reversals(step)
-      if (present(before)) segment%number = before + reversal
-      if (present(segments)) segment%segments = segments
-      call self%contact%await_increment()
+      targets = merge(self%leg%there, self%leg%back, mod(self%leg%number, 2) == 1)
+      if (.not. self%march%paused) call self%begin_segment(targets, step, before, segments)
       if (self%contact%model%scene%method%algorithm == algorithm_conventional) then
-         call lead_conventionally(self%contact, segment, observer, error)
+         call lead_conventionally(self%contact, self%leg%segment, self%march, observer, error)
       else if (self%contact%model%scene%method%stepping == stepping_leap) then
-         call lead_by_leaps(self%contact, segment, observer, error)
+         call lead_by_leaps(self%contact, self%leg%segment, self%march, observer, error)
       else
-         call lead_straight(self%contact, segment, observer, error)
+         call lead_straight(self%contact, self%leg%segment, self%march, observer, error)
       end if
+      if (self%march%paused) return
       self%normal = load_type(targets(1)%control, targets(1)%value)
       self%tangential = load_type(targets(2)%control, targets(2)%value)
       self%rotational = load_type(targets(3)%control, targets(3)%value)
       if (self%keep_history /= history_none) &
-         call self%contact%record(merge(event_stopped, event_step_end, allocated(error)), 0, 0, segment%step)
+         call self%contact%record(merge(event_stopped, event_step_end, allocated(error)), 0, 0, self%leg%segment%step)
    end subroutine lead_to
+
+   !> The segment from the present state to `targets` (normal, tangential, rotational).
+   subroutine begin_segment(self, targets, step, before, segments)
+      class(simulation_type), intent(inout) :: self
+      type(load_type), intent(in) :: targets(3)
+      type(step_type), intent(in) :: step
+      integer, intent(in), optional :: before, segments
+      real(wp) :: force
+
+      force = self%contact%certificate%force_scale()
+      associate (segment => self%leg%segment)
+         segment%normal = load_towards(start_of(self%contact%state, targets(1), 1), targets(1), force)
+         segment%tangential = load_towards(start_of(self%contact%state, targets(2), 2), targets(2), force)
+         segment%rotational = load_towards(start_of(self%contact%state, targets(3), 3), targets(3), &
+                                           force*self%contact%model%length())
+         segment%friction = step%friction
+         segment%step = self%steps_done + 1
+         segment%number = self%leg%number
+         segment%segments = reversals(step)
+         if (present(before)) segment%number = before + self%leg%number
+         if (present(segments)) segment%segments = segments
+      end associate
+      call self%contact%await_increment()
+   end subroutine begin_segment
 
    !> From the load `start` to `goal`, at a rate per segment. A change of a force that is round-off of the largest one so far,
    !> `scale`, is none: what it would do to bodies just apart is noise.

@@ -10,6 +10,7 @@ module mfv_straight
    use mfv_error, only: error_type
    use mfv_first_violation, only: failed_certificate, lead_by_violations, noises
    use mfv_kinds, only: wp
+   use mfv_march, only: march_type
    use mfv_node_status
    use mfv_observer, only: observer_type
    use mfv_scene, only: control_force, stepping_nominal
@@ -23,35 +24,40 @@ module mfv_straight
 contains
 
    !> Lead the loads along one segment, straight to its end where no friction can act, else by violations. `observer` is told of
-   !> the end, or of every increment. Errors: those of mfv_first_violation.
-   subroutine lead_straight(path, segment, observer, error)
+   !> the end, or of every increment, and can have a pause there. Errors: those of mfv_first_violation.
+   subroutine lead_straight(path, segment, march, observer, error)
       class(contact_path_type), intent(inout) :: path
       type(segment_type), intent(in) :: segment
+      type(march_type), intent(inout) :: march
       class(observer_type), intent(inout), optional :: observer
       type(error_type), allocatable, intent(out) :: error
       type(contact_fields_type) :: fields
       logical :: settled, friction
-      real(wp) :: part
 
+      if (march%paused) then
+         call lead_by_violations(path, part_of(segment, march%part, 1.0_wp), march, observer, error)
+         return
+      end if
+      march%part = 0.0_wp
       friction = segment%friction .and. path%model%scene%friction%acts()
       if (friction .or. path%model%scene%method%stepping == stepping_nominal) then
-         call lead_by_violations(path, segment, observer, error)
+         call lead_by_violations(path, segment, march, observer, error)
          return
       end if
       call path%start_segment(segment, error)
       if (allocated(error)) return
-      part = before_separation(segment)
-      if (carries_nothing_yet(path, segment)) part = 0.0_wp
+      march%part = before_separation(segment)
+      if (carries_nothing_yet(path, segment)) march%part = 0.0_wp
       settled = .false.
-      if (part > 0.0_wp) call settle_and_grow(path, segment, part, fields, settled)
-      if (.not. settled) part = 0.0_wp
+      if (march%part > 0.0_wp) call settle_and_grow(path, segment, march%part, fields, settled)
+      if (.not. settled) march%part = 0.0_wp
       if (settled) then
          call path%take_increment(fields, fields%slip() - path%state%fields%slip(), 0.0_wp, &
                                   friction_work=0.0_wp*fields%shear)
-         call close_leap(path, segment, part, observer, error)
-         if (allocated(error) .or. .not. part < 1.0_wp) return
+         call close_leap(path, segment, march%part, observer, error)
+         if (allocated(error) .or. .not. march%part < 1.0_wp) return
       end if
-      call lead_by_violations(path, part_of(segment, part, 1.0_wp), observer, error)
+      call lead_by_violations(path, part_of(segment, march%part, 1.0_wp), march, observer, error)
    end subroutine lead_straight
 
    !> After a leap to the part `part` of the segment: look at the certificate, and tell the observer.

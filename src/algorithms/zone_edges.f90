@@ -10,6 +10,7 @@
 !> to the inverse power is nearly a straight line, which a parabola through a few nodes follows to its zero. The outermost node,
 !> which carries the error of the discretisation, is left out.
 module mfv_zone_edges
+   use mfv_archive, only: archive_type
    use mfv_compliance, only: block_wt
    use mfv_contact_model, only: contact_model_type
    use mfv_contact_state, only: contact_state_type
@@ -30,6 +31,7 @@ module mfv_zone_edges
       procedure :: half_width
       procedure :: centre
       procedure :: stick_ratio
+      procedure :: carry
    end type zone_edges_type
 
    !> A zone of nodes from `first` to `last`.
@@ -362,5 +364,20 @@ contains
       ends_with_body = model%scene%touchable(model%arc(node) + side*half*(1.0_wp - near)) .and. &
                        .not. model%scene%touchable(model%arc(node) + side*half*(1.0_wp + near))
    end function ends_with_body
+
+   !> See mfv_archive.
+   subroutine carry(self, archive)
+      class(zone_edges_type), intent(inout) :: self
+      type(archive_type), intent(inout) :: archive
+
+      call archive%carry(self%contact)
+      call archive%carry(self%stick)
+      call archive%carry(self%contact_left)
+      call archive%carry(self%contact_right)
+      call archive%carry(self%contact_length)
+      call archive%carry(self%stick_left)
+      call archive%carry(self%stick_right)
+      call archive%carry(self%stick_length)
+   end subroutine carry
 
 end module mfv_zone_edges

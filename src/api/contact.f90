@@ -2,10 +2,10 @@
 !> the C interface (mfv_c) are both this.
 module mfv_contact
    use, intrinsic :: ieee_arithmetic, only: ieee_is_finite
-   use, intrinsic :: iso_fortran_env, only: int64, int8
+   use, intrinsic :: iso_fortran_env, only: int64
    use mfv_case, only: case_type
+   use mfv_case_checksum, only: find_case_checksum
    use mfv_case_reader, only: read_case_file, read_case_text
-   use mfv_checksum, only: add_text_to_checksum, add_to_checksum
    use mfv_contact_state, only: contact_state_type
    use mfv_discretisation_error, only: estimate_error
    use mfv_draft, only: draft_type
@@ -28,7 +28,7 @@ module mfv_contact
 
    integer, parameter :: body_lower = 0, body_upper = 1
    !> What step_to makes of a force and a displacement for one direction.
-   integer, parameter :: control_both = -1
+   integer, parameter :: control_both = -huge(1)
 
    !> Loads and motions of a state: forces [force/length], moment and dissipation [force], lengths, radians; and counts.
    type :: loads_type
@@ -105,21 +105,9 @@ contains
    !> The unloaded contact of the case.
    subroutine begin(self)
       class(contact_type), intent(inout) :: self
-      integer(int8) :: mold(1)
-      integer :: i
 
       self%simulation = new_simulation(self%case%scene, self%case%keep_history, self%case%keep_states)
-      call add_text_to_checksum(self%case%text, self%scene)
-      associate (model => self%simulation%contact%model)
-         call add_to_checksum(transfer(model%x, mold), self%scene)
-         call add_to_checksum(transfer(model%initial_gap, mold), self%scene)
-         call add_to_checksum(transfer([model%compliance%modulus, model%width, model%static_friction, model%kinetic_friction], &
-                                       mold), self%scene)
-         ! Of a matrix products, in which every entry has a part.
-         if (allocated(model%scene%lower%matrix)) &
-            call add_to_checksum(transfer(matmul(model%scene%lower%matrix, sqrt([(real(i, wp), &
-                                          i=1, size(model%scene%lower%matrix, 2))])), mold), self%scene)
-      end associate
+      call find_case_checksum(self%case, self%simulation%contact%model, self%scene)
       self%is_made = .true.
    end subroutine begin
 
@@ -373,7 +361,7 @@ contains
             call group_fields(self%case, self%simulation, path(:slash - 1), self%fields)
             self%group = path(:slash - 1)
          end if
-         number = field_named(self%fields, path(slash + 1:))
+         if (len_trim(path) == len(path)) number = field_named(self%fields, path(slash + 1:))
       end if
       if (number == 0) then
          call set_error(error, MFV_BAD_ARGUMENT, "there is no field '"//path//"'")

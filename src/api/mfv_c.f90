@@ -1,4 +1,5 @@
-!> The C interface of include/mfv.h: thin walls around the library. Check the handle, unpack, call, return the status.
+!> The C interface of include/mfv.h: thin walls around the library. Unpack, call, return the status. Calls with a handle
+!> come from guards.c, which has looked the handle up: they have the address of its object in its place, and no other call uses it.
 module mfv_c
    use, intrinsic :: ieee_arithmetic, only: ieee_is_finite
    use, intrinsic :: iso_c_binding
@@ -27,28 +28,26 @@ module mfv_c
       procedure :: notify
    end type c_observer_type
 
-   !> What a handle points to. `mark`: by which a freed or foreign handle can be told in most cases.
+   !> What the handle of a case is of.
    type :: handle_type
-      integer :: mark = 0
       type(contact_type) :: contact
       type(c_observer_type) :: observer
       character(:), allocatable :: message
    end type handle_type
 
-   !> What a mfv_scene and a mfv_state point to.
+   !> What the handles of a scene and of a state are of.
    type :: scene_handle_type
-      integer :: mark = 0
       type(draft_type) :: draft
    end type scene_handle_type
 
    type :: state_handle_type
-      integer :: mark = 0
       type(kept_state_type) :: state
    end type state_handle_type
 
-   integer, parameter :: valid_mark = 1297499699, scene_mark = 1297499700, state_mark = 1297499701
-
    character(*), parameter :: unnamed = 'text'
+
+   !> Sizes of arrays beyond this are a mistake: (size_t)-1, say.
+   integer(c_size_t), parameter :: most = 2_c_size_t**31 - 1
 
    !> mfv_step of the header.
    type, bind(C) :: c_step
@@ -124,12 +123,12 @@ contains
       status = MFV_BAD_ARGUMENT
       if (.not. c_associated(feature) .or. .not. c_associated(there)) return
       call integer_out(0, there)
-      if (text_in(feature) /= 'hdf5') return
+      if (text_in(feature) /= 'hdf5' .or. c_strlen(feature) /= 4) return
       call integer_out(merge(1, 0, has_hdf5), there)
       status = MFV_COMPLETE
    end function mfv_has_feature
 
-   function mfv_scene_create(scene) result(status) bind(C, name='mfv_scene_create')
+   function mfv_scene_create(scene) result(status) bind(C, name='mfv_scene_create_unguarded')
       type(c_ptr), intent(out), optional :: scene
       integer(c_int) :: status
       type(draft_type) :: draft
@@ -140,7 +139,8 @@ contains
       status = MFV_COMPLETE
    end function mfv_scene_create
 
-   function mfv_scene_from_text(text, name, scene, message, message_size) result(status) bind(C, name='mfv_scene_from_text')
+   function mfv_scene_from_text(text, name, scene, message, message_size) result(status) &
+      bind(C, name='mfv_scene_from_text_unguarded')
       type(c_ptr), value :: text, name, message
       type(c_ptr), intent(out), optional :: scene
       integer(c_size_t), value :: message_size
@@ -164,12 +164,11 @@ contains
       type(scene_handle_type), pointer :: self
 
       allocate (self)
-      self%mark = scene_mark
       self%draft = draft
       scene = c_loc(self)
    end subroutine hand_out_scene
 
-   function mfv_scene_set_text(scene, key, value) result(status) bind(C, name='mfv_scene_set_text')
+   function mfv_scene_set_text(scene, key, value) result(status) bind(C, name='mfv_scene_set_text_unguarded')
       type(c_ptr), value :: scene, key, value
       integer(c_int) :: status
       type(scene_handle_type), pointer :: self
@@ -181,7 +180,7 @@ contains
       status = merge(MFV_BAD_ARGUMENT, MFV_COMPLETE, allocated(error))
    end function mfv_scene_set_text
 
-   function mfv_scene_set_real(scene, key, value) result(status) bind(C, name='mfv_scene_set_real')
+   function mfv_scene_set_real(scene, key, value) result(status) bind(C, name='mfv_scene_set_real_unguarded')
       type(c_ptr), value :: scene, key
       real(c_double), value :: value
       integer(c_int) :: status
@@ -194,7 +193,7 @@ contains
       status = merge(MFV_BAD_ARGUMENT, MFV_COMPLETE, allocated(error))
    end function mfv_scene_set_real
 
-   function mfv_scene_set_reals(scene, key, values, count) result(status) bind(C, name='mfv_scene_set_reals')
+   function mfv_scene_set_reals(scene, key, values, count) result(status) bind(C, name='mfv_scene_set_reals_unguarded')
       type(c_ptr), value :: scene, key, values
       integer(c_size_t), value :: count
       integer(c_int) :: status
@@ -204,12 +203,17 @@ contains
 
       call find_scene(scene, self, status, key, values)
       if (status /= MFV_COMPLETE) return
+      if (.not. is_size(count)) then
+         status = MFV_BAD_ARGUMENT
+         call keep_null(self, text_in(key))
+         return
+      end if
       call c_f_pointer(values, list, [count])
       call self%draft%set(text_in(key), list, error)
       status = merge(MFV_BAD_ARGUMENT, MFV_COMPLETE, allocated(error))
    end function mfv_scene_set_reals
 
-   function mfv_scene_set_integer(scene, key, value) result(status) bind(C, name='mfv_scene_set_integer')
+   function mfv_scene_set_integer(scene, key, value) result(status) bind(C, name='mfv_scene_set_integer_unguarded')
       type(c_ptr), value :: scene, key
       integer(c_int), value :: value
       integer(c_int) :: status
@@ -222,7 +226,7 @@ contains
       status = merge(MFV_BAD_ARGUMENT, MFV_COMPLETE, allocated(error))
    end function mfv_scene_set_integer
 
-   function mfv_scene_set_logical(scene, key, value) result(status) bind(C, name='mfv_scene_set_logical')
+   function mfv_scene_set_logical(scene, key, value) result(status) bind(C, name='mfv_scene_set_logical_unguarded')
       type(c_ptr), value :: scene, key
       integer(c_int), value :: value
       integer(c_int) :: status
@@ -235,7 +239,7 @@ contains
       status = merge(MFV_BAD_ARGUMENT, MFV_COMPLETE, allocated(error))
    end function mfv_scene_set_logical
 
-   function mfv_scene_remove(scene, key) result(status) bind(C, name='mfv_scene_remove')
+   function mfv_scene_remove(scene, key) result(status) bind(C, name='mfv_scene_remove_unguarded')
       type(c_ptr), value :: scene, key
       integer(c_int) :: status
       type(scene_handle_type), pointer :: self
@@ -248,19 +252,18 @@ contains
    end function mfv_scene_remove
 
    function mfv_scene_set_data(scene, file, dataset, rows, columns, values) result(status) &
-      bind(C, name='mfv_scene_set_data')
+      bind(C, name='mfv_scene_set_data_unguarded')
       type(c_ptr), value :: scene, file, dataset, values
       integer(c_size_t), value :: rows, columns
       integer(c_int) :: status
       type(scene_handle_type), pointer :: self
       type(error_type), allocatable :: error
       real(c_double), pointer :: by_rows(:, :)
-      integer(c_size_t), parameter :: most = 2_c_size_t**31 - 1
 
       call find_scene(scene, self, status, file, dataset)
       if (status /= MFV_COMPLETE) return
       status = MFV_BAD_ARGUMENT
-      if (.not. c_associated(values) .or. rows < 1 .or. columns < 1 .or. rows > most .or. columns > most) then
+      if (.not. (c_associated(values) .and. is_size(rows) .and. is_size(columns))) then
          call keep_null(self, text_in(file))
          return
       end if
@@ -269,7 +272,7 @@ contains
       status = merge(MFV_BAD_ARGUMENT, MFV_COMPLETE, allocated(error))
    end function mfv_scene_set_data
 
-   function mfv_scene_text(scene, buffer, size, length) result(status) bind(C, name='mfv_scene_text')
+   function mfv_scene_text(scene, buffer, size, length) result(status) bind(C, name='mfv_scene_text_unguarded')
       type(c_ptr), value :: scene, buffer, length
       integer(c_size_t), value :: size
       integer(c_int) :: status
@@ -283,34 +286,22 @@ contains
       if (c_associated(buffer)) status = text_out(text, buffer, size)
    end function mfv_scene_text
 
-   function mfv_scene_free(scene) result(status) bind(C, name='mfv_scene_free')
+   subroutine mfv_scene_free(scene) bind(C, name='mfv_scene_free_unguarded')
       type(c_ptr), value :: scene
-      integer(c_int) :: status
-      type(c_ptr), pointer :: slot
       type(scene_handle_type), pointer :: self
 
-      call find_slot(scene, slot)
-      status = MFV_COMPLETE
-      if (.not. associated(slot)) return
-      call find_scene(slot, self, status)
-      slot = c_null_ptr
-      if (status /= MFV_COMPLETE) return
-      self%mark = 0
+      call c_f_pointer(scene, self)
       deallocate (self)
-   end function mfv_scene_free
+   end subroutine mfv_scene_free
 
-   !> The object of a scene's handle, and whether the arguments that must be there are: MFV_BAD_HANDLE, MFV_BAD_ARGUMENT.
+   !> The object of a scene, and whether the arguments that must be there are: MFV_BAD_ARGUMENT.
    subroutine find_scene(scene, self, status, first, second)
       type(c_ptr), intent(in) :: scene
       type(scene_handle_type), pointer, intent(out) :: self
       integer(c_int), intent(out) :: status
       type(c_ptr), intent(in), optional :: first, second
 
-      nullify (self)
-      status = MFV_BAD_HANDLE
-      if (.not. c_associated(scene)) return
       call c_f_pointer(scene, self)
-      if (self%mark /= scene_mark) return
       status = MFV_COMPLETE
       if (present(first)) status = expected(first)
       if (status /= MFV_COMPLETE .or. .not. present(second)) return
@@ -325,18 +316,27 @@ contains
       expected = merge(MFV_COMPLETE, MFV_BAD_ARGUMENT, c_associated(pointer))
    end function expected
 
+   !> Whether this can be the size of an array that a caller has. (The upper half of size_t is below 0 here.)
+   pure logical function is_size(count)
+      integer(c_size_t), intent(in) :: count
+
+      is_size = count > 0 .and. count <= most
+   end function is_size
+
    !> Have a scene keep that something was null.
    subroutine keep_null(self, name)
       type(scene_handle_type), intent(inout) :: self
       character(*), intent(in) :: name
       type(error_type), allocatable :: fault
 
-      call set_error(fault, MFV_INPUT_ERROR, name//': an argument is null or empty')
+      call set_error(fault, MFV_INPUT_ERROR, name//': an argument is null, empty or too large')
       call self%draft%keep_fault(name, fault)
    end subroutine keep_null
 
-   function mfv_create(scene, handle, message, message_size) result(status) bind(C, name='mfv_create')
+   !> `found`: what became of the scene's handle; the scene is there where it is MFV_COMPLETE.
+   function mfv_create(scene, found, handle, message, message_size) result(status) bind(C, name='mfv_create_unguarded')
       type(c_ptr), value :: scene, message
+      integer(c_int), value :: found
       type(c_ptr), intent(out), optional :: handle
       integer(c_size_t), value :: message_size
       integer(c_int) :: status
@@ -344,19 +344,23 @@ contains
       type(handle_type), pointer :: self
       type(error_type), allocatable :: error
 
-      call say('the scene or the place for the handle is null, or the scene was freed', message, message_size)
       status = MFV_BAD_ARGUMENT
+      call say('the place for the handle is null', message, message_size)
       if (.not. present(handle)) return
       handle = c_null_ptr
-      call find_scene(scene, given, status)
-      if (status /= MFV_COMPLETE) return
+      status = found
+      call say('the scene is null, was freed, or is none', message, message_size)
+      if (found == MFV_IN_USE) call say('the scene is in use by another call', message, message_size)
+      if (found /= MFV_COMPLETE) return
+      call c_f_pointer(scene, given)
       allocate (self)
       call new_contact(given%draft, self%contact, error)
       status = told(error, message, message_size)
       call hand_out(self, status, handle)
    end function mfv_create
 
-   function mfv_create_from_file(path, handle, message, message_size) result(status) bind(C, name='mfv_create_from_file')
+   function mfv_create_from_file(path, handle, message, message_size) result(status) &
+      bind(C, name='mfv_create_from_file_unguarded')
       type(c_ptr), value :: path, message
       type(c_ptr), intent(out), optional :: handle
       integer(c_size_t), value :: message_size
@@ -376,7 +380,7 @@ contains
    end function mfv_create_from_file
 
    function mfv_create_from_text(text, name, handle, message, message_size) result(status) &
-      bind(C, name='mfv_create_from_text')
+      bind(C, name='mfv_create_from_text_unguarded')
       type(c_ptr), value :: text, name, message
       type(c_ptr), intent(out), optional :: handle
       integer(c_size_t), value :: message_size
@@ -426,7 +430,6 @@ contains
       type(c_ptr), intent(inout) :: handle
 
       if (status == MFV_COMPLETE) then
-         self%mark = valid_mark
          call self%contact%get_message(self%message)
          handle = c_loc(self)
       else
@@ -434,57 +437,35 @@ contains
       end if
    end subroutine hand_out
 
-   function mfv_copy(handle, copy) result(status) bind(C, name='mfv_copy')
+   function mfv_copy(handle, copy) result(status) bind(C, name='mfv_copy_unguarded')
       type(c_ptr), value :: handle
-      type(c_ptr), intent(out), optional :: copy
+      type(c_ptr), intent(out) :: copy
       integer(c_int) :: status
       type(handle_type), pointer :: self, other
 
-      status = MFV_BAD_ARGUMENT
-      if (.not. present(copy)) return
-      copy = c_null_ptr
-      call find(handle, self, status)
-      if (status /= MFV_COMPLETE) return
+      call c_f_pointer(handle, self)
+      status = MFV_COMPLETE
       allocate (other)
       other%contact = self%contact
       call hand_out(other, status, copy)
    end function mfv_copy
 
-   function mfv_free(handle) result(status) bind(C, name='mfv_free')
+   subroutine mfv_free(handle) bind(C, name='mfv_free_unguarded')
       type(c_ptr), value :: handle
-      integer(c_int) :: status
-      type(c_ptr), pointer :: slot
       type(handle_type), pointer :: self
 
-      call find_slot(handle, slot)
-      status = MFV_COMPLETE
-      if (.not. associated(slot)) return
-      call find(slot, self, status)
-      slot = c_null_ptr
-      if (status /= MFV_COMPLETE) return
-      self%mark = 0
+      call c_f_pointer(handle, self)
       deallocate (self)
-   end function mfv_free
+   end subroutine mfv_free
 
-   !> The pointer that a pointer to it points to; not associated where either is null.
-   subroutine find_slot(pointer_to_slot, slot)
-      type(c_ptr), intent(in) :: pointer_to_slot
-      type(c_ptr), pointer, intent(out) :: slot
-
-      nullify (slot)
-      if (.not. c_associated(pointer_to_slot)) return
-      call c_f_pointer(pointer_to_slot, slot)
-      if (.not. c_associated(slot)) nullify (slot)
-   end subroutine find_slot
-
-   function mfv_observe(handle, observer, user) result(status) bind(C, name='mfv_observe')
+   function mfv_observe(handle, observer, user) result(status) bind(C, name='mfv_observe_unguarded')
       type(c_ptr), value :: handle, user
       type(c_funptr), value :: observer
       integer(c_int) :: status
       type(handle_type), pointer :: self
 
-      call find(handle, self, status)
-      if (status /= MFV_COMPLETE) return
+      call c_f_pointer(handle, self)
+      status = MFV_COMPLETE
       nullify (self%observer%observe)
       if (c_associated(observer)) call c_f_procpointer(observer, self%observer%observe)
       self%observer%user = user
@@ -504,13 +485,13 @@ contains
       stop_wanted = self%observe(progress, self%user) /= 0
    end subroutine notify
 
-   function mfv_run(handle) result(status) bind(C, name='mfv_run')
+   function mfv_run(handle) result(status) bind(C, name='mfv_run_unguarded')
       type(c_ptr), value :: handle
       integer(c_int) :: status
       type(handle_type), pointer :: self
 
-      call find(handle, self, status)
-      if (status /= MFV_COMPLETE) return
+      call c_f_pointer(handle, self)
+      status = MFV_COMPLETE
       if (associated(self%observer%observe)) then
          call self%contact%run(self%observer)
       else
@@ -520,7 +501,7 @@ contains
       status = self%contact%status()
    end function mfv_run
 
-   function mfv_advance(handle, step) result(status) bind(C, name='mfv_advance')
+   function mfv_advance(handle, step) result(status) bind(C, name='mfv_advance_unguarded')
       type(c_ptr), value :: handle, step
       integer(c_int) :: status
       type(handle_type), pointer :: self
@@ -528,8 +509,8 @@ contains
       type(error_type), allocatable :: error
       type(step_type) :: wanted
 
-      call find(handle, self, status)
-      if (status /= MFV_COMPLETE) return
+      call c_f_pointer(handle, self)
+      status = MFV_COMPLETE
       if (.not. c_associated(step)) then
          status = refused(self, 'mfv_advance: the step is null')
          return
@@ -555,15 +536,15 @@ contains
       end if
    end function mfv_advance
 
-   function mfv_get_loads(handle, loads) result(status) bind(C, name='mfv_get_loads')
+   function mfv_get_loads(handle, loads) result(status) bind(C, name='mfv_get_loads_unguarded')
       type(c_ptr), value :: handle, loads
       integer(c_int) :: status
       type(handle_type), pointer :: self
       type(c_loads), pointer :: given
       type(loads_type) :: now
 
-      call find(handle, self, status)
-      if (status /= MFV_COMPLETE) return
+      call c_f_pointer(handle, self)
+      status = MFV_COMPLETE
       if (.not. c_associated(loads)) then
          status = refused(self, 'mfv_get_loads: loads is null')
          return
@@ -579,7 +560,7 @@ contains
       status = MFV_COMPLETE
    end function mfv_get_loads
 
-   function mfv_tangent(handle, motions, direction, tangent) result(status) bind(C, name='mfv_tangent')
+   function mfv_tangent(handle, motions, direction, tangent) result(status) bind(C, name='mfv_tangent_unguarded')
       type(c_ptr), value :: handle, direction, tangent
       integer(c_int), value :: motions
       integer(c_int) :: status
@@ -588,8 +569,8 @@ contains
       type(error_type), allocatable :: error
       real(wp), allocatable :: found(:, :)
 
-      call find(handle, self, status)
-      if (status /= MFV_COMPLETE) return
+      call c_f_pointer(handle, self)
+      status = MFV_COMPLETE
       if (motions /= 2 .and. motions /= 3) then
          status = refused(self, 'mfv_tangent: motions must be 2, or 3 with rotation')
          return
@@ -611,101 +592,89 @@ contains
       by_rows = transpose(found(:motions, :motions))
    end function mfv_tangent
 
-   function mfv_save(handle, state) result(status) bind(C, name='mfv_save')
-      type(c_ptr), value :: handle, state
+   !> `state`: the object of a state, made where it is null; `found`: what became of its handle.
+   function mfv_save(handle, found, state) result(status) bind(C, name='mfv_save_unguarded')
+      type(c_ptr), value :: handle
+      integer(c_int), value :: found
+      type(c_ptr), intent(inout), optional :: state
       integer(c_int) :: status
       type(handle_type), pointer :: self
       type(state_handle_type), pointer :: kept
-      type(c_ptr), pointer :: slot
 
-      call find(handle, self, status)
-      if (status /= MFV_COMPLETE) return
-      if (.not. c_associated(state)) then
+      call c_f_pointer(handle, self)
+      if (.not. present(state)) then
          status = refused(self, 'mfv_save: state is null')
          return
       end if
-      call c_f_pointer(state, slot)
-      if (c_associated(slot)) then
-         call find_state(slot, kept, status)
-         if (status /= MFV_COMPLETE) then
-            self%message = 'the state was freed, or is none'
-            return
-         end if
-      else
-         allocate (kept)
-         kept%mark = state_mark
-         slot = c_loc(kept)
+      status = found
+      if (found /= MFV_COMPLETE) then
+         call keep_bad_state(self, found)
+         return
       end if
+      if (.not. c_associated(state)) then
+         allocate (kept)
+         state = c_loc(kept)
+      end if
+      call c_f_pointer(state, kept)
       call self%contact%keep(kept%state)
-      status = MFV_COMPLETE
    end function mfv_save
 
-   function mfv_restore(handle, state) result(status) bind(C, name='mfv_restore')
+   !> `found`: what became of the state's handle; the state is there where it is MFV_COMPLETE.
+   function mfv_restore(handle, found, state) result(status) bind(C, name='mfv_restore_unguarded')
       type(c_ptr), value :: handle, state
+      integer(c_int), value :: found
       integer(c_int) :: status
       type(handle_type), pointer :: self
       type(state_handle_type), pointer :: kept
       type(error_type), allocatable :: error
 
-      call find(handle, self, status)
-      if (status /= MFV_COMPLETE) return
-      call find_state(state, kept, status)
-      if (status /= MFV_COMPLETE) then
-         self%message = 'the state is null or was freed'
+      call c_f_pointer(handle, self)
+      status = found
+      if (found /= MFV_COMPLETE) then
+         call keep_bad_state(self, found)
          return
       end if
+      call c_f_pointer(state, kept)
       call self%contact%come_back(kept%state, error)
       status = failed(self, error)
       if (status == MFV_COMPLETE) call self%contact%get_message(self%message)
    end function mfv_restore
 
-   function mfv_state_free(state) result(status) bind(C, name='mfv_state_free')
+   subroutine mfv_state_free(state) bind(C, name='mfv_state_free_unguarded')
       type(c_ptr), value :: state
-      integer(c_int) :: status
-      type(c_ptr), pointer :: slot
       type(state_handle_type), pointer :: kept
 
-      call find_slot(state, slot)
-      status = MFV_COMPLETE
-      if (.not. associated(slot)) return
-      call find_state(slot, kept, status)
-      slot = c_null_ptr
-      if (status /= MFV_COMPLETE) return
-      kept%mark = 0
-      deallocate (kept)
-   end function mfv_state_free
-
-   !> The object of a kept state; MFV_BAD_HANDLE where it is none.
-   subroutine find_state(state, kept, status)
-      type(c_ptr), intent(in) :: state
-      type(state_handle_type), pointer, intent(out) :: kept
-      integer(c_int), intent(out) :: status
-
-      nullify (kept)
-      status = MFV_BAD_HANDLE
-      if (.not. c_associated(state)) return
       call c_f_pointer(state, kept)
-      if (kept%mark == state_mark) status = MFV_COMPLETE
-   end subroutine find_state
+      deallocate (kept)
+   end subroutine mfv_state_free
 
-   function mfv_message(handle, buffer, size) result(status) bind(C, name='mfv_message')
+   !> What is wrong with the handle of a state, as the message of a case's.
+   subroutine keep_bad_state(self, found)
+      type(handle_type), intent(inout) :: self
+      integer(c_int), intent(in) :: found
+
+      self%message = 'the state is null, was freed, or is none'
+      if (found == MFV_IN_USE) self%message = 'the state is in use by another call'
+   end subroutine keep_bad_state
+
+   function mfv_message(handle, buffer, size) result(status) bind(C, name='mfv_message_unguarded')
       type(c_ptr), value :: handle, buffer
       integer(c_size_t), value :: size
       integer(c_int) :: status
       type(handle_type), pointer :: self
 
-      call find(handle, self, status)
-      if (status == MFV_COMPLETE) status = text_out(self%message, buffer, size)
+      call c_f_pointer(handle, self)
+      status = text_out(self%message, buffer, size)
    end function mfv_message
 
-   function mfv_field_count(handle, count) result(status) bind(C, name='mfv_field_count')
+   function mfv_field_count(handle, count) result(status) bind(C, name='mfv_field_count_unguarded')
       type(c_ptr), value :: handle, count
       integer(c_int) :: status
       type(handle_type), pointer :: self
       type(string_type), pointer :: paths(:)
 
-      call find(handle, self, status)
-      if (status /= MFV_COMPLETE) return
+      call c_f_pointer(handle, self)
+      status = MFV_COMPLETE
       if (.not. c_associated(count)) then
          status = refused(self, 'mfv_field_count: count is null')
          return
@@ -715,21 +684,22 @@ contains
       status = MFV_COMPLETE
    end function mfv_field_count
 
-   function mfv_field_path(handle, index, buffer, size) result(status) bind(C, name='mfv_field_path')
+   function mfv_field_path(handle, index, buffer, size) result(status) bind(C, name='mfv_field_path_unguarded')
       type(c_ptr), value :: handle, buffer
       integer(c_size_t), value :: index, size
       integer(c_int) :: status
       type(handle_type), pointer :: self
       type(string_type), pointer :: paths(:)
 
-      call find(handle, self, status)
-      if (status /= MFV_COMPLETE) return
+      call c_f_pointer(handle, self)
+      status = MFV_COMPLETE
       call self%contact%field_paths(paths)
       if (index < 0 .or. index >= ubound(paths, 1)) then
          status = refused(self, 'mfv_field_path: there are '//to_text(ubound(paths, 1))//' fields')
          return
       end if
       status = text_out(paths(index + 1)%text, buffer, size)
+      if (status /= MFV_COMPLETE) status = refused(self, 'mfv_field_path: the buffer is null or has no room')
    end function mfv_field_path
 
    !> MFV_BAD_ARGUMENT, with its reason as the handle's message.
@@ -754,24 +724,25 @@ contains
       self%message = error%message
    end function failed
 
-   function mfv_attribute_name(handle, index, buffer, size) result(status) bind(C, name='mfv_attribute_name')
+   function mfv_attribute_name(handle, index, buffer, size) result(status) bind(C, name='mfv_attribute_name_unguarded')
       type(c_ptr), value :: handle, buffer
       integer(c_size_t), value :: index, size
       integer(c_int) :: status
       type(handle_type), pointer :: self
       type(string_type), pointer :: names(:), texts(:)
 
-      call find(handle, self, status)
-      if (status /= MFV_COMPLETE) return
+      call c_f_pointer(handle, self)
+      status = MFV_COMPLETE
       call self%contact%attributes(names, texts)
       if (index < 0 .or. index >= ubound(names, 1)) then
          status = refused(self, 'mfv_attribute_name: there are '//to_text(ubound(names, 1))//' attributes')
          return
       end if
       status = text_out(names(index + 1)%text, buffer, size)
+      if (status /= MFV_COMPLETE) status = refused(self, 'mfv_attribute_name: the buffer is null or has no room')
    end function mfv_attribute_name
 
-   function mfv_attribute(handle, name, buffer, size, length) result(status) bind(C, name='mfv_attribute')
+   function mfv_attribute(handle, name, buffer, size, length) result(status) bind(C, name='mfv_attribute_unguarded')
       type(c_ptr), value :: handle, name, buffer, length
       integer(c_size_t), value :: size
       integer(c_int) :: status
@@ -780,8 +751,8 @@ contains
       character(:), allocatable :: wanted
       integer :: i
 
-      call find(handle, self, status)
-      if (status /= MFV_COMPLETE) return
+      call c_f_pointer(handle, self)
+      status = MFV_COMPLETE
       if (.not. c_associated(name)) then
          status = refused(self, 'mfv_attribute: the name is null')
          return
@@ -789,16 +760,17 @@ contains
       wanted = text_in(name)
       call self%contact%attributes(names, texts)
       do i = 1, ubound(names, 1)
-         if (names(i)%text /= wanted) cycle
+         if (names(i)%text /= wanted .or. len(names(i)%text) /= len(wanted)) cycle
          call size_out(len(texts(i)%text, kind=c_size_t), length)
          if (c_associated(buffer)) status = text_out(texts(i)%text, buffer, size)
+         if (status /= MFV_COMPLETE) status = refused(self, 'mfv_attribute: the buffer has no room')
          return
       end do
       status = refused(self, "there is no attribute '"//wanted//"'")
    end function mfv_attribute
 
    function mfv_field_info(handle, path, count, is_integer, along, unit, unit_size, description, description_size) &
-      result(status) bind(C, name='mfv_field_info')
+      result(status) bind(C, name='mfv_field_info_unguarded')
       type(c_ptr), value :: handle, path, count, is_integer, along, unit, description
       integer(c_size_t), value :: unit_size, description_size
       integer(c_int) :: status
@@ -814,7 +786,7 @@ contains
       if (c_associated(description)) copied = text_out(field%description, description, description_size)
    end function mfv_field_info
 
-   function mfv_copy_real(handle, path, values, count) result(status) bind(C, name='mfv_copy_real')
+   function mfv_copy_real(handle, path, values, count) result(status) bind(C, name='mfv_copy_real_unguarded')
       type(c_ptr), value :: handle, path, values
       integer(c_size_t), value :: count
       integer(c_int) :: status
@@ -829,7 +801,7 @@ contains
       copy = field%values
    end function mfv_copy_real
 
-   function mfv_copy_integer(handle, path, values, count) result(status) bind(C, name='mfv_copy_integer')
+   function mfv_copy_integer(handle, path, values, count) result(status) bind(C, name='mfv_copy_integer_unguarded')
       type(c_ptr), value :: handle, path, values
       integer(c_size_t), value :: count
       integer(c_int) :: status
@@ -853,8 +825,8 @@ contains
       integer(c_int) :: status
       type(handle_type), pointer :: self
 
-      call find(handle, self, status)
-      if (status /= MFV_COMPLETE) return
+      call c_f_pointer(handle, self)
+      status = MFV_COMPLETE
       if (allocated(field%whole) .neqv. whole) then
          status = refused(self, text_in(path)//' has '//trim(merge('whole numbers', 'reals        ', .not. whole)))
       else if (.not. c_associated(values)) then
@@ -864,7 +836,7 @@ contains
       end if
    end function fit_for_copy
 
-   function mfv_stress(handle, body, step, count, x, y, stresses) result(status) bind(C, name='mfv_stress')
+   function mfv_stress(handle, body, step, count, x, y, stresses) result(status) bind(C, name='mfv_stress_unguarded')
       type(c_ptr), value :: handle, x, y, stresses
       integer(c_int), value :: body, step
       integer(c_size_t), value :: count
@@ -873,9 +845,10 @@ contains
       type(error_type), allocatable :: error
       real(c_double), pointer :: across(:), up(:), values(:, :)
 
-      call find(handle, self, status)
-      if (status == MFV_COMPLETE .and. count == 0) return
-      if (status == MFV_COMPLETE) call take_points(self, count, x, y, stresses, across, up, values, status)
+      call c_f_pointer(handle, self)
+      status = MFV_COMPLETE
+      if (count == 0) return
+      call take_points(self, count, x, y, stresses, across, up, values, status)
       if (status /= MFV_COMPLETE) return
       call self%contact%get_stresses(int(body), across, up, values, error, int(step))
       status = failed(self, error)
@@ -894,13 +867,17 @@ contains
          status = refused(self, 'an array is null')
          return
       end if
+      if (count < 0 .or. count > most) then
+         status = refused(self, 'count is too large: there must be that many points')
+         return
+      end if
       call c_f_pointer(x, across, [count])
       call c_f_pointer(y, up, [count])
       call c_f_pointer(stresses, values, [int(stress_count, c_size_t), count])
       status = MFV_COMPLETE
    end subroutine take_points
 
-   function mfv_largest_von_mises(handle, body, step, place) result(status) bind(C, name='mfv_largest_von_mises')
+   function mfv_largest_von_mises(handle, body, step, place) result(status) bind(C, name='mfv_largest_von_mises_unguarded')
       type(c_ptr), value :: handle, place
       integer(c_int), value :: body, step
       integer(c_int) :: status
@@ -908,8 +885,8 @@ contains
       type(error_type), allocatable :: error
       type(largest_type) :: largest
 
-      call find(handle, self, status)
-      if (status /= MFV_COMPLETE) return
+      call c_f_pointer(handle, self)
+      status = MFV_COMPLETE
       if (.not. c_associated(place)) then
          status = refused(self, 'place is null')
          return
@@ -930,7 +907,7 @@ contains
    end subroutine place_out
 
    function mfv_stress_under(handle, body, nodes, arc, width, pressure, shear, count, x, y, stresses, place) &
-      result(status) bind(C, name='mfv_stress_under')
+      result(status) bind(C, name='mfv_stress_under_unguarded')
       type(c_ptr), value :: handle, arc, width, pressure, shear, x, y, stresses, place
       integer(c_int), value :: body
       integer(c_size_t), value :: nodes, count
@@ -943,10 +920,14 @@ contains
       integer(c_size_t) :: i
       logical :: usable
 
-      call find(handle, self, status)
-      if (status /= MFV_COMPLETE) return
+      call c_f_pointer(handle, self)
+      status = MFV_COMPLETE
       if (.not. (c_associated(arc) .and. c_associated(width) .and. c_associated(pressure) .and. c_associated(shear))) then
          status = refused(self, 'mfv_stress_under: an array is null')
+         return
+      end if
+      if (.not. is_size(nodes)) then
+         status = refused(self, 'mfv_stress_under: nodes must be at least 1 and the number of tractions')
          return
       end if
       call c_f_pointer(arc, positions, [nodes])
@@ -972,14 +953,14 @@ contains
       if (status == MFV_COMPLETE .and. c_associated(place)) call place_out(interior%largest_von_mises(), place)
    end function mfv_stress_under
 
-   function mfv_write(handle, path) result(status) bind(C, name='mfv_write')
+   function mfv_write(handle, path) result(status) bind(C, name='mfv_write_unguarded')
       type(c_ptr), value :: handle, path
       integer(c_int) :: status
       type(handle_type), pointer :: self
       type(error_type), allocatable :: error
 
-      call find(handle, self, status)
-      if (status /= MFV_COMPLETE) return
+      call c_f_pointer(handle, self)
+      status = MFV_COMPLETE
       if (c_associated(path)) then
          call self%contact%write(text_in(path), error)
       else
@@ -989,20 +970,7 @@ contains
       if (status == MFV_COMPLETE) call self%contact%get_message(self%message)
    end function mfv_write
 
-   !> The object of a handle; MFV_BAD_HANDLE where it is none.
-   subroutine find(handle, self, status)
-      type(c_ptr), intent(in) :: handle
-      type(handle_type), pointer, intent(out) :: self
-      integer(c_int), intent(out) :: status
-
-      nullify (self)
-      status = MFV_BAD_HANDLE
-      if (.not. c_associated(handle)) return
-      call c_f_pointer(handle, self)
-      if (self%mark == valid_mark) status = MFV_COMPLETE
-   end subroutine find
-
-   !> The field at a path of a handle; MFV_BAD_HANDLE or MFV_BAD_ARGUMENT where there is none.
+   !> The field at a path of a case; MFV_BAD_ARGUMENT where there is none.
    subroutine field_at(handle, path, field, status)
       type(c_ptr), intent(in) :: handle, path
       type(field_type), pointer, intent(out) :: field
@@ -1011,8 +979,8 @@ contains
       type(error_type), allocatable :: error
 
       nullify (field)
-      call find(handle, self, status)
-      if (status /= MFV_COMPLETE) return
+      call c_f_pointer(handle, self)
+      status = MFV_COMPLETE
       if (.not. c_associated(path)) then
          status = refused(self, 'the path is null')
          return

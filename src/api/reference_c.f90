@@ -1,6 +1,6 @@
 !> The closed forms of src/reference for C; NaN outside their domain. See include/mfv.h.
 module mfv_reference_c
-   use, intrinsic :: ieee_arithmetic, only: ieee_quiet_nan, ieee_value
+   use, intrinsic :: ieee_arithmetic, only: ieee_is_finite, ieee_quiet_nan, ieee_value
    use, intrinsic :: iso_c_binding, only: c_double
    use mfv_reference_flat_punch, only: flat_punch_pressure
    use mfv_reference_hertz, only: hertz_half_width, hertz_pressure
@@ -19,6 +19,7 @@ contains
       real(c_double) :: a
 
       a = not_a_number()
+      if (.not. all_finite([normal_force, radius, shear_modulus, kolosov])) return
       if (normal_force >= 0 .and. radius > 0 .and. shear_modulus > 0 .and. kolosov > -1) &
          a = hertz_half_width(normal_force, radius, 4.0_c_double*shear_modulus/(kolosov + 1.0_c_double))
    end function c_hertz_half_width
@@ -28,6 +29,7 @@ contains
       real(c_double) :: pressure
 
       pressure = not_a_number()
+      if (.not. all_finite([x, normal_force, half_width])) return
       if (half_width > 0) pressure = hertz_pressure(x, normal_force, half_width)
    end function c_hertz_pressure
 
@@ -36,6 +38,7 @@ contains
       real(c_double) :: pressure
 
       pressure = not_a_number()
+      if (.not. all_finite([x, normal_force, half_width])) return
       if (half_width > 0) pressure = flat_punch_pressure(x, normal_force, half_width)
    end function c_flat_punch_pressure
 
@@ -44,6 +47,7 @@ contains
       real(c_double) :: ratio
 
       ratio = not_a_number()
+      if (.not. all_finite([friction_coefficient, beta])) return
       if (friction_coefficient >= 0 .and. abs(beta) <= 1) ratio = spence_stick_ratio(friction_coefficient, beta)
    end function c_spence_stick_ratio
 
@@ -53,7 +57,9 @@ contains
       real(c_double) :: shear
       real(c_double) :: at(1)
 
-      at = not_a_number()
+      shear = not_a_number()
+      at = shear
+      if (.not. all_finite([x, normal_force, half_width, friction_coefficient, beta])) return
       if (half_width > 0 .and. friction_coefficient >= 0 .and. abs(beta) <= 1) &
          at = spence_cylinder_shear([x], normal_force, half_width, friction_coefficient, beta)
       shear = at(1)
@@ -65,7 +71,9 @@ contains
       real(c_double) :: shear
       real(c_double) :: at(1)
 
-      at = not_a_number()
+      shear = not_a_number()
+      at = shear
+      if (.not. all_finite([x, normal_force, half_width, friction_coefficient, beta])) return
       if (half_width > 0 .and. friction_coefficient >= 0 .and. abs(beta) <= 1) &
          at = spence_flat_punch_shear([x], normal_force, half_width, friction_coefficient, beta)
       shear = at(1)
@@ -77,6 +85,7 @@ contains
       real(c_double) :: ratio
 
       ratio = not_a_number()
+      if (.not. all_finite([tangential_force, normal_force, friction_coefficient])) return
       if (normal_force > 0 .and. friction_coefficient > 0) &
          ratio = mindlin_stick_ratio(tangential_force, normal_force, friction_coefficient)
    end function c_mindlin_stick_ratio
@@ -89,6 +98,7 @@ contains
       type(mindlin_history_type) :: history
 
       shear = not_a_number()
+      if (.not. all_finite([x, tangential_force, normal_force, half_width, friction_coefficient])) return
       if (.not. (normal_force > 0 .and. friction_coefficient > 0 .and. half_width > 0)) return
       history = new_mindlin_history(normal_force, half_width, half_width, half_width, friction_coefficient)
       call history%load(tangential_force)
@@ -102,6 +112,7 @@ contains
       real(c_double) :: dissipation
 
       dissipation = not_a_number()
+      if (.not. all_finite([tangential_force, normal_force, half_width, radius, friction_coefficient])) return
       if (normal_force > 0 .and. friction_coefficient > 0 .and. half_width > 0 .and. radius > 0) &
          dissipation = mindlin_dissipation(tangential_force, normal_force, half_width, radius, friction_coefficient)
    end function c_mindlin_dissipation
@@ -112,6 +123,7 @@ contains
       real(c_double) :: force
 
       force = not_a_number()
+      if (.not. all_finite([half_angle, clearance, youngs_modulus, poisson_ratio])) return
       if (half_angle > 0 .and. clearance > 0 .and. youngs_modulus > 0 .and. abs(poisson_ratio) < 1) &
          force = persson_force(half_angle, clearance, youngs_modulus/(1.0_c_double - poisson_ratio**2))
       if (.not. force < huge(force)) force = not_a_number()
@@ -122,10 +134,18 @@ contains
       real(c_double) :: arc
 
       arc = not_a_number()
+      if (.not. all_finite([youngs_modulus, poisson_ratio, yield_strength])) return
       if (youngs_modulus > 0 .and. poisson_ratio > -1 .and. poisson_ratio <= 0.5 .and. yield_strength >= 0) &
          arc = contact_arc_at_yield(new_material(youngs_modulus/(2.0_c_double*(1.0_c_double + poisson_ratio)), &
                                                  poisson_ratio, plane_strain), plane_strain, yield_strength)
    end function c_yield_arc
+
+   !> Whether arguments can be compared: with NaN that may trap.
+   pure logical function all_finite(arguments)
+      real(c_double), intent(in) :: arguments(:)
+
+      all_finite = all(ieee_is_finite(arguments))
+   end function all_finite
 
    pure real(c_double) function not_a_number()
       not_a_number = ieee_value(1.0_c_double, ieee_quiet_nan)

@@ -5,7 +5,7 @@ module mfv_locked_file
    use, intrinsic :: iso_fortran_env, only: int8, int64
    implicit none
    private
-   public :: locked_file_type, open_locked, read_bytes, append_bytes, sync_file, cut_file, close_file, delete_path, &
+   public :: locked_file_type, open_locked, read_bytes, append_bytes, sync_file, sync_name, cut_file, close_file, delete_path, &
              make_directory, opened, not_opened, in_use, cannot_lock
 
    !> What open_locked comes to.
@@ -88,11 +88,17 @@ module mfv_locked_file
          integer(c_int) :: code
       end function c_try_lock
 
-      function c_fsync(descriptor) bind(C, name='fsync') result(code)
+      function c_sync(descriptor) bind(C, name='mfv_sync') result(code)
          import :: c_int
          integer(c_int), value :: descriptor
          integer(c_int) :: code
-      end function c_fsync
+      end function c_sync
+
+      function c_sync_folder(path) bind(C, name='mfv_sync_folder') result(code)
+         import :: c_char, c_int
+         character(kind=c_char), intent(in) :: path(*)
+         integer(c_int) :: code
+      end function c_sync_folder
 
       function c_remove(path) bind(C, name='remove') result(code)
          import :: c_char, c_int
@@ -156,13 +162,22 @@ contains
       code = c_fflush(file%stream)
    end subroutine append_bytes
 
-   !> Have the operating system write to the disk what it has: it is then safe from the end of the machine.
-   subroutine sync_file(file)
+   !> Have the operating system write to the disk what it has: it is then safe from the end of the machine. `code` is
+   !> the system's where that failed, else 0 (see describe_code of mfv_safe_file).
+   subroutine sync_file(file, code)
       type(locked_file_type), intent(in) :: file
-      integer :: code
+      integer, intent(out) :: code
 
-      code = c_fsync(c_fileno(file%stream))
+      code = c_sync(c_fileno(file%stream))
    end subroutine sync_file
+
+   !> The same for the name of a file or directory that has been made.
+   subroutine sync_name(path, code)
+      character(*), intent(in) :: path
+      integer, intent(out) :: code
+
+      code = c_sync_folder(path//c_null_char)
+   end subroutine sync_name
 
    !> Cut the file after `length` bytes.
    subroutine cut_file(file, length, code)

@@ -8,7 +8,7 @@ module mfv_strings
    use mfv_kinds, only: wp
    implicit none
    private
-   public :: string_type, to_text, lower_case, nearest_name, from_c, copy_to_c, quoted, add_text, list_of_words
+   public :: string_type, to_text, lower_case, nearest_name, from_c, copy_to_c, quoted, shortened, add_text, list_of_words
 
    !> A text of any length, for arrays of texts.
    type :: string_type
@@ -26,6 +26,9 @@ module mfv_strings
    integer, parameter :: usual_digits = 6
    !> Room for any number.
    integer, parameter :: longest_number = 48
+   !> Bytes of a text that a message shows.
+   integer, parameter :: longest_shown = 80
+   character(*), parameter :: cut_mark = '...'
 
 contains
 
@@ -198,6 +201,31 @@ contains
 
       with_quotes = "'"//text//"'"
    end function quoted
+
+   !> `text` for a message: cut, between two characters of UTF-8, where it is long.
+   pure function shortened(text) result(short)
+      character(*), intent(in) :: text
+      character(len=length_of_shortened(text)) :: short
+
+      short = text
+      if (len(short) < len(text)) short(len(short) - len(cut_mark) + 1:) = cut_mark
+   end function shortened
+
+   pure integer function length_of_shortened(text) result(length)
+      character(*), intent(in) :: text
+      integer, parameter :: first_continuation = 128, first_lead = 192
+      integer :: code
+
+      length = len(text)
+      if (length <= longest_shown) return
+      length = longest_shown
+      do while (length > 1)
+         code = ichar(text(length + 1:length + 1))
+         if (code < first_continuation .or. code >= first_lead) exit
+         length = length - 1
+      end do
+      length = length + len(cut_mark)
+   end function length_of_shortened
 
    !> The entry of `names` that is fewest letter changes (Levenshtein) away from `name`; empty when none is near.
    pure function nearest_name(name, names) result(nearest)

@@ -1,5 +1,6 @@
 !> A case: a scene with what the user wants to see of its solution, and the text it came from.
 module mfv_case
+   use mfv_kinds, only: wp
    use mfv_scene, only: control_force, control_keep, scene_type, step_type
    use mfv_simulation, only: history_events, simulation_type, states_reversals
    use mfv_strings, only: to_text
@@ -18,6 +19,8 @@ module mfv_case
       integer :: keep_states = states_reversals
       !> Whether companions on coarser meshes are solved for an estimate of the discretisation error.
       logical :: error_estimate = .false.
+      !> Minutes of wall clock from one checkpoint to the next; 0: none but where a run is interrupted.
+      real(wp) :: checkpoint_minutes = 0.0_wp
       !> Names of the user's units, for labels.
       character(:), allocatable :: length_unit, force_unit
    contains

@@ -2,6 +2,7 @@
 module mfv_case_changes
    use mfv_kinds, only: wp
    use mfv_namelist, only: append_entry, append_group, entry_type, group_type, place_of_group
+   use mfv_numbers, only: read_real
    use mfv_strings, only: to_text
    implicit none
    private
@@ -125,18 +126,19 @@ contains
       text = to_text(value, digits_needed(value))
    end subroutine write_number
 
-   !> How many significant digits tell a number from its neighbours.
+   !> How many significant digits tell a number from its neighbours, or 15 where fewer do: these end with zeros, which to_text leaves
+   !> out.
    pure integer function digits_needed(value) result(digits)
       real(wp), intent(in) :: value
       integer, parameter :: enough = 17
       character(len=48) :: text
       real(wp) :: again
-      integer :: code
+      logical :: is_right
 
-      do digits = 6, enough - 1
+      do digits = precision(value), enough - 1
          text = to_text(value, digits)
-         read (text, *, iostat=code) again
-         if (code /= 0) cycle
+         call read_real(trim(text), again, is_right)
+         if (.not. is_right) cycle
          if (.not. abs(again - value) > 0.0_wp) return
       end do
    end function digits_needed

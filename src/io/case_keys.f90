@@ -13,7 +13,8 @@ module mfv_case_keys
    character(*), parameter :: group_list = 'scene body mesh friction step solver output'
    character(*), parameter :: repeated_groups = 'body step'
 
-   real(wp), parameter :: most_nodes = 1.0e8_wp, most_harmonics = 2.0e9_wp
+   !> Terms of a Fourier series: 4 for each of the most intervals that a circle can have with it (mfv_mesh_reader).
+   real(wp), parameter :: most_nodes = 1.0e8_wp, most_harmonics = 2.0e8_wp
 
 contains
 
@@ -106,7 +107,8 @@ contains
                             'falls from mu_static to mu_kinetic, needed')
       call add_positive_key(keys, 'friction', 'stiffness', 'force/length^3', 'dahl: stiffness sigma of the bristles, traction '// &
                             'over slip, needed')
-      call add_real_key(keys, 'friction', 'exponent', '', 'dahl: exponent gamma; left out: 1', lower=0.0_wp)
+      call add_real_key(keys, 'friction', 'exponent', '', 'dahl: exponent gamma; left out: 1', lower=0.0_wp, &
+                        upper=100.0_wp)
    end subroutine add_friction_keys
 
    !> A coefficient of friction: one value, or one a node.
@@ -191,6 +193,9 @@ contains
                           'step with cycles, only at the end of every step, or none but the last')
       call add_logical_key(keys, 'output', 'error_estimate', '.false.', 'whether the case is also solved on coarser meshes, to '// &
                            'tell the discretisation error of half-width, stick ratio, peak tractions and dissipation')
+      call add_real_key(keys, 'output', 'checkpoint_minutes', 'minutes', 'mfv_run: time from one checkpoint to the next, '// &
+                        'from which mfv_run --resume goes on; 0: only where the run is interrupted', lower=0.0_wp, upper=1.0e6_wp)
+      keys(size(keys))%default = '10'
    end subroutine add_output_keys
 
 end module mfv_case_keys

@@ -86,6 +86,7 @@ contains
       case%keep_states = states_reversals
       if (reader%text_value('output', 1, 'states') == 'steps') case%keep_states = states_steps
       if (reader%text_value('output', 1, 'states') == 'none') case%keep_states = states_none
+      case%checkpoint_minutes = reader%real_value('output', 1, 'checkpoint_minutes')
       case%error_estimate = reader%logical_value('output', 1, 'error_estimate')
       if (case%error_estimate .and. .not. has_coarser_meshes(case%scene)) &
          call reader%complain('output', 1, 'error_estimate', "must be .false. with shape='matrix', which has no coarser mesh", &

@@ -15,6 +15,7 @@ module mfv_draft
    use mfv_status, only: MFV_INPUT_ERROR
    use mfv_strings, only: quoted, string_type, to_text
    use mfv_text_file, only: directory_of
+   use mfv_utf8, only: find_fault_of_text
    implicit none
    private
    public :: draft_type, read_draft
@@ -239,9 +240,13 @@ contains
       class(draft_type), intent(inout) :: self
       character(*), intent(in) :: name, value
       type(error_type), allocatable, intent(out), optional :: error
+      character(:), allocatable :: why
+      integer :: line
 
-      if (scan(value, line_ends) > 0) then
-         call self%set_written(name, '', .true., 'a text must be of one line', error)
+      call find_fault_of_text(value, line, why)
+      if (scan(value, line_ends) > 0) why = 'a text must be of one line'
+      if (why /= '') then
+         call self%set_written(name, '', .true., why, error)
       else
          call self%set_written(name, value, .true., '', error)
       end if

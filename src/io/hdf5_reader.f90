@@ -1,12 +1,14 @@
 !> Reading HDF5 files of others and of our own: every failure is an error with words.
 module mfv_hdf5_reader
    use, intrinsic :: ieee_arithmetic, only: ieee_is_finite
-   use, intrinsic :: iso_c_binding, only: c_char, c_f_pointer, c_loc, c_ptr
+   use, intrinsic :: iso_c_binding, only: c_associated, c_char, c_f_pointer, c_funloc, c_funptr, c_int, c_loc, c_null_ptr, &
+      c_ptr
    use hdf5
    use mfv_error, only: error_type, set_error
    use mfv_kinds, only: wp
    use mfv_status, only: MFV_INPUT_ERROR
    use mfv_strings, only: from_c, to_text
+   use mfv_text_file, only: check_is_file
    implicit none
    private
    public :: open_to_read, close_read, has, read_vector, read_matrix, read_text_attribute, read_whole_attribute
@@ -16,6 +18,14 @@ module mfv_hdf5_reader
          import :: c_ptr
          type(c_ptr), value :: memory
       end subroutine c_free
+
+      function c_set_elink_callback(access, callback, user) bind(C, name='H5Pset_elink_cb') result(code)
+         import :: c_funptr, c_int, c_ptr, hid_t
+         integer(hid_t), value :: access
+         type(c_funptr), value :: callback
+         type(c_ptr), value :: user
+         integer(c_int) :: code
+      end function c_set_elink_callback
    end interface
 
 contains
@@ -28,6 +38,9 @@ contains
       integer :: code
       logical :: is_there, is_hdf5
 
+      file = -1
+      call check_is_file(path, error)
+      if (allocated(error)) return
       inquire (file=path, exist=is_there)
       is_hdf5 = .false.
       if (is_there) then
@@ -35,7 +48,6 @@ contains
          call h5eset_auto_f(0, code)
          call h5fis_hdf5_f(path, is_hdf5, code)
       end if
-      file = -1
       if (.not. is_hdf5) then
          call set_error(error, MFV_INPUT_ERROR, path//trim(merge(' is no HDF5 file       ', ': there is no such file', is_there)))
          return
@@ -51,42 +63,44 @@ contains
       call h5fclose_f(file, code)
    end subroutine close_read
 
-   !> A text attribute of the file, as the result file has them. Error MFV_INPUT_ERROR.
+   !> A text attribute of the file, as the result file has them: one text of variable length. Error MFV_INPUT_ERROR.
    subroutine read_text_attribute(file, name, text, error)
       integer(hid_t), intent(in) :: file
       character(*), intent(in) :: name
       character(:), allocatable, intent(out) :: text
       type(error_type), allocatable, intent(out) :: error
-      integer(hid_t) :: attribute, text_type, root
+      integer(hid_t) :: attribute, text_type
       type(c_ptr), target :: pointer_to_text
       type(c_ptr) :: buffer
       character(kind=c_char), pointer :: characters(:)
       integer, parameter :: any_size = 1
-      integer :: code
-      logical :: is_there, is_variable
+      integer :: code, ignored
+      logical :: is_variable
 
-      call h5aexists_f(file, name, is_there, code)
-      if (code /= 0 .or. .not. is_there) then
-         call set_error(error, MFV_INPUT_ERROR, 'attribute '//name//' is missing: no result of MFV')
+      call open_attribute(file, name, attribute, error)
+      if (allocated(error)) then
+         error%message = error%message//': no result of MFV'
          return
       end if
-      call h5gopen_f(file, '/', root, code)
-      call h5aopen_f(root, name, attribute, code)
+      is_variable = .false.
       call h5aget_type_f(attribute, text_type, code)
-      call h5tis_variable_str_f(text_type, is_variable, code)
-      if (code == 0 .and. is_variable) then
-         buffer = c_loc(pointer_to_text)
-         call h5aread_f(attribute, text_type, buffer, code)
-         if (code == 0) then
-            call c_f_pointer(pointer_to_text, characters, [any_size])
-            text = from_c(characters)
-            call c_free(pointer_to_text)
+      if (code == 0) then
+         call h5tis_variable_str_f(text_type, is_variable, code)
+         if (code == 0 .and. is_variable) then
+            pointer_to_text = c_null_ptr
+            buffer = c_loc(pointer_to_text)
+            call h5aread_f(attribute, text_type, buffer, code)
+            if (code == 0) text = ''
+            if (c_associated(pointer_to_text)) then
+               call c_f_pointer(pointer_to_text, characters, [any_size])
+               if (code == 0) text = from_c(characters)
+               call c_free(pointer_to_text)
+            end if
          end if
+         call h5tclose_f(text_type, ignored)
       end if
       if (.not. allocated(text)) call set_error(error, MFV_INPUT_ERROR, 'attribute '//name//' is no text of MFV')
-      call h5tclose_f(text_type, code)
-      call h5aclose_f(attribute, code)
-      call h5gclose_f(root, code)
+      call h5aclose_f(attribute, ignored)
    end subroutine read_text_attribute
 
    !> A whole number that is an attribute of the file. Error MFV_INPUT_ERROR.
@@ -95,23 +109,58 @@ contains
       character(*), intent(in) :: name
       integer, intent(out) :: value
       type(error_type), allocatable, intent(out) :: error
-      integer(hid_t) :: attribute, root
-      integer :: code
-      logical :: is_there
+      integer(hid_t) :: attribute, type
+      integer :: class, code, ignored
 
       value = 0
+      call open_attribute(file, name, attribute, error)
+      if (allocated(error)) return
+      class = -1
+      call h5aget_type_f(attribute, type, code)
+      if (code == 0) then
+         call h5tget_class_f(type, class, code)
+         call h5tclose_f(type, ignored)
+      end if
+      if (code == 0 .and. class == H5T_INTEGER_F) then
+         call h5aread_f(attribute, H5T_NATIVE_INTEGER, value, [1_hsize_t], code)
+      else
+         code = -1
+      end if
+      if (code /= 0) call set_error(error, MFV_INPUT_ERROR, 'attribute '//name//' is no whole number')
+      call h5aclose_f(attribute, ignored)
+   end subroutine read_whole_attribute
+
+   !> Open an attribute of the file that has one value, as a caller with room for one needs it. Error MFV_INPUT_ERROR.
+   subroutine open_attribute(file, name, attribute, error)
+      integer(hid_t), intent(in) :: file
+      character(*), intent(in) :: name
+      integer(hid_t), intent(out) :: attribute
+      type(error_type), allocatable, intent(out) :: error
+      integer(hid_t) :: space
+      integer(hsize_t) :: values
+      integer :: code, ignored
+      logical :: is_there
+
       call h5aexists_f(file, name, is_there, code)
       if (code /= 0 .or. .not. is_there) then
          call set_error(error, MFV_INPUT_ERROR, 'attribute '//name//' is missing')
          return
       end if
-      call h5gopen_f(file, '/', root, code)
-      call h5aopen_f(root, name, attribute, code)
-      call h5aread_f(attribute, H5T_NATIVE_INTEGER, value, [1_hsize_t], code)
-      if (code /= 0) call set_error(error, MFV_INPUT_ERROR, 'attribute '//name//' is no whole number')
-      call h5aclose_f(attribute, code)
-      call h5gclose_f(root, code)
-   end subroutine read_whole_attribute
+      call h5aopen_f(file, name, attribute, code)
+      if (code /= 0) then
+         call set_error(error, MFV_INPUT_ERROR, 'attribute '//name//' cannot be opened')
+         return
+      end if
+      values = 0
+      call h5aget_space_f(attribute, space, code)
+      if (code == 0) then
+         call h5sget_simple_extent_npoints_f(space, values, code)
+         call h5sclose_f(space, ignored)
+      end if
+      if (values == 1) return
+      call set_error(error, MFV_INPUT_ERROR, 'attribute '//name//' has not one value')
+      call h5aclose_f(attribute, ignored)
+   end subroutine open_attribute
 
    !> Whether a dataset or group is there.
    logical function has(file, name)
@@ -132,17 +181,22 @@ contains
       type(error_type), allocatable, intent(out) :: error
       integer(hsize_t) :: extent(1)
       integer(hid_t) :: dataset
+      integer :: code
 
       call open_dataset(file, name, dataset, extent, error)
       if (allocated(error)) return
-      if (length >= 0 .and. extent(1) /= length) then
-         call set_error(error, MFV_INPUT_ERROR, name//' has '//to_text(int(extent(1)))//' values, x has '//to_text(length))
-      else if (extent(1) > huge(1)) then
+      if (extent(1) > huge(1)) then
          call set_error(error, MFV_INPUT_ERROR, name//' has too many values')
+      else if (length >= 0 .and. extent(1) /= length) then
+         call set_error(error, MFV_INPUT_ERROR, name//' has '//to_text(int(extent(1)))//' values, x has '//to_text(length))
       else
          if (allocated(values)) deallocate (values)
-         allocate (values(extent(1)))
-         call read_values(dataset, name, values, extent, error)
+         allocate (values(extent(1)), stat=code)
+         if (code == 0) then
+            call read_values(dataset, name, values, extent, error)
+         else
+            call set_error(error, MFV_INPUT_ERROR, name//' does not fit into memory')
+         end if
       end if
       call close_dataset(dataset)
       if (allocated(error)) return
@@ -159,48 +213,148 @@ contains
       type(error_type), allocatable, intent(out) :: error
       integer(hsize_t) :: extent(2)
       integer(hid_t) :: dataset
+      integer :: code
 
       call open_dataset(file, name, dataset, extent, error)
       if (allocated(error)) return
       if (any(extent > most)) then
          call set_error(error, MFV_INPUT_ERROR, name//' has more than '//to_text(most)//' rows or columns')
       else
-         allocate (values(extent(1), extent(2)))
-         call read_values(dataset, name, values, extent, error)
+         allocate (values(extent(1), extent(2)), stat=code)
+         if (code == 0) then
+            call read_values(dataset, name, values, extent, error)
+         else
+            call set_error(error, MFV_INPUT_ERROR, name//' does not fit into memory')
+         end if
       end if
       call close_dataset(dataset)
    end subroutine read_matrix
 
-   !> Open a dataset of numbers with as many dimensions as `extent` has places.
+   !> Open a dataset of numbers with as many dimensions as `extent` has places, whose values are in this file.
    subroutine open_dataset(file, name, dataset, extent, error)
       integer(hid_t), intent(in) :: file
       character(*), intent(in) :: name
       integer(hid_t), intent(out) :: dataset
       integer(hsize_t), intent(out) :: extent(:)
       type(error_type), allocatable, intent(out) :: error
-      integer(hid_t) :: space
-      integer(hsize_t) :: most(size(extent))
-      integer :: code, dimensions
+      integer :: code
 
+      extent = 0
       if (.not. has(file, name)) then
          call set_error(error, MFV_INPUT_ERROR, 'dataset '//name//' is missing')
          return
       end if
-      call h5dopen_f(file, name, dataset, code)
+      call open_in_file(file, name, dataset, code)
       if (code /= 0) then
-         call set_error(error, MFV_INPUT_ERROR, name//' is no dataset')
+         call set_error(error, MFV_INPUT_ERROR, name//' is no dataset of this file')
          return
       end if
-      call h5dget_space_f(dataset, space, code)
-      call h5sget_simple_extent_ndims_f(space, dimensions, code)
-      if (dimensions == size(extent)) then
-         call h5sget_simple_extent_dims_f(space, extent, most, code)
-      else
-         call set_error(error, MFV_INPUT_ERROR, name//' has '//to_text(dimensions)//' dimensions, not '//to_text(size(extent)))
-         call h5dclose_f(dataset, code)
-      end if
-      call h5sclose_f(space, code)
+      call check_type(dataset, name, error)
+      if (.not. allocated(error)) call find_extent(dataset, name, extent, error)
+      if (.not. allocated(error)) call check_storage(dataset, name, extent, error)
+      if (allocated(error)) call close_dataset(dataset)
    end subroutine open_dataset
+
+   !> Open a dataset without following links to other files: HDF5 would open whatever these name. `code`: not 0 where that fails.
+   subroutine open_in_file(file, name, dataset, code)
+      integer(hid_t), intent(in) :: file
+      character(*), intent(in) :: name
+      integer(hid_t), intent(out) :: dataset
+      integer, intent(out) :: code
+      integer(hid_t) :: access
+      integer :: ignored
+
+      dataset = -1
+      call h5pcreate_f(H5P_DATASET_ACCESS_F, access, code)
+      if (code /= 0) return
+      code = c_set_elink_callback(access, c_funloc(refuse_link), c_null_ptr)
+      if (code == 0) call h5dopen_f(file, name, dataset, code, dapl_id=access)
+      call h5pclose_f(access, ignored)
+   end subroutine open_in_file
+
+   !> What HDF5 asks before it follows a link to another file (H5L_elink_traverse_t); a negative answer ends it.
+   integer(c_int) function refuse_link(file, group, other_file, object, flags, access, user) bind(C)
+      type(c_ptr), value :: file, group, other_file, object, flags, user
+      integer(hid_t), value :: access
+
+      refuse_link = -1
+   end function refuse_link
+
+   !> Error where a dataset does not hold numbers.
+   subroutine check_type(dataset, name, error)
+      integer(hid_t), intent(in) :: dataset
+      character(*), intent(in) :: name
+      type(error_type), allocatable, intent(out) :: error
+      integer(hid_t) :: type
+      integer :: class, code, ignored
+
+      class = -1
+      call h5dget_type_f(dataset, type, code)
+      if (code == 0) then
+         call h5tget_class_f(type, class, code)
+         call h5tclose_f(type, ignored)
+      end if
+      if (code /= 0 .or. .not. any(class == [H5T_INTEGER_F, H5T_FLOAT_F])) &
+         call set_error(error, MFV_INPUT_ERROR, name//' does not hold numbers')
+   end subroutine check_type
+
+   !> How large a dataset is. Error where it has not as many dimensions as `extent` has places.
+   subroutine find_extent(dataset, name, extent, error)
+      integer(hid_t), intent(in) :: dataset
+      character(*), intent(in) :: name
+      integer(hsize_t), intent(out) :: extent(:)
+      type(error_type), allocatable, intent(out) :: error
+      integer(hid_t) :: space
+      integer(hsize_t) :: most(size(extent))
+      integer :: code, dimensions, ignored
+
+      extent = 0
+      dimensions = -1
+      call h5dget_space_f(dataset, space, code)
+      if (code == 0) then
+         call h5sget_simple_extent_ndims_f(space, dimensions, code)
+         if (dimensions == size(extent)) call h5sget_simple_extent_dims_f(space, extent, most, code)
+         call h5sclose_f(space, ignored)
+      end if
+      if (dimensions >= 0 .and. dimensions /= size(extent)) then
+         call set_error(error, MFV_INPUT_ERROR, name//' has '//to_text(dimensions)//' dimensions, not '//to_text(size(extent)))
+      else if (code < 0 .or. dimensions < 0) then
+         call set_error(error, MFV_INPUT_ERROR, name//' has no readable size')
+      end if
+   end subroutine find_extent
+
+   !> Error where the values of a dataset are not in the file, or fewer than it says there are: nothing is allocated for what is not
+   !> there. Values of other files, by virtual datasets or as external raw data, are not read.
+   subroutine check_storage(dataset, name, extent, error)
+      integer(hid_t), intent(in) :: dataset
+      character(*), intent(in) :: name
+      integer(hsize_t), intent(in) :: extent(:)
+      type(error_type), allocatable, intent(out) :: error
+      !> Deflate makes at most so many bytes of one (the limit that its authors give); a value takes at least one.
+      real(wp), parameter :: most_values_a_byte = 1032.0_wp
+      integer(hid_t) :: properties
+      integer(hsize_t) :: bytes
+      integer :: code, files, ignored, layout
+
+      files = 0
+      layout = -1
+      call h5dget_create_plist_f(dataset, properties, code)
+      if (code == 0) then
+         call h5pget_layout_f(properties, layout, code)
+         if (code == 0 .and. layout /= H5D_VIRTUAL_F) call h5pget_external_count_f(properties, files, code)
+         call h5pclose_f(properties, ignored)
+      end if
+      ! No bytes at all count as an error there.
+      bytes = 0
+      if (code == 0) call h5dget_storage_size_f(dataset, bytes, ignored)
+      if (code /= 0) then
+         call set_error(error, MFV_INPUT_ERROR, name//' cannot be read')
+      else if (files > 0 .or. layout == H5D_VIRTUAL_F) then
+         call set_error(error, MFV_INPUT_ERROR, name//' has its values in another file; these are not read')
+      else if (product(real(extent, wp)) > most_values_a_byte*real(bytes, wp)) then
+         call set_error(error, MFV_INPUT_ERROR, name//' has fewer values in the file than its size says')
+      end if
+   end subroutine check_storage
 
    subroutine read_values(dataset, name, values, extent, error)
       integer(hid_t), intent(in) :: dataset

@@ -1,147 +1,216 @@
-!> Writing HDF5 files so that nothing half-written is left behind: under another name, renamed at the end. What a failed
-!> run leaves of an earlier file is that file.
+!> Writing HDF5 files so that nothing half-written is left behind. HDF5 writes into memory; the bytes then go beside the file,
+!> and in its place when they are on the disk (mfv_safe_file). HDF5 itself never meets a full disk: it does not come back from
+!> one, it ends the process with a segmentation fault when that ends. What a failed run leaves of an earlier file is that file.
 module mfv_hdf5_writer
-   use, intrinsic :: iso_c_binding, only: c_char, c_int, c_loc, c_null_char, c_ptr
+   use, intrinsic :: iso_c_binding, only: c_char, c_loc, c_null_char, c_null_ptr, c_ptr
    use, intrinsic :: iso_fortran_env, only: int8, int64
    use hdf5
    use mfv_error, only: error_type, set_error
    use mfv_kinds, only: wp
    use mfv_result_fields, only: along_nothing, field_type
-   use mfv_status, only: MFV_INPUT_ERROR
+   use mfv_safe_file
+   use mfv_status, only: MFV_FILE_ERROR, MFV_INPUT_ERROR
    use mfv_strings, only: string_type, to_text
    implicit none
    private
-   public :: writer_type, check_writable, create_file, copy_and_open, finish_file, create_group, write_dataset, write_values, &
-             write_text, write_texts, write_whole, write_hdf5_version, note
+   public :: writer_type, file_kind_type, check_writable, create_file, copy_and_open, finish_file, create_group, write_dataset, &
+             write_values, write_text, write_texts, write_whole, write_hdf5_version, note
+
+   !> A kind of files: its name, and an attribute of the root that every file of the kind has, and no other.
+   type :: file_kind_type
+      character(20) :: name = ''
+      character(20) :: attribute = ''
+   end type file_kind_type
 
    !> An open file.
    type :: writer_type
       integer(hid_t) :: file = -1
       !> First failure of an HDF5 call, 0 for none.
       integer :: code = 0
+      type(replacement_type), private :: replacement
+      !> What the file must still be when it is replaced, for a copy with additions.
+      integer(int64), allocatable, private :: expected(:)
    end type writer_type
 
-   interface
-      function c_rename(from, to) bind(C, name='rename') result(code)
-         import :: c_char, c_int
-         character(kind=c_char), intent(in) :: from(*), to(*)
-         integer(c_int) :: code
-      end function c_rename
-
-      pure function c_getpid() bind(C, name='getpid') result(id)
-         import :: c_int
-         integer(c_int) :: id
-      end function c_getpid
-   end interface
+   !> Bytes by which a file in memory grows.
+   integer(size_t), parameter :: growth = 1048576
 
 contains
 
-   !> Whether a result could be written to `path`: error MFV_INPUT_ERROR where not, found out before a long run. A file that
-   !> is no HDF5 file, the case itself for one, is not replaced.
-   subroutine check_writable(path, error)
+   !> Whether a file could be written to `path`: error MFV_INPUT_ERROR where not, found out before a long run. Of what is
+   !> there only a file of the same kind is replaced; the case itself, a matrix that it names, or data of others are not.
+   subroutine check_writable(path, kind, error)
       character(*), intent(in) :: path
+      type(file_kind_type), intent(in) :: kind
       type(error_type), allocatable, intent(out) :: error
-      character(len=200) :: why
-      logical :: is_directory, is_there, is_hdf5
-      integer :: code, unit
+      type(replacement_type) :: replacement
 
-      inquire (file=path//'/.', exist=is_directory)
-      if (is_directory) then
-         call set_error(error, MFV_INPUT_ERROR, path//' is a directory')
-         return
-      end if
-      inquire (file=path, exist=is_there)
-      if (is_there) then
-         call h5open_f(code)
-         call h5eset_auto_f(0, code)
-         call h5fis_hdf5_f(path, is_hdf5, code)
-         if (code /= 0 .or. .not. is_hdf5) then
-            call set_error(error, MFV_INPUT_ERROR, path//' is there and is no HDF5 file; it is not replaced')
-            return
-         end if
-      end if
-      open (newunit=unit, file=temporary_name(path), action='write', status='replace', iostat=code, iomsg=why)
-      if (code /= 0) then
-         call set_error(error, MFV_INPUT_ERROR, path//' cannot be written: '//trim(why))
-      else
-         close (unit, status='delete')
-      end if
+      call begin_checked(path, kind, replacement, error)
+      call drop_replacement(replacement)
+      if (allocated(error)) error%status = MFV_INPUT_ERROR
    end subroutine check_writable
 
-   !> Create the file that is to become `path`, empty. Whether it went well is in `writer%code`.
-   subroutine create_file(path, writer)
+   !> Begin a file that is to become `path`. Error MFV_FILE_ERROR; see check_writable.
+   subroutine begin_checked(path, kind, replacement, error)
       character(*), intent(in) :: path
-      type(writer_type), intent(out) :: writer
+      type(file_kind_type), intent(in) :: kind
+      type(replacement_type), intent(out) :: replacement
+      type(error_type), allocatable, intent(out) :: error
+      logical :: is_there
+
+      call begin_replacement(path, replacement, error)
+      if (allocated(error)) return
+      inquire (file=path, exist=is_there)
+      if (is_there) call check_kind(path, kind, error)
+      if (allocated(error)) call drop_replacement(replacement)
+   end subroutine begin_checked
+
+   !> Whether the file that is there may be replaced. Error MFV_FILE_ERROR.
+   subroutine check_kind(path, kind, error)
+      character(*), intent(in) :: path
+      type(file_kind_type), intent(in) :: kind
+      type(error_type), allocatable, intent(out) :: error
+      character(*), parameter :: so = '; it is not replaced: name another file, or move this one away'
+      integer(hid_t) :: file
+      logical :: is_hdf5, is_of_kind
       integer :: code
 
       call h5open_f(code)
       call h5eset_auto_f(0, code)
-      call h5fcreate_f(temporary_name(path), H5F_ACC_TRUNC_F, writer%file, writer%code)
-   end subroutine create_file
+      call h5fis_hdf5_f(path, is_hdf5, code)
+      if (code /= 0 .or. .not. is_hdf5) then
+         call set_error(error, MFV_FILE_ERROR, path//' is there and is no HDF5 file'//so)
+         return
+      end if
+      call h5fopen_f(path, H5F_ACC_RDONLY_F, file, code)
+      if (code /= 0) then
+         call set_error(error, MFV_FILE_ERROR, path//' is there and cannot be read: it is broken, or another program has it '// &
+                        'open to write'//so)
+         return
+      end if
+      call h5aexists_f(file, trim(kind%attribute), is_of_kind, code)
+      if (code /= 0 .or. .not. is_of_kind) call set_error(error, MFV_FILE_ERROR, path//' is there and is no '//trim(kind%name)// &
+                                                          ' (no attribute '//trim(kind%attribute)//')'//so)
+      call h5fclose_f(file, code)
+   end subroutine check_kind
 
-   !> Copy the HDF5 file at `path` and open the copy, which is to take its place.
-   subroutine copy_and_open(path, writer)
+   !> Begin the file that is to become `path`, empty. Error MFV_FILE_ERROR; see check_writable for what is not replaced.
+   subroutine create_file(path, kind, writer, error)
       character(*), intent(in) :: path
+      type(file_kind_type), intent(in) :: kind
       type(writer_type), intent(out) :: writer
-      integer(int8), allocatable :: bytes(:)
-      integer(int64) :: length
-      integer :: code, unit
+      type(error_type), allocatable, intent(out) :: error
+      integer(hid_t) :: access
+      integer :: code
 
-      open (newunit=unit, file=path, access='stream', form='unformatted', action='read', status='old', iostat=writer%code)
-      if (writer%code /= 0) return
-      inquire (unit=unit, size=length)
-      allocate (bytes(length))
-      read (unit, iostat=writer%code) bytes
-      close (unit)
-      if (writer%code /= 0) return
-      open (newunit=unit, file=temporary_name(path), access='stream', form='unformatted', action='write', status='replace', &
-            iostat=writer%code)
-      if (writer%code /= 0) return
-      write (unit, iostat=writer%code) bytes
-      close (unit, iostat=code)
-      call note(writer, code)
-      if (writer%code /= 0) return
+      call begin_checked(path, kind, writer%replacement, error)
+      if (allocated(error)) return
       call h5open_f(code)
       call h5eset_auto_f(0, code)
-      call h5fopen_f(temporary_name(path), H5F_ACC_RDWR_F, writer%file, writer%code)
+      call in_memory(access, writer)
+      call h5fcreate_f(writer%replacement%part, H5F_ACC_TRUNC_F, writer%file, code, access_prp=access)
+      call note(writer, code)
+      call h5pclose_f(access, code)
+   end subroutine create_file
+
+   !> Copy the HDF5 file at `path` and open the copy, which is to take its place. `identity`: the file as it was when what is
+   !> to be added was made from it, see identify_file; where it is another one in the end, it is not replaced. Error
+   !> MFV_FILE_ERROR.
+   subroutine copy_and_open(path, identity, writer, error)
+      character(*), intent(in) :: path
+      integer(int64), intent(in) :: identity(:)
+      type(writer_type), intent(out) :: writer
+      type(error_type), allocatable, intent(out) :: error
+      character(len=200) :: why
+      integer(int8), allocatable, target :: bytes(:)
+      integer(int64) :: length
+      integer(hid_t) :: access
+      integer :: code, unit
+
+      call begin_replacement(path, writer%replacement, error)
+      if (allocated(error)) return
+      writer%expected = identity
+      open (newunit=unit, file=path, access='stream', form='unformatted', action='read', status='old', iostat=code, iomsg=why)
+      if (code == 0) then
+         inquire (unit=unit, size=length)
+         allocate (bytes(length), stat=code, errmsg=why)
+         if (code == 0) read (unit, iostat=code, iomsg=why) bytes
+         close (unit)
+      end if
+      if (code /= 0) then
+         call drop_replacement(writer%replacement)
+         call set_error(error, MFV_FILE_ERROR, path//' cannot be read: '//trim(why))
+         return
+      end if
+      call h5open_f(code)
+      call h5eset_auto_f(0, code)
+      call in_memory(access, writer)
+      call h5pset_file_image_f(access, c_loc(bytes), size(bytes, kind=size_t), code)
+      call note(writer, code)
+      ! HDF5 wants a name that no file has.
+      call h5fopen_f(writer%replacement%part//'/in_memory', H5F_ACC_RDWR_F, writer%file, code, access_prp=access)
+      call note(writer, code)
+      call h5pclose_f(access, code)
    end subroutine copy_and_open
 
-   !> Close the file and, where all went well, give it the name `path`; else delete it.
-   subroutine finish_file(path, writer)
-      character(*), intent(in) :: path
+   !> Properties of a file that is in memory only; to be closed.
+   subroutine in_memory(access, writer)
+      integer(hid_t), intent(out) :: access
       type(writer_type), intent(inout) :: writer
+      logical, parameter :: is_written_at_the_end = .false.
+      integer :: code
+
+      call h5pcreate_f(H5P_FILE_ACCESS_F, access, code)
+      call note(writer, code)
+      call h5pset_fapl_core_f(access, growth, is_written_at_the_end, code)
+      call note(writer, code)
+   end subroutine in_memory
+
+   !> Close the file and, where all went well, have it take its place; else what was there stays. `what`: the name of what was
+   !> written, for the message of the error, MFV_FILE_ERROR.
+   subroutine finish_file(path, what, writer, error)
+      character(*), intent(in) :: path, what
+      type(writer_type), intent(inout) :: writer
+      type(error_type), allocatable, intent(out) :: error
+      integer(int8), allocatable, target :: bytes(:)
       integer :: code
 
       if (writer%file >= 0) then
+         call find_bytes(writer, bytes)
          call h5fclose_f(writer%file, code)
          call note(writer, code)
       end if
-      if (writer%code == 0) writer%code = c_rename(temporary_name(path)//c_null_char, path//c_null_char)
-      if (writer%code /= 0) call delete_file(temporary_name(path))
+      if (writer%code /= 0) then
+         call drop_replacement(writer%replacement)
+         call set_error(error, MFV_FILE_ERROR, path//': '//what//' could not be written: HDF5 failed, perhaps for want of memory')
+         return
+      end if
+      call write_replacement(writer%replacement, bytes, error)
+      if (.not. allocated(error)) call finish_replacement(writer%replacement, error, writer%expected)
    end subroutine finish_file
 
-   !> Name under which a result is written, in the same directory, of this process alone.
-   pure function temporary_name(path) result(name)
-      character(*), intent(in) :: path
-      character(len=len(path) + len_trim(part_of_process())) :: name
+   !> The bytes of the file in memory.
+   subroutine find_bytes(writer, bytes)
+      type(writer_type), intent(inout) :: writer
+      integer(int8), allocatable, target, intent(out) :: bytes(:)
+      type(c_ptr) :: place
+      integer(size_t) :: length
+      integer :: code
 
-      name = path//part_of_process()
-   end function temporary_name
-
-   !> Ending of the name of a file that this process is writing.
-   pure function part_of_process() result(ending)
-      character(len=16) :: ending
-
-      ending = '.part'//to_text(int(c_getpid()))
-   end function part_of_process
-
-   subroutine delete_file(path)
-      character(*), intent(in) :: path
-      integer :: code, unit
-
-      open (newunit=unit, file=path, status='old', iostat=code)
-      if (code == 0) close (unit, status='delete', iostat=code)
-   end subroutine delete_file
+      call h5fflush_f(writer%file, H5F_SCOPE_GLOBAL_F, code)
+      call note(writer, code)
+      if (writer%code /= 0) return
+      place = c_null_ptr
+      call h5fget_file_image_f(writer%file, place, 0_size_t, code, length)
+      call note(writer, code)
+      if (writer%code /= 0) return
+      allocate (bytes(length), stat=code)
+      call note(writer, code)
+      if (writer%code /= 0) return
+      place = c_loc(bytes)
+      call h5fget_file_image_f(writer%file, place, length, code)
+      call note(writer, code)
+   end subroutine find_bytes
 
    subroutine create_group(writer, group)
       type(writer_type), intent(inout) :: writer

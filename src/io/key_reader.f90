@@ -1,19 +1,25 @@
 !> A text taken apart into groups and keys, checked against a list of keys (mfv_keys), and read value by value; every
 !> message names file, line, group, key, value and what is right.
 module mfv_key_reader
-   use, intrinsic :: ieee_arithmetic, only: ieee_is_finite
    use mfv_case_data, only: case_data_type
    use mfv_error, only: error_type, set_error
    use mfv_keys
    use mfv_kinds, only: wp
-   use mfv_namelist, only: entry_type, group_type, groups_of_name, place_of_group, write_entry
+   use mfv_namelist, only: entry_type, group_type, groups_of_name, show_entry
+   use mfv_numbers, only: read_real, read_whole
    use mfv_status, only: MFV_INPUT_ERROR
-   use mfv_strings, only: list_of_words, lower_case, nearest_name, string_type, to_text
+   use mfv_strings, only: list_of_words, lower_case, nearest_name, shortened, string_type, to_text
    use mfv_text_file, only: path_beside
    implicit none
    private
    public :: reader_type, check_groups, check_entries, find_fault, read_number, logical_code, count_groups, line_of, find_file, &
              merge_text, suggest, fail
+
+   !> Places of the groups of one name.
+   type :: places_type
+      character(:), allocatable :: name
+      integer, allocatable :: place(:)
+   end type places_type
 
    !> A text taken apart, with the list of keys to read it by.
    type :: reader_type
@@ -21,6 +27,8 @@ module mfv_key_reader
       character(:), allocatable :: source, directory
       type(group_type), allocatable :: groups(:)
       type(catalogue_type) :: catalogue
+      !> Where the groups of each name are, in the order of the catalogue's groups: a load history may have many steps.
+      type(places_type), allocatable :: places(:)
       logical :: without_steps = .false.
       !> Data in memory in place of files.
       type(case_data_type) :: data
@@ -38,9 +46,9 @@ module mfv_key_reader
 
 contains
 
-   !> Every group known, and those that must be alone alone.
+   !> Every group known, and those that must be alone alone. The reader can then be asked for values.
    subroutine check_groups(reader, error)
-      type(reader_type), intent(in) :: reader
+      type(reader_type), intent(inout) :: reader
       type(error_type), allocatable, intent(out) :: error
       character(:), allocatable :: why
       integer :: i, j
@@ -49,25 +57,57 @@ contains
          associate (group => reader%groups(i))
             if (.not. reader%catalogue%has_group(group%name)) then
                call suggest(group%name, reader%catalogue%groups(), '&', why)
-               call fail(reader, group%line, '&'//group%name//': unknown group'// &
+               call fail(reader, group%line, '&'//shortened(group%name)//': unknown group'// &
                          why//'; groups are '//reader%catalogue%group_list, error)
                return
             end if
+            if (reader%catalogue%repeats(group%name)) cycle
             do j = 1, i - 1
-               if (reader%groups(j)%name /= group%name .or. reader%catalogue%repeats(group%name)) cycle
+               if (reader%groups(j)%name /= group%name) cycle
                call fail(reader, group%line, '&'//group%name//': may come only once, and is already in line '// &
                          to_text(reader%groups(j)%line), error)
                return
             end do
          end associate
       end do
+      call find_places(reader)
    end subroutine check_groups
+
+   !> Find the groups of every name.
+   subroutine find_places(reader)
+      type(reader_type), intent(inout) :: reader
+      type(string_type), allocatable :: names(:)
+      integer :: i, j
+
+      names = reader%catalogue%groups()
+      allocate (reader%places(size(names)))
+      do i = 1, size(names)
+         reader%places(i)%name = names(i)%text
+         reader%places(i)%place = pack([(j, j=1, size(reader%groups))], &
+                                       [(reader%groups(j)%name == names(i)%text, j=1, size(reader%groups))])
+      end do
+   end subroutine find_places
+
+   !> Place of the `number`-th group of a name, 0 for none.
+   pure integer function place_of(reader, name, number) result(place)
+      type(reader_type), intent(in) :: reader
+      character(*), intent(in) :: name
+      integer, intent(in) :: number
+      integer :: i
+
+      place = 0
+      do i = 1, size(reader%places)
+         if (reader%places(i)%name /= name) cycle
+         if (number <= size(reader%places(i)%place)) place = reader%places(i)%place(number)
+         return
+      end do
+   end function place_of
 
    !> Every key known, there once, with one value of the right kind in the right range.
    subroutine check_entries(reader, error)
       type(reader_type), intent(in) :: reader
       type(error_type), allocatable, intent(out) :: error
-      character(:), allocatable :: why, written
+      character(:), allocatable :: why, written, other
       integer :: i, j, k
 
       do i = 1, size(reader%groups)
@@ -76,6 +116,8 @@ contains
                k = reader%catalogue%place(group, entry%key)
                if (k == 0) then
                   call suggest(entry%key, reader%catalogue%names(group), '', why)
+                  call find_group_of(reader%catalogue, entry%key, other)
+                  if (other /= '') why = '; it is one of &'//other
                   why = 'unknown key'//why
                else if (any([(reader%groups(i)%entries(k)%key == entry%key, k=1, j - 1)])) then
                   why = 'the key is there twice'
@@ -83,7 +125,7 @@ contains
                   call find_fault(reader%catalogue%keys(reader%catalogue%place(group, entry%key)), entry, why)
                end if
                if (why /= '') then
-                  call write_entry(entry, written)
+                  call show_entry(entry, written)
                   call fail(reader, entry%line, '&'//group//' '//written//': '//why, error)
                   return
                end if
@@ -92,6 +134,19 @@ contains
       end do
    end subroutine check_entries
 
+   !> The first group that has a key of this name, empty for none.
+   pure subroutine find_group_of(catalogue, name, group)
+      type(catalogue_type), intent(in) :: catalogue
+      character(*), intent(in) :: name
+      character(:), allocatable, intent(out) :: group
+      integer :: i
+
+      group = ''
+      do i = 1, size(catalogue%keys)
+         if (catalogue%keys(i)%name == name .and. group == '') group = catalogue%keys(i)%group
+      end do
+   end subroutine find_group_of
+
    !> What is wrong with the value of an entry; empty when nothing is.
    subroutine find_fault(key, entry, why)
       type(key_type), intent(in) :: key
@@ -99,9 +154,10 @@ contains
       character(:), allocatable, intent(out) :: why
       real(wp) :: value
       integer :: code
-      logical :: right
+      logical :: right, reasonable
       integer :: i
 
+      reasonable = .true.
       right = size(entry%values) == 1 .or. (key%is_list .and. size(entry%values) > 1)
       do i = 1, size(entry%values)
          if (.not. right) exit
@@ -116,6 +172,8 @@ contains
             call read_number(entry%values(i)%text, key%kind, value, code)
             right = code == 0 .and. value >= key%lower .and. value <= key%upper
             if (right .and. key%lower_open) right = value > key%lower
+            if (right .and. key%kind == kind_real) reasonable = is_reasonable(value)
+            right = right .and. reasonable
          end select
       end do
       why = ''
@@ -123,6 +181,7 @@ contains
       call describe_allowed(key, why)
       why = 'must be '//why
       if (key%unit /= '') why = why//' ('//key%unit//')'
+      if (.not. reasonable) why = why//'; '//reasonable_sizes
    end subroutine find_fault
 
    !> A finite number; `code` is not 0 where the text is none.
@@ -131,20 +190,16 @@ contains
       integer, intent(in) :: kind
       real(wp), intent(out) :: value
       integer, intent(out) :: code
-      character(*), parameter :: digits = '0123456789+-'
       integer :: whole
+      logical :: is_right
 
-      value = 0.0_wp
-      code = 1
       if (kind == kind_integer) then
-         if (verify(text, digits) > 0) return
-         read (text, *, iostat=code) whole
-         if (code == 0) value = whole
+         call read_whole(text, whole, is_right)
+         value = whole
       else
-         if (verify(text, digits//'.eEdD') > 0 .or. scan(text, '0123456789') == 0) return
-         read (text, *, iostat=code) value
-         if (code == 0 .and. .not. ieee_is_finite(value)) code = 1
+         call read_real(text, value, is_right)
       end if
+      code = merge(0, 1, is_right)
    end subroutine read_number
 
    !> 1 for true, 0 for false, -1 for neither.
@@ -182,7 +237,7 @@ contains
       integer :: place, i
 
       found = .false.
-      place = place_of_group(self%groups, group, number)
+      place = place_of(self, group, number)
       if (place == 0) return
       do i = 1, size(self%groups(place)%entries)
          found = self%groups(place)%entries(i)%key == name
@@ -324,7 +379,7 @@ contains
       call self%entry_of(group, number, name, entry, found)
       line = merge(entry%line, line_of(self, group, number), found)
       written = name
-      if (found) call write_entry(entry, written)
+      if (found) call show_entry(entry, written)
       call fail(self, line, '&'//group//trim(numbered(self, group, number))//' '//written//': '//why, error)
    end subroutine complain
 
@@ -365,7 +420,7 @@ contains
       integer :: place
 
       line_of = 0
-      place = place_of_group(reader%groups, name, number)
+      place = place_of(reader, name, number)
       if (place > 0) line_of = reader%groups(place)%line
    end function line_of
 

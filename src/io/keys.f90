@@ -7,10 +7,14 @@ module mfv_keys
    private
    public :: key_type, catalogue_type, kind_real, kind_integer, kind_logical, kind_text, kind_choice, kind_any, add_key, &
              add_text_key, add_logical_key, add_choice_key, add_integer_key, add_real_key, add_positive_key, &
-             list_keys_as_markdown, describe_allowed
+             list_keys_as_markdown, describe_allowed, is_reasonable, reasonable_sizes
 
    integer, parameter :: kind_real = 1, kind_integer = 2, kind_logical = 3, kind_text = 4, kind_choice = 5, &
                          kind_any = 6
+
+   !> Sizes of reals that are taken, whatever the unit; beyond them squares and products overflow, or vanish.
+   real(wp), parameter :: smallest_size = 1.0e-100_wp, largest_size = 1.0e100_wp
+   character(*), parameter :: reasonable_sizes = 'a number other than 0 must be of a size from 1e-100 to 1e100'
 
    !> One key.
    type :: key_type
@@ -144,6 +148,13 @@ contains
          call add_range(key, text)
       end select
    end subroutine describe_allowed
+
+   !> Whether a real is of a size that is taken.
+   elemental logical function is_reasonable(value)
+      real(wp), intent(in) :: value
+
+      is_reasonable = .not. abs(value) > 0.0_wp .or. (abs(value) >= smallest_size .and. abs(value) <= largest_size)
+   end function is_reasonable
 
    !> Append the range of a key to a text.
    subroutine add_range(key, text)

@@ -2,14 +2,16 @@
 !>
 !> The compiler's own namelist reading stops at the first error and does not say which key it met with which value;
 !> here every message can name file, line, group, key and value. Form: `&group key=value, key=value /`, comments after
-!> `!`, texts between ' or ", several values after one key, keys and groups in upper or lower case.
+!> `!`, texts between ' or ", several values after one key, `5*0.3` for five times 0.3, keys and groups in upper or lower
+!> case. The text is UTF-8, with or without a byte-order mark; lines end with LF or CR LF.
 module mfv_namelist
    use mfv_error, only: error_type, set_error
    use mfv_status, only: MFV_INPUT_ERROR
-   use mfv_strings, only: add_text, lower_case, string_type, to_text
+   use mfv_strings, only: lower_case, shortened, string_type, to_text
+   use mfv_utf8, only: byte_order_mark, find_fault_of_text
    implicit none
    private
-   public :: entry_type, group_type, parse_namelists, write_entry, write_namelists, append_group, append_entry, &
+   public :: entry_type, group_type, parse_namelists, write_entry, show_entry, write_namelists, append_group, append_entry, &
              place_of_group, groups_of_name
 
    !> One key with its value as written.
@@ -39,6 +41,10 @@ module mfv_namelist
    character(*), parameter :: line_feed = achar(10), tab = achar(9), carriage_return = achar(13)
    character(*), parameter :: blanks = ' '//tab//carriage_return//line_feed
    character(*), parameter :: name_characters = 'abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_'
+   character(*), parameter :: digits = '0123456789'
+
+   !> Groups that a text can have, and values that a key can have: more would take gigabytes.
+   integer, parameter :: most_groups = 1000000, most_values = 10000000
 
 contains
 
@@ -49,21 +55,38 @@ contains
       type(error_type), allocatable, intent(out) :: error
       type(cursor_type) :: cursor
       type(group_type) :: group
+      character(:), allocatable :: why
+      integer :: n
 
       cursor%text = text
       cursor%source = source
       allocate (groups(0))
+      n = 0
+      call find_fault_of_text(text, cursor%line, why)
+      if (why /= '') then
+         call complain(cursor, why, error)
+         return
+      end if
+      cursor%line = 1
+      if (index(text, byte_order_mark) == 1) cursor%at = len(byte_order_mark) + 1
       do
          call skip_blanks(cursor)
-         if (cursor%at > len(cursor%text)) return
+         if (cursor%at > len(cursor%text)) exit
          if (next(cursor) /= '&') then
             call complain(cursor, "'"//rest_of_line(cursor)//"' is outside a group; a group begins with &name", error)
             return
          end if
+         if (n == most_groups) then
+            call complain(cursor, 'there are more than '//to_text(most_groups)//' groups', error)
+            return
+         end if
          call read_group(cursor, group, error)
          if (allocated(error)) return
-         call append_group(groups, group)
+         if (n == size(groups)) call resize_groups(groups, 2*n + 1)
+         n = n + 1
+         call move_group(group, groups(n))
       end do
+      if (n < size(groups)) call resize_groups(groups, n)
    end subroutine parse_namelists
 
    !> One group; the cursor is at its &.
@@ -72,11 +95,13 @@ contains
       type(group_type), intent(out) :: group
       type(error_type), allocatable, intent(out) :: error
       type(entry_type) :: entry
+      integer :: n
 
       group%line = cursor%line
       cursor%at = cursor%at + 1
       call read_name(cursor, group%name)
       allocate (group%entries(0))
+      n = 0
       if (group%name == '') then
          call complain(cursor, 'a group name must follow &', error)
          return
@@ -84,32 +109,41 @@ contains
       do
          call skip_separators(cursor)
          if (cursor%at > len(cursor%text) .or. next(cursor) == '&') then
-            call complain(cursor, '&'//group%name//' (line '//to_text(group%line)//') has no / at its end', error)
+            call complain(cursor, '&'//shortened(group%name)//' (line '//to_text(group%line)//') has no / at its end', error)
             return
          end if
          if (next(cursor) == '/') exit
          call read_entry(cursor, group%name, entry, error)
          if (allocated(error)) return
-         call append_entry(group%entries, entry)
+         if (n == size(group%entries)) call resize_entries(group%entries, 2*n + 1)
+         n = n + 1
+         call move_entry(entry, group%entries(n))
       end do
       cursor%at = cursor%at + 1
+      if (n < size(group%entries)) call resize_entries(group%entries, n)
    end subroutine read_group
 
-   !> Append by move_alloc: gfortran leaks the components of arrays that a constructor joins.
    subroutine append_group(groups, group)
       type(group_type), allocatable, intent(inout) :: groups(:)
       type(group_type), intent(inout) :: group
-      type(group_type), allocatable :: longer(:)
-      integer :: i, n
 
-      n = size(groups)
-      allocate (longer(n + 1))
-      do i = 1, n
-         call move_group(groups(i), longer(i))
-      end do
-      call move_group(group, longer(n + 1))
-      call move_alloc(longer, groups)
+      call resize_groups(groups, size(groups) + 1)
+      call move_group(group, groups(size(groups)))
    end subroutine append_group
+
+   !> Make a list shorter or longer. By move_alloc: gfortran leaks the components of arrays that a constructor joins.
+   subroutine resize_groups(groups, length)
+      type(group_type), allocatable, intent(inout) :: groups(:)
+      integer, intent(in) :: length
+      type(group_type), allocatable :: resized(:)
+      integer :: i
+
+      allocate (resized(length))
+      do i = 1, min(length, size(groups))
+         call move_group(groups(i), resized(i))
+      end do
+      call move_alloc(resized, groups)
+   end subroutine resize_groups
 
    subroutine move_group(from, to)
       type(group_type), intent(inout) :: from
@@ -123,17 +157,24 @@ contains
    subroutine append_entry(entries, entry)
       type(entry_type), allocatable, intent(inout) :: entries(:)
       type(entry_type), intent(inout) :: entry
-      type(entry_type), allocatable :: longer(:)
-      integer :: i, n
 
-      n = size(entries)
-      allocate (longer(n + 1))
-      do i = 1, n
-         call move_entry(entries(i), longer(i))
-      end do
-      call move_entry(entry, longer(n + 1))
-      call move_alloc(longer, entries)
+      call resize_entries(entries, size(entries) + 1)
+      call move_entry(entry, entries(size(entries)))
    end subroutine append_entry
+
+   !> Make a list shorter or longer.
+   subroutine resize_entries(entries, length)
+      type(entry_type), allocatable, intent(inout) :: entries(:)
+      integer, intent(in) :: length
+      type(entry_type), allocatable :: resized(:)
+      integer :: i
+
+      allocate (resized(length))
+      do i = 1, min(length, size(entries))
+         call move_entry(entries(i), resized(i))
+      end do
+      call move_alloc(resized, entries)
+   end subroutine resize_entries
 
    subroutine move_entry(from, to)
       type(entry_type), intent(inout) :: from
@@ -186,8 +227,12 @@ contains
          return
       end if
       call skip_blanks(cursor)
-      if (next(cursor) /= '=') then
-         call complain(cursor, '&'//group//' '//entry%key//": '=' is wanted after the key", error)
+      if (next(cursor) == '(' .or. next(cursor) == '%') then
+         call complain(cursor, '&'//group//' '//shortened(entry%key)//rest_of_line(cursor)//': a key has no index and no '// &
+                       'component; all values of a list stand after the key, as in mu=0.3, 0.4', error)
+         return
+      else if (next(cursor) /= '=') then
+         call complain(cursor, '&'//group//' '//shortened(entry%key)//": '=' is wanted after the key", error)
          return
       end if
       cursor%at = cursor%at + 1
@@ -200,34 +245,91 @@ contains
       character(*), intent(in) :: group
       type(entry_type), intent(inout) :: entry
       type(error_type), allocatable, intent(out) :: error
-      character(:), allocatable :: value
+      character(:), allocatable :: value, place
       character(len=1) :: mark
+      integer :: i, n, repeats
 
       allocate (entry%values(0))
       allocate (entry%is_quoted(0))
+      n = 0
+      place = '&'//shortened(group)//' '//shortened(entry%key)
       do
          call skip_separators(cursor)
          mark = next(cursor)
-         if (cursor%at > len(cursor%text) .or. mark == '/' .or. mark == '&' .or. mark == '=') return
-         if (key_follows(cursor)) return
-         if (cursor%commas > min(size(entry%values), 1)) then
-            call complain(cursor, '&'//group//' '//entry%key//': a value is missing beside a comma', error)
+         if (cursor%at > len(cursor%text) .or. mark == '/' .or. mark == '&' .or. mark == '=') exit
+         if (key_follows(cursor)) exit
+         if (cursor%commas > min(n, 1)) then
+            call complain(cursor, place//': a value is missing beside a comma', error)
             return
          end if
+         call read_repeats(cursor, repeats)
+         if (repeats < 1 .or. repeats > most_values - n) then
+            call complain(cursor, place//": '"//rest_of_line(cursor)//"': the number before * must be a whole number from "// &
+                          '1 to '//to_text(most_values - n), error)
+            return
+         end if
+         mark = next(cursor)
          if (mark == "'" .or. mark == '"') then
             call read_quoted(cursor, mark, value, error)
             if (allocated(error)) then
-               error%message = cursor%source//':'//to_text(entry%line)//': &'//group//' '//entry%key// &
-                               ': the text has no closing '//mark
+               error%message = cursor%source//':'//to_text(entry%line)//': '//place//': the text has no closing '//mark
                return
             end if
          else
             call read_bare(cursor, value)
          end if
-         call add_text(entry%values, value)
-         entry%is_quoted = [entry%is_quoted, mark == "'" .or. mark == '"']
+         if (value == '' .and. mark /= "'" .and. mark /= '"') then
+            call complain(cursor, place//': a value is missing after *', error)
+            return
+         end if
+         if (n + repeats > size(entry%values)) call resize_values(entry, 2*n + repeats)
+         do i = n + 1, n + repeats
+            entry%values(i)%text = value
+         end do
+         entry%is_quoted(n + 1:n + repeats) = mark == "'" .or. mark == '"'
+         n = n + repeats
       end do
+      if (cursor%commas > 1) then
+         call complain(cursor, place//': a value is missing beside a comma', error)
+         return
+      end if
+      if (n < size(entry%values)) call resize_values(entry, n)
    end subroutine read_values
+
+   !> Make the list of values shorter or longer.
+   subroutine resize_values(entry, length)
+      type(entry_type), intent(inout) :: entry
+      integer, intent(in) :: length
+      type(string_type), allocatable :: values(:)
+      logical, allocatable :: is_quoted(:)
+      integer :: i, n
+
+      n = min(length, size(entry%values))
+      allocate (values(length))
+      allocate (is_quoted(length), source=.false.)
+      do i = 1, n
+         call move_alloc(entry%values(i)%text, values(i)%text)
+      end do
+      is_quoted(:n) = entry%is_quoted(:n)
+      call move_alloc(values, entry%values)
+      call move_alloc(is_quoted, entry%is_quoted)
+   end subroutine resize_values
+
+   !> How often the value that comes next is meant, as the 5 in 5*0.3; 1 where nothing is said, and 0 where the number cannot be
+   !> read. The cursor is then at the value; where the number cannot be read, it stays.
+   subroutine read_repeats(cursor, repeats)
+      type(cursor_type), intent(inout) :: cursor
+      integer, intent(out) :: repeats
+      integer :: length, code
+
+      repeats = 1
+      length = verify(cursor%text(cursor%at:), digits) - 1
+      if (length < 1) return
+      if (cursor%text(cursor%at + length:cursor%at + length) /= '*') return
+      read (cursor%text(cursor%at:cursor%at + length - 1), *, iostat=code) repeats
+      if (code /= 0 .or. repeats < 1) repeats = 0
+      if (repeats > 0) cursor%at = cursor%at + length + 1
+   end subroutine read_repeats
 
    !> A text between quotes; a doubled quote stands for one.
    subroutine read_quoted(cursor, mark, text, error)
@@ -265,14 +367,14 @@ contains
       cursor%at = cursor%at + length
    end subroutine read_bare
 
-   !> Whether a name and then '=' come next.
+   !> Whether a name and then '=' come next; an index or a component after the name, which read_entry refuses, is seen too.
    pure logical function key_follows(cursor)
       type(cursor_type), intent(in) :: cursor
       integer :: after, length
 
-      length = verify(cursor%text(cursor%at:), name_characters) - 1
+      length = verify(cursor%text(cursor%at:), name_characters//'(:)%') - 1
       key_follows = .false.
-      if (length < 1) return
+      if (length < 1 .or. scan(next(cursor), name_characters) == 0) return
       after = verify(cursor%text(cursor%at + length:), blanks)
       if (after > 0) key_follows = cursor%text(cursor%at + length + after - 1:cursor%at + length + after - 1) == '='
    end function key_follows
@@ -381,6 +483,25 @@ contains
       end do
       text = text//"'"
    end subroutine add_quoted
+
+   !> The same for a message: a long text and a long list of values are cut.
+   pure subroutine show_entry(entry, text)
+      type(entry_type), intent(in) :: entry
+      character(:), allocatable, intent(out) :: text
+      integer, parameter :: shown = 5
+      type(entry_type) :: part
+      integer :: i, n
+
+      n = min(size(entry%values), shown)
+      part%key = shortened(entry%key)
+      allocate (part%values(n))
+      do i = 1, n
+         part%values(i)%text = shortened(entry%values(i)%text)
+      end do
+      part%is_quoted = entry%is_quoted(:n)
+      call write_entry(part, text)
+      if (n < size(entry%values)) text = text//', ... ('//to_text(size(entry%values))//' values)'
+   end subroutine show_entry
 
    !> Groups as a text that parse_namelists takes apart into the same ones, one a line.
    pure subroutine write_namelists(groups, text)

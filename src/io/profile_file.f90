@@ -1,13 +1,15 @@
 !> Reading columns of numbers from text files: the profile of a body, places, coefficients of friction.
 module mfv_profile_file
-   use, intrinsic :: ieee_arithmetic, only: ieee_is_finite
    use mfv_error, only: error_type, set_error
    use mfv_body, only: body_type, new_profile
    use mfv_case_data, only: case_data_type
+   use mfv_keys, only: is_reasonable, reasonable_sizes
    use mfv_kinds, only: wp
+   use mfv_numbers, only: read_real
    use mfv_status, only: MFV_INPUT_ERROR
-   use mfv_strings, only: string_type, to_text
+   use mfv_strings, only: shortened, string_type, to_text
    use mfv_text_file, only: read_text, split_lines
+   use mfv_utf8, only: byte_order_mark
    implicit none
    private
    public :: read_profile, profile_of_data, read_table
@@ -72,6 +74,7 @@ contains
 
       call read_text(path, text, error)
       if (allocated(error)) return
+      if (index(text, byte_order_mark) == 1) text(:len(byte_order_mark)) = ''
       lines = split_lines(text)
       allocate (table(columns, size(lines)))
       n = 0
@@ -98,26 +101,45 @@ contains
       if (.not. is_comment) is_comment = scan(adjustl(line), '#!') == 1
    end function is_comment
 
-   !> Finite numbers, and nothing else.
+   !> Finite numbers with blanks, tabs or one comma between them, and nothing else.
    subroutine read_columns(line, names, columns, error)
       character(*), intent(in) :: line, names
       real(wp), intent(out) :: columns(:)
       type(error_type), allocatable, intent(out) :: error
-      character(*), parameter :: characters = '0123456789+-.eEdD ,'//achar(9)
+      character(*), parameter :: blanks = ' '//achar(9)
       character(len=5), parameter :: counts(3) = [character(5) :: 'one', 'two', 'three']
-      character(len=1) :: third
-      integer :: code, after
+      integer :: at, length, i
+      logical :: is_right
 
       columns = 0.0_wp
-      code = 1
-      if (verify(line, characters) == 0) read (line, *, iostat=code) columns
-      if (code == 0) then
-         read (line, *, iostat=after) columns, third
-         if (after == 0) code = 1
-      end if
-      if (code == 0 .and. .not. all(ieee_is_finite(columns))) code = 1
-      if (code /= 0) call set_error(error, MFV_INPUT_ERROR, 'must be '//trim(counts(size(columns)))//' numbers, '//names// &
-                                    ', not '''//trim(line)//'''')
+      at = 1
+      is_right = .true.
+      do i = 1, size(columns)
+         call skip(blanks)
+         if (i > 1 .and. line(at:min(at, len(line))) == ',') then
+            at = at + 1
+            call skip(blanks)
+         end if
+         length = scan(line(at:)//' ', blanks//',') - 1
+         if (is_right) call read_real(line(at:at + length - 1), columns(i), is_right)
+         at = at + length
+      end do
+      if (.not. is_right .or. verify(line(at:), blanks) > 0) &
+         call set_error(error, MFV_INPUT_ERROR, 'must be '//trim(counts(size(columns)))//' numbers, '//names//', not '''// &
+                        shortened(trim(line))//'''')
+      if (allocated(error)) return
+      if (.not. all(is_reasonable(columns))) call set_error(error, MFV_INPUT_ERROR, reasonable_sizes)
+
+   contains
+
+      !> Go past characters.
+      subroutine skip(characters)
+         character(*), intent(in) :: characters
+
+         length = verify(line(at:), characters) - 1
+         if (length < 0) length = len(line) - at + 1
+         at = at + length
+      end subroutine skip
    end subroutine read_columns
 
 end module mfv_profile_file

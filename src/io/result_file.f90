@@ -1,24 +1,34 @@
 !> The result file: HDF5, for people. Named datasets with units and descriptions, dimension scales, the input text,
-!> versions and the certificate. It is written under another name and renamed at the end, so that a failed run leaves
-!> an earlier result as it was and nothing half-written. docs/file-format.md describes it.
+!> versions and the certificate. It takes its place when it is whole and on the disk, so that a failed run leaves an earlier
+!> result as it was and nothing half-written. docs/file-format.md describes it.
 module mfv_result_file
    use hdf5
    use h5ds
    use mfv_case, only: case_type
-   use mfv_error, only: error_type, set_error
-   use mfv_hdf5_writer
+   use mfv_error, only: error_type
+   use mfv_hdf5_writer, check_place => check_writable
    use mfv_result_fields
    use mfv_simulation, only: simulation_type
-   use mfv_status, only: MFV_FILE_ERROR
    use mfv_strings, only: string_type
    implicit none
    private
    public :: check_writable, write_result
 
+   type(file_kind_type), parameter :: result_kind = file_kind_type('result of MFV', 'outcome')
+
 contains
 
-   !> Write the result of a case to `path`, with its `warnings` (see mfv_validity). Error MFV_FILE_ERROR; what was at `path` before is then still there. See
-   !> check_writable for what is not replaced.
+   !> Whether the result of a case could be written to `path`: error MFV_INPUT_ERROR where not, found out before a long run.
+   !> What is there and is no result, the case itself or a matrix that it names, is not replaced.
+   subroutine check_writable(path, error)
+      character(*), intent(in) :: path
+      type(error_type), allocatable, intent(out) :: error
+
+      call check_place(path, result_kind, error)
+   end subroutine check_writable
+
+   !> Write the result of a case to `path`, with its `warnings` (see mfv_validity). Error MFV_FILE_ERROR; what was at `path`
+   !> before is then still there. See check_writable for what is not replaced.
    subroutine write_result(path, case, simulation, warnings, error)
       character(*), intent(in) :: path
       type(case_type), intent(in) :: case
@@ -27,18 +37,13 @@ contains
       type(error_type), allocatable, intent(out) :: error
       type(writer_type) :: writer
 
-      call check_writable(path, error)
-      if (allocated(error)) then
-         error%status = MFV_FILE_ERROR
-         return
-      end if
-      call create_file(path, writer)
+      call create_file(path, result_kind, writer, error)
+      if (allocated(error)) return
       if (writer%code == 0) then
          call write_attributes(writer, case, simulation, warnings)
          call write_groups(writer, case, simulation)
       end if
-      call finish_file(path, writer)
-      if (writer%code /= 0) call set_error(error, MFV_FILE_ERROR, path//': the result could not be written')
+      call finish_file(path, 'the result', writer, error)
    end subroutine write_result
 
    !> Attributes of the whole file.

@@ -1,5 +1,6 @@
 !> Stresses inside the bodies of a result, put into its file: /stress/<state>/<body>, on a grid or at points.
 module mfv_stress_file
+   use, intrinsic :: iso_fortran_env, only: int64
    use hdf5
    use h5ds
    use mfv_case, only: case_type
@@ -10,7 +11,8 @@ module mfv_stress_file
    use mfv_interior
    use mfv_kinds, only: wp
    use mfv_result_fields, only: step_group
-   use mfv_status, only: MFV_FILE_ERROR, MFV_INPUT_ERROR
+   use mfv_safe_file, only: identify_file, identity_length
+   use mfv_status, only: MFV_INPUT_ERROR
    use mfv_strings, only: list_of_words, string_type
    use mfv_text_file, only: path_from
    implicit none
@@ -51,7 +53,9 @@ contains
       type(error_type), allocatable, intent(out) :: error
       type(interior_type) :: interior
       type(case_type) :: case
+      integer(int64) :: identity(identity_length)
 
+      call identify_file(path, identity)
       call read_interior(path, request, case, interior, result, error)
       if (allocated(error)) then
          error%message = path//': '//error%message
@@ -66,7 +70,7 @@ contains
          return
       end if
       call compute(request, interior, result)
-      call write_stresses(path, request, case, result, error)
+      call write_stresses(path, identity, request, case, result, error)
    end subroutine add_stresses
 
    !> The body and its tractions from the file.
@@ -157,9 +161,10 @@ contains
       end do
    end subroutine compute
 
-   !> Put them into a copy of the file that takes its place.
-   subroutine write_stresses(path, request, case, result, error)
+   !> Put them into a copy of the file that takes its place, if that is still the one that they were computed from.
+   subroutine write_stresses(path, identity, request, case, result, error)
       character(*), intent(in) :: path
+      integer(int64), intent(in) :: identity(:)
       type(stress_request_type), intent(in) :: request
       type(case_type), intent(in) :: case
       type(stress_result_type), intent(inout) :: result
@@ -167,11 +172,6 @@ contains
       type(writer_type) :: writer
       character(:), allocatable :: state
 
-      call check_writable(path, error)
-      if (allocated(error)) then
-         error%status = MFV_FILE_ERROR
-         return
-      end if
       state = 'stress/last'
       if (request%step > 0) then
          state = step_group(request%step)
@@ -179,13 +179,13 @@ contains
       end if
       result%group = state//'/'//body_name(request)
       if (allocated(request%x)) result%group = result%group//'_points'
-      call copy_and_open(path, writer)
+      call copy_and_open(path, identity, writer, error)
+      if (allocated(error)) return
       if (writer%code == 0) then
          call make_way(writer, state, result%group)
          call write_group(writer, case, request, result)
       end if
-      call finish_file(path, writer)
-      if (writer%code /= 0) call set_error(error, MFV_FILE_ERROR, path//': the stresses could not be written')
+      call finish_file(path, 'the stresses', writer, error)
    end subroutine write_stresses
 
    !> The groups above the wanted one; and away with what was there.

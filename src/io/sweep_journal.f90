@@ -5,8 +5,9 @@ module mfv_sweep_journal
    use mfv_checksum, only: checksum_of
    use mfv_error, only: error_type, set_error
    use mfv_locked_file
+   use mfv_safe_file, only: describe_code
    use mfv_status, only: MFV_FILE_ERROR, MFV_INPUT_ERROR
-   use mfv_sweep_record, only: record_number, record_type, unpack_record
+   use mfv_sweep_record, only: is_record, record_number, record_type, unpack_record
    implicit none
    private
    public :: journal_type, open_journal, append_to_journal, sync_journal, close_journal, delete_journal, gather_journal
@@ -50,6 +51,7 @@ contains
       if (size(bytes) < header_length .or. again) then
          call cut_file(journal%file, 0_int64, code)
          if (code == 0) call append_bytes(journal%file, header_of(checksum), code)
+         if (code == 0) call sync_name(path, code)
       else
          call read_records(bytes, records, whole)
          journal%dropped = size(bytes, kind=int64) - whole
@@ -156,6 +158,7 @@ contains
          last = whole + frame_length + length
          if (last + checksum_length > size(bytes, kind=int64)) return
          if (checksum_of(bytes(whole + 1:last)) /= transfer(bytes(last + 1:last + checksum_length), 0_int64)) return
+         if (.not. is_record(bytes(first:last))) return
          number = record_number(bytes(first:last))
          if (number >= 1 .and. number <= size(records)) then
             if (records(number)%number == 0) call unpack_record(bytes(first:last), records(number))
@@ -181,18 +184,25 @@ contains
       if (code /= 0) call set_error(error, MFV_FILE_ERROR, journal%path//': the journal cannot be written; what it has is safe')
    end subroutine append_to_journal
 
-   !> Make the journal safe from the end of the machine.
-   subroutine sync_journal(journal)
+   !> Make the journal safe from the end of the machine. Error MFV_FILE_ERROR.
+   subroutine sync_journal(journal, error)
       type(journal_type), intent(in) :: journal
+      type(error_type), allocatable, intent(inout) :: error
+      character(:), allocatable :: why
+      integer :: code
 
-      call sync_file(journal%file)
+      call sync_file(journal%file, code)
+      if (code == 0 .or. allocated(error)) return
+      call describe_code(code, why)
+      call set_error(error, MFV_FILE_ERROR, journal%path//': the journal cannot be brought to the disk: '//why)
    end subroutine sync_journal
 
-   !> Close the journal, safe from the end of the machine.
-   subroutine close_journal(journal)
+   !> Close the journal, safe from the end of the machine. Error MFV_FILE_ERROR where it is not; an error that is there stays.
+   subroutine close_journal(journal, error)
       type(journal_type), intent(inout) :: journal
+      type(error_type), allocatable, intent(inout) :: error
 
-      call sync_file(journal%file)
+      call sync_journal(journal, error)
       call close_file(journal%file)
    end subroutine close_journal
 

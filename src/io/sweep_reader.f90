@@ -18,7 +18,7 @@ module mfv_sweep_reader
    use mfv_sweep_keys, only: sweep_catalogue
    use mfv_sweep_plan
    use mfv_sweep_record, only: record_layout
-   use mfv_text_file, only: directory_of, path_beside, read_text, stem_of
+   use mfv_text_file, only: directory_of, path_beside, read_bytes, read_text, stem_of
    use mfv_version, only: library_version
    implicit none
    private
@@ -404,6 +404,11 @@ contains
                axis%numbers(j) = logical_code(axis%values(j)%text)
                if (key%kind /= kind_logical) call read_number(axis%values(j)%text, kind_real, axis%numbers(j), code)
             end if
+            if (is_too_large(axis%targets(i)%factor, axis%numbers(j))) then
+               call reader%complain('vary', number, 'factor', 'times '//to_text(axis%numbers(j))// &
+                                    ' is too large for a number', error)
+               return
+            end if
             call find_value_fault(axis, i, j, key, why)
             if (why == '') cycle
             call complain_of_value(reader, number, why, error)
@@ -411,6 +416,14 @@ contains
          end do
       end do
    end subroutine check_kinds
+
+   !> Whether a product is beyond what a real can be.
+   pure logical function is_too_large(one, other)
+      real(wp), intent(in) :: one, other
+
+      is_too_large = .false.
+      if (abs(one) > 1.0_wp) is_too_large = abs(other) > huge(1.0_wp)/abs(one)
+   end function is_too_large
 
    !> Error about a value of &vary `number`, at the line of the values.
    subroutine complain_of_value(reader, number, why, error)
@@ -703,7 +716,7 @@ contains
       character(:), allocatable :: path, bytes
 
       path = path_beside(base%directory, name)
-      call read_text(path, bytes, error)
+      call read_bytes(path, bytes, error)
       if (.not. allocated(error)) call add_text_to_checksum(bytes, checksum)
    end subroutine add_file
 

@@ -8,7 +8,7 @@ module mfv_sweep_record
    use mfv_simulation, only: simulation_type
    implicit none
    private
-   public :: record_type, record_of, record_of_error, pack_record, unpack_record, record_number, record_layout
+   public :: record_type, record_of, record_of_error, pack_record, unpack_record, is_record, record_number, record_layout
 
    !> Number of the layout of the bytes of a record: to be raised whenever pack_record changes.
    integer, parameter :: record_layout = 1
@@ -93,7 +93,7 @@ contains
       end do
    end subroutine pack_record
 
-   !> The record in some bytes; they must be those of pack_record.
+   !> The record in some bytes; they must be those of pack_record, see is_record.
    subroutine unpack_record(bytes, record)
       integer(int8), intent(in) :: bytes(:)
       type(record_type), intent(out) :: record
@@ -127,6 +127,30 @@ contains
          call get_reals(bytes, at, record%tractions(i)%shear)
       end do
    end subroutine unpack_record
+
+   !> Whether some bytes have the lengths that pack_record gives them, so that unpack_record can read them.
+   logical function is_record(bytes)
+      integer(int8), intent(in) :: bytes(:)
+      integer, parameter :: fixed = whole_values*bytes_of_whole + (1 + observable_count)*bytes_of_real
+      integer :: whole(whole_values), nodes(1), i, at, rest
+
+      is_record = .false.
+      if (size(bytes) < fixed) return
+      at = 0
+      call get_whole(bytes, at, whole)
+      if (whole(7) < 0 .or. whole(7) > size(bytes) - fixed) return
+      if (all(whole(8) /= [0, moment_count])) return
+      at = fixed + whole(7)
+      do i = 1, whole(8)
+         if (size(bytes) - at < bytes_of_whole + bytes_of_real) return
+         call get_whole(bytes, at, nodes)
+         at = at + bytes_of_real
+         rest = size(bytes) - at
+         if (nodes(1) < 0 .or. nodes(1) > rest/(2*bytes_of_real)) return
+         at = at + 2*bytes_of_real*nodes(1)
+      end do
+      is_record = at == size(bytes)
+   end function is_record
 
    !> Number of the case in such bytes, without the rest.
    pure integer function record_number(bytes)

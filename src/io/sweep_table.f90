@@ -23,6 +23,7 @@ module mfv_sweep_table
    !> What is at the place of a table: nothing that counts; something of another sweep or no table; an incomplete table; the
    !> complete table of this sweep.
    integer, parameter :: no_table = 0, other_table = 1, part_table = 2, same_table = 3
+   type(file_kind_type), parameter :: table_kind = file_kind_type('table of mfv_sweep', 'input_checksum')
    !> Bytes that a message may have.
    integer, parameter :: longest_message = 500
    integer, parameter :: bytes_of_real = 8, bytes_of_whole = 4
@@ -42,19 +43,14 @@ contains
       type(error_type), allocatable, intent(out) :: error
       type(writer_type) :: writer
 
-      call check_writable(sweep%result_path, error)
-      if (allocated(error)) then
-         error%status = MFV_FILE_ERROR
-         return
-      end if
-      call create_file(sweep%result_path, writer)
+      call create_file(sweep%result_path, table_kind, writer, error)
+      if (allocated(error)) return
       if (writer%code == 0) then
          call write_file_attributes(writer, sweep, records)
          call write_rows(writer, sweep, records)
          if (sweep%keeps_states) call write_links(writer, sweep, records)
       end if
-      call finish_file(sweep%result_path, writer)
-      if (writer%code /= 0) call set_error(error, MFV_FILE_ERROR, sweep%result_path//': the table could not be written')
+      call finish_file(sweep%result_path, 'the table', writer, error)
    end subroutine write_table
 
    !> Whether the table can be written to its place. Error MFV_INPUT_ERROR where not, or where there is a file that is no table
@@ -62,36 +58,10 @@ contains
    subroutine check_place(sweep, error)
       type(sweep_type), intent(in) :: sweep
       type(error_type), allocatable, intent(out) :: error
-      logical :: is_there, is_table
 
-      call check_writable(sweep%result_path, error)
-      if (.not. allocated(error)) then
-         inquire (file=sweep%result_path, exist=is_there)
-         is_table = .true.
-         if (is_there) call look_for_table(sweep%result_path, is_table)
-         if (.not. is_table) call set_error(error, MFV_INPUT_ERROR, sweep%result_path//' is there and is no table of '// &
-                                            'mfv_sweep (no /table, or no input_checksum); it is not replaced: name another '// &
-                                            'file, or move this one away')
-      end if
+      call check_writable(sweep%result_path, table_kind, error)
       if (allocated(error)) error%message = sweep%source//": &sweep file='"//sweep%result_path//"': "//error%message
    end subroutine check_place
-
-   !> Whether an HDF5 file is a table of a sweep, of this one or another.
-   subroutine look_for_table(path, is_table)
-      character(*), intent(in) :: path
-      logical, intent(out) :: is_table
-      character(:), allocatable :: checksum
-      type(error_type), allocatable :: error
-      integer(hid_t) :: file
-
-      is_table = .false.
-      call open_to_read(path, file, error)
-      if (allocated(error)) return
-      is_table = has(file, 'table')
-      if (is_table) call read_text_attribute(file, 'input_checksum', checksum, error)
-      is_table = is_table .and. .not. allocated(error)
-      call close_read(file)
-   end subroutine look_for_table
 
    !> What is at the place of a sweep's table.
    subroutine find_table(sweep, state)

@@ -1,13 +1,14 @@
-!> Reading whole text files.
+!> Reading whole files, and the names of files.
 module mfv_text_file
-   use, intrinsic :: iso_c_binding, only: c_associated, c_char, c_null_char, c_ptr, c_size_t
+   use, intrinsic :: iso_c_binding, only: c_associated, c_char, c_int, c_null_char, c_ptr, c_size_t
    use, intrinsic :: iso_fortran_env, only: int64
    use mfv_error, only: error_type, set_error
    use mfv_status, only: MFV_INPUT_ERROR
-   use mfv_strings, only: from_c, string_type
+   use mfv_strings, only: from_c, string_type, to_text
    implicit none
    private
-   public :: read_text, split_lines, directory_of, stem_of, find_working_directory, path_from, path_beside
+   public :: read_text, read_bytes, check_is_file, split_lines, directory_of, stem_of, find_working_directory, path_from, &
+             path_beside
 
    interface
       function c_getcwd(buffer, size) bind(C, name='getcwd') result(path)
@@ -16,30 +17,79 @@ module mfv_text_file
          integer(c_size_t), value :: size
          type(c_ptr) :: path
       end function c_getcwd
+
+      integer(c_int) function c_file_kind(path) bind(C, name='mfv_file_kind')
+         import :: c_char, c_int
+         character(kind=c_char), intent(in) :: path(*)
+      end function c_file_kind
    end interface
+
+   !> Bytes that a text file can have; coefficients of a million nodes take a quarter of it.
+   integer(int64), parameter :: most_bytes = 100000000_int64
 
 contains
 
-   !> The bytes of a text file. Error MFV_INPUT_ERROR, naming the file, where it cannot be read.
+   !> The bytes of a text file. Error MFV_INPUT_ERROR, naming the file, where it cannot be read or is too long for a text.
    subroutine read_text(path, text, error)
       character(*), intent(in) :: path
       character(:), allocatable, intent(out) :: text
       type(error_type), allocatable, intent(out) :: error
+
+      call read_bytes(path, text, error, most_bytes)
+   end subroutine read_text
+
+   !> The bytes of a file, of `most` bytes at most unless that is left out. Error MFV_INPUT_ERROR, naming the file.
+   subroutine read_bytes(path, bytes, error, most)
+      character(*), intent(in) :: path
+      character(:), allocatable, intent(out) :: bytes
+      type(error_type), allocatable, intent(out) :: error
+      integer(int64), intent(in), optional :: most
       character(len=256) :: why
       integer :: code, unit
-      integer(int64) :: bytes
+      integer(int64) :: length
 
+      call check_is_file(path, error)
+      if (allocated(error)) return
       open (newunit=unit, file=path, access='stream', form='unformatted', action='read', status='old', &
             iostat=code, iomsg=why)
       if (code == 0) then
-         inquire (unit, size=bytes)
-         if (bytes < 0) bytes = 0
-         allocate (character(len=bytes) :: text)
-         read (unit, iostat=code, iomsg=why) text
+         inquire (unit, size=length)
+         length = max(length, 0_int64)
+         if (present(most)) then
+            if (length > most) call set_error(error, MFV_INPUT_ERROR, path//': is too long for a text: it has more than '// &
+                                              to_text(int(most))//' bytes')
+         end if
+         if (.not. allocated(error)) then
+            allocate (character(len=length) :: bytes, stat=code)
+            if (code == 0) then
+               read (unit, iostat=code, iomsg=why) bytes
+            else
+               why = 'there is no memory for it'
+            end if
+         end if
          close (unit)
       end if
       if (code /= 0) call set_error(error, MFV_INPUT_ERROR, path//': cannot be read: '//trim(why))
-   end subroutine read_text
+   end subroutine read_bytes
+
+   !> Whether a path leads to a regular file, or to none, which opening it then tells: a pipe would keep the program waiting,
+   !> a device may have no end. Error MFV_INPUT_ERROR, naming the path.
+   subroutine check_is_file(path, error)
+      character(*), intent(in) :: path
+      type(error_type), allocatable, intent(out) :: error
+
+      if (path == '') then
+         call set_error(error, MFV_INPUT_ERROR, 'the name of a file is empty')
+         return
+      end if
+      select case (c_file_kind(trim(path)//c_null_char))
+      case (1)
+         call set_error(error, MFV_INPUT_ERROR, path//': cannot be read: it is a directory')
+      case (2)
+         call set_error(error, MFV_INPUT_ERROR, path//': cannot be read: it is no regular file, but a pipe or a device; '// &
+                        'put what it gives into a file')
+      end select
+   end subroutine check_is_file
 
    !> The lines of a text, without their ends (LF or CR LF).
    pure function split_lines(text) result(lines)

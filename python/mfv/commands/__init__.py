@@ -37,12 +37,15 @@ def main(arguments: list[str] | None = None) -> int:
     """Run the command line; return the exit code."""
     options = _parser().parse_args(arguments)
     try:
-        return options.command(options) or 0
+        code: int = options.command(options) or 0
+        _finish_output()
+        return code
     except BrokenPipeError:  # whoever read the output has had enough
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        _give_up_output()
         return UNUSABLE
     except (MfvError, OSError, ValueError) as error:
         print(f"mfv: {_with_file(str(error), options)}", file=sys.stderr)
+        _give_up_output()
         return UNUSABLE
     except ModuleNotFoundError as error:
         package = str(error.name)
@@ -76,6 +79,26 @@ def _parser() -> argparse.ArgumentParser:
         module.add_arguments(command)
         command.set_defaults(command=module.run)
     return parser
+
+
+def _finish_output() -> None:
+    """Print what is still to be printed. Raises OSError, BrokenPipeError where somebody has had enough of it."""
+    try:
+        if sys.stdout is not None:
+            sys.stdout.flush()
+    except BrokenPipeError:
+        raise
+    except OSError as error:
+        raise OSError(f"standard output cannot be written: {error.strerror}") from error
+
+
+def _give_up_output() -> None:
+    """What could not be printed is not tried again when the interpreter ends, which would have its own words and exit code."""
+    if sys.stdout is not None:
+        try:
+            sys.stdout.flush()
+        except OSError:
+            os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
 
 
 def _with_file(message: str, options: argparse.Namespace) -> str:

@@ -1,0 +1,44 @@
+!> Standard output. What cannot be printed ends the program with a message and an exit code: gfortran's own output is lost
+!> on a full disk without a word.
+module mfv_output
+   use, intrinsic :: iso_c_binding
+   use, intrinsic :: iso_fortran_env, only: error_unit
+   use mfv_safe_file, only: write_all
+   use mfv_status, only: MFV_FILE_ERROR, status_exit_code
+   use mfv_terminal, only: end_program
+   implicit none
+   private
+   public :: begin_program, print_text, print_line
+
+   interface
+      subroutine c_begin_streams() bind(C, name='mfv_begin_streams')
+      end subroutine c_begin_streams
+   end interface
+
+contains
+
+   !> What every program does first. See streams.c.
+   subroutine begin_program()
+      call c_begin_streams()
+   end subroutine begin_program
+
+   !> Print a text as it is. Where that fails the program ends with the exit code of MFV_FILE_ERROR.
+   subroutine print_text(text)
+      character(*), intent(in) :: text
+      integer, parameter :: standard_output = 1
+      character(:), allocatable :: why
+
+      call write_all(standard_output, text, why)
+      if (.not. allocated(why)) return
+      write (error_unit, '(a)') 'standard output cannot be written: '//why
+      call end_program(status_exit_code(MFV_FILE_ERROR))
+   end subroutine print_text
+
+   !> Print a line.
+   subroutine print_line(text)
+      character(*), intent(in) :: text
+
+      call print_text(text//achar(10))
+   end subroutine print_line
+
+end module mfv_output

@@ -1,0 +1,35 @@
+!> A checksum by which a case is known: its text, and what files or data in memory make of it.
+module mfv_case_checksum
+   use, intrinsic :: iso_fortran_env, only: int64, int8
+   use mfv_case, only: case_type
+   use mfv_checksum, only: add_text_to_checksum, add_to_checksum
+   use mfv_contact_model, only: contact_model_type
+   use mfv_kinds, only: wp
+   implicit none
+   private
+   public :: find_case_checksum
+
+contains
+
+   !> The checksum of a case whose contact is modelled by `model`, where nothing has been computed yet.
+   subroutine find_case_checksum(case, model, checksum)
+      type(case_type), intent(in) :: case
+      type(contact_model_type), intent(in) :: model
+      integer(int64), intent(out) :: checksum
+      integer(int8) :: mold(1)
+      integer :: i
+
+      checksum = 0
+      call add_text_to_checksum(case%text, checksum)
+      call add_to_checksum(transfer(model%x, mold), checksum)
+      call add_to_checksum(transfer(model%initial_gap, mold), checksum)
+      call add_to_checksum(transfer([model%compliance%modulus, model%width, model%static_friction, model%kinetic_friction], &
+                                    mold), checksum)
+      ! Of a matrix products, in which every entry has a part.
+      if (.not. allocated(model%scene%lower%matrix)) return
+      associate (matrix => model%scene%lower%matrix)
+         call add_to_checksum(transfer(matmul(matrix, sqrt([(real(i, wp), i=1, size(matrix, 2))])), mold), checksum)
+      end associate
+   end subroutine find_case_checksum
+
+end module mfv_case_checksum

@@ -1,0 +1,55 @@
+"""Programs on a disk that fails, or that are killed while they write: tests/cli/fault.c preloaded."""
+
+import os
+import subprocess
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parents[2]
+BUILD = Path(os.environ.get("MFV_RUN", ROOT / "build/release/bin/mfv_run")).parent
+RUN, STRESS, CONVENTIONAL, SWEEP = (str(BUILD / name) for name in ("mfv_run", "mfv_stress", "mfv_conventional", "mfv_sweep"))
+
+CASE = """&body shape='half_plane', shear_modulus=1.0, poisson_ratio=0.3 /
+&body shape='disk', radius=0.25, rigid=.true. /
+&mesh nodes=21, half_width=0.0127 /
+&friction law='coulomb', mu={mu} /
+&step normal_force=1.0e-3, friction=.false. /
+&step tangential_force=2.0e-4 /
+&output file='case.h5' /
+"""
+STUDY = """&sweep base='case.nml', states='all' /
+&vary key='step(2)%tangential_force', values=1.0e-4, 2.0e-4 /
+"""
+
+
+def build_shim(folder):
+    """Compile fault.c into a folder; the path of the library."""
+    library = folder / "fault.so"
+    source = Path(__file__).with_name("fault.c")
+    subprocess.run([os.environ.get("CC", "cc"), "-shared", "-fPIC", "-o", library, source, "-ldl", "-lpthread"], check=True)
+    return library
+
+
+def run(command, folder, **options):
+    """A program in a folder, with its output; `options`: of subprocess.run."""
+    environment = {**os.environ, "OPENBLAS_NUM_THREADS": "1", "OMP_NUM_THREADS": "1", "PYTHONPATH": str(ROOT / "python")}
+    options["env"] = {**environment, **options.get("env", {})}
+    return subprocess.run(list(map(str, command)), cwd=folder, capture_output=True, text=True, timeout=300, **options)
+
+
+def run_on_disk(shim, command, folder, at=0, number=0, stays=False):
+    """The program, and what it did to the files of the folder, one list of words a call: what, path, and where a file was
+    renamed to. `at`: call that fails, with errno `number`, or is a kill where that is 0; see fault.c."""
+    log = shim.with_suffix(".log")
+    log.unlink(missing_ok=True)
+    settings = {"LD_PRELOAD": str(shim), "MFV_FAULT_FOLDER": str(folder), "MFV_FAULT_LOG": str(log)}
+    if at:
+        settings |= {"MFV_FAULT_AT": str(at), "MFV_FAULT_ERRNO": str(number)}
+    if stays:
+        settings["MFV_FAULT_STAYS"] = "1"
+    done = run(command, folder, env=settings)
+    return done, [line.split(" ") for line in log.read_text().splitlines()] if log.exists() else []
+
+
+def parts(folder):
+    """Files that were being written, in a folder and those below it."""
+    return sorted(path for path in folder.rglob("*.part[0-9]*"))

@@ -1,0 +1,253 @@
+"""Every key of a case and of a sweep, one row each: the scene in which it makes sense, what it takes, and what is said where it is
+missing. tests/cli/test_bad_input.py makes the faults of it; it fails where `--keys` names a key that has no row here."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field
+
+#: Groups of a scene as they are written: name, and keys with their values.
+Groups = list[tuple[str, dict[str, str]]]
+
+ELASTIC = {"shape": "'half_plane'", "shear_modulus": "1.0", "poisson_ratio": "0.3"}
+RIGID_DISK = {"shape": "'disk'", "radius": "0.25", "rigid": ".true."}
+ELASTIC_DISK = {"shape": "'disk'", "radius": "0.25", "shear_modulus": "1.0", "poisson_ratio": "0.3"}
+RIGID_PLANE = {"shape": "'half_plane'", "rigid": ".true."}
+MESH = {"nodes": "11", "half_width": "0.02"}
+PRESS = {"normal_force": "1e-3", "friction": ".false."}
+SHEAR = {"tangential_force": "2e-4"}
+
+
+def scene(lower: dict[str, str], upper: dict[str, str], mesh: dict[str, str], friction: dict[str, str],
+          *steps: dict[str, str]) -> Groups:
+    groups: Groups = [("scene", {}), ("body", lower), ("body", upper), ("mesh", mesh), ("friction", friction)]
+    return groups + [("step", step) for step in steps] + [("solver", {}), ("output", {})]
+
+
+COULOMB = {"law": "'coulomb'", "mu": "0.7"}
+
+#: Scenes in which keys make sense. The files that they name are made by the test.
+SCENES: dict[str, Groups] = {
+    "cylinder": scene(ELASTIC, RIGID_DISK, MESH, COULOMB, PRESS, SHEAR),
+    "free mesh": scene(ELASTIC, RIGID_DISK, {"nodes": "11"}, COULOMB, PRESS, SHEAR),
+    "elastic disk": scene(ELASTIC_DISK, RIGID_PLANE, {"nodes": "12", "half_angle": "9"}, COULOMB, PRESS, SHEAR),
+    "fourier": scene(ELASTIC_DISK | {"kernel": "'fourier'"}, RIGID_PLANE, {"nodes": "12", "half_angle": "9"}, COULOMB, PRESS),
+    "bore": scene(ELASTIC_DISK, {"shape": "'hole'", "radius": "0.3", "rigid": ".true."}, MESH, {}, {"normal_force": "1e-3"}),
+    "punch": scene(ELASTIC, {"shape": "'flat_punch'", "half_width": "0.015", "rigid": ".true."}, MESH, COULOMB, PRESS, SHEAR),
+    "profile": scene(ELASTIC, {"shape": "'profile'", "file": "'profile.txt'", "rigid": ".true."}, MESH, {},
+                     {"normal_force": "1e-3"}),
+    "mu from a file": scene(ELASTIC, RIGID_DISK, MESH, {"law": "'coulomb'", "mu_file": "'mu.txt'"}, PRESS, SHEAR),
+    "static_kinetic": scene(ELASTIC, RIGID_DISK, MESH, {"law": "'static_kinetic'", "mu_static": "0.7", "mu_kinetic": "0.5"},
+                            PRESS, SHEAR),
+    "weakening": scene(ELASTIC, RIGID_DISK, MESH, {"law": "'weakening'", "mu_static": "0.7", "mu_kinetic": "0.5",
+                                                   "weakening_distance": "1e-4"}, PRESS, SHEAR),
+    "dahl": scene(ELASTIC, RIGID_DISK, MESH, {"law": "'dahl'", "mu": "0.7", "stiffness": "1e3", "exponent": "1"}, PRESS, SHEAR),
+    "cycles": scene(ELASTIC, RIGID_DISK, MESH, COULOMB, PRESS, SHEAR,
+                    {"tangential_force": "-2e-4", "cycles": "2", "steady_tolerance": "1e-6"}),
+    "rolling": scene(ELASTIC_DISK, RIGID_PLANE, MESH, COULOMB, PRESS, {"moment": "1e-6"}),
+}
+
+#: Sweeps of base.nml, which is the scene "cylinder".
+BASE = {"base": "'base.nml'"}
+SWEEPS: dict[str, Groups] = {
+    "values": [("sweep", BASE), ("vary", {"key": "'step(2)%tangential_force'", "values": "1e-4, 2e-4", "factor": "1"})],
+    "row": [("sweep", BASE), ("vary", {"key": "'step(2)%tangential_force'", "from": "1e-4", "to": "2e-4", "count": "4", "name": "'Q'"})],
+    "reference": [("sweep", BASE | {"reference": "'full'"}), ("vary", {"key": "'scene%coupling'", "values": "'full', 'none'"})],
+}
+
+
+@dataclass(frozen=True)
+class Row:
+    """One key. `place`: its group, with a number where that repeats."""
+
+    place: str
+    #: The scene, and a value of the key that is right in it, as it is written.
+    scene: str
+    value: str
+    #: real, whole, text, choice, logical or any.
+    kind: str
+    #: Range of a number; `above`: whether its lower end itself is refused.
+    lower: float = -math.inf
+    upper: float = math.inf
+    above: bool = False
+    choices: tuple[str, ...] = ()
+    unit: str = ""
+    is_list: bool = False
+    #: What is said where the key is missing; empty: it may be missing.
+    needed: str = ""
+    #: Values of the right kind and in the range that the scene does not take, with what is then said.
+    refused: dict[str, str] = field(default_factory=dict)
+    #: Right values that take seconds: tried by scripts/deep-check.sh only.
+    dear: tuple[str, ...] = ()
+    #: Keys of the scene that have to go, because this one takes their place.
+    without: tuple[str, ...] = ()
+
+    @property
+    def group(self) -> str:
+        return self.place.partition("(")[0]
+
+    @property
+    def number(self) -> int:
+        return int(self.place.partition("(")[2].rstrip(")") or 1)
+
+    @property
+    def right(self) -> str:
+        """What messages and --keys say that the key takes."""
+        if self.kind == "real":
+            text = "a number"
+            if self.lower > -math.inf:
+                text += f" {'above' if self.above else 'at least'} {number(self.lower)}"
+            return text + (f" and at most {number(self.upper)}" if self.upper < math.inf else "")
+        if self.kind == "whole":
+            return f"a whole number from {int(self.lower)} to {int(self.upper)}"
+        if self.kind == "choice":
+            *most, last = [f"'{choice}'" for choice in self.choices]
+            return f"{', '.join(most)} or {last}"
+        texts = "one or more texts between quotes" if self.is_list else "a text between quotes"
+        return {"text": texts, "logical": ".true. or .false.", "any": "what the varied key takes"}[self.kind]
+
+
+def number(value: float) -> str:
+    """A number as messages write it."""
+    return f"{value:.6g}".replace("e+0", "e").replace("e+", "e").replace("e-0", "e-")
+
+
+def text(place: str, scene: str, value: str, **more: object) -> Row:
+    return Row(place, scene, value, "text", **more)  # type: ignore[arg-type]
+
+
+def choice(place: str, scene: str, value: str, choices: str, **more: object) -> Row:
+    return Row(place, scene, value, "choice", choices=tuple(choices.split()), **more)  # type: ignore[arg-type]
+
+
+def logical(place: str, scene: str, value: str, **more: object) -> Row:
+    return Row(place, scene, value, "logical", **more)  # type: ignore[arg-type]
+
+
+def whole(place: str, scene: str, value: str, lower: float, upper: float, **more: object) -> Row:
+    return Row(place, scene, value, "whole", lower=lower, upper=upper, **more)  # type: ignore[arg-type]
+
+
+def real(place: str, scene: str, value: str, unit: str = "", **more: object) -> Row:
+    return Row(place, scene, value, "real", unit=unit, **more)  # type: ignore[arg-type]
+
+
+def positive(place: str, scene: str, value: str, unit: str = "", **more: object) -> Row:
+    return real(place, scene, value, unit, lower=0.0, above=True, **more)
+
+
+def part(place: str, scene: str, value: str, **more: object) -> Row:
+    return real(place, scene, value, lower=1e-12, upper=1.0, **more)
+
+
+SHAPES = "half_plane disk hole flat_punch profile matrix"
+MODULUS = "force/length^2"
+NO_FRICTION = "must be 0 in a step without friction (or where every coefficient is 0)"
+BELOW_KINETIC = "must not be above mu_static"
+
+#: Every key of a case: (group, key) and its row.
+CASE: dict[tuple[str, str], Row] = {
+    ("scene", "title"): text("scene", "cylinder", "'A title'"),
+    ("scene", "plane"): choice("scene", "cylinder", "'strain'", "strain stress"),
+    ("scene", "coupling"): choice("scene", "cylinder", "'full'", "full goodman none"),
+    ("scene", "length_unit"): text("scene", "cylinder", "'mm'"),
+    ("scene", "force_unit"): text("scene", "cylinder", "'N'"),
+    ("body", "shape"): choice("body(1)", "cylinder", "'half_plane'", SHAPES, needed=": shape is missing; it must be 'half_plane'",
+                              refused={"'disk'": "radius is missing", "'hole'": "radius is missing",
+                                       "'flat_punch'": "must be .true. for a flat_punch",
+                                       "'profile'": "means nothing|file is missing", "'matrix'": "means nothing"}),
+    ("body", "rigid"): logical("body(2)", "cylinder", ".true.", refused={".false.": "poisson_ratio is missing", "f": "poisson_ratio is missing"}),
+    ("body", "shear_modulus"): positive("body(1)", "cylinder", "1.0", MODULUS,
+                                        needed=": shear_modulus is missing; it must be a number above 0"),
+    ("body", "youngs_modulus"): positive("body(1)", "cylinder", "2.6", MODULUS, without=("shear_modulus",)),
+    ("body", "poisson_ratio"): real("body(1)", "cylinder", "0.3", lower=-1.0, above=True, upper=0.5,
+                                    needed=": poisson_ratio is missing; it must be a number above -1 and at most 0.5"),
+    ("body", "yield_strength"): positive("body(1)", "cylinder", "1.0", MODULUS),
+    ("body", "datum"): positive("body(1)", "cylinder", "0.25", "length"),
+    ("body", "radius"): positive("body(2)", "cylinder", "0.25", "length",
+                                 needed=": radius is missing; it must be a number above 0"),
+    ("body", "half_width"): positive("body(2)", "punch", "0.015", "length",
+                                     needed=": half_width is missing; it must be a number above 0"),
+    ("body", "kernel"): choice("body(1)", "elastic disk", "'exact'", "exact fourier"),
+    ("body", "harmonics"): whole("body(1)", "fourier", "50", 2, 200000000, dear=("200000000",)),
+    ("body", "file"): text("body(2)", "profile", "'profile.txt'", needed=": file is missing; it must be a text between quotes",
+                           refused={"''": "the name of a file is empty"}),
+    ("mesh", "nodes"): whole("mesh", "cylinder", "11", 1, 100000000,
+                             refused={"100000000": "can be more than 1000000 only with half_angle=180"}),
+    ("mesh", "half_width"): positive("mesh", "cylinder", "0.02", "length"),
+    ("mesh", "half_angle"): real("mesh", "elastic disk", "9", "degrees", lower=0.0, above=True, upper=180.0),
+    ("mesh", "gap"): choice("mesh", "cylinder", "'exact'", "exact parabolic"),
+    ("mesh", "normals"): choice("mesh", "bore", "'radial'", "vertical radial"),
+    ("friction", "law"): choice("friction", "cylinder", "'coulomb'", "none coulomb static_kinetic weakening dahl",
+                                refused={"'none'": "means nothing with law='none'",
+                                         "'static_kinetic'": "means nothing with law='static_kinetic'",
+                                         "'weakening'": "means nothing with law='weakening'", "'dahl'": "stiffness is missing"}),
+    ("friction", "mu"): real("friction", "cylinder", "0.7", lower=0.0, is_list=True,
+                             refused=dict.fromkeys(("0", "0.0", "-0.0", "1e-400"), NO_FRICTION),
+                             needed=": mu is missing; it must be a number at least 0"),
+    ("friction", "mu_static"): real("friction", "static_kinetic", "0.7", lower=0.0, is_list=True,
+                                    refused=dict.fromkeys(("1e-100",), BELOW_KINETIC) |
+                                    dict.fromkeys(("0", "0.0", "-0.0", "1e-400"), NO_FRICTION),
+                                    needed=": mu_static is missing; it must be a number at least 0"),
+    ("friction", "mu_kinetic"): real("friction", "static_kinetic", "0.5", lower=0.0, is_list=True,
+                                     refused=dict.fromkeys(("1e100",), BELOW_KINETIC),
+                                     needed=": mu_kinetic is missing; it must be a number at least 0"),
+    ("friction", "mu_file"): text("friction", "mu from a file", "'mu.txt'", refused={"''": "the name of a file is empty"},
+                                  needed=": mu is missing; it must be a number at least 0"),
+    ("friction", "weakening_distance"): positive("friction", "weakening", "1e-4", "length",
+                                                 needed=": weakening_distance is missing; it must be a number above 0"),
+    ("friction", "stiffness"): positive("friction", "dahl", "1e3", "force/length^3",
+                                        needed=": stiffness is missing; it must be a number above 0"),
+    ("friction", "exponent"): real("friction", "dahl", "1", lower=0.0, upper=100.0, dear=("100.0",)),
+    ("step", "normal_force"): real("step(1)", "cylinder", "1e-3", "force/length", lower=0.0,
+                                   needed=": needs a target: normal_force or approach"),
+    ("step", "approach"): real("step(1)", "cylinder", "1e-3", "length", without=("normal_force",)),
+    ("step", "tangential_force"): real("step(2)", "cylinder", "2e-4", "force/length", needed=": needs a target: normal_force or"),
+    ("step", "shift"): real("step(2)", "cylinder", "1e-5", "length", without=("tangential_force",)),
+    ("step", "force_ratio"): real("step(2)", "cylinder", "0.4", lower=-1e6, upper=1e6, without=("tangential_force",)),
+    ("step", "moment"): real("step(2)", "rolling", "1e-6", "force"),
+    ("step", "rotation"): real("step(2)", "rolling", "1e-6", "radians", without=("moment",)),
+    ("step", "friction"): logical("step(2)", "cylinder", ".true.",
+                                  refused={".false.": NO_FRICTION, "f": NO_FRICTION}),
+    ("step", "cycles"): whole("step(3)", "cycles", "2", 0, 1000000,
+                              refused={"0": "means nothing without cycles of 2 or more"}),
+    ("step", "steady_tolerance"): positive("step(3)", "cycles", "1e-6"),
+    ("solver", "algorithm"): choice("solver", "cylinder", "'mfv'", "mfv conventional"),
+    ("solver", "stepping"): choice("solver", "cylinder", "'event'", "event nominal leap"),
+    ("solver", "leap_tolerance"): part("solver", "cylinder", "1e-3"),
+    ("solver", "event_tolerance"): real("solver", "cylinder", "0", lower=0.0, upper=0.1),
+    ("solver", "load_step"): part("solver", "cylinder", "0.05"),
+    ("solver", "integration"): choice("solver", "dahl", "'explicit'", "second_order explicit"),
+    ("solver", "friction_tolerance"): part("solver", "dahl", "1e-4", dear=("1e-12",)),
+    ("solver", "iterations"): whole("solver", "cylinder", "1000", 1, 1000000),
+    ("solver", "linear_solver"): choice("solver", "cylinder", "'auto'", "auto dgesv reduced fft"),
+    ("solver", "linear_tolerance"): part("solver", "cylinder", "1e-12"),
+    ("output", "file"): text("output", "cylinder", "'result.h5'"),
+    ("output", "history"): choice("output", "cylinder", "'events'", "events steps none"),
+    ("output", "states"): choice("output", "cylinder", "'reversals'", "reversals steps none"),
+    ("output", "error_estimate"): logical("output", "cylinder", ".false."),
+    ("output", "checkpoint_minutes"): real("output", "cylinder", "10", "minutes", lower=0.0, upper=1e6),
+}
+
+TOO_SMALL = "a number other than 0 must be of a size from 1e-100 to 1e100"
+NO_ROW = "needs values=..., or from, to and count"
+
+#: Every key of a sweep: (group, key) and its row.
+SWEEP: dict[tuple[str, str], Row] = {
+    ("sweep", "base"): text("sweep", "values", "'base.nml'", is_list=True, refused={"''": "the name of a file is empty"},
+                            needed=": base is missing; it must be one or more texts between quotes"),
+    ("sweep", "file"): text("sweep", "values", "'table.h5'"),
+    ("sweep", "combine"): choice("sweep", "values", "'all'", "all paired"),
+    ("sweep", "states"): choice("sweep", "values", "'none'", "none all"),
+    ("sweep", "reference"): choice("sweep", "reference", "'full'", "none full"),
+    ("vary", "key"): text("vary(1)", "values", "'step(2)%tangential_force'", is_list=True,
+                          needed=": key is missing; it must be one or more texts between quotes",
+                          refused={"''": "must be 'group%key', 'group(number)%key' or 'dundurs_beta'"}),
+    ("vary", "factor"): real("vary(1)", "values", "1", is_list=True, refused=dict.fromkeys(("1e-100", "-1e-100"), TOO_SMALL)),
+    ("vary", "values"): Row("vary(1)", "values", "1e-4, 2e-4", "any", is_list=True, needed=NO_ROW),
+    ("vary", "from"): real("vary(1)", "row", "1e-4", needed=NO_ROW),
+    ("vary", "to"): real("vary(1)", "row", "2e-4", needed=NO_ROW),
+    ("vary", "count"): whole("vary(1)", "row", "4", 1, 100000, needed=NO_ROW, dear=("100000",)),
+    ("vary", "spacing"): choice("vary(1)", "row", "'linear'", "linear log"),
+    ("vary", "name"): text("vary(1)", "row", "'Q'", refused={"''": "must not be empty, nor begin with a blank"}),
+}
