@@ -2,6 +2,7 @@
 # numbers, of a program: invalid,zero,overflow unless told.
 # -frecursive keeps local variables of every size off static memory: two threads may be in one procedure (for which reason
 # the check of recursion, a static flag, is left out).
+# -Wno-c-binding-type: HDF5's own kind of its identifiers is not named in iso_c_binding.
 # -Wno-unused-dummy-argument: a procedure that fills in an interface need not use all of it.
 # MFV_UNHEARD_WARNINGS: gfortran takes the reallocation of an allocatable on assignment for a use of its bounds.
 # scripts/deep-warnings.sh listens to them, and leaves out what is said of bounds only.
@@ -16,7 +17,7 @@ function(mfv_compile_options target)
   set(gnu_c $<COMPILE_LANG_AND_ID:C,GNU>)
   target_compile_options(${target} PRIVATE
     $<${gnu_fortran}:-std=f2018 -frecursive -fimplicit-none -Wall -Wextra -Wcharacter-truncation
-      -Wno-unused-dummy-argument ${MFV_UNHEARD_WARNINGS}>
+      -Wno-c-binding-type -Wno-unused-dummy-argument ${MFV_UNHEARD_WARNINGS}>
     $<${gnu_c}:-std=gnu11 -Wall -Wextra -Wconversion -Wshadow -Wstrict-prototypes>)
   if(MFV_STRICT)
     target_compile_options(${target} PRIVATE
