@@ -1,22 +1,36 @@
-# mfv_compile_options(target): the language standard, warnings, and what MFV_STRICT asks for.
+# mfv_compile_options(target [traps]): the language standard, warnings, and what MFV_STRICT asks for. Traps of floating-point
+# numbers, of a program: invalid,zero,overflow unless told.
 # -frecursive keeps local variables of every size off static memory: two threads may be in one procedure (for which reason
 # the check of recursion, a static flag, is left out).
+# -Wno-c-binding-type: HDF5's own kind of its identifiers is not named in iso_c_binding.
 # -Wno-unused-dummy-argument: a procedure that fills in an interface need not use all of it.
-# -Wno-uninitialized: gfortran takes the reallocation of an allocatable on assignment for a use of it.
+# MFV_UNHEARD_WARNINGS: gfortran takes the reallocation of an allocatable on assignment for a use of its bounds.
+# scripts/deep-warnings.sh listens to them, and leaves out what is said of bounds only.
+set(MFV_UNHEARD_WARNINGS "-Wno-uninitialized;-Wno-maybe-uninitialized" CACHE STRING "Options that turn warnings of gfortran off")
+mark_as_advanced(MFV_UNHEARD_WARNINGS)
 function(mfv_compile_options target)
   set(gnu_fortran $<COMPILE_LANG_AND_ID:Fortran,GNU>)
+  set(traps invalid,zero,overflow)
+  if(ARGC GREATER 1)
+    set(traps ${ARGV1})
+  endif()
+  set(gnu_c $<COMPILE_LANG_AND_ID:C,GNU>)
   target_compile_options(${target} PRIVATE
-    $<${gnu_fortran}:-std=f2018 -frecursive -fimplicit-none -Wall -Wextra -Wno-c-binding-type -Wno-unused-dummy-argument
-      -Wno-uninitialized -Wno-maybe-uninitialized>)
+    $<${gnu_fortran}:-std=f2018 -frecursive -fimplicit-none -Wall -Wextra -Wcharacter-truncation
+      -Wno-c-binding-type -Wno-unused-dummy-argument ${MFV_UNHEARD_WARNINGS}>
+    $<${gnu_c}:-std=gnu11 -Wall -Wextra -Wconversion -Wshadow -Wstrict-prototypes>)
   if(MFV_STRICT)
     target_compile_options(${target} PRIVATE
-      $<${gnu_fortran}:-Werror -fcheck=all,no-array-temps,no-recursion -fbacktrace -ffpe-trap=invalid,zero,overflow>
-      $<$<COMPILE_LANG_AND_ID:C,GNU>:-Wall -Wextra -Werror>)
+      $<${gnu_fortran}:-Werror -fcheck=all,no-array-temps,no-recursion -fbacktrace -ffpe-trap=${traps}>
+      $<${gnu_c}:-Werror>)
   endif()
 endfunction()
 
-# Sanitizers: everything must be linked with them, the tests too.
+# Sanitizers: everything must be linked with them, the tests too. What they find ends the program, but for overflows of integers in
+# Fortran: gfortran's own code for the reallocation on assignment makes them, from bounds of what is not allocated. They are
+# reported only, and tests/checkers/findings.py tells those from others.
 if(MFV_SANITIZE)
-  add_compile_options(-fsanitize=${MFV_SANITIZE} -fno-omit-frame-pointer)
+  add_compile_options(-fsanitize=${MFV_SANITIZE} -fno-sanitize-recover=all -fno-omit-frame-pointer
+    $<$<COMPILE_LANGUAGE:Fortran>:-fsanitize-recover=signed-integer-overflow>)
   add_link_options(-fsanitize=${MFV_SANITIZE})
 endif()

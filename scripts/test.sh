@@ -6,6 +6,8 @@
 packages="$packages openmpi-bin libopenmpi-dev g++ pkgconf"
 # The manual pages are looked at by both programs that show such pages.
 packages="$packages mandoc groff-base"
+# The tests of the C interface run under valgrind too.
+packages="$packages valgrind"
 # Pages of python -m mfv report are looked at in chromium.
 packages="$packages chromium"
 install_missing
