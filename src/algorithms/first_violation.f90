@@ -50,8 +50,9 @@ module mfv_first_violation
 
 contains
 
-   !> Lead the loads along one segment. `observer` is told of every increment; where it wants a pause, `march` keeps what it takes
-   !> to go on. It is asked too where one load takes long, because the mesh grows (under an absurd force, far) or changes are many.
+   !> Lead the loads along one segment. `observer` is told of every increment; where it wants a pause, `march` keeps what it
+   !> takes to go on. It is asked too where one load takes long, because the mesh grows (under an absurd force, far) or changes
+   !> are many.
    !> Errors, each leaving the last admissible state in place: MFV_GROSS_SLIDING, MFV_SEPARATED, MFV_NO_CONTINUATION,
    !> MFV_MESH_EXCEEDED, MFV_INADMISSIBLE_STEP, MFV_INTERRUPTED.
    subroutine lead_by_violations(path, segment, march, observer, error)

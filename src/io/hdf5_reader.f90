@@ -255,7 +255,7 @@ contains
       if (allocated(error)) call close_dataset(dataset)
    end subroutine open_dataset
 
-   !> Open a dataset without following links to other files: HDF5 would open whatever these name. `code`: not 0 where that fails.
+   !> Open a dataset without following links to other files: HDF5 would open whatever these name. `code`: not 0 where it fails.
    subroutine open_in_file(file, name, dataset, code)
       integer(hid_t), intent(in) :: file
       character(*), intent(in) :: name
@@ -323,8 +323,8 @@ contains
       end if
    end subroutine find_extent
 
-   !> Error where the values of a dataset are not in the file, or fewer than it says there are: nothing is allocated for what is not
-   !> there. Values of other files, by virtual datasets or as external raw data, are not read.
+   !> Error where the values of a dataset are not in the file, or fewer than it says there are: nothing is allocated for
+   !> what is not there. Values of other files, by virtual datasets or as external raw data, are not read.
    subroutine check_storage(dataset, name, extent, error)
       integer(hid_t), intent(in) :: dataset
       character(*), intent(in) :: name
