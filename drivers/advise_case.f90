@@ -10,6 +10,7 @@ module mfv_advise_case
    use mfv_one_thread, only: use_one_thread
    use mfv_output, only: print_text
    use mfv_status, only: MFV_COMPLETE
+   use mfv_strings, only: shortened
    use mfv_terminal
    implicit none
    private
@@ -64,14 +65,15 @@ contains
          call get_argument(i, argument)
          why = ''
          if (index(argument, 'error=') == 1) then
-            has_error = .true.
             call read_wanted_error(argument(len('error=') + 1:), wanted_error, why)
+            if (has_error) why = shortened(argument)//': error is there twice'
+            has_error = .true.
          else if (index(argument, 'of=') == 1) then
             call read_wanted_quantities(argument(len('of=') + 1:), wanted, why)
          else if (path == '') then
             path = argument
          else
-            why = "too many arguments: '"//argument//"'"
+            why = "too many arguments: '"//shortened(argument)//"'"
          end if
          if (why /= '') call refuse('mfv_run', usage, '--advise '//why)
       end do

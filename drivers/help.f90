@@ -3,7 +3,7 @@ module mfv_help
    use, intrinsic :: iso_fortran_env, only: error_unit
    use mfv_output, only: print_line
    use mfv_status, only: MFV_INPUT_ERROR, status_exit_code
-   use mfv_strings, only: add_text, list_of_words, nearest_name, string_type
+   use mfv_strings, only: add_text, list_of_words, nearest_name, shortened, string_type
    use mfv_terminal, only: end_program
    implicit none
    private
@@ -40,7 +40,7 @@ contains
       call find_options(help, names)
       nearest = nearest_name(option(max(verify(option, '-'), 1):), names)
       if (nearest /= '') nearest = '; did you mean --'//nearest//'?'
-      call refuse(program, usage, "unknown option '"//option//"'"//nearest)
+      call refuse(program, usage, "unknown option '"//shortened(option)//"'"//nearest)
    end subroutine refuse_option
 
    !> The options that a help text explains, without their dashes: the first --name of lines that begin with an option.

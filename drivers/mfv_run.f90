@@ -9,6 +9,7 @@ program mfv_run
    use mfv_keys, only: list_keys_as_markdown
    use mfv_output, only: begin_program, print_line, print_text
    use mfv_run_case, only: run_case
+   use mfv_strings, only: shortened
    use mfv_summary, only: summarize_check
    use mfv_terminal
    use mfv_version, only: library_version
@@ -44,8 +45,9 @@ program mfv_run
       'Options:', &
       '  --estimate   solve the case on coarser meshes too, and put error bars on half-width, stick ratio,', &
       '               peak tractions and dissipation; takes about twice the time', &
-      '  --resume     go on from the checkpoint that an interrupted or killed run of the case has left, with', &
-      '               the same digits as if it had not stopped; where there is none, from the beginning', &
+      '  --resume     go on from the checkpoint that an interrupted or killed run of the case has left,', &
+      '               with the same digits as if it had not stopped; where there is none, from its', &
+      '               beginning', &
       '  --advise     print the number of nodes, and the linear solver, that an error takes, from coarse', &
       '               meshes; the case itself is not solved. error=E: the wanted error, relative, such as', &
       '               1e-2. of=LIST: quantities that it is for, separated by commas: pressure, shear,', &
@@ -154,7 +156,7 @@ contains
       if (command_argument_count() < number) call refuse('mfv_run', usage, 'a case file is missing')
       if (command_argument_count() <= number) return
       call get_argument(number + 1, surplus)
-      call refuse('mfv_run', usage, "too many arguments: '"//surplus//"'")
+      call refuse('mfv_run', usage, "too many arguments: '"//shortened(surplus)//"'")
    end subroutine expect_arguments
 
    subroutine check_case()

@@ -103,7 +103,7 @@ contains
          case ('--body')
             call get_argument(i, argument)
             if (argument /= 'lower' .and. argument /= 'upper') &
-               call refuse('mfv_stress', usage, "--body must be lower or upper, not '"//argument//"'")
+               call refuse('mfv_stress', usage, "--body must be lower or upper, not '"//shortened(argument)//"'")
             request%upper = argument == 'upper'
          case ('--step')
             request%step = nint(number(i, '--step', 1.0_wp, whole=.true.))
@@ -119,11 +119,12 @@ contains
             call get_argument(i, argument)
             call read_table(argument, 'x and y', 2, .false., points, error)
             if (allocated(error)) call refuse('mfv_stress', usage, error%message)
+            if (size(points, 2) == 0) call refuse('mfv_stress', usage, argument//': has no points')
             request%x = points(1, :)
             request%y = points(2, :)
          case default
             if (index(argument, '-') == 1) call refuse_option('mfv_stress', usage, help, argument)
-            if (path /= '') call refuse('mfv_stress', usage, "too many arguments: '"//argument//"'")
+            if (path /= '') call refuse('mfv_stress', usage, "too many arguments: '"//shortened(argument)//"'")
             path = argument
             cycle
          end select
@@ -144,8 +145,8 @@ contains
       character(:), allocatable :: text, kind
       logical :: is_right
 
-      kind = ' a number above 0'
-      if (present(whole)) kind = ' a whole number of at least '//to_text(nint(lower))
+      kind = ' a number above 0 and at most '//to_text(most)
+      if (present(whole)) kind = ' a whole number from '//to_text(nint(lower))//' to '//to_text(nint(most))
       call get_argument(i, text)
       call read_real(text, number, is_right)
       if (is_right .and. present(whole)) is_right = .not. abs(number - anint(number)) > 0.0_wp

@@ -8,7 +8,7 @@ program mfv_sweep
    use mfv_numbers, only: read_whole
    use mfv_ranks, only: has_ranks
    use mfv_run_sweep, only: run_sweep, sweep_options_type
-   use mfv_strings, only: to_text
+   use mfv_strings, only: shortened, to_text
    use mfv_sweep_keys, only: sweep_catalogue
    use mfv_sweep_plan, only: sweep_type
    use mfv_sweep_reader, only: read_sweep_file
@@ -107,7 +107,7 @@ program mfv_sweep
          call read_option(argument, i)
       case default
          if (index(argument, '-') == 1) call refuse_option('mfv_sweep', usage, help, argument)
-         if (path /= '') call refuse('mfv_sweep', usage, "too many arguments: '"//argument//"'")
+         if (path /= '') call refuse('mfv_sweep', usage, "too many arguments: '"//shortened(argument)//"'")
          path = argument
       end select
       i = i + 1
@@ -140,11 +140,12 @@ contains
             options%parts = whole(value(slash + 1:))
             right = options%part >= 1 .and. options%part <= options%parts
          end if
-         if (.not. right) call refuse('mfv_sweep', usage, "--part '"//value//"': must be I/N with I from 1 to N, such as 3/16")
+         if (.not. right) call refuse('mfv_sweep', usage, "--part '"//shortened(value)//"': must be I/N with I from 1 to N, "// &
+                                      'such as 3/16')
          return
       end if
       read_number = whole(value)
-      if (read_number < 1) call refuse('mfv_sweep', usage, option//" '"//value//"': must be a whole number above 0")
+      if (read_number < 1) call refuse('mfv_sweep', usage, option//" '"//shortened(value)//"': must be a whole number above 0")
       if (option == '--threads') options%threads = read_number
       if (option == '--case') number = read_number
    end subroutine read_option

@@ -255,6 +255,8 @@ def read(path: str | os.PathLike[str]) -> Result:
 @contextlib.contextmanager
 def open_hdf5(path: str, expected: str) -> Iterator[h5py.File]:
     """An HDF5 file to read in a `with`; `expected`: what it should be, for the message. Raises OSError, NotAResult."""
+    if os.path.exists(path) and not os.path.isfile(path) and not os.path.isdir(path):
+        raise NotAResult(None, f"{path}: not a {expected}, but a pipe or a device")
     with open(path, "rb"):  # a missing file and the like are Python's to report
         pass
     if not h5py.is_hdf5(path):

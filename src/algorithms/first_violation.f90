@@ -51,7 +51,7 @@ module mfv_first_violation
 contains
 
    !> Lead the loads along one segment. `observer` is told of every increment; where it wants a pause, `march` keeps what it takes
-   !> to go on.
+   !> to go on. It is asked too where one load takes long, because the mesh grows (under an absurd force, far) or changes are many.
    !> Errors, each leaving the last admissible state in place: MFV_GROSS_SLIDING, MFV_SEPARATED, MFV_NO_CONTINUATION,
    !> MFV_MESH_EXCEEDED, MFV_INADMISSIBLE_STEP, MFV_INTERRUPTED.
    subroutine lead_by_violations(path, segment, march, observer, error)
@@ -60,23 +60,25 @@ contains
       type(march_type), intent(inout) :: march
       class(observer_type), intent(inout), optional :: observer
       type(error_type), allocatable, intent(out) :: error
-      logical :: moved
+      integer :: nodes
 
-      moved = march%paused
       if (.not. march%paused) then
          call path%start_segment(segment, error)
          if (allocated(error)) return
          call begin(march)
       end if
+      nodes = size(path%state%status)
       do
          if (.not. march%paused) then
-            call make_increment(path, segment, march, moved, error)
+            call make_increment(path, segment, march, error)
             if (allocated(error)) return
-            if (moved .and. present(observer)) call tell(path, segment, march, observer, error)
+            if (present(observer) .and. (march%moved .or. march%standing > patience .or. size(path%state%status) > nodes)) &
+               call tell(path, segment, march, observer, error)
+            nodes = size(path%state%status)
             if (march%paused .or. allocated(error)) return
          end if
          march%paused = .false.
-         if (moved .and. march%at_end) return
+         if (march%moved .and. march%at_end) return
          if (march%creeping > most_tiny_steps .or. march%since > most_events + 10*size(path%state%status)) then
             call path%no_continuation('the load does not advance', error)
             return
@@ -100,18 +102,16 @@ contains
       march%milestone = 0.0_wp
    end subroutine begin
 
-   !> With the statuses as they are, the next increment, and the way to its end. `moved`: it has a length; else only
-   !> statuses are to change, or are to be looked at again.
-   !> Errors as lead_by_violations.
-   subroutine make_increment(path, segment, march, moved, error)
+   !> With the statuses as they are, the next increment, and the way to its end. Where it has no length (not `march%moved`) only
+   !> statuses are to change. Errors as lead_by_violations.
+   subroutine make_increment(path, segment, march, error)
       class(contact_path_type), intent(inout) :: path
       type(segment_type), intent(in) :: segment
       type(march_type), intent(inout) :: march
-      logical, intent(out) :: moved
       type(error_type), allocatable, intent(out) :: error
       logical :: drop, ready
 
-      moved = .false.
+      march%moved = .false.
       do
          march%standing = march%standing + 1
          if (march%standing > most_tiny_steps + 10*size(path%state%status)) then
@@ -141,7 +141,7 @@ contains
          if (drop .and. step*(1.0_wp + tie_of(path)) + no_step_of(path) >= 1.0_wp) step = 1.0_wp
          call advance(path, march%increment, drop, error)
          if (allocated(error)) return
-         moved = .true.
+         march%moved = .true.
          if (.not. drop) march%done = march%done + step
          if (march%at_end) return
          call renew(march%moment)
@@ -176,7 +176,7 @@ contains
       if (.not. snapped) call path%no_continuation('the equations of friction have no solution nearby', error)
    end subroutine look_for_solution
 
-   !> Tell the observer of an increment. Error MFV_INTERRUPTED: it wants an end.
+   !> Tell the observer where the load is. Error MFV_INTERRUPTED: it wants an end.
    subroutine tell(path, segment, march, observer, error)
       class(contact_path_type), intent(in) :: path
       type(segment_type), intent(in) :: segment

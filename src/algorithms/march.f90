@@ -13,10 +13,10 @@ module mfv_march
    type :: march_type
       !> Left in the middle of a segment at the observer's wish; the next call for the same segment goes on from here.
       logical :: paused = .false.
-      !> By violations: the part of what they lead that is done, and whether an increment has led to the end of it; the load now and
-      !> the increment before it; what tells whether the load advances (see mfv_first_violation).
+      !> By violations: the part of what they lead that is done; whether the last increment had a length, and whether it has led to
+      !> the end; the load now and that increment; what tells whether the load advances (see mfv_first_violation).
       real(wp) :: done = 0.0_wp
-      logical :: at_end = .false.
+      logical :: moved = .false., at_end = .false.
       type(moment_type) :: moment
       type(increment_type) :: increment
       !> The constraints of an increment, made anew for each.
@@ -45,6 +45,7 @@ contains
       call archive%carry(self%paused)
       if (.not. self%paused) return
       call archive%carry(self%done)
+      call archive%carry(self%moved)
       call archive%carry(self%at_end)
       call self%moment%carry(archive)
       call self%increment%carry(archive)

@@ -778,12 +778,13 @@ contains
                   value = merge(load%rate, load%value, rates)
                   if (self%motion_constraint(node) > 0) then
                      value = (value - motion_of(fields, node))*arm_unit(length, node)
-                     largest = max(largest, abs(value)/scales%normal)
+                     largest = max(largest, relative(abs(value), scales%normal))
                      part%values(self%motion_constraint(node)) = value*by_length
                      part%right(i) = 0.0_wp
                   else
                      missing = (model%resultant(node, fields%pressure, fields%shear) - value)/arm_unit(length, node)
-                     largest = max(largest, abs(missing)/merge(scales%shear_force, scales%force, node == along_shift))
+                     largest = max(largest, relative(abs(missing), merge(scales%shear_force, scales%force, &
+                                                                         node == along_shift)))
                      part%right(i) = missing*by_stress
                   end if
                else if (constraints%status(node) == node_stick) then
@@ -846,6 +847,14 @@ contains
       shear_force = max(shear_force, model%grip*force, least*first%shear_force)
       scales = scales_type(normal, tangential, traction, max(force, shear_force), shear_force)
    end subroutine find_scales
+
+   !> A magnitude over its scale, or the largest real where that is less: of a load on a contact that carries nothing yet.
+   pure real(wp) function relative(magnitude, scale)
+      real(wp), intent(in) :: magnitude, scale
+
+      relative = huge(1.0_wp)
+      if (magnitude < min(scale, 1.0_wp)*huge(1.0_wp)) relative = magnitude/scale
+   end function relative
 
    !> What is missing to the shear traction of a slipping or creeping node.
    pure real(wp) function missing_shear(constraints, rates, fields, node)

@@ -226,7 +226,8 @@ contains
          call self%cycles(i)%carry(archive)
       end do
       trails = 0
-      if (allocated(self%trails)) trails = self%way%steps
+      ! The trail of a step comes at its end: while one is taken there may be no place for it yet.
+      if (allocated(self%trails)) trails = min(self%way%steps, size(self%trails))
       call archive%carry(trails)
       if (archive%is_damaged()) return
       if (archive%is_reading() .and. trails > 0) allocate (self%trails(trails))

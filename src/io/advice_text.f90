@@ -7,7 +7,7 @@ module mfv_advice_text
    use mfv_namelist, only: entry_type, group_type, parse_namelists, write_entry
    use mfv_numbers, only: read_real
    use mfv_scene, only: solver_dgesv, solver_fft, solver_reduced
-   use mfv_strings, only: list_of_words, quoted, string_type, to_text
+   use mfv_strings, only: list_of_words, quoted, shortened, string_type, to_text
    implicit none
    private
    public :: write_advice, read_wanted_error, read_wanted_quantities
@@ -26,7 +26,7 @@ contains
       call read_real(text, wanted_error, is_right)
       why = ''
       if (.not. (is_right .and. wanted_error > 0.0_wp .and. wanted_error < 1.0_wp)) &
-         why = 'error='//text//': must be a number above 0 and below 1, such as 1e-2'
+         why = 'error='//shortened(text)//': must be a number above 0 and below 1, such as 1e-2'
    end subroutine read_wanted_error
 
    !> The quantities that a text names, separated by commas, shape (advice_count); `why` as above.
@@ -54,9 +54,10 @@ contains
          do j = 1, advice_count
             if (names(i)%text == advice_names(j)) wanted(j) = .true.
          end do
-         if (.not. any(names(i)%text == advice_names)) why = 'of='//text//': '//quoted(names(i)%text)//' is none of '//all_names
+         if (.not. any(names(i)%text == advice_names)) &
+            why = 'of='//shortened(text)//': '//quoted(shortened(names(i)%text))//' is none of '//all_names
       end do
-      if (size(names) == 0) why = 'of='//text//': must be one or more of '//all_names
+      if (size(names) == 0) why = 'of='//shortened(text)//': must be one or more of '//all_names
    end subroutine read_wanted_quantities
 
    !> Advice for a case.

@@ -107,7 +107,8 @@ contains
                             'falls from mu_static to mu_kinetic, needed')
       call add_positive_key(keys, 'friction', 'stiffness', 'force/length^3', 'dahl: stiffness sigma of the bristles, traction '// &
                             'over slip, needed')
-      call add_real_key(keys, 'friction', 'exponent', '', 'dahl: exponent gamma; left out: 1', lower=0.0_wp)
+      call add_real_key(keys, 'friction', 'exponent', '', 'dahl: exponent gamma; left out: 1', lower=0.0_wp, &
+                        upper=100.0_wp)
    end subroutine add_friction_keys
 
    !> A coefficient of friction: one value, or one a node.

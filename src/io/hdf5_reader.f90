@@ -341,11 +341,12 @@ contains
       call h5dget_create_plist_f(dataset, properties, code)
       if (code == 0) then
          call h5pget_layout_f(properties, layout, code)
-         if (code == 0) call h5pget_external_count_f(properties, files, code)
+         if (code == 0 .and. layout /= H5D_VIRTUAL_F) call h5pget_external_count_f(properties, files, code)
          call h5pclose_f(properties, ignored)
       end if
+      ! No bytes at all count as an error there.
       bytes = 0
-      if (code == 0) call h5dget_storage_size_f(dataset, bytes, code)
+      if (code == 0) call h5dget_storage_size_f(dataset, bytes, ignored)
       if (code /= 0) then
          call set_error(error, MFV_INPUT_ERROR, name//' cannot be read')
       else if (files > 0 .or. layout == H5D_VIRTUAL_F) then

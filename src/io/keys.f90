@@ -150,7 +150,7 @@ contains
    end subroutine describe_allowed
 
    !> Whether a real is of a size that is taken.
-   pure logical function is_reasonable(value)
+   elemental logical function is_reasonable(value)
       real(wp), intent(in) :: value
 
       is_reasonable = .not. abs(value) > 0.0_wp .or. (abs(value) >= smallest_size .and. abs(value) <= largest_size)

@@ -264,8 +264,8 @@ contains
          end if
          call read_repeats(cursor, repeats)
          if (repeats < 1 .or. repeats > most_values - n) then
-            call complain(cursor, place//": '"//rest_of_line(cursor)//"': the number before * must be a whole number from 1 "// &
-                          'to '//to_text(most_values - n), error)
+            call complain(cursor, place//": '"//rest_of_line(cursor)//"': the number before * must be a whole number from "// &
+                          '1 to '//to_text(most_values - n), error)
             return
          end if
          mark = next(cursor)
@@ -289,6 +289,10 @@ contains
          entry%is_quoted(n + 1:n + repeats) = mark == "'" .or. mark == '"'
          n = n + repeats
       end do
+      if (cursor%commas > 1) then
+         call complain(cursor, place//': a value is missing beside a comma', error)
+         return
+      end if
       if (n < size(entry%values)) call resize_values(entry, n)
    end subroutine read_values
 

@@ -3,11 +3,13 @@ module mfv_profile_file
    use mfv_error, only: error_type, set_error
    use mfv_body, only: body_type, new_profile
    use mfv_case_data, only: case_data_type
+   use mfv_keys, only: is_reasonable, reasonable_sizes
    use mfv_kinds, only: wp
    use mfv_numbers, only: read_real
    use mfv_status, only: MFV_INPUT_ERROR
    use mfv_strings, only: shortened, string_type, to_text
    use mfv_text_file, only: read_text, split_lines
+   use mfv_utf8, only: byte_order_mark
    implicit none
    private
    public :: read_profile, profile_of_data, read_table
@@ -72,6 +74,7 @@ contains
 
       call read_text(path, text, error)
       if (allocated(error)) return
+      if (index(text, byte_order_mark) == 1) text(:len(byte_order_mark)) = ''
       lines = split_lines(text)
       allocate (table(columns, size(lines)))
       n = 0
@@ -124,6 +127,8 @@ contains
       if (.not. is_right .or. verify(line(at:), blanks) > 0) &
          call set_error(error, MFV_INPUT_ERROR, 'must be '//trim(counts(size(columns)))//' numbers, '//names//', not '''// &
                         shortened(trim(line))//'''')
+      if (allocated(error)) return
+      if (.not. all(is_reasonable(columns))) call set_error(error, MFV_INPUT_ERROR, reasonable_sizes)
 
    contains
 

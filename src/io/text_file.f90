@@ -72,8 +72,8 @@ contains
       if (code /= 0) call set_error(error, MFV_INPUT_ERROR, path//': cannot be read: '//trim(why))
    end subroutine read_bytes
 
-   !> Whether a path leads to a regular file, or to none, which opening it then tells: a pipe would keep the program waiting, a device
-   !> may have no end. Error MFV_INPUT_ERROR, naming the path.
+   !> Whether a path leads to a regular file, or to none, which opening it then tells: a pipe would keep the program waiting,
+   !> a device may have no end. Error MFV_INPUT_ERROR, naming the path.
    subroutine check_is_file(path, error)
       character(*), intent(in) :: path
       type(error_type), allocatable, intent(out) :: error
@@ -86,8 +86,8 @@ contains
       case (1)
          call set_error(error, MFV_INPUT_ERROR, path//': cannot be read: it is a directory')
       case (2)
-         call set_error(error, MFV_INPUT_ERROR, path//': cannot be read: it is no regular file, but a pipe or a device; put '// &
-                        'what it gives into a file')
+         call set_error(error, MFV_INPUT_ERROR, path//': cannot be read: it is no regular file, but a pipe or a device; '// &
+                        'put what it gives into a file')
       end select
    end subroutine check_is_file
 

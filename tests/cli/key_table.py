@@ -198,7 +198,7 @@ CASE: dict[tuple[str, str], Row] = {
                                                  needed=": weakening_distance is missing; it must be a number above 0"),
     ("friction", "stiffness"): positive("friction", "dahl", "1e3", "force/length^3",
                                         needed=": stiffness is missing; it must be a number above 0"),
-    ("friction", "exponent"): real("friction", "dahl", "1", lower=0.0),
+    ("friction", "exponent"): real("friction", "dahl", "1", lower=0.0, upper=100.0, dear=("100.0",)),
     ("step", "normal_force"): real("step(1)", "cylinder", "1e-3", "force/length", lower=0.0,
                                    needed=": needs a target: normal_force or approach"),
     ("step", "approach"): real("step(1)", "cylinder", "1e-3", "length", without=("normal_force",)),
@@ -226,6 +226,7 @@ CASE: dict[tuple[str, str], Row] = {
     ("output", "history"): choice("output", "cylinder", "'events'", "events steps none"),
     ("output", "states"): choice("output", "cylinder", "'reversals'", "reversals steps none"),
     ("output", "error_estimate"): logical("output", "cylinder", ".false."),
+    ("output", "checkpoint_minutes"): real("output", "cylinder", "10", "minutes", lower=0.0, upper=1e6),
 }
 
 TOO_SMALL = "a number other than 0 must be of a size from 1e-100 to 1e100"

@@ -175,7 +175,8 @@ def test_every_fault_of_a_key_is_told(folder: Path, program: str, group: str, ke
         assert re.match(rf"case\.nml:{at}: &{group}\b", message), (entry, message)
         assert expected in message and "\n" not in message and len(message) < 1000, (entry, message)
 
-    for value in wrong_values(row):
+    # A sweep is a process for every fault; its numbers are read as those of a case are.
+    for value in list(wrong_values(row))[:: 3 if program == "sweep" else 1]:
         unit = f" ({row.unit})" if row.unit else ""
         refused(f"{key}={value}", f"&{group} {key}={shown(value)}: must be {row.right}{unit}")
     refused(f"{key}={row.value}, {key}={row.value}", "the key is there twice")

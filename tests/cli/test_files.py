@@ -151,6 +151,38 @@ def test_kills_at_every_call_leave_the_old_file_or_the_new_one(program, shim, be
     assert run(again, folder).returncode == COMPLETE and numbers(folder / written) == new
 
 
+def test_checkpoints_survive_kills_and_failing_disks(shim, begun, folder):
+    """A checkpoint at every increment: after a kill at any call --resume ends with the result of the run that nobody killed."""
+    text = CASE.format(mu=0.5).replace("file='case.h5'", "file='case.h5', checkpoint_minutes=1e-9")
+    command = [RUN, "often.nml"]
+
+    def begin():
+        restore(begun, folder)
+        (folder / "often.nml").write_text(text)
+
+    old = numbers(folder / "case.h5")
+    begin()
+    done, calls = run_on_disk(shim, command, folder)
+    counted = [call for call in calls if call[0] != "unlink"]
+    new = numbers(folder / "case.h5")
+    checkpoint = folder / "case.checkpoint"
+    assert done.returncode == COMPLETE and new != old and not checkpoint.exists()
+    assert sum(call[0] == "rename" and call[2] == str(checkpoint) for call in counted) >= 4
+    second = [i for i, call in enumerate(counted, 1) if call[0] == "rename"][1]
+    for at in range(1, len(counted) + 1) if DEEP else (second - 3, second, second + 1):
+        begin()
+        assert run_on_disk(shim, command, folder, at)[0].returncode == -signal.SIGKILL
+        assert numbers(folder / "case.h5") == (old if at < len(counted) else new), at
+        done = run([RUN, "--resume", "often.nml"], folder)
+        assert done.returncode == COMPLETE and numbers(folder / "case.h5") == new, (at, done.stderr)
+        begin()
+        done, calls = run_on_disk(shim, command, folder, at, *ONE_ERROR)
+        failed = [call for call in calls if call[0] != "unlink"][at - 1]
+        assert parts(folder) == [], (at, done.stderr)
+        if Path(failed[1]).name.startswith("case.checkpoint"):  # the run goes on without it
+            assert done.returncode == COMPLETE and numbers(folder / "case.h5") == new and not checkpoint.exists(), (at, done.stderr)
+
+
 @pytest.mark.parametrize("program", ("mfv_run", "mfv_stress", "mfv_sweep"))
 def test_kills_at_random_moments_leave_the_old_file_or_the_new_one(program, begun, folder):
     """Half of them in the time in which the program writes, the last tenth."""

@@ -78,8 +78,8 @@ def test_points_are_printed(folder):
     [
         ((), "a result file is missing"),
         (("case.h5", "--body", "left"), "--body must be lower or upper, not 'left'"),
-        (("case.h5", "--depth", "-1"), "--depth needs a number above 0, not '-1'"),
-        (("case.h5", "--points", "1", "5"), "--points needs a whole number of at least 2, not '1'"),
+        (("case.h5", "--depth", "-1"), "--depth needs a number above 0 and at most 100000, not '-1'"),
+        (("case.h5", "--points", "1", "5"), "--points needs a whole number from 2 to 100000, not '1'"),
         (("case.h5", "--what"), "unknown option '--what'"),
         (("case.h5", "--step", "9"), "case.h5: there is no state steps/0009"),
         (("case.h5", "--body", "upper"), "the upper body is rigid or a matrix"),

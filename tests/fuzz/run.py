@@ -37,6 +37,8 @@ ROOT = HERE.parents[1]
 MFV_COMPLETE = 0
 #: Cases between two looks for leaks, which take a tenth of a second.
 CHUNK = 250
+#: Seconds that shrinking one finding may take.
+SHRINKING = 20.0
 
 
 @dataclass
@@ -166,6 +168,7 @@ class Fuzzer:
     def _chunk(self, name: str, target: Target, number: int, chunk_seed: str, shrinks: bool, looks_for_leaks: bool = False) -> None:
         """Cases of one seed; what fails is kept and does not end them."""
         worst: list[tuple[Finding, bytes]] = []
+        first = [0.0]
         known = self.counts[name].findings
 
         @seed(int.from_bytes(hashlib.sha256(chunk_seed.encode()).digest()[:8], "big"))
@@ -175,6 +178,8 @@ class Fuzzer:
         )
         @given(st.randoms(use_true_random=False))
         def one(random: random_module.Random) -> None:
+            if worst and time.monotonic() - first[0] > SHRINKING:
+                return
             data = target.make(random)
             if texts.TOO_LONG.search(data) and target.ending == "nml":
                 return
@@ -189,6 +194,8 @@ class Fuzzer:
                     return
                 if worst and worst[0][0].signature != finding.signature:
                     return
+                if not worst:
+                    first[0] = time.monotonic()
                 worst[:] = [(finding, data)]
                 raise
 
@@ -197,7 +204,7 @@ class Fuzzer:
             try:
                 one()
                 return
-            except (Finding, Flaky):  # flaky: what depends on the cases before it is kept as it is
+            except (Finding, Flaky):  # flaky: what depends on cases before it, and what was shrunk long enough
                 self._keep(name, chunk_seed, *worst[0])
 
     def _keep(self, name: str, chunk_seed: str, finding: Finding, data: bytes) -> None:
