@@ -162,12 +162,15 @@ contains
       type(scene_type), intent(in) :: scene
       type(error_type), allocatable, intent(out) :: error
       character(:), allocatable :: key
+      real(wp), allocatable :: given(:)
       integer :: nodes
 
       if (.not. allocated(scene%friction%static%value) .or. allocated(scene%friction%static%position)) return
       if (size(scene%friction%static%value) == 1) return
       key = 'mu_static'
       if (reader%has('friction', 1, 'mu')) key = 'mu'
+      call reader%real_values('friction', 1, key, given)
+      if (size(given) == 1) key = 'mu_kinetic'
       nodes = scene%mesh%nodes
       if (scene%lower%shape == shape_matrix) nodes = size(scene%lower%position)
       if (scene%lower%shape /= shape_matrix .and. .not. scene%mesh%half_width > 0.0_wp) then
