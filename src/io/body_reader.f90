@@ -59,9 +59,6 @@ contains
       if (shape == 'flat_punch' .and. .not. rigid) then
          call reader%complain('body', body, 'rigid', 'must be .true. for a flat_punch', error)
          return
-      else if (shape == 'matrix' .and. rigid) then
-         call reader%complain('body', body, 'rigid', 'a matrix is elastic', error)
-         return
       end if
       allowed = 'shape rigid'
       if (shape == 'disk' .or. shape == 'hole') allowed = allowed//' radius'
@@ -199,8 +196,6 @@ contains
                .not. any([scene%lower%shape, scene%upper%shape] == shape_flat_punch)) then
          call reader%complain('body', 2, 'shape', 'two half-planes touch everywhere; one body must be curved or a profile', error)
       end if
-      if (allocated(error) .or. scene%lower%shape /= shape_flat_punch .or. scene%upper%shape /= shape_flat_punch) return
-      call reader%complain('body', 2, 'shape', 'two flat punches make no contact of elastic bodies', error)
    end subroutine check_pair
 
    !> Friction needs the tangential components of a matrix.
