@@ -266,6 +266,7 @@ MATRICES = {
     "zero": ({"x": X, "compliance": 0.0 * GOOD_MATRIX}, "compliance is not positive definite"),
     "singular": ({"x": X, "stiffness": np.ones((2 * N, 2 * N))}, "stiffness is not positive definite"),
     "short gap": ({"x": X, "gap": X[:3], "compliance": GOOD_MATRIX}, "gap has 3 values, x has 5"),
+    "one node without width": ({"x": X[:1], "compliance": np.eye(2)}, "width is missing, which one node alone needs"),
     "width of nothing": ({"x": X, "width": 0.0 * X, "compliance": GOOD_MATRIX}, "width is not positive at node 1"),
 }
 
@@ -278,6 +279,53 @@ def test_broken_matrices(tmp_path: Path, name: str) -> None:
             file[dataset] = values
     (tmp_path / "case.nml").write_bytes(b"&body shape='matrix', file='matrix.h5' /\n" + DISK + PRESS)
     refused(run(RUN, "--check", "case.nml", cwd=tmp_path), "case.nml:1: &body 1 file='matrix.h5': ", message)
+
+
+ELASTIC_MATRIX = b"&body shape='matrix', file='matrix.h5' /\n"
+PUNCH = b"&body shape='flat_punch', half_width=0.1, rigid=.true. /\n"
+
+
+@pytest.mark.parametrize("text, message", [
+    (b"&body shape='matrix', file='matrix.h5', rigid=.true. /\n" + DISK + PRESS,
+     "case.nml:2: &body 2 rigid=.true.: both bodies are rigid"),
+    (DISK + ELASTIC_MATRIX + PRESS, "case.nml:2: &body 2 shape='matrix': a matrix must be the first body, below"),
+    (ELASTIC_MATRIX + DISK + b"&mesh nodes=5 /\n" + PRESS, "case.nml:3: &mesh nodes=5: means nothing for a matrix"),
+    (ELASTIC_MATRIX + DISK + b"&friction law='coulomb', mu=0.5 /\n" + PRESS, "friction needs the tangential ones too"),
+    (ELASTIC_MATRIX + b"&body shape='profile', file='profile.txt', rigid=.true. /\n" + PRESS, "no node of this body is under"),
+    (b"&body shape='profile', file='profile.txt', shear_modulus=1.0, poisson_ratio=0.3 /\n" + PUNCH + PRESS
+     + b"&mesh half_width=0.01, nodes=5 /\n", "no node of this mesh is under the indenter"),
+    (PUNCH + PUNCH + PRESS, "case.nml:2: &body 2 rigid=.true.: both bodies are rigid"),
+    (ELASTIC + DISK + b"&friction law='static_kinetic', mu_static=0.5, mu_kinetic=0.3, 0.4 /\n" + MESH + PRESS,
+     "case.nml:3: &friction mu_kinetic=0.3, 0.4: must have one value or one a node, 11, not 2"),
+    (ELASTIC + DISK + b"&friction law='static_kinetic', mu_static=0.5, 0.6, 0.7, mu_kinetic=0.3, 0.4 /\n" + MESH + PRESS,
+     "case.nml:3: &friction mu_kinetic=0.3, 0.4: must have one value or as many as mu_static"),
+    (ELASTIC + DISK + b"&friction law='coulomb', mu_file='short.txt' /\n" + PRESS, "short.txt: needs at least 2 lines of numbers"),
+    (ELASTIC + DISK + b"&friction law='static_kinetic', mu_file='rising.txt' /\n" + PRESS,
+     "rising.txt: mu_kinetic must not be above mu_static"),
+])
+def test_what_does_not_go_together(tmp_path: Path, text: bytes, message: str) -> None:
+    """Bodies, meshes and coefficients that are each right alone. The matrix has normal components only."""
+    with h5py.File(tmp_path / "matrix.h5", "w") as file:
+        file["x"] = X
+        file["compliance"] = np.eye(N) + 0.1
+    (tmp_path / "profile.txt").write_text("5 0\n6 0.1\n7 0.4\n")
+    (tmp_path / "short.txt").write_text("0 0.5\n")
+    (tmp_path / "rising.txt").write_text("0 0.5 0.4\n1 0.5 0.6\n")
+    (tmp_path / "case.nml").write_bytes(text)
+    refused(run(RUN, "--check", "case.nml", cwd=tmp_path), "case.nml:", message)
+
+
+def test_matrices_have_no_other_meshes(tmp_path: Path) -> None:
+    """Neither an estimate of the error nor advice on the mesh; and no materials to vary."""
+    with h5py.File(tmp_path / "matrix.h5", "w") as file:
+        file["x"] = X
+        file["compliance"] = np.eye(N) + 0.1
+    (tmp_path / "case.nml").write_bytes(ELASTIC_MATRIX + DISK + PRESS)
+    refused(run(RUN, "--estimate", "case.nml", cwd=tmp_path), "case.nml: --estimate: a body with shape='matrix' has no coarser mesh")
+    refused(run(RUN, "--advise", "error=1e-2", "case.nml", cwd=tmp_path),
+            "case.nml: no advice: a body with shape='matrix' has its own nodes")
+    (tmp_path / "sweep.nml").write_text("&sweep base='case.nml' /\n&vary key='dundurs_beta', values=0.1, 0.2 /\n")
+    refused(run(SWEEP, "sweep.nml", cwd=tmp_path), "dundurs_beta needs bodies with materials, not shape='matrix'")
 
 
 def test_results_that_are_none(tmp_path: Path) -> None:

@@ -100,6 +100,16 @@ def test_bad_requests_leave_the_file_as_it_was(folder, arguments, message):
     assert not list(folder.glob("*.part*"))
 
 
+def test_states_without_load_or_steps(folder):
+    (folder / "light.nml").write_text(CASE[:CASE.index("&step")] + "&step approach=-1e-4 /\n&output states='none' /\n")
+    subprocess.run([RUN, "light.nml"], cwd=folder, check=True, capture_output=True)
+    before = (folder / "light.h5").read_bytes()
+    for arguments, message in (((), "light.h5: there is no load in this state"), (("--step", "1"), "there is no state steps/0001")):
+        run = stress("light.h5", *arguments, cwd=folder)
+        assert run.returncode == 2 and message in run.stderr and run.stdout == "", run
+        assert (folder / "light.h5").read_bytes() == before
+
+
 def test_help_teaches():
     run = stress("--help", cwd=ROOT)
     assert run.returncode == 0 and "largest von Mises" in run.stdout
