@@ -116,7 +116,7 @@ contains
          call pack_record(record, bytes)
          call append_to_journal(journal, bytes, error)
       end do
-      if (.not. allocated(error)) call close_journal(journal)
+      if (.not. allocated(error)) call close_journal(journal, error)
       call tell(error, message, size, fuzz_write_journal)
    end function fuzz_write_journal
 
