@@ -26,13 +26,13 @@ module mfv_archive
       procedure :: carries
       !> Scalars; and allocatable texts and arrays, allocated or not, with their shapes.
       generic :: carry => carry_integer, carry_long, carry_real, carry_logical, carry_text, carry_integers, carry_integer_table, &
-                          carry_reals, carry_real_table, carry_complexes, carry_logicals
+                          carry_reals, carry_real_table, carry_logicals
       !> Arrays whose shape is known.
       generic :: fill => fill_integers, fill_reals, fill_logicals, fill_text
       procedure, private :: carry_integer, carry_long, carry_real, carry_logical, carry_text, carry_integers, carry_integer_table, &
-                            carry_reals, carry_real_table, carry_complexes, carry_logicals
+                            carry_reals, carry_real_table, carry_logicals
       procedure, private :: fill_integers, fill_reals, fill_logicals, fill_text
-      procedure, private :: carry_extents, pass, pass_integers, pass_reals, pass_complexes, pass_logicals
+      procedure, private :: carry_extents, pass, pass_integers, pass_reals
    end type archive_type
 
    integer, parameter :: byte_bits = 8
@@ -214,38 +214,16 @@ contains
       if (is_there) call self%pass_reals(values, product(extents))
    end subroutine carry_real_table
 
-   subroutine carry_complexes(self, values)
-      class(archive_type), intent(inout) :: self
-      complex(wp), allocatable, intent(inout) :: values(:)
-      integer(int64) :: extents(1)
-      logical :: is_there
-
-      is_there = allocated(values)
-      extents = 0
-      if (is_there) extents = shape(values, kind=int64)
-      call self%carry_extents(is_there, extents, storage_size(values)/byte_bits)
-      if (self%reading) then
-         if (allocated(values)) deallocate (values)
-         if (is_there) allocate (values(extents(1)))
-      end if
-      if (is_there) call self%pass_complexes(values, extents(1))
-   end subroutine carry_complexes
-
    subroutine carry_logicals(self, values)
       class(archive_type), intent(inout) :: self
       logical, allocatable, intent(inout) :: values(:)
-      integer(int64) :: extents(1)
-      logical :: is_there
+      integer, allocatable :: ones(:)
 
-      is_there = allocated(values)
-      extents = 0
-      if (is_there) extents = shape(values, kind=int64)
-      call self%carry_extents(is_there, extents, storage_size(values)/byte_bits)
-      if (self%reading) then
-         if (allocated(values)) deallocate (values)
-         if (is_there) allocate (values(extents(1)))
-      end if
-      if (is_there) call self%pass_logicals(values, extents(1))
+      if (allocated(values)) ones = merge(1, 0, values)
+      call self%carry(ones)
+      if (.not. self%reading) return
+      if (allocated(values)) deallocate (values)
+      if (allocated(ones)) values = ones == 1
    end subroutine carry_logicals
 
    subroutine fill_integers(self, values)
@@ -265,8 +243,11 @@ contains
    subroutine fill_logicals(self, values)
       class(archive_type), intent(inout) :: self
       logical, intent(inout) :: values(:)
+      integer :: ones(size(values))
 
-      call self%pass_logicals(values, size(values, kind=int64))
+      ones = merge(1, 0, values)
+      call self%fill(ones)
+      values = ones == 1
    end subroutine fill_logicals
 
    subroutine fill_text(self, text)
@@ -323,28 +304,6 @@ contains
       call c_f_pointer(c_loc(values), bytes, [number*(storage_size(values)/byte_bits)])
       call self%pass(bytes)
    end subroutine pass_reals
-
-   subroutine pass_complexes(self, values, number)
-      class(archive_type), intent(inout) :: self
-      integer(int64), intent(in) :: number
-      complex(wp), intent(inout), target :: values(number)
-      integer(int8), pointer :: bytes(:)
-
-      if (number == 0) return
-      call c_f_pointer(c_loc(values), bytes, [number*(storage_size(values)/byte_bits)])
-      call self%pass(bytes)
-   end subroutine pass_complexes
-
-   subroutine pass_logicals(self, values, number)
-      class(archive_type), intent(inout) :: self
-      integer(int64), intent(in) :: number
-      logical, intent(inout) :: values(number)
-      integer :: ones(number)
-
-      ones = merge(1, 0, values)
-      call self%pass_integers(ones, number)
-      values = ones == 1
-   end subroutine pass_logicals
 
    !> Take in bytes, or give them back.
    subroutine pass(self, bytes)

@@ -192,7 +192,7 @@ contains
       call real_transform(self%values, self%backward)
    end subroutine make_spectra
 
-   !> See mfv_archive.
+   !> See mfv_archive. Spectra are made anew from the predictor.
    subroutine carry(self, archive)
       class(toeplitz_inverse_type), intent(inout) :: self
       type(archive_type), intent(inout) :: archive
@@ -200,13 +200,7 @@ contains
       call archive%carry(self%order)
       call archive%carry(self%predictor)
       call archive%carry(self%error)
-      call archive%carry(self%length)
-      call archive%carry(self%forward)
-      call archive%carry(self%backward)
-      call archive%carry(self%values)
-      call archive%carry(self%others)
-      call archive%carry(self%spectrum)
-      call archive%carry(self%product)
+      if (archive%is_reading()) self%length = 0
    end subroutine carry
 
 end module mfv_toeplitz_inverse

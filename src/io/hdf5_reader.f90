@@ -5,6 +5,7 @@ module mfv_hdf5_reader
       c_ptr
    use hdf5
    use mfv_error, only: error_type, set_error
+   use mfv_hdf5_start, only: start_hdf5
    use mfv_kinds, only: wp
    use mfv_status, only: MFV_INPUT_ERROR
    use mfv_strings, only: from_c, to_text
@@ -44,8 +45,7 @@ contains
       inquire (file=path, exist=is_there)
       is_hdf5 = .false.
       if (is_there) then
-         call h5open_f(code)
-         call h5eset_auto_f(0, code)
+         call start_hdf5()
          call h5fis_hdf5_f(path, is_hdf5, code)
       end if
       if (.not. is_hdf5) then

@@ -6,6 +6,7 @@ module mfv_hdf5_writer
    use, intrinsic :: iso_fortran_env, only: int8, int64
    use hdf5
    use mfv_error, only: error_type, set_error
+   use mfv_hdf5_start, only: start_hdf5
    use mfv_kinds, only: wp
    use mfv_result_fields, only: along_nothing, field_type
    use mfv_safe_file
@@ -75,8 +76,7 @@ contains
       logical :: is_hdf5, is_of_kind
       integer :: code
 
-      call h5open_f(code)
-      call h5eset_auto_f(0, code)
+      call start_hdf5()
       call h5fis_hdf5_f(path, is_hdf5, code)
       if (code /= 0 .or. .not. is_hdf5) then
          call set_error(error, MFV_FILE_ERROR, path//' is there and is no HDF5 file'//so)
@@ -105,8 +105,7 @@ contains
 
       call begin_checked(path, kind, writer%replacement, error)
       if (allocated(error)) return
-      call h5open_f(code)
-      call h5eset_auto_f(0, code)
+      call start_hdf5()
       call in_memory(access, writer)
       call h5fcreate_f(writer%replacement%part, H5F_ACC_TRUNC_F, writer%file, code, access_prp=access)
       call note(writer, code)
@@ -142,8 +141,7 @@ contains
          call set_error(error, MFV_FILE_ERROR, path//' cannot be read: '//trim(why))
          return
       end if
-      call h5open_f(code)
-      call h5eset_auto_f(0, code)
+      call start_hdf5()
       call in_memory(access, writer)
       call h5pset_file_image_f(access, c_loc(bytes), size(bytes, kind=size_t), code)
       call note(writer, code)

@@ -138,7 +138,7 @@ def test_a_checkpoint_goes_with_a_complete_run(tmp_path):
 
 @pytest.mark.parametrize("what", ["folder", "file"])
 def test_a_checkpoint_that_cannot_be_written_does_not_end_the_run(tmp_path, what):
-    write_case(tmp_path, nodes=61, cycles=5)
+    write_case(tmp_path, nodes=201, cycles=15)
     path = tmp_path / "case.checkpoint"
     path.mkdir() if what == "folder" else path.write_text("notes")
     code, _, errors = run(tmp_path)

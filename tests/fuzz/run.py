@@ -106,7 +106,7 @@ class Fuzzer:
             "case": Target("case", "nml", 0.30, lambda random: texts.changed_text(random, texts.cases(), keys)),
             "case_bytes": Target("case", "nml", 0.22, lambda random: texts.changed_whole(random, texts.cases())),
             "sweep": Target("sweep", "nml", 0.08, lambda random: texts.changed_text(random, texts.sweeps(), sweep_keys)),
-            "base": Target("sweep", "nml", 0.04, lambda random: texts.changed_whole(random, texts.sweeps())),
+            "sweep_bytes": Target("sweep", "nml", 0.04, lambda random: texts.changed_whole(random, texts.sweeps())),
             "columns": Target("columns", "txt", 0.05, lambda random: texts.changed_bytes(random, random.choice(texts.COLUMNS).encode(), lines)),
             "matrix": Target("matrix", "h5", 0.10, lambda random: files.odd_hdf5(random, files.right_matrix())),
             "matrix_bytes": Target("matrix", "h5", 0.08, lambda random: files.damaged(random, random.choice(matrices))),
@@ -121,7 +121,7 @@ class Fuzzer:
         """Have a case read. Raises Finding."""
         target, count = self.targets[name], self.counts[name]
         child = self.python_child if target.in_python else self.child
-        path = self.folder / f"{name}.{target.ending}"
+        path = self.folder / f"fuzzed_{name}.{target.ending}"  # never one of the files that cases name
         path.write_bytes(data)
         answer = child.do(target.command, path)
         if signature := signature_of(report := child.errors()):
