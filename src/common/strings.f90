@@ -217,7 +217,7 @@ contains
       integer :: code
 
       length = len(text)
-      if (length <= longest_shown) return
+      if (length <= longest_shown + len(cut_mark)) return
       length = longest_shown
       do while (length > 1)
          code = ichar(text(length + 1:length + 1))
