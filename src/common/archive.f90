@@ -220,7 +220,7 @@ contains
       logical, allocatable, intent(inout) :: values(:)
       integer, allocatable :: ones(:)
 
-      if (allocated(values)) ones = merge(1, 0, values)
+      if (allocated(values) .and. .not. self%reading) ones = merge(1, 0, values)
       call self%carry(ones)
       if (.not. self%reading) return
       if (allocated(values)) deallocate (values)
