@@ -31,7 +31,7 @@ contains
    end subroutine refuse
 
    !> End `program` because it has no option of this name, and name the nearest that it has. `help`: lines of text, with one
-   !> option a line, as in '  --check   read the case'.
+   !> option a line, as in '  --check   read the case'. An option that it has is in the wrong place.
    subroutine refuse_option(program, usage, help, option)
       character(*), intent(in) :: program, usage(:), help(:), option
       type(string_type), allocatable :: names(:)
@@ -39,6 +39,7 @@ contains
 
       call find_options(help, names)
       nearest = nearest_name(option(max(verify(option, '-'), 1):), names)
+      if ('--'//nearest == option) call refuse(program, usage, option//' does not go with the arguments before it')
       if (nearest /= '') nearest = '; did you mean --'//nearest//'?'
       call refuse(program, usage, "unknown option '"//shortened(option)//"'"//nearest)
    end subroutine refuse_option

@@ -52,6 +52,8 @@ program run_conventional
    call begin_program()
    call get_argument(1, argument)
    resume = argument == '--resume'
+   if (index(argument, '-') == 1 .and. all(argument /= ['--resume ', '--help   ', '-h       ', '--version'])) &
+      call refuse_option('mfv_conventional', usage, help, argument)
    if (command_argument_count() /= merge(2, 1, resume)) call refuse('mfv_conventional', usage, 'one case file is wanted')
    if (resume) call get_argument(2, argument)
    select case (argument)

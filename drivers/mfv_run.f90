@@ -63,7 +63,7 @@ program mfv_run
       '  of the case with .h5 for its extension. It is HDF5: tractions, displacements, slip and status of', &
       '  every node, the history of the loads, the certificate. It is written under another name and', &
       '  renamed when it is whole; a run that fails leaves an older result as it was.', &
-      '  A checkpoint is beside it, with .checkpoint for its extension: written every 10 minutes (the', &
+      '  A checkpoint is beside it, with .checkpoint in place of .h5: written every 10 minutes (the', &
       '  checkpoint_minutes of &output), and when the run is interrupted; removed when it is complete.', &
       '', &
       'Output:', &

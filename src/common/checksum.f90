@@ -24,12 +24,11 @@ contains
    pure subroutine add_to_checksum(bytes, checksum)
       integer(int8), intent(in) :: bytes(:)
       integer(int64), intent(inout) :: checksum
-      integer(int64) :: table(0:2**half_byte - 1), rest
-      integer :: i
+      integer(int64) :: table(0:2**half_byte - 1), rest, i
 
-      table = [(remainder_of(int(i, int64)), i=0, size(table) - 1)]
+      table = [(remainder_of(i), i=0, size(table) - 1)]
       rest = not(checksum)
-      do i = 1, size(bytes)
+      do i = 1, size(bytes, kind=int64)
          rest = ieor(rest, iand(int(bytes(i), int64), 255_int64))
          rest = ieor(shiftr(rest, half_byte), table(iand(rest, 15_int64)))
          rest = ieor(shiftr(rest, half_byte), table(iand(rest, 15_int64)))

@@ -16,7 +16,7 @@ module mfv_checkpoint
    use mfv_simulation, only: simulation_type
    use mfv_status, only: MFV_FILE_ERROR, MFV_INPUT_ERROR
    use mfv_strings, only: to_text
-   use mfv_text_file, only: directory_of, stem_of
+   use mfv_text_file, only: check_is_file
    use mfv_version, only: library_version
    implicit none
    private
@@ -30,7 +30,8 @@ module mfv_checkpoint
    integer, parameter :: header_length = 2*line_length + 2*number_length
 
    type :: checkpoint_type
-      !> The file: beside the result, under the same name with `.checkpoint` for its extension.
+      !> The file: beside the result, under the same name with `.checkpoint` in place of `.h5`. Another extension stays: results
+      !> mu0.3 and mu0.5 have checkpoints of their own.
       character(:), allocatable :: path
       character(:), allocatable, private :: source
       !> By what the case is known.
@@ -51,19 +52,33 @@ contains
       type(simulation_type), intent(in) :: simulation
       type(checkpoint_type), intent(out) :: checkpoint
 
-      checkpoint%path = directory_of(case%result_path)//stem_of(case%result_path)//'.checkpoint'
+      checkpoint%path = case%result_path(:length_of_name(case%result_path))//'.checkpoint'
       checkpoint%source = case%source
       call find_case_checksum(case, simulation%contact%model, checkpoint%checksum)
       call add_text_to_checksum(to_text(case%scene%method%algorithm), checkpoint%checksum)
    end subroutine new_checkpoint
 
+   !> Characters of the path of a result up to `.h5`, or all where it does not end so.
+   pure integer function length_of_name(path) result(length)
+      character(*), intent(in) :: path
+      character(*), parameter :: extension = '.h5'
+
+      length = len(path)
+      if (len(path) > len(extension)) then
+         if (path(len(path) - len(extension) + 1:) == extension) length = len(path) - len(extension)
+      end if
+   end function length_of_name
+
    !> Whether there is a checkpoint, of this case or another.
    logical function is_there(self)
       class(checkpoint_type), intent(in) :: self
+      type(error_type), allocatable :: error
       character(len=len(signature)) :: start
       integer :: code, unit
 
       is_there = .false.
+      call check_is_file(self%path, error)
+      if (allocated(error)) return
       open (newunit=unit, file=self%path, access='stream', form='unformatted', action='read', status='old', iostat=code)
       if (code /= 0) return
       read (unit, iostat=code) start
@@ -122,7 +137,7 @@ contains
       call read_bytes(self%path, bytes, error)
       if (.not. allocated(error)) call self%check_frame(bytes, error)
       if (allocated(error)) return
-      call new_archive(archive, bytes(header_length + 1:size(bytes) - number_length))
+      call new_archive(archive, bytes(header_length + 1:size(bytes, kind=int64) - number_length))
       call simulation%carry(archive)
       if (archive%is_damaged() .or. .not. archive%is_at_end()) call complain(self%path, 'is not as this program writes it', error)
    end subroutine read_checkpoint
@@ -132,22 +147,23 @@ contains
       class(checkpoint_type), intent(in) :: self
       integer(int8), intent(in) :: bytes(:)
       type(error_type), allocatable, intent(out) :: error
-      integer(int64) :: numbers(2), checksum
+      integer(int64) :: numbers(2), checksum, length
       integer(int8) :: mold(1)
 
+      length = size(bytes, kind=int64)
       if (.not. begins_with(bytes, transfer(signature, mold))) then
          call complain(self%path, 'is no checkpoint', error)
       else if (.not. begins_with(bytes, transfer(first_line(), mold))) then
          call complain(self%path, 'is of another version of this program', error)
-      else if (size(bytes) < header_length + number_length) then
+      else if (length < header_length + number_length) then
          call complain(self%path, 'is not whole', error)
       end if
       if (allocated(error)) return
       numbers = transfer(bytes(2*line_length + 1:header_length), numbers)
-      checksum = transfer(bytes(size(bytes) - number_length + 1:), checksum)
-      if (numbers(2) /= size(bytes, kind=int64) - header_length - number_length) then
+      checksum = transfer(bytes(length - number_length + 1:), checksum)
+      if (numbers(2) /= length - header_length - number_length) then
          call complain(self%path, 'is not whole', error)
-      else if (checksum /= checksum_of(bytes(:size(bytes) - number_length))) then
+      else if (checksum /= checksum_of(bytes(:length - number_length))) then
          call complain(self%path, 'is damaged', error)
       else if (numbers(1) /= self%checksum) then
          call complain(self%path, 'is of another case: the text, a file that it names, or the algorithm has changed', error)
@@ -165,7 +181,7 @@ contains
    pure logical function begins_with(bytes, start)
       integer(int8), intent(in) :: bytes(:), start(:)
 
-      begins_with = size(bytes) >= size(start)
+      begins_with = size(bytes, kind=int64) >= size(start)
       if (begins_with) begins_with = all(bytes(:size(start)) == start)
    end function begins_with
 
@@ -201,14 +217,20 @@ contains
       integer(int64) :: length
       integer :: code, unit
 
+      call check_is_file(path, error)
+      if (allocated(error)) return
       open (newunit=unit, file=path, access='stream', form='unformatted', action='read', status='old', iostat=code, iomsg=why)
       if (code == 0) then
          inquire (unit=unit, size=length)
-         allocate (bytes(max(length, 0_int64)))
-         read (unit, iostat=code, iomsg=why) bytes
+         allocate (bytes(max(length, 0_int64)), stat=code)
+         if (code == 0) then
+            read (unit, iostat=code, iomsg=why) bytes
+         else
+            why = 'there is no memory for it'
+         end if
          close (unit)
       end if
-      if (code /= 0) call set_error(error, MFV_INPUT_ERROR, path//' cannot be read: '//trim(why))
+      if (code /= 0) call set_error(error, MFV_INPUT_ERROR, path//': cannot be read: '//trim(why))
    end subroutine read_bytes
 
 end module mfv_checkpoint

@@ -35,6 +35,11 @@ def write_case(folder, friction=COULOMB, nodes=401, solver="linear_solver='auto'
     (folder / "case.nml").write_text(TEXT.format(friction=friction, nodes=nodes, solver=solver, cycles=cycles))
 
 
+def want_checkpoints_at_once(folder):
+    path = folder / "case.nml"
+    path.write_text(path.read_text().replace("checkpoint_minutes=3e-4", "checkpoint_minutes=1e-9"))
+
+
 def start(folder, *options):
     return subprocess.Popen([PROGRAM, *options, "case.nml"], cwd=folder, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
 
@@ -138,9 +143,32 @@ def test_a_checkpoint_goes_with_a_complete_run(tmp_path):
 
 @pytest.mark.parametrize("what", ["folder", "file"])
 def test_a_checkpoint_that_cannot_be_written_does_not_end_the_run(tmp_path, what):
-    write_case(tmp_path, nodes=201, cycles=15)
+    write_case(tmp_path, nodes=61, cycles=5)
+    want_checkpoints_at_once(tmp_path)
     path = tmp_path / "case.checkpoint"
     path.mkdir() if what == "folder" else path.write_text("notes")
     code, _, errors = run(tmp_path)
     assert code == COMPLETE and "no checkpoint: case.checkpoint" in errors
     assert path.is_dir() if what == "folder" else path.read_text() == "notes"
+
+
+def test_results_with_other_extensions_have_checkpoints_of_their_own(tmp_path):
+    write_case(tmp_path, cycles=3000)
+    path = tmp_path / "case.nml"
+    text = path.read_text()
+    for name in ("mu0.3", "mu0.5", "x.checkpoint"):
+        path.write_text(text.replace("&output", f"&output file='{name}',"))
+        code, _, errors = stop_after(tmp_path, 0.5, signal.SIGTERM)
+        assert code == INTERRUPTED and errors.startswith(f"{name}.checkpoint keeps where the run is")
+    assert sorted(file.name for file in tmp_path.iterdir()) == sorted(
+        ["case.nml"] + [name + end for name in ("mu0.3", "mu0.5", "x.checkpoint") for end in ("", ".checkpoint")])
+
+
+def test_a_pipe_is_no_checkpoint(tmp_path):
+    write_case(tmp_path, nodes=41, cycles=1)
+    want_checkpoints_at_once(tmp_path)
+    os.mkfifo(tmp_path / "case.checkpoint")
+    code, _, errors = run(tmp_path)
+    assert code == COMPLETE and "no checkpoint: case.checkpoint is there and is no checkpoint" in errors
+    code, _, errors = run(tmp_path, "--resume")
+    assert code == INPUT and errors.startswith("case.checkpoint: cannot be read: it is no regular file")

@@ -186,3 +186,13 @@ def test_fish_completes_every_option(folder):
         script = f"set PATH '{BIN}' $PATH; source '{path}'; complete -C '{program} --'"
         shown = subprocess.run(["fish", "-c", script], cwd=folder, capture_output=True, text=True, check=True).stdout
         assert {line.split("\t")[0] for line in shown.splitlines()} == set(options_of(program))
+
+
+@pytest.mark.parametrize("arguments, message", [
+    (["mfv_run", "--resume", "--check", "case.nml"], "mfv_run: --check does not go with the arguments before it\n"),
+    (["mfv_run", "--chekc", "case.nml"], "mfv_run: unknown option '--chekc'; did you mean --check?\n"),
+    (["mfv_conventional", "--estimate", "case.nml"], "mfv_conventional: unknown option '--estimate'\n"),
+])
+def test_an_option_in_the_wrong_place_is_told_from_an_unknown_one(arguments, message, tmp_path):
+    answer = run(*arguments, cwd=tmp_path)
+    assert answer.returncode == 2 and answer.stderr.startswith(message)
