@@ -124,7 +124,8 @@ contains
       logical, intent(inout) :: value
       integer :: one_if_true
 
-      one_if_true = merge(1, 0, value)
+      one_if_true = 0
+      if (.not. self%reading) one_if_true = merge(1, 0, value)
       call self%carry(one_if_true)
       value = one_if_true == 1
    end subroutine carry_logical
@@ -219,7 +220,7 @@ contains
       logical, allocatable, intent(inout) :: values(:)
       integer, allocatable :: ones(:)
 
-      if (allocated(values)) ones = merge(1, 0, values)
+      if (allocated(values) .and. .not. self%reading) ones = merge(1, 0, values)
       call self%carry(ones)
       if (.not. self%reading) return
       if (allocated(values)) deallocate (values)
@@ -245,7 +246,8 @@ contains
       logical, intent(inout) :: values(:)
       integer :: ones(size(values))
 
-      ones = merge(1, 0, values)
+      ones = 0
+      if (.not. self%reading) ones = merge(1, 0, values)
       call self%fill(ones)
       values = ones == 1
    end subroutine fill_logicals
