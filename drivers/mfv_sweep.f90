@@ -16,6 +16,7 @@ program mfv_sweep
    use mfv_terminal
    use mfv_version, only: library_version
    implicit none
+   save  ! the standard says so of a program; gfortran's -frecursive loses what they hold, which the leak sanitizer tells
 
    character(len=1), parameter :: line_feed = achar(10)
    !> How it is used, and what --help adds: one line an element. The manual page is made from both (docs/man).

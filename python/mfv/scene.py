@@ -303,6 +303,7 @@ class Output(KeyGroup):
     history: Literal["events", "steps", "none"] | None = None
     states: Literal["reversals", "steps", "none"] | None = None
     error_estimate: bool | None = None
+    checkpoint_minutes: float | None = None
 
 
 class Scene(KeyGroup):

@@ -203,7 +203,7 @@ contains
 
       call find_scene(scene, self, status, key, values)
       if (status /= MFV_COMPLETE) return
-      if (.not. is_size(count)) then
+      if (count /= 0 .and. .not. is_size(count)) then
          status = MFV_BAD_ARGUMENT
          call keep_null(self, text_in(key))
          return

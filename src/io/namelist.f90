@@ -474,14 +474,17 @@ contains
    pure subroutine add_quoted(words, text)
       character(*), intent(in) :: words
       character(:), allocatable, intent(inout) :: text
-      integer :: i
+      integer :: first, length
 
       text = text//"'"
-      do i = 1, len(words)
-         text = text//words(i:i)
-         if (words(i:i) == "'") text = text//"'"
+      first = 1
+      do
+         length = index(words(first:), "'")
+         if (length == 0) exit
+         text = text//words(first:first + length - 1)//"'"
+         first = first + length
       end do
-      text = text//"'"
+      text = text//words(first:)//"'"
    end subroutine add_quoted
 
    !> The same for a message: a long text and a long list of values are cut.

@@ -16,7 +16,7 @@ def matters(block):
         return not BOUNDS.search(block)
     if re.match(r"(Direct|Indirect) leak", block):
         return bool(OURS.search(block))
-    return "ERROR: AddressSanitizer" in block
+    return "ERROR: AddressSanitizer" in block or "AddressSanitizer: CHECK failed" in block
 
 
 blocks = []

@@ -29,7 +29,7 @@ LONG = 100_000
 
 
 def run(program: Path, *arguments: object, cwd: Path, **more: object) -> subprocess.CompletedProcess[str]:
-    return subprocess.run([program, *map(str, arguments)], cwd=cwd, capture_output=True, text=True, timeout=60, errors="replace",
+    return subprocess.run([program, *map(str, arguments)], cwd=cwd, capture_output=True, text=True, timeout=300, errors="replace",
                           stdin=subprocess.DEVNULL, **more)  # type: ignore[call-overload]
 
 
@@ -179,7 +179,7 @@ def test_paths_that_lead_to_no_file(folder: Path, path: str) -> None:
         refused(run(STRESS, path, cwd=folder), says)
     points = run(STRESS, "result.h5", "--at", path, cwd=folder)
     assert points.returncode == INPUT_ERROR and says in points.stderr.splitlines()[0]
-    shown = subprocess.run([sys.executable, "-m", "mfv", "info", path or "''"], cwd=folder, capture_output=True, text=True, timeout=60,
+    shown = subprocess.run([sys.executable, "-m", "mfv", "info", path or "''"], cwd=folder, capture_output=True, text=True, timeout=300,
                            env=os.environ | {"PYTHONPATH": str(ROOT / "python")})
     assert shown.returncode != 0 and "Traceback" not in shown.stderr and shown.stderr.startswith("mfv: "), shown
 
@@ -289,7 +289,7 @@ def test_results_that_are_none(tmp_path: Path) -> None:
     (tmp_path / "cut.h5").write_bytes(whole[: len(whole) // 2])
     for name in ("text.h5", "empty.h5", "cut.h5"):
         refused(run(STRESS, name, cwd=tmp_path), name)
-        shown = subprocess.run([sys.executable, "-m", "mfv", "info", name], cwd=tmp_path, capture_output=True, text=True, timeout=60,
+        shown = subprocess.run([sys.executable, "-m", "mfv", "info", name], cwd=tmp_path, capture_output=True, text=True, timeout=300,
                                env=os.environ | {"PYTHONPATH": str(ROOT / "python")})
         assert shown.returncode != 0 and shown.stderr.startswith("mfv: ") and name in shown.stderr, shown
 

@@ -82,7 +82,7 @@ def complaint_about_case(text: str) -> str:
 def complaint_about_sweep(text: str) -> str:
     """What mfv_sweep says of a sweep, whose text is then in case.nml; empty: it takes it."""
     Path("case.nml").write_text(text)
-    run = subprocess.run([SWEEP_PROGRAM, "--check", "case.nml"], capture_output=True, text=True, timeout=60)
+    run = subprocess.run([SWEEP_PROGRAM, "--check", "case.nml"], capture_output=True, text=True, timeout=300)
     assert (run.returncode, run.stderr == "") in ((0, True), (INPUT_ERROR, False)), (text, run)
     return run.stderr.rstrip("\n")
 
@@ -231,7 +231,7 @@ def faults_of_run(case: Path, text: str) -> Iterator[str]:
     """What is wrong with how a run ends."""
     case.write_text(text)
     result = case.with_suffix(".h5")
-    run = subprocess.run([RUN, case], cwd=case.parent, capture_output=True, text=True, timeout=60)
+    run = subprocess.run([RUN, case], cwd=case.parent, capture_output=True, text=True, timeout=300)
     if run.returncode not in (0, INPUT_ERROR, 3) or "Backtrace" in run.stderr or len(run.stderr.splitlines()) > 2:
         yield f"exit code {run.returncode}: {run.stderr}"
     elif (run.stderr == "") != (run.returncode == 0) or result.exists() != (run.returncode != INPUT_ERROR):

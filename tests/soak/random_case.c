@@ -175,7 +175,9 @@ static void choose_way(generator *random, random_case *self) {
   if ((way == NOMINAL || way == CONVENTIONAL) && !linear) way = DGESV;
   if (way == EXPLICIT && self->law != DAHL) way = AUTO;
   self->way = way;
-  self->limit = way == FFT ? 1e-8 : 1e-9;
+  /* Weakening and Dahl: the length of an increment, to which their lines of friction belong, is found to 1e-9 of it (same_step in
+     increment.f90). */
+  self->limit = way == FFT || self->law >= WEAKENING ? 1e-8 : 1e-9;
   if (way == DGESV || way == REDUCED || way == FFT) put_text(self, "solver", 0, "linear_solver", way_names[way]);
   if (way == TOLERANT) {
     double tolerance = pow(10, between(random, -6, -2));
