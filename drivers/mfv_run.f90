@@ -78,7 +78,8 @@ program mfv_run
       '        continuation, separated, inadmissible step, mesh exceeded; of the conventional algorithm', &
       '        also cycling, inadmissible', &
       '  4     a file could not be read or written', &
-      '  130   interrupted, with the result up to there and a checkpoint; --resume goes on', &
+      '  130   interrupted, with a checkpoint (--resume goes on) and, where no whole result is, the result', &
+      '        up to there', &
       '', &
       'Examples:', &
       '  mfv_run --check case.nml                      # is it valid, and what will be solved?', &

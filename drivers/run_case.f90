@@ -12,7 +12,7 @@ module mfv_run_case
    use mfv_kinds, only: wp
    use mfv_one_thread, only: use_one_thread
    use mfv_output, only: print_line, print_text
-   use mfv_result_file, only: check_writable, write_result
+   use mfv_result_file, only: check_writable, is_whole_result, write_result
    use mfv_simulation, only: new_simulation, simulation_type
    use mfv_status
    use mfv_strings, only: string_type
@@ -42,7 +42,7 @@ contains
       type(error_type), allocatable :: error
       character(:), allocatable :: text
       real(wp) :: started
-      logical :: ended_early, is_resumed
+      logical :: ended_early, is_resumed, is_written
 
       call read_case_file(path, case, error)
       if (allocated(error)) call fail(error)
@@ -73,13 +73,18 @@ contains
       if (simulation%outcome /= MFV_COMPLETE) call case%explain(simulation)
 
       call validity_warnings(simulation, warnings)
-      if (has_hdf5) call write_result(case%result_path, case, simulation, warnings, error)
+      ! A part of a run does not take the place of a whole result: its checkpoint goes on to one.
+      is_written = has_hdf5
+      if (is_written .and. simulation%outcome == MFV_INTERRUPTED) is_written = .not. is_whole_result(case%result_path)
+      if (is_written) call write_result(case%result_path, case, simulation, warnings, error)
       if (allocated(error)) call fail(error)
       if (.not. ended_early) call checkpoint%remove()
       call summarize(case, simulation, warnings, seconds_now() - started, text)
       call print_text(text)
-      if (has_hdf5) then
+      if (is_written) then
          call print_line('result              '//case%result_path)
+      else if (has_hdf5) then
+         call print_line('result              not written: '//case%result_path//' is whole, and stays as it was')
       else
          call print_line('result              no file: '//hdf5_is_left_out)
       end if

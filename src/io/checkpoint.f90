@@ -4,7 +4,7 @@
 !> image (mfv_archive), the image, and the checksum of all that. It is of use to the same version on the same sort of machine. It is
 !> replaced as results are (mfv_safe_file): whenever the machine stops, there is the old one or the new one.
 module mfv_checkpoint
-   use, intrinsic :: iso_fortran_env, only: int64, int8
+   use, intrinsic :: iso_fortran_env, only: compiler_version, int64, int8
    use mfv_archive, only: archive_type, new_archive
    use mfv_case, only: case_type
    use mfv_case_checksum, only: find_case_checksum
@@ -104,10 +104,11 @@ contains
       integer(int8), allocatable :: image(:), header(:)
       integer(int8) :: mold(1)
       integer(int64) :: checksum
-      logical :: exists
+      logical :: is_other
 
-      inquire (file=self%path, exist=exists)
-      if (exists .and. .not. self%is_there()) then
+      inquire (file=self%path, exist=is_other)
+      if (is_other) is_other = .not. self%is_there()
+      if (is_other) then
          call set_error(error, MFV_FILE_ERROR, self%path//' is there and is no checkpoint; it is not replaced')
          return
       end if
@@ -185,12 +186,12 @@ contains
       if (begins_with) begins_with = all(bytes(:size(start)) == start)
    end function begins_with
 
-   !> The line that a checkpoint of this version begins with.
+   !> The line that a checkpoint of this version, by this compiler, begins with.
    pure function first_line() result(line)
       character(len=line_length) :: line
 
       line = signature//'of mfv '//library_version//', layout '//to_text(layout)//', reals of '// &
-             to_text(storage_size(1.0_wp))//' bits'
+             to_text(storage_size(1.0_wp))//' bits, '//compiler_version()
       line(line_length:) = achar(10)
    end function first_line
 

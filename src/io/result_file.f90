@@ -6,13 +6,15 @@ module mfv_result_file
    use h5ds
    use mfv_case, only: case_type
    use mfv_error, only: error_type
+   use mfv_hdf5_reader, only: close_read, open_to_read, read_text_attribute
    use mfv_hdf5_writer, check_place => check_writable
    use mfv_result_fields
    use mfv_simulation, only: simulation_type
+   use mfv_status, only: MFV_INTERRUPTED, status_outcome
    use mfv_strings, only: string_type
    implicit none
    private
-   public :: check_writable, write_result
+   public :: check_writable, is_whole_result, write_result
 
    type(file_kind_type), parameter :: result_kind = file_kind_type('result of MFV', 'outcome')
 
@@ -26,6 +28,25 @@ contains
 
       call check_place(path, result_kind, error)
    end subroutine check_writable
+
+   !> Whether there is the result of a run that was not interrupted.
+   logical function is_whole_result(path)
+      character(*), intent(in) :: path
+      type(error_type), allocatable :: error
+      character(:), allocatable :: outcome
+      integer(hid_t) :: file
+
+      is_whole_result = .false.
+      inquire (file=path, exist=is_whole_result)
+      if (.not. is_whole_result) return
+      call open_to_read(path, file, error)
+      if (.not. allocated(error)) then
+         call read_text_attribute(file, 'outcome', outcome, error)
+         call close_read(file)
+      end if
+      is_whole_result = .not. allocated(error)
+      if (is_whole_result) is_whole_result = outcome /= status_outcome(MFV_INTERRUPTED)
+   end function is_whole_result
 
    !> Write the result of a case to `path`, with its `warnings` (see mfv_validity). Error MFV_FILE_ERROR; what was at `path`
    !> before is then still there. See check_writable for what is not replaced.

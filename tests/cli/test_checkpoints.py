@@ -107,6 +107,17 @@ def test_a_checkpoint_only_where_the_run_is_interrupted(tmp_path):
     assert lines[0].startswith(b"MFV checkpoint of mfv ") and b"case.nml: 1 of 2 steps" in lines[1]
 
 
+def test_a_part_of_a_run_does_not_replace_a_whole_result(tmp_path):
+    write_case(tmp_path, nodes=41, cycles=1)
+    assert run(tmp_path)[0] == COMPLETE
+    whole = (tmp_path / "case.h5").read_bytes()
+    write_case(tmp_path, cycles=3000)
+    code, output, errors = stop_after(tmp_path, 0.7, signal.SIGINT)
+    assert code == INTERRUPTED and "case.checkpoint keeps where the run is" in errors
+    assert "result              not written: case.h5 is whole, and stays as it was" in output
+    assert (tmp_path / "case.h5").read_bytes() == whole
+
+
 def test_without_a_checkpoint_a_run_begins_at_the_beginning(tmp_path):
     write_case(tmp_path, nodes=41, cycles=1)
     code, _, errors = run(tmp_path, "--resume")

@@ -8,7 +8,7 @@ module mfv_result_file
    use mfv_strings, only: string_type
    implicit none
    private
-   public :: check_writable, write_result
+   public :: check_writable, is_whole_result, write_result
 
 contains
 
@@ -19,6 +19,13 @@ contains
 
       call set_error(error, MFV_INPUT_ERROR, path//' cannot be written: '//hdf5_is_left_out)
    end subroutine check_writable
+
+   !> Whether there is a result: false, always.
+   logical function is_whole_result(path)
+      character(*), intent(in) :: path
+
+      is_whole_result = .false. .and. len(path) > 0
+   end function is_whole_result
 
    !> Error MFV_FILE_ERROR, always.
    subroutine write_result(path, case, simulation, warnings, error)
