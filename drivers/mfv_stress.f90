@@ -137,7 +137,7 @@ contains
    end subroutine read_arguments
 
    !> The number in argument `i`, at least `lower`.
-   real(wp) function number(i, option, lower, whole)
+   real(wp) function number(i, option, lower, whole) result(value)
       integer, intent(in) :: i
       character(*), intent(in) :: option
       real(wp), intent(in) :: lower
@@ -149,9 +149,9 @@ contains
       kind = ' a number above 0 and at most '//to_text(most)
       if (present(whole)) kind = ' a whole number from '//to_text(nint(lower))//' to '//to_text(nint(most))
       call get_argument(i, text)
-      call read_real(text, number, is_right)
-      if (is_right .and. present(whole)) is_right = .not. abs(number - anint(number)) > 0.0_wp
-      if (.not. (is_right .and. number >= lower .and. number <= most)) &
+      call read_real(text, value, is_right)
+      if (is_right .and. present(whole)) is_right = .not. abs(value - anint(value)) > 0.0_wp
+      if (.not. (is_right .and. value >= lower .and. value <= most)) &
          call refuse('mfv_stress', usage, option//" needs"//kind//", not '"//shortened(text)//"'")
    end function number
 

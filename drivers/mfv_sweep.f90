@@ -152,12 +152,12 @@ contains
    end subroutine read_option
 
    !> A whole number, 0 where the text is none.
-   integer function whole(digits)
+   integer function whole(digits) result(value)
       character(*), intent(in) :: digits
       logical :: is_right
 
-      whole = 0
-      if (verify(digits, '0123456789') == 0) call read_whole(digits, whole, is_right)
+      value = 0
+      if (verify(digits, '0123456789') == 0) call read_whole(digits, value, is_right)
    end function whole
 
    !> Validate, and say what there is to do.

@@ -16,5 +16,5 @@ for preset in "${@:-release}"; do
   build "$preset"
   say "testing preset $preset"
   cd "$root"
-  ctest --preset "$preset"
+  ctest --preset "$preset" --parallel "$jobs"
 done
