@@ -257,12 +257,12 @@ static void write_it(story *self) {
 }
 
 static void ask(story *self) {
+  char message[LONGEST_MESSAGE] = ""; /* of the run: a question that is refused has another */
+  mfv_message(self->handle, message, sizeof message);
   if (chance(&self->random, 0.2)) ask_for_fields(self);
   if (chance(&self->random, 0.1)) ask_for_stresses(self);
   if (chance(&self->random, 0.02)) write_it(self);
   if (mfv_copy_real(self->handle, "certificate/largest", &self->out.certificate, 1) != MFV_COMPLETE) wrong(self, "no certificate");
-  char message[LONGEST_MESSAGE] = "";
-  mfv_message(self->handle, message, sizeof message);
   self->out.was_told = self->out.status == MFV_NO_CONTINUATION && strstr(message, "no longer satisfied") != NULL;
   if (!(self->out.certificate <= self->made->limit) && !self->out.was_bad && !self->out.was_told)
     wrong(self, "the certificate is %.3g, outcome %d", self->out.certificate, self->out.status);
