@@ -3,6 +3,7 @@ import os
 import random
 import signal
 import subprocess
+import time
 from pathlib import Path
 
 import h5py
@@ -70,19 +71,35 @@ def stop_after(folder, seconds, how, *options):
     return process.returncode, output, errors
 
 
+def stop_when_under_way(folder, how, name="case"):
+    """Start the case and stop it when its first checkpoint is there; its exit code, and what it said."""
+    process = start(folder)
+    last = time.monotonic() + 60
+    while not (folder / f"{name}.checkpoint").exists() and process.poll() is None and time.monotonic() < last:
+        time.sleep(0.005)
+    process.send_signal(how)
+    output, errors = process.communicate(timeout=300)
+    return process.returncode, output, errors
+
+
 @pytest.mark.parametrize("name", RUNS)
 def test_a_run_that_is_stopped_again_and_again(tmp_path, name):
     write_case(tmp_path, *RUNS[name])
+    started = time.monotonic()
     assert run(tmp_path)[0] == COMPLETE
+    seconds, stops = 0.5 * (time.monotonic() - started), 0
     expected = datasets(tmp_path / "case.h5")
     (tmp_path / "case.h5").rename(tmp_path / "expected.h5")
     draw = random.Random(name)
-    seconds, stops = 0.05, 0
     while True:
         how = draw.choice([signal.SIGKILL, signal.SIGKILL, signal.SIGINT, signal.SIGTERM])
         code, output, errors = stop_after(tmp_path, draw.uniform(0.5, 1.5) * seconds, how, "--resume")
-        if code == COMPLETE:
+        if code == COMPLETE and stops > 0:
             break
+        if code == COMPLETE:  # faster than the undisturbed run: once more, and sooner
+            (tmp_path / "case.h5").unlink()
+            seconds *= 0.5
+            continue
         stops += 1
         if code > 0:
             assert code == INTERRUPTED and "case.checkpoint keeps where the run is" in errors, errors
@@ -90,8 +107,7 @@ def test_a_run_that_is_stopped_again_and_again(tmp_path, name):
                 assert result.attrs["outcome"] == "interrupted"
         else:
             assert code == -how, errors
-        seconds = min(1.3 * seconds, 0.2)  # to begin with it may be stopped before its first checkpoint
-    assert stops >= 1
+        seconds *= 1.2  # to begin with it may be stopped before its first checkpoint
     assert datasets(tmp_path / "case.h5") == expected
     assert not (tmp_path / "case.checkpoint").exists()
 
@@ -102,7 +118,7 @@ def test_a_checkpoint_only_where_the_run_is_interrupted(tmp_path):
     path.write_text(path.read_text().replace("checkpoint_minutes=3e-4", "checkpoint_minutes=0"))
     assert stop_after(tmp_path, 0.7, signal.SIGKILL)[0] == -signal.SIGKILL
     assert not (tmp_path / "case.checkpoint").exists()
-    assert stop_after(tmp_path, 0.7, signal.SIGTERM)[0] == INTERRUPTED
+    assert stop_after(tmp_path, 1.5, signal.SIGTERM)[0] == INTERRUPTED
     lines = (tmp_path / "case.checkpoint").read_bytes().split(b"\n")
     assert lines[0].startswith(b"MFV checkpoint of mfv ") and b"case.nml: 1 of 2 steps" in lines[1]
 
@@ -112,7 +128,7 @@ def test_a_part_of_a_run_does_not_replace_a_whole_result(tmp_path):
     assert run(tmp_path)[0] == COMPLETE
     whole = (tmp_path / "case.h5").read_bytes()
     write_case(tmp_path, cycles=3000)
-    code, output, errors = stop_after(tmp_path, 0.7, signal.SIGINT)
+    code, output, errors = stop_when_under_way(tmp_path, signal.SIGINT)
     assert code == INTERRUPTED and "case.checkpoint keeps where the run is" in errors
     assert "result              not written: case.h5 is whole, and stays as it was" in output
     assert (tmp_path / "case.h5").read_bytes() == whole
@@ -132,7 +148,7 @@ def test_without_a_checkpoint_a_run_begins_at_the_beginning(tmp_path):
 ])
 def test_a_checkpoint_that_cannot_be_used_is_refused(tmp_path, content, why):
     write_case(tmp_path, cycles=3000)
-    assert stop_after(tmp_path, 0.5, signal.SIGTERM)[0] == INTERRUPTED
+    assert stop_when_under_way(tmp_path, signal.SIGTERM)[0] == INTERRUPTED
     result = (tmp_path / "case.h5").read_bytes()
     if content is None:
         write_case(tmp_path, cycles=2999)
@@ -146,7 +162,7 @@ def test_a_checkpoint_that_cannot_be_used_is_refused(tmp_path, content, why):
 
 def test_a_checkpoint_goes_with_a_complete_run(tmp_path):
     write_case(tmp_path, cycles=3000)
-    assert stop_after(tmp_path, 0.5, signal.SIGTERM)[0] == INTERRUPTED
+    assert stop_when_under_way(tmp_path, signal.SIGTERM)[0] == INTERRUPTED
     write_case(tmp_path, nodes=41, cycles=1)
     assert run(tmp_path)[0] == COMPLETE
     assert not (tmp_path / "case.checkpoint").exists()
@@ -169,7 +185,7 @@ def test_results_with_other_extensions_have_checkpoints_of_their_own(tmp_path):
     text = path.read_text()
     for name in ("mu0.3", "mu0.5", "x.checkpoint"):
         path.write_text(text.replace("&output", f"&output file='{name}',"))
-        code, _, errors = stop_after(tmp_path, 0.5, signal.SIGTERM)
+        code, _, errors = stop_when_under_way(tmp_path, signal.SIGTERM, name)
         assert code == INTERRUPTED and errors.startswith(f"{name}.checkpoint keeps where the run is")
     assert sorted(file.name for file in tmp_path.iterdir()) == sorted(
         ["case.nml"] + [name + end for name in ("mu0.3", "mu0.5", "x.checkpoint") for end in ("", ".checkpoint")])
