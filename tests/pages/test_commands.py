@@ -154,6 +154,7 @@ def test_only_a_difference_ends_with_1(
     arguments = ["compare", str(tmp_path / "a.h5"), str(tmp_path / "a.h5"), "--no-picture", "--tolerance", "1e-3"]
     assert main(arguments) == 2
     assert "it is without the group mesh, the group scene, the group summary" in capsys.readouterr().err
+    (tmp_path / "a.h5").unlink()
     solved(tmp_path / "a.h5")
     monkeypatch.setattr("mfv.compare.compare", lambda *_: 1 // 0)
     assert main(arguments) == 2
