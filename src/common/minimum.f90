@@ -1,5 +1,6 @@
 !> The minimum of a function of several variables, by GSL's simplex search (Nelder and Mead).
 module mfv_minimum
+   use, intrinsic :: ieee_arithmetic, only: ieee_is_finite
    use, intrinsic :: iso_c_binding, only: c_double, c_f_pointer, c_funloc, c_loc, c_ptr, c_size_t
    use mfv_gsl
    use mfv_kinds, only: wp
@@ -88,7 +89,7 @@ contains
       end do
    end function values_of
 
-   !> The function as GSL calls it.
+   !> The function as GSL calls it, which ends the process where a value is not finite.
    function evaluate_objective(x, params) result(value) bind(C, name='')
       type(c_ptr), value :: x, params
       real(c_double) :: value
@@ -96,6 +97,7 @@ contains
 
       call c_f_pointer(params, context)
       value = context%objective%value(values_of(x, context%variables))
+      if (.not. ieee_is_finite(value)) value = huge(value)
    end function evaluate_objective
 
 end module mfv_minimum

@@ -83,6 +83,8 @@ contains
       type(error_type), allocatable, intent(out) :: error
       integer(hid_t) :: file
       character(:), allocatable :: text, source, directory, state
+      !> No result has larger numbers; products of them would overflow.
+      real(wp), parameter :: largest_size = 1.0e100_wp
       real(wp), allocatable :: arc(:), width(:), pressure(:), shear(:)
       logical :: available
 
@@ -111,6 +113,10 @@ contains
       if (.not. allocated(error)) call read_vector(file, state//'/pressure', size(arc), pressure, error)
       if (.not. allocated(error)) call read_vector(file, state//'/shear', size(arc), shear, error)
       call close_read(file)
+      if (.not. allocated(error)) then
+         if (any([abs(arc), abs(width), abs(pressure), abs(shear)] > largest_size)) &
+            call set_error(error, MFV_INPUT_ERROR, 'mesh or '//state//' has values beyond 1e100')
+      end if
       if (.not. allocated(error)) call read_case_text(text, path_from(directory, source), case, error, &
                                                      without_steps=.true.)
       if (allocated(error)) return

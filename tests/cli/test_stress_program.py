@@ -110,6 +110,14 @@ def test_states_without_load_or_steps(folder):
         assert (folder / "light.h5").read_bytes() == before
 
 
+def test_numbers_that_no_result_has_are_refused(folder):
+    # Found by fuzzing: the search for the largest stress met no finite value, and GSL ended the program.
+    with h5py.File(folder / "case.h5", "r+") as result:
+        result["state/pressure"][...] *= 1e200
+    run = stress("case.h5", cwd=folder)
+    assert run.returncode == 2 and run.stderr == "case.h5: mesh or state has values beyond 1e100\n"
+
+
 def test_help_teaches():
     run = stress("--help", cwd=ROOT)
     assert run.returncode == 0 and "largest von Mises" in run.stdout
