@@ -204,7 +204,7 @@ def family_text(data: dict[str, Any]) -> str:
             )
     head = ["coupling", "nodes in contact", "iterations of fft", "fft, an event", "reduced, an event", "reduced/fft"]
     return f"""`auto` takes, by the number of nodes of the mesh, reduced up to {_most("coupled")} and fft beyond (events, full coupling), {_most("one_way")} with Goodman's coupling, {_most("apart")}
-decoupled; up to {_most("at_once")} where there are no events (no friction, leaps without coupling), {_most("bristles")} under Dahl's law and for leaps with coupling. A user's
+decoupled; up to {_most("at_once")} where there are no events (no friction, large increments without coupling), {_most("bristles")} under Dahl's law and for large increments with coupling. A user's
 matrix is always reduced.
 
 Reduced against fft on the same short history, {EVENTS["fft"]} nodes or so beginning to slip, factorisation included:

@@ -20,7 +20,7 @@ program run_conventional
       'Solve one case with the conventional algorithm, whatever algorithm it names, to compare with', &
       "mfv_run. The case is one for mfv_run; '_conventional' comes to the name of its result file.", &
       '', &
-      'The load goes on by the load_step of &solver, a part of each straight part of the load history; at', &
+      'The load goes on by the load_step of &solver, a part of each load segment; at', &
       'every load the statuses of nodes are repaired one at a time, at most iterations times. Only the', &
       'ends of load steps are admissible, and even there the result depends on the load step. The same is', &
       "done by mfv_run with algorithm='conventional' in &solver.", &

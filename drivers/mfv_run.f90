@@ -18,7 +18,7 @@ program mfv_run
 
    !> How it is used, and what --help adds: one line an element. The manual page is made from both (docs/man).
    character(*), parameter :: usage(*) = [character(len=100) :: &
-      'usage: mfv_run [--estimate] [--resume] CASE.nml', &
+      'usage: mfv_run [--estimate] [--sensitivity] [--resume] CASE.nml', &
       '       mfv_run --advise error=1e-2 [of=stick_ratio,dissipation] CASE.nml', &
       '       mfv_run --check CASE.nml', &
       '       mfv_run --keys | --version | --help' &
@@ -46,13 +46,16 @@ program mfv_run
       'Options:', &
       '  --estimate   solve the case on coarser meshes too, and put error bars on half-width, stick ratio,', &
       '               peak tractions and dissipation; takes about twice the time', &
+      '  --sensitivity  solve the case once more with all coefficients of friction times 1 + 1e-12,', &
+      '               and print by how much tractions, dissipation and stick ratio change: static and', &
+      '               kinetic friction can be chaotic', &
       '  --resume     go on from the checkpoint that an interrupted or killed run of the case has left,', &
       '               with the same digits as if it had not stopped; where there is none, from its', &
       '               beginning', &
       '  --advise     print the number of nodes, and the linear solver, that an error takes, from coarse', &
       '               meshes; the case itself is not solved. error=E: the wanted error, relative, such as', &
       '               1e-2. of=LIST: quantities that it is for, separated by commas: pressure, shear,', &
-      '               half_width, stick_ratio, dissipation; all unless told', &
+      '               half_width, stick_ratio, dissipation; all by default', &
       '  --check      read and validate the case only; nothing is solved or written', &
       '  --keys       print every group and key of a case, as tables in Markdown', &
       '  --version    print the version', &
@@ -87,6 +90,7 @@ program mfv_run
       '  python -m mfv plot case.h5 -o case.png        # draw it', &
       '  mfv_stress case.h5                            # stresses inside the lower body, into case.h5', &
       '  mfv_run --estimate case.nml                   # with error bars', &
+      '  mfv_run --sensitivity case.nml                # does round-off decide the result?', &
       '  mfv_run --advise error=1e-2 of=shear case.nml # how fine a mesh?', &
       '', &
       'See also:', &
@@ -118,16 +122,19 @@ contains
    !> Solve the case that is the last argument, after options in any order.
    subroutine solve_case()
       character(:), allocatable :: path, argument
-      logical :: estimate, resume
+      logical :: estimate, sensitivity, resume
       integer :: i
 
       estimate = .false.
+      sensitivity = .false.
       resume = .false.
       do i = 1, command_argument_count() - 1
          call get_argument(i, argument)
          select case (argument)
          case ('--estimate')
             estimate = .true.
+         case ('--sensitivity')
+            sensitivity = .true.
          case ('--resume')
             resume = .true.
          case default
@@ -136,7 +143,7 @@ contains
          end select
       end do
       call get_case(max(command_argument_count(), 1), path)
-      call run_case(path, estimate=estimate, resume=resume)
+      call run_case(path, estimate=estimate, sensitivity=sensitivity, resume=resume)
    end subroutine solve_case
 
    !> Argument `number`, which must be the case and the last one.
@@ -146,7 +153,8 @@ contains
 
       call expect_arguments(number)
       call get_argument(number, path)
-      if (any(path == ['--estimate', '--resume  '])) call refuse('mfv_run', usage, 'a case file is missing')
+      if (any(path == [character(13) :: '--estimate', '--sensitivity', '--resume'])) &
+         call refuse('mfv_run', usage, 'a case file is missing')
       if (index(path, '-') == 1) call refuse_option('mfv_run', usage, help, path)
    end subroutine get_case
 

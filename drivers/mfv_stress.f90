@@ -1,5 +1,6 @@
 !> mfv_stress: stresses inside the bodies of a result, into its file.
 program mfv_stress
+   use, intrinsic :: ieee_arithmetic, only: ieee_is_finite
    use, intrinsic :: iso_fortran_env, only: error_unit
    use mfv_error, only: error_type
    use mfv_help, only: print_lines, refuse, refuse_option
@@ -26,7 +27,7 @@ program mfv_stress
       '', &
       'Compute the stresses inside a body from the surface tractions of a result, by closed forms for', &
       'half-planes, disks and holes, and put them into the result file, under /stress/last/lower and so', &
-      'on, with the largest von Mises stress and its place, found by refinement.', &
+      'on, with the largest von Mises stress, the largest tension along the surface and their places.', &
       '', &
       'A result is what mfv_run has written:', &
       '', &
@@ -35,12 +36,12 @@ program mfv_stress
       '  python -m mfv plot disk_on_plane.h5 --stress von_mises', &
       '', &
       'Options:', &
-      '  --body lower|upper   which body; lower unless told', &
-      '  --step N             in the state kept in /steps/000N; the last one unless told', &
+      '  --body lower|upper   which body; lower by default', &
+      '  --step N             in the state kept in /steps/000N; by default the last one', &
       '  --width W            on a grid that goes W contact half-widths to either side of the contact; 2', &
-      '                       unless told', &
-      '  --depth D            and D contact half-widths deep, along the surface; 2 unless told', &
-      '  --points NX NY       of NX by NY points; 161 81 unless told', &
+      '                       by default', &
+      '  --depth D            and D contact half-widths deep, along the surface; 2 by default', &
+      '  --points NX NY       of NX by NY points; 161 81 by default', &
       '  --at POINTS.txt      at the points of a text file instead, x and y a line, y up from the contact;', &
       '                       the stresses there are printed too', &
       '  --version            print the version', &
@@ -50,7 +51,8 @@ program mfv_stress
       '  sigma_xx, sigma_yy, sigma_xy               Cartesian components, positive in tension', &
       '  sigma_zz                                   across the plane', &
       '  principal_1, principal_2                   principal stresses in the plane', &
-      '  von_mises                                  equivalent stress', &
+      '  principal_angle                            direction of principal_1 from the x axis, radians', &
+      '  von_mises, tresca                          equivalent stresses; sigma_zz counts in both', &
       '  sigma_rr, sigma_thetatheta, sigma_rtheta   polar components, of disks and holes', &
       '', &
       'Exit codes:', &
@@ -167,13 +169,18 @@ contains
    end subroutine print_points
 
    subroutine print_summary()
-      character(:), allocatable :: place, unit
+      character(:), allocatable :: unit
 
       unit = unit_suffix(result%stress_unit)
-      place = to_text(result%largest%x)//', '//to_text(result%largest%y)//unit_suffix(result%length_unit)
-      call print_line('largest von Mises   '//to_text(result%largest%value)//unit//' = '// &
-         to_text(result%largest%value/result%largest_pressure, 4)//' p0, at x, y = '//place//' = '// &
-         to_text(result%largest%x/result%half_width, 4)//', '//to_text(result%largest%y/result%half_width, 4)//' a')
+      call print_line('largest von Mises   '//described(result%largest%value, result%largest%x, result%largest%y))
+      if (.not. ieee_is_finite(result%tension%value)) then
+         call print_line('largest tension     singular: the surface of a body ends where it carries shear')
+      else if (result%tension%value > 0.0_wp) then
+         call print_line('largest tension     '//described(result%tension%value, result%tension%x, result%tension%y)// &
+            ', along the surface')
+      else
+         call print_line('largest tension     0'//unit//': no tension along the surface')
+      end if
       if (result%yield_strength > 0.0_wp .and. result%largest%value > result%yield_strength) &
          write (error_unit, '(a)') 'warning: the largest von Mises stress, '//to_text(result%largest%value, 4)//unit// &
          ', is beyond the yield_strength '//to_text(result%yield_strength)//unit//' of the '// &
@@ -181,5 +188,15 @@ contains
       call print_line('stresses            '//to_text(stress_count)//' quantities at '// &
          to_text(size(result%stress, 2))//' points, in '//path//' under /'//result%group)
    end subroutine print_summary
+
+   !> A stress and its place, in the user's units and over those of the contact.
+   function described(value, x, y) result(text)
+      real(wp), intent(in) :: value, x, y
+      character(:), allocatable :: text
+
+      text = to_text(value)//unit_suffix(result%stress_unit)//' = '//to_text(value/result%largest_pressure, 4)// &
+             ' p0, at x, y = '//to_text(x)//', '//to_text(y)//unit_suffix(result%length_unit)//' = '// &
+             to_text(x/result%half_width, 4)//', '//to_text(y/result%half_width, 4)//' a'
+   end function described
 
 end program mfv_stress

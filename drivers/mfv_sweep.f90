@@ -44,7 +44,7 @@ program mfv_sweep
       'Keys in one &vary move together, here forth and back; the last &vary runs fastest.', &
       '', &
       'Options:', &
-      '  --threads N     cases at a time; OMP_NUM_THREADS, or all processors, unless told', &
+      '  --threads N     cases at a time; by default OMP_NUM_THREADS, or all processors', &
       '  --again         solve all cases, those that are there already as well', &
       '  --part I/N      solve part I of N only, such as 3/16, for queues; a later run gathers the parts', &
       '  --check         validate, and say which cases there are; nothing is solved or written', &

@@ -13,6 +13,7 @@ module mfv_run_case
    use mfv_one_thread, only: use_one_thread
    use mfv_output, only: print_line, print_text
    use mfv_result_file, only: check_writable, is_whole_result, write_result
+   use mfv_sensitivity, only: find_sensitivity
    use mfv_simulation, only: new_simulation, simulation_type
    use mfv_status
    use mfv_strings, only: string_type
@@ -27,13 +28,13 @@ contains
 
    !> Read the case in the file `path`, solve it, write its result (where the library has HDF5) and print the summary; the program
    !> then ends with the exit code of the outcome. `algorithm`: in place of the case's own; `suffix` then comes to the name of the result file.
-   !> `estimate`: whether the discretisation error is estimated even where the case does not ask for it; `resume`: whether to go on
-   !> from a checkpoint.
-   subroutine run_case(path, algorithm, suffix, estimate, resume)
+   !> `estimate`, `sensitivity`: whether the discretisation error and the sensitivity to round-off are found out even where the case does
+   !> not ask for them; `resume`: whether to go on from a checkpoint.
+   subroutine run_case(path, algorithm, suffix, estimate, sensitivity, resume)
       character(*), intent(in) :: path
       integer, intent(in), optional :: algorithm
       character(*), intent(in), optional :: suffix
-      logical, intent(in), optional :: estimate, resume
+      logical, intent(in), optional :: estimate, sensitivity, resume
       type(case_type) :: case
       type(checkpoint_type) :: checkpoint
       type(simulation_type) :: simulation
@@ -49,6 +50,7 @@ contains
       if (present(algorithm)) case%scene%method%algorithm = algorithm
       if (present(suffix)) case%result_path = with_suffix(case%result_path, suffix)
       if (present(estimate)) call ask_for_estimate(case, estimate, error)
+      if (.not. allocated(error) .and. present(sensitivity)) call ask_for_sensitivity(case, sensitivity, error)
       if (allocated(error)) call fail(error)
       if (has_hdf5) call check_writable(case%result_path, error)
       if (allocated(error)) then
@@ -66,6 +68,10 @@ contains
       if (case%error_estimate) then
          observer%work = 'coarser meshes: '
          call estimate_error(simulation, observer)
+      end if
+      if (case%sensitivity .and. .not. was_interrupted(simulation)) then
+         observer%work = 'perturbed friction: '
+         call find_sensitivity(simulation, observer)
       end if
       call observer%clear()
       if (was_interrupted(simulation)) call keep_run(checkpoint, simulation, observer)
@@ -104,13 +110,25 @@ contains
          call set_error(error, MFV_INPUT_ERROR, case%source//": --estimate: a body with shape='matrix' has no coarser mesh")
    end subroutine ask_for_estimate
 
-   !> Whether a run that was complete was interrupted while its error was estimated.
+   !> Have the sensitivity found out. Error MFV_INPUT_ERROR for a case without friction.
+   subroutine ask_for_sensitivity(case, sensitivity, error)
+      type(case_type), intent(inout) :: case
+      logical, intent(in) :: sensitivity
+      type(error_type), allocatable, intent(out) :: error
+
+      case%sensitivity = case%sensitivity .or. sensitivity
+      if (case%sensitivity .and. .not. case%scene%friction%acts()) &
+         call set_error(error, MFV_INPUT_ERROR, case%source//': --sensitivity: the case has no friction to perturb')
+   end subroutine ask_for_sensitivity
+
+   !> Whether a run that was complete was interrupted while its error or its sensitivity was found out.
    pure logical function was_interrupted(simulation)
       type(simulation_type), intent(in) :: simulation
 
       was_interrupted = .false.
       if (simulation%outcome == MFV_INTERRUPTED) return
       if (allocated(simulation%estimate)) was_interrupted = simulation%estimate%status == MFV_INTERRUPTED
+      if (allocated(simulation%sensitivity)) was_interrupted = was_interrupted .or. simulation%sensitivity%status == MFV_INTERRUPTED
    end function was_interrupted
 
    !> The name of a file with a suffix before its extension.

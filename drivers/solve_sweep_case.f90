@@ -4,6 +4,7 @@ module mfv_solve_sweep_case
    use mfv_case, only: case_type
    use mfv_contact_state, only: contact_state_type
    use mfv_discretisation_error, only: estimate_error
+   use mfv_sensitivity, only: find_sensitivity
    use mfv_error, only: error_type
    use mfv_kinds, only: wp
    use mfv_observer, only: observer_type
@@ -83,6 +84,7 @@ contains
       type(string_type), allocatable :: warnings(:)
 
       if (case%error_estimate) call estimate_error(simulation, observer)
+      if (case%sensitivity) call find_sensitivity(simulation, observer)
       if (is_interrupted()) return
       call validity_warnings(simulation, warnings)
       !$omp critical (mfv_hdf5)

@@ -2,7 +2,7 @@
  *
  * A case is made from a scene that is built by calls, or from a namelist text or file (docs/namelist.md); run, or advanced
  * step by step; and asked for its fields by the same paths as in the result file (docs/file-format.md), "state/pressure"
- * for one; the scales that the file repeats in every group are "mesh/x", "history/record" and "cycles/cycle" alone.
+ * for one; the scales that the file repeats in every group are "mesh/x", "history/record", "cycles/cycle" and "patches/patch" alone.
  *
  * Units: any consistent set; forces and energies per unit thickness. Every call returns a status; mfv_message tells more.
  * The library never prints and never stops the process. Handles are independent of each other; a handle is used by one call at a
@@ -134,7 +134,7 @@ typedef struct mfv_loads {
   size_t size;             /* sizeof(mfv_loads) */
   double normal_force;     /* P [force/length] */
   double tangential_force; /* Q [force/length], on the lower body to the right */
-  double moment;           /* M [force], counterclockwise; 0 where rotation is not modelled */
+  double moment;           /* M [force], counterclockwise, about the centre of rotation */
   double approach;         /* of the upper body [length] */
   double shift;            /* of the upper body to the right [length] */
   double rotation;         /* of the upper body [radians], counterclockwise */
@@ -173,7 +173,7 @@ int mfv_state_free(mfv_state **state);
 /* What an observer is told after every increment of the load. */
 typedef struct mfv_progress {
   size_t size;             /* sizeof(mfv_progress) of the library */
-  double fraction;         /* of this straight part of the load history */
+  double fraction;         /* of this load segment */
   int segment, segments;   /* number of this part, from 1, and how many there are */
   int contact_nodes, stick_nodes;
   double normal_force, tangential_force; /* [force/length] */
@@ -192,7 +192,8 @@ int mfv_field_count(const mfv_case *handle, size_t *count);
 int mfv_field_path(const mfv_case *handle, size_t index, char *buffer, size_t size);
 
 /* What the values of a field run along. */
-enum { MFV_ALONG_NOTHING = 0, MFV_ALONG_NODES = 1, MFV_ALONG_RECORDS = 2, MFV_ALONG_COMPANIONS = 3, MFV_ALONG_CYCLES = 4 };
+enum { MFV_ALONG_NOTHING = 0, MFV_ALONG_NODES = 1, MFV_ALONG_RECORDS = 2, MFV_ALONG_COMPANIONS = 3, MFV_ALONG_CYCLES = 4,
+       MFV_ALONG_PATCHES = 5 };
 
 /* Of the field at `path`: number of values (1 for a scalar), whether they are whole numbers, what they run along, unit and
  * description; every out argument may be NULL. Since 0.1.0. */
@@ -213,11 +214,12 @@ int mfv_copy_integer(const mfv_case *handle, const char *path, int32_t *values, 
 enum { MFV_LOWER = 0, MFV_UPPER = 1 };
 
 /* Stresses at a point [force/length^2], positive in tension: what a point has in mfv_stress. sigma_zz: across the plane;
- * principal stresses in the plane; the last three in polar components about the centre of a disk or hole,
- * counterclockwise (NaN in a half-plane). */
+ * principal stresses in the plane; three in polar components about the centre of a disk or hole, counterclockwise (NaN in a
+ * half-plane); Tresca: the largest difference of the three principal stresses, sigma_zz among them; the direction of
+ * principal_1 from the x axis, counterclockwise [radians]. */
 enum {
   MFV_SIGMA_XX, MFV_SIGMA_YY, MFV_SIGMA_XY, MFV_SIGMA_ZZ, MFV_PRINCIPAL_1, MFV_PRINCIPAL_2, MFV_VON_MISES,
-  MFV_SIGMA_RR, MFV_SIGMA_THETATHETA, MFV_SIGMA_RTHETA, MFV_STRESS_COUNT
+  MFV_SIGMA_RR, MFV_SIGMA_THETATHETA, MFV_SIGMA_RTHETA, MFV_TRESCA, MFV_PRINCIPAL_ANGLE, MFV_STRESS_COUNT
 };
 
 /* Stresses inside a body (MFV_LOWER or MFV_UPPER) in the present state (step = 0) or in that of steps/000N (step = N), at
@@ -228,12 +230,18 @@ int mfv_stress(mfv_case *handle, int body, int step, size_t count, const double 
 /* The largest von Mises stress of the body, found by refinement: place = {stress, x, y}. Since 0.1.0. */
 int mfv_largest_von_mises(mfv_case *handle, int body, int step, double *place);
 
-/* Both for tractions of the caller's, such as those of a result file: pressure and shear (on the lower body, to the right)
- * on `nodes` intervals of the lengths width[] around the positions arc[] along the surface. stresses or place may be
- * NULL. Since 0.1.0. */
+/* The largest tension along the surface of the body: place = {stress, x, y}. The stress is NaN where it is singular (the
+ * surface of a body ends where it carries shear); x and y are NaN where there is no tension. Since 0.1.0. */
+int mfv_largest_tension(mfv_case *handle, int body, int step, double *place);
+
+/* All of these for tractions of the caller's, such as those of a result file: pressure and shear (on the lower body, to the
+ * right) at `nodes` nodes with intervals of the lengths width[] around the positions arc[] along the surface. contact_edge,
+ * stick_edge: edges of contact and stick zones between the nodes, the left and the right one of each zone in turn, at any
+ * nodes in ascending order, NaN at all others (state/contact_edge and state/stick_edge); or NULL: zones end with the
+ * intervals of their nodes. stresses, place and tension may be NULL. Since 0.1.0. */
 int mfv_stress_under(mfv_case *handle, int body, size_t nodes, const double *arc, const double *width,
-                     const double *pressure, const double *shear, size_t count, const double *x, const double *y,
-                     double *stresses, double *place);
+                     const double *pressure, const double *shear, const double *contact_edge, const double *stick_edge,
+                     size_t count, const double *x, const double *y, double *stresses, double *place, double *tension);
 
 /* Write the result file (HDF5) to `path`, or where the case's &output says when `path` is NULL. An existing file is
  * replaced only by a complete one. Since 0.1.0. */
@@ -251,6 +259,32 @@ double mfv_mindlin_stick_ratio(double tangential_force, double normal_force, dou
 double mfv_mindlin_shear(double x, double tangential_force, double normal_force, double half_width, double friction_coefficient);
 double mfv_mindlin_dissipation(double tangential_force, double normal_force, double half_width, double radius,
                                double friction_coefficient);
+
+/* Two elastically similar cylinders in steady rolling under constant P and Q (Carter 1926). The contact rolls to the right, x is
+ * measured from its middle; rolling to the left: shear at -x, -creepage. Creepage: sliding of the upper surface over the lower one
+ * per rolled distance. 1/radius = 1/R1 + 1/R2. NaN beyond |Q| = mu P. Since 0.1.0. */
+double mfv_carter_creepage(double tangential_force, double normal_force, double half_width, double radius,
+                           double friction_coefficient);
+double mfv_carter_shear(double x, double tangential_force, double normal_force, double half_width, double friction_coefficient);
+
+/* Bodies of the shape C |x|^exponent, exponent from 1 (a wedge with flanks of the angle atan C) to 100, and flat ones of the
+ * half-width flat_half_width with edges of edge_radius (Ciavarella, Hills and Monno 1998), pressed, then sheared. approach: as of
+ * a half-plane's surface point at the distance datum. stick_ratio: width of the stick zone over that of the contact. Since 0.1.0. */
+double mfv_power_half_width(double normal_force, double coefficient, double exponent, double shear_modulus,
+                            double kolosov_constant);
+double mfv_power_approach(double half_width, double coefficient, double exponent, double datum);
+double mfv_power_pressure(double x, double normal_force, double half_width, double exponent);
+double mfv_power_stick_ratio(double tangential_force, double normal_force, double friction_coefficient, double exponent);
+double mfv_power_shear(double x, double tangential_force, double normal_force, double half_width, double friction_coefficient,
+                       double exponent);
+double mfv_rounded_punch_half_width(double normal_force, double flat_half_width, double edge_radius, double shear_modulus,
+                                    double kolosov_constant);
+double mfv_rounded_punch_approach(double half_width, double flat_half_width, double edge_radius, double datum);
+double mfv_rounded_punch_pressure(double x, double normal_force, double half_width, double flat_half_width);
+double mfv_rounded_punch_stick_ratio(double tangential_force, double normal_force, double friction_coefficient,
+                                     double half_width, double flat_half_width);
+double mfv_rounded_punch_shear(double x, double tangential_force, double normal_force, double half_width,
+                               double friction_coefficient, double flat_half_width);
 
 /* Pin in a bore of one material in plane strain, without friction (Persson): force at which the contact reaches half_angle
  * [radians] to either side; clearance: by how much the bore's radius is larger. NaN beyond some 85 degrees. Contact arc

@@ -3,7 +3,7 @@
 . "$(dirname "$0")/common.sh"
 install_missing
 build release
-python_environment
+python_environment report
 mkdir -p "$root/build/demo"
 cd "$root/build/demo"
 say "solving examples/mindlin.nml"

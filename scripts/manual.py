@@ -27,7 +27,7 @@ TEXTS = {
     "mfv_sweep": ("mfv_sweep", "docs/sweep.md", "text of a sweep over cases of contact, with every key"),
 }
 # Day of the pages: the one on which programs or keys changed last.
-DAY = "2026-11-21"
+DAY = "2026-11-22"
 # A term and its explanation in a list of a help text.
 TERM = r"  (\S.*?) {2,}(\S.*)"
 

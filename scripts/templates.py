@@ -39,7 +39,7 @@ def meanings_of(printed: str) -> Meanings:
             group = line[5:].split()[0]
         elif line.startswith("| `"):
             key, value, default, unit, meaning = (cell.strip().strip("`") for cell in line.strip("|").split(" | "))
-            notes = [value, *([f"in {unit}"] if unit else []), *([f"{default} unless told"] if default != "-" else [])]
+            notes = [value, *([f"in {unit}"] if unit else []), *([f"{default} by default"] if default != "-" else [])]
             found[group, key] = f"{meaning.rstrip(' |')} ({', '.join(notes)})"
     return found
 

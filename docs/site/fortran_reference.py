@@ -144,7 +144,7 @@ def _declared(statement: str) -> list[str]:
     before = None
     while before != rest:
         before, rest = rest, re.sub(r"\([^()]*\)|\[[^][]*\]|'[^']*'|\"[^\"]*\"", "", rest)
-    return [re.match(r"\s*(\w+)", part)[1] for part in rest.split(",")]
+    return [found[1] for part in rest.split(",") if (found := re.match(r"\s*([A-Za-z]\w*)", part))]
 
 
 def _without_comment(line: str) -> str:

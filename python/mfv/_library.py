@@ -46,6 +46,7 @@ class Along(IntEnum):
     RECORDS = 2
     COMPANIONS = 3
     CYCLES = 4
+    PATCHES = 5
 
 
 class StepStructure(ctypes.Structure):
@@ -161,7 +162,8 @@ SIGNATURES: dict[str, tuple[type, ...]] = {
     "mfv_copy_integer": (c_int, _handle, _text, POINTER(c_int32), c_size_t),
     "mfv_stress": (c_int, _handle, c_int, c_int, c_size_t, _array, _array, _array),
     "mfv_largest_von_mises": (c_int, _handle, c_int, c_int, _array),
-    "mfv_stress_under": (c_int, _handle, c_int, c_size_t, *(_array,) * 4, c_size_t, *(_array,) * 4),
+    "mfv_largest_tension": (c_int, _handle, c_int, c_int, _array),
+    "mfv_stress_under": (c_int, _handle, c_int, c_size_t, *(_array,) * 6, c_size_t, *(_array,) * 5),
     "mfv_write": (c_int, _handle, _text),
     "mfv_hertz_half_width": (c_double,) + (c_double,) * 4,
     "mfv_hertz_pressure": (c_double,) + (c_double,) * 3,
@@ -172,6 +174,18 @@ SIGNATURES: dict[str, tuple[type, ...]] = {
     "mfv_mindlin_stick_ratio": (c_double,) + (c_double,) * 3,
     "mfv_mindlin_shear": (c_double,) + (c_double,) * 5,
     "mfv_mindlin_dissipation": (c_double,) + (c_double,) * 5,
+    "mfv_carter_creepage": (c_double,) + (c_double,) * 5,
+    "mfv_carter_shear": (c_double,) + (c_double,) * 5,
+    "mfv_power_half_width": (c_double,) + (c_double,) * 5,
+    "mfv_power_approach": (c_double,) + (c_double,) * 4,
+    "mfv_power_pressure": (c_double,) + (c_double,) * 4,
+    "mfv_power_stick_ratio": (c_double,) + (c_double,) * 4,
+    "mfv_power_shear": (c_double,) + (c_double,) * 6,
+    "mfv_rounded_punch_half_width": (c_double,) + (c_double,) * 5,
+    "mfv_rounded_punch_approach": (c_double,) + (c_double,) * 4,
+    "mfv_rounded_punch_pressure": (c_double,) + (c_double,) * 4,
+    "mfv_rounded_punch_stick_ratio": (c_double,) + (c_double,) * 5,
+    "mfv_rounded_punch_shear": (c_double,) + (c_double,) * 6,
     "mfv_persson_force": (c_double,) + (c_double,) * 4,
     "mfv_yield_contact_arc": (c_double,) + (c_double,) * 3,
 }

@@ -47,9 +47,9 @@ _writing = threading.Lock()
 #: it; it is then observed, which costs about 1 microsecond an increment.
 MANY_NODES, LONG_LAWS = 400, ("weakening", "dahl")
 
-#: Dimensions of fields by what the library says they run along; the companions of an error estimate and cycles come after
+#: Dimensions of fields by what the library says they run along; the companions of an error estimate, cycles and patches come after
 #: those of the header.
-_DIMENSIONS: tuple[tuple[str, ...], ...] = ((), ("x",), ("record",), ("companion_nodes",), ("cycle",))
+_DIMENSIONS: tuple[tuple[str, ...], ...] = ((), ("x",), ("record",), ("companion_nodes",), ("cycle",), ("patch",))
 
 
 #: Plain numbers, which are quicker at hand than members of enumerations.

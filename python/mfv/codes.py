@@ -30,3 +30,4 @@ class EventKind(IntEnum):
     WEAKENED = 9  #: a slipping node's friction has fallen to its last value
     CAUGHT = 10  #: a node that snapped is where its friction law holds again
     CAPPED = 11  #: shear traction on its way down has come to the static limit, because the pressure falls faster
+    DROPPED = 12  #: the end of a stress drop, at the load at which it began

@@ -228,10 +228,10 @@ def _setting_lines(heading: str, settings: list[Setting]) -> list[str]:
     """Settings one a line, as wide as the first ones are."""
     if not settings:
         return [f"{heading}: none"]
-    width = min(48, max(len(_text(first)) for _, first, _ in settings)) + 2
+    width = max(len("first"), min(48, max(len(_text(first)) for _, first, _ in settings))) + 1
     return [
-        f"{heading:34}{'first':{width}}second",
-        *(f"  {name:32}{_text(first):{width}}{_text(second)}".rstrip() for name, first, second in settings),
+        f"{heading:34}{'first':{width}} second",
+        *(f"  {name:31} {_text(first):{width}} {_text(second)}".rstrip() for name, first, second in settings),
     ]
 
 
@@ -242,7 +242,7 @@ def _text(value: Any) -> str:
 
 def _figure(value: float, digits: int = 6) -> str:
     """A number; - where there is none."""
-    return "-" if np.isnan(value) else f"{value:.{digits}g}"
+    return "-" if np.isnan(value) else f"{value or 0.0:.{digits}g}"
 
 
 def _shown(unit: str) -> str:

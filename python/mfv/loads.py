@@ -10,7 +10,7 @@ class Loads(NamedTuple):
 
     normal_force: float  #: P [force/length]
     tangential_force: float  #: Q [force/length], on the lower body to the right
-    moment: float  #: M [force], counterclockwise; 0 where rotation is not modelled
+    moment: float  #: M [force], counterclockwise, about the centre of rotation
     approach: float  #: of the upper body [length]
     shift: float  #: of the upper body to the right [length]
     rotation: float  #: of the upper body [radians], counterclockwise
@@ -25,7 +25,7 @@ class Loads(NamedTuple):
 class Progress(NamedTuple):
     """What an observer is told after every increment of the load."""
 
-    fraction: float  #: of this straight part of the load history
+    fraction: float  #: of this load segment
     segment: int  #: number of this part, from 1
     segments: int  #: how many there are
     contact_nodes: int

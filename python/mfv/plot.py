@@ -1,6 +1,6 @@
 """Pictures of results: numbers as points, closed forms as lines.
 
-`pressure`, `shear`, `surfaces`, `loop`, `nonlinear_loop`, `friction_work`, `turning` and `stress_contours` draw into axes of yours, or
+`pressure`, `shear`, `surfaces`, `loop`, `nonlinear_loop`, `friction_work`, `turning`, `rolling` and `stress_contours` draw into axes of yours, or
 new ones, and return them; `figure` makes a picture of what a result has, `cycles_figure` one of its cycles, `stress_figure` one of the
 stresses inside a body.
 """
@@ -65,7 +65,13 @@ STRESS_LABELS = {
     "sigma_rr": r"$\sigma_{rr}$",
     "sigma_thetatheta": r"$\sigma_{\theta\theta}$",
     "sigma_rtheta": r"$\sigma_{r\theta}$",
+    "tresca": r"$\sigma_\mathrm{T}$",
+    "principal_angle": r"direction of $\sigma_1$",
 }
+
+#: Pictures on which the largest tension along the surface is marked; what the axes of stresses can be.
+TENSIONS = ("sigma_xx", "sigma_thetatheta", "principal_1")
+AXES = ("normalised", "physical")
 
 #: Sizes in inch: a panel with its labels, the space below it, a row of the legend, a row of the caption.
 PANEL_WIDTH, PANEL_HEIGHT, SPACE, LEGEND_ROW, CAPTION_ROW = 3.6, 3.3, 0.08, 0.22, 0.17
@@ -79,18 +85,28 @@ NAMED_TOGETHER = 4
 
 def figure(result: Result, step: int | None = None) -> Figure:
     """A picture of a result: pressure; shear traction, or the surfaces without friction; load-displacement curve of the
-    tangential force or, without one, of the moment.
+    tangential force, with cycles also without its linear part, which hides the loop, or, without a force, of the moment; or,
+    where the bodies have rolled, how they creep.
 
-    `step`: draw the state in `result.steps[step - 1]` not the last one. Raises ValueError where there is none.
+    `step`: draw the state in `result.steps[step - 1]` not the last one. Raises ValueError where there is none. A contact of
+    several patches has a picture of its own: all patches, the one that bears most, and the gap.
     """
+    if _loads(result, step).get("patches", 1) > 1:
+        from . import patches_figure  # here: it takes its panels from this module
+
+        return patches_figure.figure(result, step)
     panels = [pressure, shear if _has_friction(result) else surfaces]
-    if _is_sheared(result):
+    if _is_rolled(result):
+        panels.append(rolling)
+    elif _is_sheared(result):
         panels.append(loop)
+        if "nonlinear_shift" in result.history:
+            panels.append(nonlinear_loop)
     elif _is_turned(result):
         panels.append(turning)
     with matplotlib.rc_context(STYLE):
         picture = Figure()
-        for panel, ax, letter in zip(panels, picture.subplots(1, len(panels)), "abc"):
+        for panel, ax, letter in zip(panels, picture.subplots(1, len(panels)), "abcd"):
             panel(result, ax, step)
             ax.set_title(f"({letter})")
         picture.suptitle(_heading(result, step), fontsize=12, parse_math=False)
@@ -153,11 +169,13 @@ def _cycle_caption(result: Result) -> str:
     return " \N{MIDDLE DOT} ".join(part for part in parts if part)
 
 
-def stress_figure(result: Result, name: str = "von_mises", body: str = "lower", step: int | None = None) -> Figure:
+def stress_figure(
+    result: Result, name: str = "von_mises", body: str = "lower", step: int | None = None, axes: str = "normalised"
+) -> Figure:
     """A picture of a stress inside a body: contours over the largest pressure, axes over the contact half-width.
 
-    `name`: one of `mfv.stress.NAMES`. What mfv_stress has put into the file is drawn, else the stresses are computed, which
-    needs the library. Raises ValueError for an unknown name or step.
+    `name`: one of `mfv.stress.NAMES`. `axes`: 'physical' for stresses and lengths as they are. What mfv_stress has put into the file is
+    drawn, else the stresses are computed, which needs the library. Raises ValueError for an unknown name, step or kind of axes.
     """
     if name not in NAMES:
         raise ValueError(f"there is no stress {name}; there is {', '.join(NAMES)}")
@@ -165,60 +183,130 @@ def stress_figure(result: Result, name: str = "von_mises", body: str = "lower", 
     if np.isnan(field[name]).all():
         raise ValueError(f"{name} is not defined in a half-plane")
     with matplotlib.rc_context(STYLE):
-        picture = Figure(figsize=(6.4, 4.4), layout="constrained")
-        ax = stress_contours(field, picture.subplots(), name, colour_bar=True)
+        picture = Figure(figsize=_stress_size(field), layout="constrained")
+        units = result.mesh.unit("x"), result.state.unit("pressure")
+        ax = stress_contours(field, picture.subplots(), name, colour_bar=True, axes=axes, units=units)
         heading = _heading(result, step)
         ax.set_title(f"{heading}: {body} body" if heading else f"{body} body", fontsize=12, parse_math=False)
         picture.supxlabel(_scales(result, field), fontsize=9, color="0.35", parse_math=False)
     return picture
 
 
+def _stress_size(field: StressField) -> tuple[float, float]:
+    """Size of the picture in inch at which a field, drawn to scale, fills it beside its colour bar and between its texts."""
+    width, beside, above = 7.0, 1.4, 1.1
+    inside = ~np.isnan(field["sigma_xx"])
+    ratio = np.ptp(field.y[inside]) / np.ptp(field.x[inside]) if inside.any() else 0.5
+    return width, float(np.clip((width - beside) * ratio, 1.5, 8.0)) + above
+
+
 def _scales(result: Result, field: StressField) -> str:
-    """What pressure and length the picture is drawn over, and the largest von Mises stress, in the user's units."""
+    """What pressure and length the picture is drawn over, the largest von Mises stress and tension, in the user's units."""
     unit, length = (
         f" {unit}" if _is_named(unit) else "" for unit in (result.state.unit("pressure"), result.mesh.unit("x"))
     )
-    return (
-        f"p0 = {field.largest_pressure:.4g}{unit} \N{MIDDLE DOT} a = {field.half_width:.4g}{length} \N{MIDDLE DOT} "
-        f"largest von Mises stress {field.largest.value:.4g}{unit}"
-    )
+    parts = [
+        f"p0 = {field.largest_pressure:.4g}{unit}",
+        f"a = {field.half_width:.4g}{length}",
+        f"largest von Mises stress {field.largest.value:.4g}{unit}",
+    ]
+    if field.tension.value > 0.0:
+        parts[-1] += f"\nlargest tension along the surface {field.tension.value:.4g}{unit} at x = {field.tension.x:.4g}{length}"
+    return " \N{MIDDLE DOT} ".join(parts)
 
 
 def stress_contours(
-    field: StressField, ax: Axes | None = None, name: str = "von_mises", *, colour_bar: bool = False
+    field: StressField,
+    ax: Axes | None = None,
+    name: str = "von_mises",
+    *,
+    colour_bar: bool = False,
+    axes: str = "normalised",
+    units: tuple[str, str] = ("", ""),
 ) -> Axes:
-    """Contours of a stress over the largest pressure, axes over the contact half-width; for von Mises the place of the
-    largest. `colour_bar`: with a scale beside them."""
+    """Contours of a stress over the largest pressure, axes over the contact half-width; or, with `axes` 'physical', as they are, `units`
+    being the names of those of length and stress.
+
+    Marked is the place of the largest von Mises stress, on pictures of this; the largest tension along the surface on those of sigma_xx,
+    sigma_thetatheta and principal_1; the last also have lines along its direction. `colour_bar`: with a scale beside them.
+    Raises ValueError for unknown axes.
+    """
+    if axes not in AXES:
+        raise ValueError(f"axes must be {' or '.join(AXES)}, not '{axes}'")
     ax = _axes(ax)
-    x, y = (field.x - field.middle) / field.half_width, np.nan_to_num(field.y / field.half_width)
-    values = np.ma.masked_invalid(field[name] / field.largest_pressure)
-    signed = bool(values.min() < -1.0e-9 * values.max() and name != "von_mises")
-    bound = float(np.percentile(np.abs(values.compressed()), 99.9))
+    is_angle = name == "principal_angle"
+    physical = axes == "physical"
+    length, stress = (1.0, 1.0) if physical else (field.half_width, field.largest_pressure)
+    origin = 0.0 if physical else field.middle
+    x, y = (field.x - origin) / length, np.nan_to_num(field.y / length)
+    values = np.ma.masked_invalid(np.degrees(field[name]) if is_angle else field[name] / stress)
+    signed = bool(values.min() < -1.0e-9 * values.max() and name not in ("von_mises", "tresca"))
+    bound = 90.0 if is_angle else float(np.percentile(np.abs(values.compressed()), 99.9))
     levels = MaxNLocator(20, steps=[1, 2, 2.5, 5, 10]).tick_values(-bound if signed else 0.0, bound)
-    colours = "RdBu_r" if signed else "viridis"
-    contours = ax.contourf(x, y, values, levels=levels, cmap=colours, extend="both" if signed else "max")
-    ax.contour(x, y, values, levels=levels[::2], colors="black", linewidths=0.3)
-    if name == "von_mises":
-        place = (field.largest.x - field.middle) / field.half_width, field.largest.y / field.half_width
-        outline = [patheffects.withStroke(linewidth=2.5, foreground="white")]
-        ax.plot(*place, "x", color="black", markersize=7, clip_on=False, zorder=5, path_effects=outline)
-        ax.annotate(
-            f"largest: {field.largest.value / field.largest_pressure:.3f} $p_0$\n"
-            f"at ({_rounded(place[0])}, {_rounded(place[1])}) $a$",
-            place,
-            xytext=(0, 12 if field.body == "upper" else -12),
-            textcoords="offset points",
-            ha="center",
-            va="bottom" if field.body == "upper" else "top",
-            fontsize=9,
-            path_effects=outline,
-        )
+    colours = "twilight" if is_angle else "RdBu_r" if signed else "viridis"
+    contours = ax.contourf(x, y, values, levels=levels, cmap=colours, extend="neither" if is_angle else "both" if signed else "max")
+    if not is_angle:
+        ax.contour(x, y, values, levels=levels[::2], colors="black", linewidths=0.3)
+    if name == "principal_1":
+        _draw_directions(ax, x, y, field["principal_angle"])
+    mark = field.largest if name == "von_mises" else field.tension if name in TENSIONS else None
+    if mark is not None and np.isfinite(mark.x):
+        place = (mark.x - origin) / length, mark.y / length
+        unit = _unit(units[1]) if physical else " $p_0$"
+        at = f"{place[0]:.4g}, {place[1] + 0.0:.3g}" if physical else f"{_rounded(place[0])}, {_rounded(place[1])}"
+        text = f"{'largest' if name == 'von_mises' else 'largest tension'}: {mark.value / stress:.4g}{unit}"
+        _mark_stress(ax, place, f"{text}\nat ({at}){_unit(units[0]) if physical else ' $a$'}", field.body == "upper")
     ax.set_aspect("equal")
-    ax.set_xlabel("$x/a$")
-    ax.set_ylabel("$y/a$")
+    inside = ~values.mask if np.ma.is_masked(values) else np.ones_like(values, dtype=bool)
+    ax.set_xlim(x[inside].min(), x[inside].max())
+    ax.set_ylim(y[inside].min(), y[inside].max())
+    ax.set_xlabel(_label("", "x", units[0]).strip() if physical else "$x/a$")
+    ax.set_ylabel(_label("", "y", units[0]).strip() if physical else "$y/a$")
     if colour_bar:
-        ax.figure.colorbar(contours, ax=ax, label=f"{STRESS_LABELS[name]}$/p_0$", shrink=0.85)
+        label = f"{STRESS_LABELS[name]} [degrees]" if is_angle else f"{STRESS_LABELS[name]}$/p_0$"
+        if physical and not is_angle:
+            label = f"{STRESS_LABELS[name]}{f' [{_unit(units[1]).strip()}]' if _unit(units[1]) else ''}"
+        ax.figure.colorbar(contours, ax=ax, label=label, pad=0.02, aspect=25)
     return ax
+
+
+def _draw_directions(ax: Axes, x: np.ndarray, y: np.ndarray, angle: np.ndarray) -> None:
+    """Short lines along the first principal stress."""
+    some = tuple(slice(size // 40, None, max(1, size // 20)) for size in x.shape)
+    ax.quiver(
+        x[some],
+        y[some],
+        np.cos(angle[some]),
+        np.sin(angle[some]),
+        pivot="middle",
+        headaxislength=0,
+        headlength=0,
+        headwidth=0,
+        width=0.0015,
+        scale=40,
+        color="0.25",
+    )
+
+
+def _mark_stress(ax: Axes, place: tuple[float, float], text: str, upper: bool) -> None:
+    """A place with its text, inside the body."""
+    outline = [patheffects.withStroke(linewidth=2.5, foreground="white")]
+    ax.plot(*place, "x", color="black", markersize=7, clip_on=False, zorder=5, path_effects=outline)
+    ax.annotate(
+        text,
+        place,
+        xytext=(0, 12 if upper else -12),
+        textcoords="offset points",
+        ha="center",
+        va="bottom" if upper else "top",
+        fontsize=9,
+        path_effects=outline,
+    )
+
+
+def _unit(unit: str) -> str:
+    """A unit to stand after a value; empty unless the user has named it."""
+    return f" {unit.replace('$', chr(92) + '$').replace('^2', '$^2$')}" if _is_named(unit) else ""
 
 
 def _rounded(value: float) -> str:
@@ -344,6 +432,19 @@ def turning(result: Result, ax: Axes | None = None, step: int | None = None) -> 
     return ax
 
 
+def rolling(result: Result, ax: Axes | None = None, step: int | None = None) -> Axes:
+    """Sliding over the rolled distance, whose slope is the creepage; step ends are numbered, `step` stands out."""
+    ax = _axes(ax)
+    history = result.history
+    ax.plot(history.rolled, history.slid, color=NUMBERS, linewidth=0.8, **_points(len(history.slid)), label="computed")
+    _mark_step_ends(ax, result, step, "rolled", "slid")
+    ax.set_xlabel(_label("rolled distance", "s", history.unit("rolled")))
+    ax.set_ylabel(_label("sliding", r"U + h\varphi", history.unit("slid")))
+    ax.locator_params(axis="x", nbins=5)
+    ax.margins(0.12)
+    return ax
+
+
 def _axes(ax: Axes | None) -> Axes:
     """The axes to draw into: new ones, of a figure of pyplot, where none are given."""
     if ax is not None:
@@ -378,8 +479,15 @@ def _is_turned(result: Result) -> bool:
     return "rotation" in result.history and bool(np.any(result.history.rotation != 0.0))
 
 
+def _is_rolled(result: Result) -> bool:
+    """Whether the contact has rolled by more than its half-width."""
+    return "rolled" in result.history and bool(np.ptp(result.history.rolled) > result.summary.contact_half_width)
+
+
 def _same_normal_force(result: Result, step: int | None) -> bool:
     """Whether the closed form of the pressure, which is that of the last state, holds for this one."""
+    if step is not None and _is_rolled(result):
+        return False
     return bool(np.isclose(_loads(result, step).normal_force, result.summary.normal_force, rtol=1.0e-9, atol=0.0))
 
 
@@ -391,11 +499,12 @@ def _is_last(result: Result, state: Group) -> bool:
 def _draw_closed_form(ax: Axes, result: Result, values: np.ndarray) -> None:
     """A traction in closed form over its contact, down to zero at the ends unless the pressure is singular there."""
     half_width = result.reference.contact_half_width
-    inside = np.abs(result.mesh.x) < half_width
+    middle = float(result.history.rolled[-1]) if "rolled" in result.history else 0.0
+    inside = np.abs(result.mesh.x - middle) < half_width
     x, y = result.mesh.x[inside], values[inside]
     touching_pressure = result.reference.pressure[inside]
     if touching_pressure.size > 0 and touching_pressure[0] < touching_pressure.max():
-        x, y = np.pad(x, 1, constant_values=(-half_width, half_width)), np.pad(y, 1)
+        x, y = np.pad(x, 1, constant_values=(middle - half_width, middle + half_width)), np.pad(y, 1)
     ax.plot(x, y, color=CLOSED_FORM, linewidth=0.9, label="closed form")
 
 
@@ -413,12 +522,12 @@ def _points(number: int) -> dict[str, Any]:
 
 def _shade_zones(ax: Axes, result: Result, state: Group) -> None:
     """Background of the stick and slip zones; of each kind the first has the label."""
-    half = 0.5 * result.mesh.interval
+    half = 0.5 * result.mesh.width
     labelled: set[int] = set()
     for status, first, last in _runs(state.status):
         if status in ZONES:
             style = ZONES[status] if status not in labelled else {**ZONES[status], "label": "_another zone"}
-            ax.axvspan(result.mesh.x[first] - half, result.mesh.x[last] + half, linewidth=0.0, zorder=0, **style)
+            ax.axvspan(result.mesh.x[first] - half[first], result.mesh.x[last] + half[last], linewidth=0.0, zorder=0, **style)
             labelled.add(status)
 
 
@@ -431,12 +540,13 @@ def _runs(values: np.ndarray) -> Iterator[tuple[int, int, int]]:
 
 def _frame_contact(ax: Axes, result: Result, state: Group) -> None:
     """Show the contact and a quarter of its length on either side, as far as the mesh goes; else all of it."""
-    half = 0.5 * result.mesh.interval
-    left, right = result.mesh.x[0] - half, result.mesh.x[-1] + half
-    touching = result.mesh.x[state.status != NodeStatus.OPEN]
-    if touching.size > 0:
-        margin = 0.25 * (touching[-1] - touching[0] + 2.0 * half)
-        left, right = max(left, touching[0] - half - margin), min(right, touching[-1] + half + margin)
+    half = 0.5 * result.mesh.width
+    starts, ends = result.mesh.x - half, result.mesh.x + half
+    left, right = starts[0], ends[-1]
+    touching = state.status != NodeStatus.OPEN
+    if touching.any():
+        margin = 0.25 * (ends[touching][-1] - starts[touching][0])
+        left, right = max(left, starts[touching][0] - margin), min(right, ends[touching][-1] + margin)
     ax.set_xlim(left, right)
     ax.locator_params(axis="x", nbins=5)
     ax.set_xlabel(_label("position", "x", result.mesh.unit("x")))

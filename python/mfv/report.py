@@ -51,6 +51,8 @@ KEY_NUMBERS = (
     ("summary", "approach", "approach"),
     ("summary", "shift", "shift U"),
     ("summary", "edge_half_width", "contact half-width"),
+    ("summary", "contact_length", "contact length"),
+    ("summary", "patches", "contact patches"),
     ("summary", "edge_stick_ratio", "stick ratio"),
     ("observables", "peak_pressure", "largest pressure"),
     ("observables", "peak_shear", "largest shear traction"),
@@ -369,7 +371,7 @@ def _edges(result: Result, inside: slice) -> list[float]:
     """Where the surface of one node ends and that of the next begins."""
     x = result.mesh.x[inside]
     if x.size == 1:
-        half = 0.5 * float(result.mesh.interval)
+        half = 0.5 * float(result.mesh.width[inside][0])
         return [float(x[0]) - half, float(x[0]) + half]
     middles = 0.5 * (x[1:] + x[:-1])
     return [float(2.0 * x[0] - middles[0]), *map(float, middles), float(2.0 * x[-1] - middles[-1])]
@@ -392,6 +394,8 @@ def _key_numbers(result: Result) -> list[dict[str, str]]:
     """What a reader looks for first: name, value with unit, error bar, definition."""
     found = []
     left_out = () if plot._has_friction(result) else OF_FRICTION
+    if result.summary.get("patches", 1) == 1:
+        left_out += ("contact_length", "patches")  # what is a half-width is not told twice
     for group_name, name, shown in KEY_NUMBERS:
         group: Group = getattr(result, group_name)
         if name in group and name not in left_out and not math.isnan(group[name]):

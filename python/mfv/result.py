@@ -26,10 +26,16 @@ GROUPS = ("mesh", "scene", "state", "summary", "certificate")
 TEXTS = ("mfv_version", "outcome", "message", "input")
 
 #: Groups that a result can be without; they are then empty.
-OPTIONAL_GROUPS = ("history", "reference", "error_estimate", "observables", "cycles")
+OPTIONAL_GROUPS = ("history", "reference", "error_estimate", "sensitivity", "observables", "cycles", "patches")
 
 #: Groups with coordinates of their own; elsewhere coordinates are repeated.
-COORDINATES = {"mesh": ("x",), "history": ("record",), "error_estimate": ("companion_nodes",), "cycles": ("cycle",)}
+COORDINATES = {
+    "mesh": ("x",),
+    "history": ("record",),
+    "error_estimate": ("companion_nodes",),
+    "cycles": ("cycle",),
+    "patches": ("patch",),
+}
 
 #: Where mfv_stress puts its groups.
 STRESS = "stress/"
@@ -48,25 +54,37 @@ class Field(NamedTuple):
 
 
 class Group(Mapping[str, Values]):
-    """Named quantities, as attributes and items: `group.pressure` is `group["pressure"]`; `in` tells what is there."""
+    """Named quantities, as attributes and items: `group.pressure` is `group["pressure"]`; `in` tells what is there.
+
+    What the quantities run along can be had in the same way, such as `result.state.x`, but is listed in its own group only.
+    """
 
     def __init__(self, fields: Mapping[str, Field], coordinates: Mapping[str, Field] | None = None) -> None:
         """`coordinates`: what quantities run along, by name, where it is not among the fields itself."""
         self._fields = dict(fields)
         self._coordinates = coordinates or {}
 
+    def _along(self) -> set[str]:
+        """Names of what the quantities run along."""
+        return {name for field in self._fields.values() for name in field.dimensions if name in self._coordinates}
+
+    def _field(self, name: str) -> Field:
+        if name not in self._fields and name in self._along():
+            return self._coordinates[name]
+        return self._fields[name]
+
     def __getitem__(self, name: str) -> Values:
-        return self._fields[name].values
+        return self._field(name).values
 
     def __getattr__(self, name: str) -> Values:
         if name.startswith("_"):  # private and special names are never quantities
             raise AttributeError(name)
-        if name in self._fields:
-            return self._fields[name].values
+        if name in self:
+            return self[name]
         raise AttributeError(f"there is no '{name}' here; there is {', '.join(self) or 'nothing'}")
 
     def __setattr__(self, name: str, value: object) -> None:
-        if not name.startswith("_") and name in self._fields:
+        if not name.startswith("_") and name in self:
             raise AttributeError(f"'{name}' is a quantity of the result and cannot be set; its values can be copied")
         super().__setattr__(name, value)
 
@@ -87,7 +105,7 @@ class Group(Mapping[str, Values]):
         return len(self._fields)
 
     def __dir__(self) -> list[str]:
-        return [*super().__dir__(), *self._fields]
+        return [*super().__dir__(), *self._fields, *self._along()]
 
     def __repr__(self) -> str:
         lines = [
@@ -109,11 +127,11 @@ class Group(Mapping[str, Values]):
 
     def unit(self, name: str) -> str:
         """Unit of a quantity."""
-        return self._fields[name].unit
+        return self._field(name).unit
 
     def description(self, name: str) -> str:
         """What a quantity is, in words."""
-        return self._fields[name].description
+        return self._field(name).description
 
 
 class Result:
@@ -131,8 +149,10 @@ class Result:
     history: Group
     reference: Group
     error_estimate: Group
+    sensitivity: Group
     observables: Group
     cycles: Group
+    patches: Group
     compliance: Group
     steps: list[Group]
     stresses: dict[str, Group]

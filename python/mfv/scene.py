@@ -101,7 +101,7 @@ class KeyGroup:
 class Body(KeyGroup):
     """A body: the keys of &body. `data`: arrays in place of the `file` of a profile or a matrix."""
 
-    shape: Literal["half_plane", "disk", "hole", "flat_punch", "profile", "matrix"]
+    shape: Literal["half_plane", "disk", "hole", "flat_punch", "rounded_punch", "wedge", "power", "profile", "matrix"]
     rigid: bool | None = None
     shear_modulus: float | None = None
     youngs_modulus: float | None = None
@@ -110,9 +110,18 @@ class Body(KeyGroup):
     datum: float | None = None
     radius: float | None = None
     half_width: float | None = None
+    edge_radius: float | None = None
+    angle: float | None = None
+    coefficient: float | None = None
+    exponent: float | None = None
     kernel: Literal["exact", "fourier"] | None = None
     harmonics: int | None = None
     file: str | os.PathLike[str] | None = None
+    interpolation: Literal["linear", "monotone_cubic"] | None = None
+    position_scale: float | None = None
+    height_scale: float | None = None
+    level: Literal["none", "mean", "line"] | None = None
+    centred: bool | None = None
     data: Data | None = None
 
     _not_keys: ClassVar[tuple[str, ...]] = ("data",)
@@ -171,10 +180,10 @@ class Body(KeyGroup):
         return cls(shape="flat_punch", rigid=True, half_width=half_width)
 
     @classmethod
-    def profile(
+    def rounded_punch(
         cls,
-        x: ArrayLike,
-        height: ArrayLike,
+        half_width: float,
+        edge_radius: float,
         *,
         shear_modulus: float | None = None,
         youngs_modulus: float | None = None,
@@ -183,7 +192,62 @@ class Body(KeyGroup):
         yield_strength: float | None = None,
         datum: float | None = None,
     ) -> Body:
-        """A nearly flat surface through points: positions `x`, increasing, and heights above the flat surface [length]."""
+        """Flat over |x| < `half_width`; the edges recede by (|x| - half_width)^2/(2 edge_radius) [length]."""
+        return cls(shape="rounded_punch", **_given(locals()))
+
+    @classmethod
+    def wedge(
+        cls,
+        angle: float,
+        *,
+        shear_modulus: float | None = None,
+        youngs_modulus: float | None = None,
+        poisson_ratio: float | None = None,
+        rigid: bool | None = None,
+        yield_strength: float | None = None,
+        datum: float | None = None,
+    ) -> Body:
+        """Two flanks that meet at x = 0; `angle`: of either flank to the common tangent [degrees]."""
+        return cls(shape="wedge", **_given(locals()))
+
+    @classmethod
+    def power(
+        cls,
+        coefficient: float,
+        exponent: float,
+        *,
+        shear_modulus: float | None = None,
+        youngs_modulus: float | None = None,
+        poisson_ratio: float | None = None,
+        rigid: bool | None = None,
+        yield_strength: float | None = None,
+        datum: float | None = None,
+    ) -> Body:
+        """The surface recedes by coefficient |x|^exponent; `coefficient` [length^(1-exponent)], `exponent` at least 1."""
+        return cls(shape="power", **_given(locals()))
+
+    @classmethod
+    def profile(
+        cls,
+        x: ArrayLike,
+        height: ArrayLike,
+        *,
+        interpolation: Literal["linear", "monotone_cubic"] | None = None,
+        position_scale: float | None = None,
+        height_scale: float | None = None,
+        level: Literal["none", "mean", "line"] | None = None,
+        centred: bool | None = None,
+        shear_modulus: float | None = None,
+        youngs_modulus: float | None = None,
+        poisson_ratio: float | None = None,
+        rigid: bool | None = None,
+        yield_strength: float | None = None,
+        datum: float | None = None,
+    ) -> Body:
+        """A nearly flat surface through points: positions `x`, increasing, and how far it recedes from the other body [length].
+
+        A `height_scale` below 0 is for heights that are counted outwards, as those of a stylus.
+        """
         keys = _given(locals(), but=("x", "height"))
         return cls(shape="profile", data={"x": _numbers(x, "x"), "height": _numbers(height, "height")}, **keys)
 
@@ -303,6 +367,7 @@ class Output(KeyGroup):
     history: Literal["events", "steps", "none"] | None = None
     states: Literal["reversals", "steps", "none"] | None = None
     error_estimate: bool | None = None
+    sensitivity: bool | None = None
     checkpoint_minutes: float | None = None
 
 

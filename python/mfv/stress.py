@@ -13,7 +13,8 @@ from .again import case_of
 from .result import Result
 
 #: The stresses at a point, in the order of the header: in Cartesian components, across the plane, principal ones in the
-#: plane, von Mises, in polar components about the centre of a disk or hole.
+#: plane, von Mises, in polar components about the centre of a disk or hole, Tresca (sigma_zz counts), and the direction of the first
+#: principal stress from the x axis, in radians.
 NAMES = (
     "sigma_xx",
     "sigma_yy",
@@ -25,6 +26,8 @@ NAMES = (
     "sigma_rr",
     "sigma_thetatheta",
     "sigma_rtheta",
+    "tresca",
+    "principal_angle",
 )
 
 #: The bodies, in the order of the header.
@@ -34,7 +37,7 @@ Array = NDArray[np.float64]
 
 
 class Largest(NamedTuple):
-    """The largest von Mises stress and where it is."""
+    """The largest value of a stress and where it is."""
 
     value: float
     x: float
@@ -49,11 +52,13 @@ class StressField:
     x: Array
     y: Array
     values: dict[str, Array]
-    #: Half the length of the loaded surface, its middle, the largest pressure, the largest von Mises stress.
+    #: Half the length of the loaded surface, its middle, the largest pressure, the largest von Mises stress, the largest tension along
+    #: the surface (NaN where it is singular; its place is NaN where there is none).
     half_width: float
     middle: float
     largest_pressure: float
     largest: Largest
+    tension: Largest
 
     def __getitem__(self, name: str) -> Array:
         return self.values[name]
@@ -70,8 +75,10 @@ def stress(result: Result, x: ArrayLike, y: ArrayLike, *, body: str = "lower", s
     across, up = (np.ascontiguousarray(values, dtype=np.float64) for values in np.broadcast_arrays(x, y))
     state = result.at(step)
     arc = _arc(result)
-    loads = [np.ascontiguousarray(values) for values in (arc, result.mesh.width, state.pressure, state.shear)]
-    values, largest = np.empty((across.size, len(NAMES))), np.empty(3)
+    none = np.full(arc.size, np.nan)
+    edges = [state.get(name, none) for name in ("contact_edge", "stick_edge")]
+    loads = [np.ascontiguousarray(values) for values in (arc, result.mesh.width, state.pressure, state.shear, *edges)]
+    values, largest, tension = np.empty((across.size, len(NAMES))), np.empty(3), np.empty(3)
     with case_of(result) as case:
         case._call(
             "mfv_stress_under",
@@ -79,7 +86,7 @@ def stress(result: Result, x: ArrayLike, y: ArrayLike, *, body: str = "lower", s
             arc.size,
             *map(real_pointer, loads),
             across.size,
-            *map(real_pointer, (across, up, values, largest)),
+            *map(real_pointer, (across, up, values, largest, tension)),
         )
     left, right = _loaded_surface(result, step)
     return StressField(
@@ -91,6 +98,7 @@ def stress(result: Result, x: ArrayLike, y: ArrayLike, *, body: str = "lower", s
         0.5 * (right + left),
         float(np.max(state.pressure)),
         Largest(*map(float, largest)),
+        Largest(*map(float, tension)),
     )
 
 
@@ -122,7 +130,7 @@ def grid(
 def stored(result: Result, *, body: str = "lower", step: int | None = None) -> StressField | None:
     """The grid that mfv_stress has put into the file for this state and body, None where there is none."""
     group = result.stresses.get(f"{'last' if step is None else f'{step:04d}'}/{body}")
-    if group is None:
+    if group is None or "tresca" not in group:
         return None
     return StressField(
         body,
@@ -133,6 +141,7 @@ def stored(result: Result, *, body: str = "lower", step: int | None = None) -> S
         0.5 * float(group.x[0] + group.x[-1]),
         float(group.largest_pressure),
         Largest(float(group.largest_von_mises), float(group.largest_x), float(group.largest_y)),
+        Largest(float(group.largest_tension), float(group.tension_x), float(group.tension_y)),
     )
 
 
@@ -152,10 +161,13 @@ def _arc(result: Result) -> Array:
 
 
 def _loaded_surface(result: Result, step: int | None) -> tuple[float, float]:
-    """Ends of the loaded surface; both 0 where there is no load."""
+    """Ends of the loaded surface, from edges between nodes where they are known; both 0 where there is no load."""
     state = result.at(step)
     loaded = (state.pressure != 0.0) | (state.shear != 0.0)
     if not loaded.any():
         return 0.0, 0.0
+    edges = state.get("contact_edge", np.empty(0))
+    if np.isfinite(edges).any():
+        return float(np.nanmin(edges)), float(np.nanmax(edges))
     arc, half = _arc(result)[loaded], 0.5 * result.mesh.width[loaded]
     return float(np.min(arc - half)), float(np.max(arc + half))

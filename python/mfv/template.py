@@ -17,9 +17,9 @@ import h5py
 import numpy as np
 
 #: Files that a template needs beside itself.
-COMPANIONS = {"profile": ("profile.txt",), "matrix": ("matrix.h5",), "sweep": ("cylinder.nml",)}
+COMPANIONS = {"profile": ("profile.txt",), "matrix": ("compliance.h5",), "sweep": ("cylinder.nml",)}
 
-#: The half-plane of matrix.h5: shear modulus, Poisson's ratio, where its displacements are measured from, nodes on either side.
+#: The half-plane of compliance.h5: shear modulus, Poisson's ratio, where its displacements are measured from, nodes on either side.
 SHEAR_MODULUS, POISSON_RATIO, DATUM, HALF_WIDTH, NODES = 1.0, 0.3, 0.25, 0.0127, 81
 
 _FOLDER = files(__package__) / "templates"
@@ -65,7 +65,7 @@ def write(name: str, path: Path, written: Callable[[Path], Any], overwrite: bool
 
 def _write_one(source: str, part: Path, name: str) -> None:
     """Write one file of a template; `name`: that of the file without its suffix, for the commands in its comments."""
-    if source == "matrix.h5":
+    if source == "compliance.h5":
         _write_matrix(part)
     else:
         part.write_bytes(_packaged(source, name))
@@ -78,7 +78,7 @@ def _packaged(source: str, name: str) -> bytes:
 
 def _is_there(place: Path, companion: str) -> bool:
     """Whether a file that a template needs is there already, the same."""
-    return companion != "matrix.h5" and place.is_file() and place.read_bytes() == _packaged(companion, place.stem)
+    return companion != "compliance.h5" and place.is_file() and place.read_bytes() == _packaged(companion, place.stem)
 
 
 def _write_matrix(path: Path) -> None:

@@ -43,9 +43,9 @@ def contact(result: Result) -> tuple[float, float]:
     """All that is in contact in any state and a quarter of its length on either side, as far as the mesh goes."""
     states = result.steps or kept_states(result).steps
     touched = np.any([state.status != NodeStatus.OPEN for state in states], axis=0)
-    x, half = result.mesh.x, 0.5 * result.mesh.interval
+    starts, ends = result.mesh.x - 0.5 * result.mesh.width, result.mesh.x + 0.5 * result.mesh.width
     if not touched.any():
-        return float(x[0] - half), float(x[-1] + half)
-    left, right = x[touched][0] - half, x[touched][-1] + half
+        return float(starts[0]), float(ends[-1])
+    left, right = starts[touched][0], ends[touched][-1]
     margin = 0.25 * (right - left)
-    return float(max(x[0] - half, left - margin)), float(min(x[-1] + half, right + margin))
+    return float(max(starts[0], left - margin)), float(min(ends[-1], right + margin))

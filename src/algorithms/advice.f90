@@ -1,14 +1,16 @@
 !> How many nodes, and which linear solver, a scene needs for a wanted error. Pairs of coarse meshes of the scene itself, of
 !> m and 3 m intervals, whose nodes lie in the same places, tell the size c of the errors c/nodes^order of the tractions
-!> (l2, over the nodes) and of the dissipation; the width of the intervals that of half-width and stick ratio. What a solver
-!> costs comes from laws with measured constants.
+!> (l2, over the nodes) and of the dissipation; the width of the intervals that of half-width and stick ratio, and the width of
+!> the slip zones that of the dissipation too (mfv_slip_zones). What a solver costs comes from laws with measured constants.
 module mfv_advice
    use mfv_discretisation_error
    use mfv_error_bar, only: quantity_count, quantity_half_width, quantity_stick_ratio
    use mfv_kinds, only: wp
+   use mfv_node_status, only: in_contact
    use mfv_observer, only: observer_type, relay_type
    use mfv_scene
    use mfv_simulation, only: history_none, new_simulation, simulation_type, states_steps
+   use mfv_slip_zones, only: largest_resolved_error
    use mfv_solver_costs, only: cheapest_solver, seconds_of_solve
    use mfv_status, only: MFV_COMPLETE, MFV_INPUT_ERROR, status_outcome
    use mfv_strings, only: to_text
@@ -27,6 +29,10 @@ module mfv_advice
    !> half an interval at either edge.
    real(wp), parameter :: order(advice_count) = [1.0_wp, 1.0_wp, 1.0_wp, 1.0_wp, 2.0_wp]
    real(wp), parameter :: safety(advice_count) = [2.0_wp, 2.0_wp, 1.4_wp, 1.4_wp, 2.0_wp]
+   !> Safety on the error by the width of slip zones, which is an upper bound but comes from coarse meshes.
+   real(wp), parameter :: slip_safety = 1.5_wp
+   !> &mesh nodes that can be advised.
+   integer, parameter :: most_nodes = 100000
    !> Nodes in contact that the coarse meshes of the pairs should have, about.
    integer, parameter :: pair_nodes(8) = [13, 15, 17, 19, 21, 23, 25, 27]
    !> Nodes in contact that a first mesh must have, to tell how many nodes the pairs need; and that a mesh should have at
@@ -59,7 +65,8 @@ module mfv_advice
       real(wp) :: linear_tolerance = 0.0_wp, friction_tolerance = 0.0_wp, leap_tolerance = 0.0_wp
       !> Linear solves and seconds that the run will take, about.
       real(wp) :: solves = 0.0_wp, seconds = 0.0_wp
-      !> Linear solves on the finest of the coarse meshes, of &mesh nodes `tried_nodes`, by events and by leaps; 0: not tried.
+      !> Linear solves on the finest of the coarse meshes, of &mesh nodes `tried_nodes`, by events and by large increments; 0: not
+      !> tried.
       integer :: tried_nodes = 0, event_solves = 0, leap_solves = 0
    end type advice_type
 
@@ -70,7 +77,10 @@ module mfv_advice
       !> they grow.
       real(wp) :: density = 0.0_wp, solves = 0.0_wp, nodes = 1.0_wp, growth = 0.0_wp
       logical :: known(advice_count) = .false.
-      integer :: pairs = 0
+      !> Pairs, and those whose meshes both resolve the slip zones; nodes in contact that the error 1 of the dissipation takes by the
+      !> width of the slip zones, squared, and summed over the pairs.
+      integer :: pairs = 0, resolved_pairs = 0
+      real(wp) :: slip_law = 0.0_wp
    end type law_type
 
 contains
@@ -102,6 +112,7 @@ contains
          return
       end if
       call choose_nodes(scene, law, advice)
+      if (advice%message /= '') return
       call choose_solver(scene, law, advice)
    end subroutine advise
 
@@ -146,7 +157,10 @@ contains
          advice%message = 'no coarse mesh fits the circle of a Fourier series'
          return
       end if
+      law%squares(advice_dissipation) = law%squares(advice_dissipation)*law%pairs/max(law%resolved_pairs, 1)
       law%squares = law%squares/law%pairs
+      law%squares(advice_dissipation) = max(law%squares(advice_dissipation), &
+                                            (slip_safety*law%slip_law/(law%pairs*safety(advice_dissipation)))**2)
       law%density = real(fine%contact%state%contact_nodes(), wp)/(3*advice%pair_nodes(size(advice%pair_nodes)))
       law%nodes = max(fine%contact%state%contact_nodes(), 1)
       law%solves = max(fine%contact%system%solves, 1)
@@ -203,7 +217,7 @@ contains
       advice%message = 'with '//to_text(nodes)//' nodes: '//status_outcome(simulation%outcome)
    end subroutine solve
 
-   !> Whether leaps take fewer solves than events, on the finest of the coarse meshes, under Coulomb's friction.
+   !> Whether large increments take fewer solves than events, on the finest of the coarse meshes, under Coulomb's friction.
    subroutine try_leaps(scene, fine, pilot, advice, watch)
       type(scene_type), intent(in) :: scene
       type(simulation_type), intent(in) :: fine, pilot
@@ -243,9 +257,13 @@ contains
          if (on%tangential) then
             law%known(advice_stick_ratio) = .true.
             law%known(advice_shear) = any(abs(b%fields%shear) > 0.0_wp)
-            law%known(advice_dissipation) = b%dissipation > 0.0_wp
+            law%known(advice_dissipation) = fine%slip%work > 0.0_wp
             difference(advice_shear) = distance(a%fields%shear, b%fields%shear, place)
-            if (law%known(advice_dissipation)) difference(advice_dissipation) = abs(a%dissipation/b%dissipation - 1.0_wp)
+            if (law%known(advice_dissipation) .and. .not. (coarse%slip%is_coarse() .or. fine%slip%is_coarse())) then
+               difference(advice_dissipation) = abs(a%dissipation/b%dissipation - 1.0_wp)
+               law%resolved_pairs = law%resolved_pairs + 1
+            end if
+            law%slip_law = law%slip_law + fine%slip%error_number()*sum(over%width, mask=in_contact(b%status))**2
          end if
       end associate
       law%squares = law%squares + (difference*real(nodes, wp)**order)**2
@@ -287,11 +305,22 @@ contains
       type(scene_type), intent(in) :: scene
       type(law_type), intent(in) :: law
       type(advice_type), intent(inout) :: advice
-      real(wp) :: coefficient(advice_count)
+      real(wp) :: coefficient(advice_count), error(advice_count)
+      integer :: hardest
 
       coefficient = safety*sqrt(law%squares)
-      advice%needed_nodes = (coefficient/advice%wanted_error)**(1.0_wp/order)
+      error = advice%wanted_error
+      if (law%slip_law > 0.0_wp) error(advice_dissipation) = min(advice%wanted_error, largest_resolved_error)
+      advice%needed_nodes = (coefficient/error)**(1.0_wp/order)
       advice%present_error = coefficient/(scene%mesh%nodes*law%density)**order
+      hardest = maxloc(advice%needed_nodes, dim=1, mask=advice%known)
+      if (advice%needed_nodes(hardest) > most_nodes*law%density) then
+         advice%status = MFV_INPUT_ERROR
+         advice%message = trim(advice_names(hardest))//' takes about '//to_text(advice%needed_nodes(hardest)/law%density, 2)// &
+                          ' nodes, more than the '//to_text(most_nodes)//' that can be advised'
+         if (hardest == advice_dissipation) advice%message = advice%message//': its slip zones are narrow parts of the contact'
+         return
+      end if
       advice%contact_nodes = ceiling(max(maxval(advice%needed_nodes, mask=advice%known), real(fewest_nodes, wp)))
       advice%nodes = mesh_of_at_least(scene, advice%contact_nodes/law%density)
       advice%contact_nodes = nint(advice%nodes*law%density)

@@ -38,6 +38,9 @@ module mfv_augmented_system
       !> Unknowns before those of the first carried node, by field; and places of the scalars.
       integer :: pressure = 0, shear = 0, normal = 0, slip = 0
       integer :: approach = 0, shift = 0, normal_force = 0, tangential_force = 0, rotation = 0, moment = 0
+      !> Where normals are vertical the unknown in the place of the shift U is the sliding U + h phi, which is small where the bodies
+      !> roll and U and h phi nearly cancel: the height h of the centre of rotation, length; else 0.
+      real(wp) :: height = 0.0_wp
       !> Units of pressure, shear traction and length.
       real(wp) :: stress = 1.0_wp, shear_stress = 1.0_wp, length = 1.0_wp
    end type assembly_type
@@ -126,6 +129,7 @@ contains
          n = n + 2*m + 2
       end if
       if (model%rotational) then
+         if (assembly%tangential .and. model%upright) assembly%height = model%centre_height()
          assembly%rotation = n + 1
          assembly%moment = n + 2
          n = n + 2
@@ -193,7 +197,8 @@ contains
                                                   assembly%shear_stress, 1.0_wp)
    end subroutine add_force_balance
 
-   !> The rotation in the elasticity rows, the balance of moments in its own (eq. 4.24).
+   !> The rotation in the elasticity rows, the balance of moments in its own (eq. 4.24): with vertical normals the moment of the
+   !> shear is h Q.
    subroutine add_rotation(assembly, model)
       type(assembly_type), intent(inout) :: assembly
       type(contact_model_type), intent(in) :: model
@@ -204,8 +209,14 @@ contains
       assembly%matrix(assembly%pressure + 1:assembly%pressure + m, assembly%rotation) = &
          model%normal_arm(assembly%nodes, along_rotation)/assembly%length
       if (.not. assembly%tangential) return
-      assembly%matrix(assembly%shear + 1:assembly%shear + m, assembly%rotation) = &
-         model%tangential_arm(assembly%nodes, along_rotation)/assembly%length
+      if (model%upright) then
+         assembly%matrix(assembly%rotation, assembly%shear + 1:assembly%shear + m) = 0.0_wp
+         assembly%matrix(assembly%rotation, assembly%tangential_force) = &
+            assembly%height*assembly%shear_stress/(assembly%stress*assembly%length)
+      else
+         assembly%matrix(assembly%shear + 1:assembly%shear + m, assembly%rotation) = &
+            model%tangential_arm(assembly%nodes, along_rotation)/assembly%length
+      end if
    end subroutine add_rotation
 
    !> A row that sums up the tractions to a force or moment in the column `force`; `stress`: its unit of stress, `arm`: of arms.
@@ -289,6 +300,8 @@ contains
                        assembly%stress*length, length)
          if (assembly%tangential) call add_load(assembly, constraints%tangential, assembly%tangential_force, &
                                                 assembly%shift, assembly%shear_stress*length, length)
+         if (assembly%rotation > 0 .and. assembly%tangential .and. constraints%tangential%control /= control_force) &
+            assembly%matrix(assembly%tangential_force, assembly%rotation) = -assembly%height/length
          if (assembly%rotation > 0) call add_load(assembly, constraints%rotational, assembly%moment, &
                                                   assembly%rotation, assembly%stress*length**2, 1.0_wp)
       end associate
@@ -333,7 +346,7 @@ contains
             fields%moment = stress*length**2*solution(assembly%moment)
          end if
          if (.not. assembly%tangential) return
-         fields%shift = length*solution(assembly%shift)
+         fields%shift = length*solution(assembly%shift) - assembly%height*fields%rotation
          fields%tangential_force = assembly%shear_stress*length*solution(assembly%tangential_force)
          fields%shear(nodes) = assembly%shear_stress*solution(assembly%shear + 1:assembly%shear + m)
          fields%tangential(nodes) = length*solution(assembly%slip + 1:assembly%slip + m) + fields%shift

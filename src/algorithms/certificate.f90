@@ -4,7 +4,6 @@
 !> their sort so far, so that units do not matter; the largest over all increments is kept.
 module mfv_certificate
    use, intrinsic :: ieee_arithmetic, only: ieee_is_finite
-   use mfv_compliance, only: block_up, coupling_goodman
    use mfv_archive, only: archive_type
    use mfv_contact_fields, only: contact_fields_type
    use mfv_contact_model, only: along_approach, along_rotation, along_shift, contact_model_type
@@ -51,13 +50,17 @@ module mfv_certificate
       !> Number of the increment with the largest residual, by kind; and increments so far.
       integer :: worst_increment(residual_count) = 0
       integer :: increments = 0
-      !> How many of them were leaps: on their way nothing was checked.
+      !> How many of them were large increments: on their way nothing was checked.
       integer :: leaps = 0
+      !> Largest estimated errors of large increments: of the tractions, in parts of the largest traction so far; of what friction
+      !> dissipates in an interval, in parts of that.
+      real(wp) :: increment_traction_error = 0.0_wp, increment_dissipation_error = 0.0_wp
       !> Largest magnitudes so far.
       real(wp), private :: traction = 0.0_wp, normal = 0.0_wp, tangential = 0.0_wp, normal_force = 0.0_wp, &
                            tangential_force = 0.0_wp, moment = 0.0_wp, energy = 0.0_wp
-      !> Work of the loads so far, force (energy per unit thickness).
-      real(wp) :: work = 0.0_wp
+      !> Work of the loads so far, force (energy per unit thickness); and the sizes of the works of every load on every increment,
+      !> summed: where a disk rolls, those of the tangential force and the moment cancel almost wholly.
+      real(wp) :: work = 0.0_wp, gross_work = 0.0_wp
    contains
       procedure :: largest
       procedure :: traction_scale
@@ -65,6 +68,7 @@ module mfv_certificate
       procedure :: claim
       procedure :: check_increment
       procedure :: note_jump
+      procedure :: note_large_increment
       procedure :: carry
       procedure, private :: note
    end type certificate_type
@@ -104,8 +108,7 @@ contains
 
       self%claimed([continuity, energy_balance]) = model%scene%method%algorithm == algorithm_mfv
       self%claimed(energy_balance) = self%claimed(continuity) .and. (.not. model%tangential .or. &
-                                     model%scene%coupling /= coupling_goodman .or. &
-                                     .not. model%compliance%has_block(block_up))
+                                     .not. model%compliance%one_way())
       if (self%leaps > 0 .and. self%leaps == self%increments) self%claimed([continuity, energy_balance]) = .false.
       self%claimed(moment_balance) = model%rotational
       self%claimed([elasticity_tangential, tangential_force_balance, stick_slip, slip_traction, friction_limit, &
@@ -133,8 +136,8 @@ contains
       force_scale = self%normal_force
    end function force_scale
 
-   !> Check the increment from `before` to `after`, with the statuses of `after` on the way. `leap`: nobody knows the way, the
-   !> end is checked; the energy is balanced from there on.
+   !> Check the increment from `before` to `after`, with the statuses of `after` on the way. `leap`: a large increment, whose
+   !> path is not known; the end is checked; the energy is balanced from there on.
    subroutine check_increment(self, model, before, after, leap)
       class(certificate_type), intent(inout) :: self
       type(contact_model_type), intent(in) :: model
@@ -167,6 +170,17 @@ contains
       end do
       if (self%traction > 0.0_wp) call self%note(continuity, jump, self%traction)
    end subroutine note_jump
+
+   !> Note the estimated errors of an interval by large increments: of the tractions at its end, force/length^2; of what friction
+   !> dissipates, `work`, force.
+   pure subroutine note_large_increment(self, traction_error, work_error, work)
+      class(certificate_type), intent(inout) :: self
+      real(wp), intent(in) :: traction_error, work_error, work
+
+      if (self%traction > 0.0_wp) &
+         self%increment_traction_error = max(self%increment_traction_error, traction_error/self%traction)
+      if (work > 0.0_wp) self%increment_dissipation_error = max(self%increment_dissipation_error, work_error/work)
+   end subroutine note_large_increment
 
    !> Elasticity with the full compliance, and balance of forces. Tangential magnitudes count as no smaller than what friction
    !> could make of the normal ones, so that round-off of a shear that should be zero is not held against itself.
@@ -261,8 +275,8 @@ contains
       call self%note(pressure_sign, negative_pressure, self%traction)
    end subroutine check_normal_contact
 
-   !> Equalities and inequalities of slip and shear traction. Over a leap, slip counts from what the leap says: of nodes that
-   !> touch on the way from then.
+   !> Equalities and inequalities of slip and shear traction. Over a large increment (`leap`) slip counts from what that
+   !> says: of nodes that touch on the way from then.
    subroutine check_friction(self, model, before, after, leap)
       class(certificate_type), intent(inout) :: self
       type(contact_model_type), intent(in) :: model
@@ -333,20 +347,22 @@ contains
    end function defect_of_law
 
    !> Work of the loads = stored + dissipated energy; between events everything is linear, so the trapezoid is exact. Over a
-   !> leap the work is not known: it counts as what is stored and dissipated, and nothing is noted.
+   !> large increment (`leap`) the work is not known: it counts as what is stored and dissipated, and nothing is noted.
    subroutine check_energy(self, model, before, after, leap)
       class(certificate_type), intent(inout) :: self
       type(contact_model_type), intent(in) :: model
       type(contact_fields_type), intent(in) :: before
       type(contact_state_type), intent(in) :: after
       logical, intent(in) :: leap
-      real(wp) :: stored
+      real(wp) :: stored, works(3)
       integer :: i
 
       associate (now => after%fields)
-         self%work = self%work + 0.5_wp*(before%normal_force + now%normal_force)*(now%approach - before%approach) &
-                     + 0.5_wp*(before%tangential_force + now%tangential_force)*(now%shift - before%shift) &
-                     + 0.5_wp*(before%moment + now%moment)*(now%rotation - before%rotation)
+         works = 0.5_wp*[(before%normal_force + now%normal_force)*(now%approach - before%approach), &
+                         (before%tangential_force + now%tangential_force)*(now%shift - before%shift), &
+                         (before%moment + now%moment)*(now%rotation - before%rotation)]
+         self%work = self%work + sum(works)
+         self%gross_work = self%gross_work + sum(abs(works))
          stored = 0.0_wp
          do i = 1, size(now%pressure)
             stored = stored + model%width(i)*(now%pressure(i)*now%normal(i) + now%shear(i)*now%tangential(i))
@@ -360,7 +376,7 @@ contains
                                       + now%rotation*model%resultant(along_rotation, now%pressure, now%shear))
       end associate
       if (leap) self%work = stored + after%dissipation
-      self%energy = max(self%energy, abs(self%work), abs(stored))
+      self%energy = max(self%energy, self%gross_work, abs(stored), after%dissipation)
       if (.not. leap) call self%note(energy_balance, abs(self%work - stored - after%dissipation), self%energy)
    end subroutine check_energy
 
@@ -390,6 +406,8 @@ contains
       call archive%fill(self%worst_increment)
       call archive%carry(self%increments)
       call archive%carry(self%leaps)
+      call archive%carry(self%increment_traction_error)
+      call archive%carry(self%increment_dissipation_error)
       call archive%carry(self%traction)
       call archive%carry(self%normal)
       call archive%carry(self%tangential)
@@ -398,6 +416,7 @@ contains
       call archive%carry(self%moment)
       call archive%carry(self%energy)
       call archive%carry(self%work)
+      call archive%carry(self%gross_work)
    end subroutine carry
 
 end module mfv_certificate

@@ -4,11 +4,14 @@ module mfv_closed_form
    use mfv_body, only: shape_flat_punch, shape_half_plane
    use mfv_compliance, only: block_up, block_wt
    use mfv_kinds, only: wp
+   use mfv_node_status, only: node_stick
+   use mfv_reference_carter, only: carter_shear
    use mfv_reference_flat_punch, only: flat_punch_pressure
-   use mfv_reference_hertz, only: hertz_half_width, hertz_pressure
+   use mfv_reference_indenter, only: indenter_type
    use mfv_reference_mindlin, only: mindlin_history_type, new_mindlin_history
    use mfv_reference_spence, only: spence_cylinder_shear, spence_flat_punch_shear
    use mfv_scene, only: scene_type
+   use mfv_scene_indenter, only: indenter_of
    use mfv_simulation, only: simulation_type, states_reversals, states_steps
    implicit none
    private
@@ -23,14 +26,16 @@ module mfv_closed_form
       real(wp) :: half_width = 0.0_wp
       !> Shift at every record of the load history, length; only where there is a history and Mindlin's form holds.
       real(wp), allocatable :: shift(:)
+      !> The gap, where there is one.
+      type(indenter_type), private :: indenter
    end type closed_form_type
 
-   !> Beyond this part of the radius of a circle a contact half-width is too large for Hertz's forms.
+   !> Beyond this part of the radius of a circle a contact half-width is too large for parabolas on half-planes.
    real(wp), parameter :: widest_hertz = 0.2_wp
 
 contains
 
-   !> The closed form of a simulation's present state. Hertz's forms are those of parabolas on half-planes: for the exact
+   !> The closed form of a simulation's present state. The forms are those of parabolas on half-planes: for the exact
    !> circle they are off by the order of (a/R)^2, for elastic disks and holes by that of a/R or less.
    function closed_form_of(simulation) result(form)
       type(simulation_type), intent(in) :: simulation
@@ -41,13 +46,13 @@ contains
       associate (model => simulation%contact%model, scene => simulation%contact%model%scene, &
                  force => simulation%contact%state%fields%normal_force)
          if (.not. (force > 0.0_wp .and. scene%modulus() > 0.0_wp)) return
-         if (model%compliance%has_block(block_wt) .and. model%tangential .and. .not. alike(scene)) return
-         if (simulation%way%rotated) return
-         if (is_hertz(scene)) then
-            form%half_width = hertz_half_width(force, 1.0_wp/scene%curvature(), scene%modulus())
-            if (form%half_width > widest_hertz*min(scene%lower%half_extent(), scene%upper%half_extent())) return
-            form%pressure = hertz_pressure(model%x, force, form%half_width)
-            form%pressure_source = 'Hertz; Johnson 1985, section 4.2; dissertation eqs. 3.1, 3.2, 5.1'
+         if (model%compliance%elastic_block(block_wt) .and. model%tangential .and. .not. alike(scene)) return
+         if (simulation%way%rotated .and. .not. (is_hertz(scene) .and. model%rolls())) return
+         form%indenter = indenter_of(scene)
+         if (.not. form%indenter%is_flat() .and. .not. any([scene%lower%shape, scene%upper%shape] == shape_flat_punch)) then
+            form%half_width = form%indenter%half_width(0.5_wp*force/scene%modulus())
+            if (form%half_width > widest(scene)) return
+            call add_pressure(form, simulation)
          else if (scene%lower%shape == shape_half_plane .and. scene%upper%shape == shape_flat_punch &
                   .and. scene%upper%rigid) then
             form%half_width = scene%upper%to
@@ -56,10 +61,78 @@ contains
          else
             return
          end if
+         if (simulation%way%rotated) then
+            if (is_carter(simulation, form%half_width)) call add_carter(form, simulation)
+            return
+         end if
          if (is_spence(simulation)) call add_spence(form, simulation)
-         if (is_mindlin(simulation)) call add_mindlin(form, simulation)
+         if (is_mindlin(form, simulation)) call add_mindlin(form, simulation)
       end associate
    end function closed_form_of
+
+   !> Positions of the nodes, length, from the middle of the contact, which may have rolled along.
+   function middle_at_zero(simulation) result(position)
+      type(simulation_type), intent(in) :: simulation
+      real(wp), allocatable :: position(:)
+
+      associate (model => simulation%contact%model)
+         position = model%x
+         if (simulation%way%rotated) position = model%arc - model%rolled(simulation%contact%state%fields)
+      end associate
+   end function middle_at_zero
+
+   !> Similar bodies that have rolled far enough under constant forces, short of gross sliding; `half_width`: Hertz's, length.
+   logical function is_carter(simulation, half_width)
+      type(simulation_type), intent(in) :: simulation
+      real(wp), intent(in) :: half_width
+
+      associate (contact => simulation%contact, model => simulation%contact%model)
+         is_carter = model%scene%friction%is_coulomb() .and. model%tangential .and. contact%rolling%is_steady(half_width) .and. &
+                     (alike(model%scene) .or. .not. model%compliance%elastic_block(block_up)) .and. &
+                     any(contact%state%status == node_stick)
+      end associate
+   end function is_carter
+
+   subroutine add_carter(form, simulation)
+      type(closed_form_type), intent(inout) :: form
+      type(simulation_type), intent(in) :: simulation
+      real(wp), allocatable :: position(:)
+
+      position = middle_at_zero(simulation)
+      if (.not. simulation%contact%rolling%heads_right()) position = -position
+      associate (fields => simulation%contact%state%fields)
+         form%shear = carter_shear(position, fields%tangential_force, fields%normal_force, form%half_width, &
+                                   simulation%contact%model%scene%friction%static%largest())
+      end associate
+      form%shear_source = 'Carter 1926; Johnson 1985, section 8.3'
+   end subroutine add_carter
+
+   !> The widest half-width of a contact, length, for which closed forms are attached: rigid parabolas on a half-plane may be as wide as
+   !> they are.
+   pure real(wp) function widest(scene)
+      type(scene_type), intent(in) :: scene
+
+      widest = huge(1.0_wp)
+      if (.not. scene%mesh%parabolic .or. scene%arc_radius() > 0.0_wp) &
+         widest = widest_hertz*min(scene%lower%half_extent(), scene%upper%half_extent())
+   end function widest
+
+   !> The pressure of an indenter on the nodes; at a sharp tip, where it is infinite, its mean over the interval of a node there.
+   subroutine add_pressure(form, simulation)
+      type(closed_form_type), intent(inout) :: form
+      type(simulation_type), intent(in) :: simulation
+      real(wp), allocatable :: x(:)
+
+      associate (model => simulation%contact%model)
+         x = middle_at_zero(simulation)
+         ! ln(2 a/x) at x is the mean of ln(2 a/s) over |s| < e x.
+         if (form%indenter%is_pointed()) x = max(abs(x), 0.5_wp*model%interval()*exp(-1.0_wp))
+         form%pressure = 2.0_wp*model%scene%modulus()*form%indenter%pressure(x, form%half_width)
+         form%pressure_source = 'superposed flat punches; Jaeger 2005'
+         if (size(form%indenter%flat) > 0) form%pressure_source = 'Ciavarella, Hills and Monno 1998'
+         if (is_hertz(model%scene)) form%pressure_source = 'Hertz; Johnson 1985, section 4.2; dissertation eqs. 3.1, 3.2, 5.1'
+      end associate
+   end subroutine add_pressure
 
    !> Circles and half-planes that touch at a point.
    pure logical function is_hertz(scene)
@@ -83,7 +156,8 @@ contains
       type(simulation_type), intent(in) :: simulation
 
       associate (model => simulation%contact%model)
-         is_spence = model%compliance%has_block(block_up) .and. &
+         is_spence = (is_hertz(model%scene) .or. model%scene%upper%shape == shape_flat_punch) .and. &
+                     model%compliance%elastic_block(block_up) .and. &
                      model%scene%friction%is_coulomb() .and. model%tangential .and. .not. alike(model%scene)
       end associate
       is_spence = is_spence .and. simulation%way%pressed_harder
@@ -107,15 +181,17 @@ contains
       end associate
    end subroutine add_spence
 
-   !> A disk pressed to a constant normal force without shear (friction off, or no coupling), then sheared by forces, of which
-   !> every turn was kept.
-   logical function is_mindlin(simulation)
+   !> An indenter pressed to a constant normal force without shear (friction off, or no coupling), then sheared by forces, of
+   !> which every turn was kept.
+   logical function is_mindlin(form, simulation)
+      type(closed_form_type), intent(in) :: form
       type(simulation_type), intent(in) :: simulation
 
       associate (model => simulation%contact%model, way => simulation%way)
-         is_mindlin = is_hertz(model%scene) .and. model%scene%friction%is_coulomb() .and. model%tangential .and. &
+         is_mindlin = .not. form%indenter%is_flat() .and. model%scene%friction%is_coulomb() .and. model%tangential .and. &
                       way%pressed_then_sheared .and. way%sheared .and. &
-                      (.not. way%friction_in_press .or. alike(model%scene) .or. .not. model%compliance%has_block(block_up)) .and. &
+                      (.not. way%friction_in_press .or. alike(model%scene) .or. &
+                       .not. model%compliance%elastic_block(block_up)) .and. &
                       (simulation%keep_states == states_reversals .or. &
                        simulation%keep_states == states_steps .and. .not. way%cycled)
       end associate
@@ -129,14 +205,14 @@ contains
 
       associate (contact => simulation%contact, scene => simulation%contact%model%scene, &
                  force => simulation%contact%state%fields%normal_force)
-         history = new_mindlin_history(force, form%half_width, 1.0_wp/scene%curvature(), scene%datum(), &
-                                       scene%friction%static%largest())
+         history = new_mindlin_history(force, form%half_width, form%indenter, scene%datum(), scene%friction%static%largest())
          do i = 1, simulation%snapshot_count
             call history%load(simulation%snapshots(i)%state%fields%tangential_force)
          end do
          call history%load(contact%state%fields%tangential_force)
          form%shear = history%shear(contact%model%x)
-         form%shear_source = 'Cattaneo 1938, Mindlin 1949; dissertation eqs. 3.7, 3.8, corrected'
+         form%shear_source = 'Jaeger 1998, Ciavarella 1998'
+         if (is_hertz(scene)) form%shear_source = 'Cattaneo 1938, Mindlin 1949; dissertation eqs. 3.7, 3.8, corrected'
 
          history%turning = [real(wp) ::]
          allocate (form%shift(contact%history%records))

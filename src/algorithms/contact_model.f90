@@ -1,19 +1,21 @@
 !> A scene on its mesh: node positions, undeformed gaps and the compliance between the nodes.
 !>
-!> Nodes are at equal arc lengths from the pole on both bodies. Gaps are the exact vertical ones at the nodes' x, that of
-!> the circle of scene%arc_radius; another radius would put the other body's nodes at other x, off by the third power of
-!> the angle. Normals are vertical (docs/theory.md has the limits) or, for a disk in a hole, along the radius; gaps too.
+!> With vertical normals (docs/theory.md has the limits) nodes are at equal arc lengths from the pole on both bodies. Gaps
+!> are the exact ones at the nodes' x, that of the circle of scene%arc_radius; another radius would put the other body's
+!> nodes at other x, off by the third power of the angle. With radial normals, for a disk in a hole, nodes are at equal
+!> angles on both bodies, gaps are along the radii of the hole, and tractions are per unit of its arc.
 module mfv_contact_model
-   use mfv_body, only: gap_between, radial_gap_between, shape_matrix, shape_profile
+   use mfv_body, only: gap_between, radial_gap_between, shape_matrix
    use mfv_body_pair, only: body_pair_type, new_body_pair
    use mfv_circle, only: circle_intervals, kernel_fourier
    use mfv_compliance, only: compliance_type
    use mfv_contact_fields, only: contact_fields_type
    use mfv_kinds, only: pi, wp
    use mfv_lapack, only: ddot
-   use mfv_reference_hertz, only: hertz_half_width, hertz_half_width_of_approach
+   use mfv_reference_indenter, only: indenter_type
    use mfv_clock, only: seconds_now
-   use mfv_scene, only: control_displacement, control_force, scene_type
+   use mfv_scene, only: scene_type
+   use mfv_scene_indenter, only: indenter_of, largest_half_width
    implicit none
    private
    public :: contact_model_type, new_contact_model, choose_mesh, along_approach, along_shift, along_rotation
@@ -52,6 +54,8 @@ module mfv_contact_model
    contains
       procedure :: nodes
       procedure :: interval
+      procedure :: intervals
+      procedure :: largest_stiffness
       procedure :: length
       procedure :: gap
       procedure :: relative_displacements
@@ -63,6 +67,11 @@ module mfv_contact_model
       procedure :: force
       procedure :: resultant
       procedure :: reaches_end
+      procedure :: centre_height
+      procedure :: rolls
+      procedure :: rolled
+      procedure :: slid
+      procedure :: rolling_error
       procedure :: spare_nodes
       procedure :: grow
       procedure :: add_tangential
@@ -84,6 +93,7 @@ contains
       integer :: nodes
 
       model%scene = scene
+      call model%scene%friction%simplify()
       model%tangential = scene%tangential()
       model%rotational = scene%rotational()
       call choose_mesh(scene, nodes, interval, model%growing)
@@ -127,6 +137,14 @@ contains
                    any([scene%lower%kernel, scene%upper%kernel] == kernel_fourier)
    end function by_fourier
 
+   !> Stiffnesses above this, force/length^2, are ratios to a displacement that is round-off.
+   pure real(wp) function largest_stiffness(self)
+      class(contact_model_type), intent(in) :: self
+      real(wp), parameter :: elastic = 1.0e8_wp
+
+      largest_stiffness = elastic*self%compliance%modulus
+   end function largest_stiffness
+
    !> Model the tangential problem from now on: friction acts in a step that the scene did not have.
    subroutine add_tangential(self)
       class(contact_model_type), intent(inout) :: self
@@ -147,12 +165,13 @@ contains
       integer, intent(in) :: nodes
       real(wp), intent(in) :: interval
       class(compliance_type), allocatable :: lower, upper
-      real(wp) :: started
+      real(wp) :: common_radius, started
 
       started = seconds_now()
       associate (scene => self%scene)
-         call scene%lower%make_compliance(nodes, interval, scene%coupling, self%tangential, scene%mesh%radial, lower)
-         call scene%upper%make_compliance(nodes, interval, scene%coupling, self%tangential, scene%mesh%radial, upper)
+         common_radius = merge(scene%arc_radius(), 0.0_wp, scene%mesh%radial)
+         call scene%lower%make_compliance(nodes, interval, scene%coupling, self%tangential, common_radius, lower)
+         call scene%upper%make_compliance(nodes, interval, scene%coupling, self%tangential, common_radius, upper)
       end associate
       call new_body_pair(lower, upper, self%compliance)
       self%assembly_seconds = self%assembly_seconds + seconds_now() - started
@@ -170,6 +189,14 @@ contains
 
       interval = self%compliance%interval
    end function interval
+
+   !> The surface of the nodes of `mask`, shape (nodes), in (mean) intervals: on equal ones, their number.
+   pure real(wp) function intervals(self, mask)
+      class(contact_model_type), intent(in) :: self
+      logical, intent(in) :: mask(:)
+
+      intervals = sum(self%width/self%interval(), mask=mask)
+   end function intervals
 
    !> Half the length of the mesh, length: the scale of the scene.
    pure real(wp) function length(self)
@@ -333,11 +360,10 @@ contains
    end subroutine place_nodes
 
    !> Arms of the rotation of the upper body: about the centre of the upper body where it is a circle, else of the lower
-   !> one where that is, else about the pole. Counterclockwise it lifts the right side: the gap grows by x; and a surface
-   !> below the centre goes to the right (eq. 4.24, M there in units of R and with its own signs).
+   !> one where that is, else about the pole. Counterclockwise it lifts the right side, and a surface below the centre moves to
+   !> the right (eq. 4.24, M there in units of R and with its own signs). Circles roll: see rolling_arm.
    subroutine place_arms(self)
       class(contact_model_type), intent(inout) :: self
-      real(wp) :: height
       integer :: n
 
       n = self%nodes()
@@ -350,16 +376,75 @@ contains
          call place_radial_arms(self)
          return
       end if
-      height = 0.0_wp
-      if (self%scene%upper%circular()) then
-         height = sign(self%scene%upper%radius, self%scene%upper%curvature())
-      else if (self%scene%lower%circular()) then
-         height = -sign(self%scene%lower%radius, self%scene%lower%curvature())
-      end if
       self%normal_arm(:, along_rotation) = -self%x
-      self%tangential_arm(:, along_rotation) = sign(sqrt(max((height - self%x)*(height + self%x), 0.0_wp)), height)
-      if (.not. abs(height) > 0.0_wp) self%tangential_arm(:, along_rotation) = 0.0_wp
+      if (self%rolls()) self%normal_arm(:, along_rotation) = -rolling_arm(self)
+      self%tangential_arm(:, along_rotation) = self%centre_height()
    end subroutine place_arms
+
+   !> Height of the centre of rotation above the pole, length: negative where it is that of a disk below; 0 without a circle.
+   pure real(wp) function centre_height(self)
+      class(contact_model_type), intent(in) :: self
+
+      centre_height = 0.0_wp
+      if (self%scene%upper%circular()) then
+         centre_height = sign(self%scene%upper%radius, self%scene%upper%curvature())
+      else if (self%scene%lower%circular()) then
+         centre_height = -sign(self%scene%lower%radius, self%scene%lower%curvature())
+      end if
+   end function centre_height
+
+   !> Whether a rotation rolls the bodies on each other: circles, on each other or on a straight surface, normals vertical.
+   pure logical function rolls(self)
+      class(contact_model_type), intent(in) :: self
+
+      rolls = self%scene%curvature() > 0.0_wp .and. self%scene%lower%is_regular() .and. self%scene%upper%is_regular() .and. &
+              .not. self%scene%mesh%radial
+   end function rolls
+
+   !> How far the contact has rolled to the right along the surfaces, length: a rotation moves it by -1/K, K the relative
+   !> curvature, whichever of the bodies turns. 0 where the bodies do not roll.
+   pure real(wp) function rolled(self, fields)
+      class(contact_model_type), intent(in) :: self
+      type(contact_fields_type), intent(in) :: fields
+
+      rolled = 0.0_wp
+      if (self%rolls()) rolled = -fields%rotation/self%scene%curvature()
+   end function rolled
+
+   !> How far the upper surface has slid over the lower one at the pole, as rigid bodies, to the right, length.
+   pure real(wp) function slid(self, fields)
+      class(contact_model_type), intent(in) :: self
+      type(contact_fields_type), intent(in) :: fields
+
+      slid = fields%shift + self%centre_height()*fields%rotation
+   end function slid
+
+   !> By how much the gap grows per unit of rotation, length, shape (nodes). A contact that has rolled along by s has the gap
+   !> g(arc - s), but for a constant that the approach takes up. For a parabola g = K arc^2/2 this is K arc^2/2 - K s arc: the arm is
+   !> the arc. For other gaps the arm arc + 2 b arc^3/3, with g = K arc^2/2 (1 + b arc^2), keeps the least gap at s, to fourth order;
+   !> there the curvature is then wrong by the part 2 b s^2 (see rolling_error).
+   pure function rolling_arm(self) result(arm)
+      class(contact_model_type), intent(in) :: self
+      real(wp) :: arm(self%compliance%nodes)
+
+      arm = self%arc
+      where (self%initial_gap > 0.0_wp .and. abs(self%arc) > 0.0_wp) &
+         arm = (self%arc + 4.0_wp*self%initial_gap/(self%scene%curvature()*self%arc))/3.0_wp
+   end function rolling_arm
+
+   !> By which part the relative curvature is wrong where the contact has rolled to, see rolling_arm: zero for parabolas on
+   !> straight lines.
+   pure real(wp) function rolling_error(self, fields)
+      class(contact_model_type), intent(in) :: self
+      type(contact_fields_type), intent(in) :: fields
+      integer :: i
+
+      rolling_error = 0.0_wp
+      if (.not. self%rolls()) return
+      i = minloc(abs(self%arc - self%rolled(fields)), dim=1)
+      if (abs(self%arc(i)) < self%interval()) return
+      rolling_error = 2.0_wp*(2.0_wp*self%initial_gap(i)/(self%scene%curvature()*self%arc(i)**2) - 1.0_wp)
+   end function rolling_error
 
    !> The same with normals along the radius: where the normal leans, approach and shift have parts of each other's, and a
    !> rotation only slides the surfaces on each other. `side`: 1 where the lower body is the disk, -1 where it is the hole.
@@ -378,29 +463,22 @@ contains
    end subroutine place_radial_arms
 
    !> Half-width of a mesh for a scene that asks for none, length along the surface: the punch itself, the whole profile, or
-   !> Hertz's contact under the largest load with some room.
+   !> the contact that the closed form expects of the largest load with some room.
    function estimated_half_width(scene) result(half_width)
       type(scene_type), intent(in) :: scene
-      real(wp) :: half_width, largest, radius
-      integer :: i
+      real(wp) :: half_width, largest, beyond
+      type(indenter_type) :: indenter
 
       largest = min(scene%lower%half_extent(), scene%upper%half_extent())
       half_width = largest
-      if (any([scene%lower%shape, scene%upper%shape] == shape_profile) .or. .not. scene%curvature() > 0.0_wp) return
-      radius = 1.0_wp/scene%curvature()
-      half_width = 0.0_wp
-      do i = 1, size(scene%steps)
-         associate (step => scene%steps(i))
-            select case (step%normal_control)
-            case (control_force)
-               half_width = max(half_width, hertz_half_width(step%normal_target, radius, scene%modulus()))
-            case (control_displacement)
-               half_width = max(half_width, hertz_half_width_of_approach(step%normal_target, radius, scene%datum()))
-            end select
-         end associate
-      end do
+      indenter = indenter_of(scene)
+      if (indenter%is_flat()) return
+      half_width = largest_half_width(scene, largest)
       if (.not. half_width > 0.0_wp) half_width = 1.0e-2_wp*largest
-      half_width = min(room*half_width, largest)
+      half_width = room*half_width
+      beyond = 2.0_wp*min(largest, 0.25_wp*huge(1.0_wp))
+      if (.not. (scene%lower%covers(beyond, scene%mesh%parabolic) .and. scene%upper%covers(beyond, scene%mesh%parabolic))) &
+         half_width = min(half_width, largest)
    end function estimated_half_width
 
 end module mfv_contact_model

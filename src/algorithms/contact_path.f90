@@ -10,12 +10,15 @@ module mfv_contact_path
    use mfv_contact_system
    use mfv_error, only: error_type, set_error
    use mfv_event_search, only: corners_type, status_after
+   use mfv_friction_dahl, only: dahl_law_type
    use mfv_friction_law, only: friction_point_type, friction_row_type
    use mfv_history, only: history_type
    use mfv_kinds, only: wp
    use mfv_linear_solvers, only: new_contact_system
    use mfv_node_status
+   use mfv_rolling, only: rolling_type
    use mfv_scene, only: algorithm_mfv, control_displacement, control_force, stepping_leap
+   use mfv_slip_zones, only: widest_slip_zone
    use mfv_status
    use mfv_strings, only: to_text
    implicit none
@@ -48,6 +51,10 @@ module mfv_contact_path
       !> Tangential force over shift on the first increment of this segment, force/length^2; NaN where there is none yet, and of
       !> load steps and leaps, which are no first increments.
       real(wp) :: first_stiffness = 0.0_wp
+      !> How the bodies roll on each other.
+      type(rolling_type) :: rolling
+      !> Nodes of the widest slip zone that has dissipated in this segment, see mfv_slip_zones.
+      integer :: slip_zone_nodes = 0
    contains
       procedure, private :: carry_position
    end type path_position_type
@@ -61,6 +68,8 @@ module mfv_contact_path
       logical :: record_events = .true.
       !> Tangential force and shift where the segment begins, while the first increment is waited for.
       real(wp), private :: start_force = 0.0_wp, start_shift = 0.0_wp
+      !> The dissipation where the segment begins, force.
+      real(wp), private :: start_dissipation = 0.0_wp
       logical, private :: awaits_increment = .false.
    contains
       procedure :: copy_without_history
@@ -203,6 +212,7 @@ contains
       call archive%carry(self%record_events)
       call archive%carry(self%start_force)
       call archive%carry(self%start_shift)
+      call archive%carry(self%start_dissipation)
       call archive%carry(self%awaits_increment)
    end subroutine carry
 
@@ -216,6 +226,8 @@ contains
       call archive%carry(self%events)
       call archive%carry(self%trial)
       call archive%carry(self%first_stiffness)
+      call self%rolling%carry(archive)
+      call archive%carry(self%slip_zone_nodes)
    end subroutine carry_position
 
    subroutine carry_segment(self, archive)
@@ -248,18 +260,20 @@ contains
       call archive%carry(self%count)
    end subroutine carry_moment
 
-   !> A segment begins: have its first_stiffness found.
+   !> A segment begins: have its first_stiffness and slip_zone_nodes found.
    subroutine await_increment(self)
       class(contact_path_type), intent(inout) :: self
 
       self%first_stiffness = ieee_value(1.0_wp, ieee_quiet_nan)
       self%start_force = self%state%fields%tangential_force
       self%start_shift = self%state%fields%shift
+      self%start_dissipation = self%state%dissipation
+      self%slip_zone_nodes = 0
       self%awaits_increment = self%model%scene%method%algorithm == algorithm_mfv .and. &
                               self%model%scene%method%stepping /= stepping_leap
    end subroutine await_increment
 
-   !> Find first_stiffness where the tangential force has changed by more than round-off.
+   !> Find first_stiffness where the tangential force has changed by more than round-off. A held shift has none.
    subroutine find_first_stiffness(self)
       class(contact_path_type), intent(inout) :: self
       real(wp), parameter :: visible = 1.0e-6_wp
@@ -269,7 +283,7 @@ contains
       shift = self%state%fields%shift - self%start_shift
       if (.not. abs(force) > visible*self%model%grip*self%state%fields%normal_force) return
       self%awaits_increment = .false.
-      if (abs(shift) > 0.0_wp) self%first_stiffness = force/shift
+      if (abs(force) < self%model%largest_stiffness()*abs(shift)) self%first_stiffness = force/shift
    end subroutine find_first_stiffness
 
    !> Turn friction on or off in the nodes that touch; with the first friction the tangential problem begins to be
@@ -572,9 +586,11 @@ contains
    end subroutine find_corners
 
    !> Nodes at their static limit, and those on their way from static to kinetic friction: where they can neither hold nor slip
-   !> on in equilibrium, let them snap. `snapped`: whether there are any.
-   subroutine snap(self, snapped)
+   !> on in equilibrium, let them snap. `snapped`: whether there are any; the first of them is then what changes at this load,
+   !> unless something else has changed before.
+   subroutine snap(self, moment, snapped)
       class(contact_path_type), intent(inout) :: self
+      type(moment_type), intent(inout) :: moment
       logical, intent(out) :: snapped
       real(wp), parameter :: at_limit = 1.0e-9_wp
       type(friction_point_type) :: here
@@ -588,11 +604,14 @@ contains
          do i = 1, size(mask)
             here = self%point(i, self%state%fields)
             mask(i) = in_contact(self%state%status(i)) .and. here%pressure > 0.0_wp .and. .not. here%excess > 0.0_wp .and. &
+                      here%kinetic < here%static .and. &
                       (abs(here%shear) >= here%static*here%pressure*(1.0_wp - at_limit) .or. &
                        (slips(self%state%status(i)) .and. here%slipped < law%weakening_distance))
             status(i) = merge(node_slip_left, node_slip_right, here%shear > 0.0_wp)
          end do
          snapped = any(mask)
+         if (.not. snapped) return
+         call note_change(moment, merge(event_slip_left, event_slip_right, status(first_true(mask)) == node_slip_left), mask)
          call self%set_status(mask, status)
          do i = 1, size(mask)
             if (mask(i)) self%state%excess(i) = law%first_excess(self%point(i, self%state%fields))
@@ -679,8 +698,9 @@ contains
    end function holding
 
    !> Go to the fields `after`: memories, dissipation, directions and the certificate go along. `slip_rate`: rates of slip on
-   !> the way, any unit, shape (nodes); `dropped`: part of the excess tractions that has been let go. `friction_work`: of a leap,
-   !> whose way is not known, what friction dissipates (force/length, shape (nodes)); else everything is linear on the way.
+   !> the way, any unit, shape (nodes); `dropped`: part of the excess tractions that has been let go. `friction_work`: what
+   !> friction dissipates over a large increment, whose path is not known (force/length, shape (nodes)); else everything is linear
+   !> on the way.
    subroutine take_increment(self, after, slip_rate, dropped, friction_work)
       class(contact_path_type), intent(inout) :: self
       type(contact_fields_type), intent(in) :: after
@@ -693,6 +713,8 @@ contains
       call self%before%take(self%state)
       call remember_slip(self, after, dropped)
       call self%state%fields%take(after)
+      if (.not. self%model%rotational) &
+         self%state%fields%moment = self%model%resultant(along_rotation, after%pressure, after%shear)
       if (present(friction_work)) then
          self%state%dissipation = self%state%dissipation + self%model%force(friction_work)
          self%state%friction_work = self%state%friction_work + friction_work
@@ -715,7 +737,33 @@ contains
       end do
       call self%certificate%check_increment(self%model, self%before, self%state, present(friction_work))
       if (self%awaits_increment) call find_first_stiffness(self)
+      call note_slip_zones(self)
+      if (.not. self%model%rotational .or. dropped > 0.0_wp) return
+      associate (before => self%before%fields)
+         call self%rolling%follow(self%model%interval(), [self%model%rolled(before), self%model%rolled(after)], &
+                                  [self%model%slid(before), self%model%slid(after)], forces_stay(before, after))
+      end associate
    end subroutine take_increment
+
+   !> Whether the normal and the tangential force stay as they are, to round-off of the normal force.
+   pure logical function forces_stay(before, after)
+      type(contact_fields_type), intent(in) :: before, after
+      real(wp), parameter :: round_off = 1.0e-9_wp
+
+      forces_stay = max(abs(after%normal_force - before%normal_force), abs(after%tangential_force - before%tangential_force)) &
+                    <= round_off*after%normal_force
+   end function forces_stay
+
+   !> Keep slip_zone_nodes, but for slip zones of round-off: where a cycle repeats the tractions of one before, many nodes come to
+   !> their limit together at the very end.
+   subroutine note_slip_zones(self)
+      class(contact_path_type), intent(inout) :: self
+      real(wp), parameter :: round_off = 1.0e-6_wp
+
+      if (.not. self%model%tangential) return
+      if (self%state%dissipation - self%before%dissipation > round_off*(self%state%dissipation - self%start_dissipation)) &
+         self%slip_zone_nodes = max(self%slip_zone_nodes, widest_slip_zone(self%state%status))
+   end subroutine note_slip_zones
 
    !> What the friction law remembers after an increment to the fields `after`.
    subroutine remember_slip(self, after, dropped)
@@ -837,8 +885,28 @@ contains
       character(*), intent(in) :: why
       type(error_type), allocatable, intent(out) :: error
 
-      call self%end_here(MFV_NO_CONTINUATION, 'no admissible continuation: '//why, error)
+      call self%end_here(MFV_NO_CONTINUATION, 'no admissible continuation: '//why//trim(too_stiff(self)), error)
    end subroutine no_continuation
+
+   !> Bristles (Dahl) far stiffer than what one interval of the surface gives way: that they are too stiff, and what would be
+   !> right; padded with blanks. Such friction differs from Coulomb's by about the ratio of these stiffnesses.
+   function too_stiff(self) result(text)
+      class(contact_path_type), intent(in) :: self
+      character(len=260) :: text
+      real(wp), parameter :: largest = 10.0_wp
+      real(wp) :: interval_stiffness
+
+      text = ''
+      if (.not. self%model%scene%friction%acts()) return
+      interval_stiffness = self%model%compliance%modulus/self%model%interval()
+      select type (law => self%model%scene%friction%law)
+      type is (dahl_law_type)
+         if (law%stiffness > largest*interval_stiffness) &
+            text = '; the bristles are too stiff for this mesh: &friction stiffness='//to_text(law%stiffness)// &
+                   ' should be at most '//to_text(largest*interval_stiffness, 2)//', ten times the contact modulus over the '// &
+                   "interval; law='coulomb' is the limit of stiff bristles"
+      end select
+   end function too_stiff
 
    !> An early end: why, and the load and contact now.
    subroutine end_here(self, status, why, error)

@@ -5,6 +5,7 @@ module mfv_cycle
    use mfv_contact_model, only: contact_model_type
    use mfv_contact_state, only: contact_state_type
    use mfv_kinds, only: pi, wp
+   use mfv_slip_zones, only: slip_record_type
    use mfv_zone_edges, only: find_zone_edges, zone_edges_type
    implicit none
    private
@@ -12,12 +13,16 @@ module mfv_cycle
 
    !> Where the load turns.
    type :: turning_point_type
-      real(wp) :: normal_force = 0.0_wp, tangential_force = 0.0_wp, approach = 0.0_wp, shift = 0.0_wp
+      real(wp) :: normal_force = 0.0_wp, tangential_force = 0.0_wp, approach = 0.0_wp, shift = 0.0_wp, rotation = 0.0_wp
       real(wp) :: dissipation = 0.0_wp
       type(zone_edges_type) :: edges
+      !> What is known of the slip zones up to there.
+      type(slip_record_type) :: slip
       !> Tangential force over shift on the first event increment of the way to it, that is right after the turning point before,
       !> where all sticks: tangential stiffness, force/length^2. NaN where no such increment was made.
       real(wp) :: stiffness_on_leaving = 0.0_wp
+      !> See contact_model_type.
+      real(wp) :: largest_stiffness = 0.0_wp
    contains
       procedure :: carry => carry_turning_point
    end type turning_point_type
@@ -31,11 +36,15 @@ module mfv_cycle
       real(wp) :: change = 0.0_wp
       !> Energy that the first cycle of this step dissipated, per unit thickness: force.
       real(wp) :: first_dissipation = 0.0_wp
+      !> What is known of the slip zones up to where the cycles of this step begin, and of those of its first cycle.
+      type(slip_record_type) :: loading_slip, first_slip
    contains
+      procedure :: slip
       procedure :: dissipation
       procedure :: force_amplitude
       procedure :: shift_amplitude
       procedure, private :: is_sheared
+      procedure, private :: only_sheared
       procedure :: secant_stiffness
       procedure :: loss_factor
       procedure :: carry
@@ -43,10 +52,11 @@ module mfv_cycle
 
 contains
 
-   !> The turning point that a state is. `stiffness`: see stiffness_on_leaving.
-   function new_turning_point(model, state, stiffness) result(point)
+   !> The turning point that a state is. `slip`: see turning_point_type; `stiffness`: see stiffness_on_leaving.
+   function new_turning_point(model, state, slip, stiffness) result(point)
       type(contact_model_type), intent(in) :: model
       type(contact_state_type), intent(in) :: state
+      type(slip_record_type), intent(in) :: slip
       real(wp), intent(in) :: stiffness
       type(turning_point_type) :: point
 
@@ -54,7 +64,10 @@ contains
       point%tangential_force = state%fields%tangential_force
       point%approach = state%fields%approach
       point%shift = state%fields%shift
+      point%rotation = state%fields%rotation
+      point%largest_stiffness = model%largest_stiffness()
       point%dissipation = state%dissipation
+      point%slip = slip
       point%stiffness_on_leaving = stiffness
       call find_zone_edges(model, state, point%edges)
    end function new_turning_point
@@ -65,6 +78,13 @@ contains
 
       dissipation = self%return%dissipation - self%start%dissipation
    end function dissipation
+
+   !> What is known of the slip zones of the cycle.
+   elemental type(slip_record_type) function slip(self)
+      class(cycle_type), intent(in) :: self
+
+      slip = self%return%slip%since(self%start%slip)
+   end function slip
 
    !> Half of what the tangential force changes by, force/length.
    elemental real(wp) function force_amplitude(self)
@@ -80,15 +100,27 @@ contains
       shift_amplitude = 0.5_wp*abs(self%return%shift - self%reversal%shift)
    end function shift_amplitude
 
-   !> Whether tangential force and shift both change, by more than round-off of what they are.
+   !> Whether tangential force and shift both change by more than round-off.
    elemental logical function is_sheared(self)
       class(cycle_type), intent(in) :: self
       real(wp), parameter :: round_off = 1.0e-10_wp
 
       is_sheared = self%shift_amplitude() > round_off*max(abs(self%return%shift), abs(self%reversal%shift)) .and. &
-                   self%force_amplitude() > round_off*max(abs(self%return%tangential_force), &
-                                                          abs(self%reversal%tangential_force))
+                   self%force_amplitude() > round_off*max(self%return%normal_force, self%reversal%normal_force) .and. &
+                   self%force_amplitude() < self%return%largest_stiffness*self%shift_amplitude()
    end function is_sheared
+
+   !> Whether the tangential force alone works over the loop: neither the normal force nor the rotation changes.
+   elemental logical function only_sheared(self)
+      class(cycle_type), intent(in) :: self
+      real(wp), parameter :: round_off = 1.0e-9_wp
+      real(wp) :: forces(3), rotations(3)
+
+      forces = [self%start%normal_force, self%reversal%normal_force, self%return%normal_force]
+      rotations = [self%start%rotation, self%reversal%rotation, self%return%rotation]
+      only_sheared = self%is_sheared() .and. maxval(forces) - minval(forces) <= round_off*maxval(forces) .and. &
+                     maxval(rotations) - minval(rotations) <= round_off*maxval(abs(rotations))
+   end function only_sheared
 
    !> Tangential force over shift from end to end, force/length^2; NaN where one of them does not change.
    elemental real(wp) function secant_stiffness(self)
@@ -99,16 +131,13 @@ contains
    end function secant_stiffness
 
    !> Loss factor: dissipation over 2 pi times the energy force_amplitude shift_amplitude/2 of the linear spring that has the
-   !> secant stiffness. NaN where that is none, and where the normal force changes too: the dissipation is then not the area of
-   !> the loop of tangential force and shift.
+   !> secant stiffness. NaN where that is none, and where the normal force or the rotation changes too: the dissipation is then not
+   !> the area of the loop of tangential force and shift.
    elemental real(wp) function loss_factor(self)
       class(cycle_type), intent(in) :: self
-      real(wp), parameter :: round_off = 1.0e-9_wp
 
       loss_factor = ieee_value(1.0_wp, ieee_quiet_nan)
-      if (.not. self%is_sheared()) return
-      if (abs(self%return%normal_force - self%reversal%normal_force) > round_off*self%return%normal_force) return
-      loss_factor = self%dissipation()/(pi*self%force_amplitude()*self%shift_amplitude())
+      if (self%only_sheared()) loss_factor = self%dissipation()/(pi*self%force_amplitude()*self%shift_amplitude())
    end function loss_factor
 
    !> Append a cycle to the first `number` ones of a list that doubles where it is full; where `last_only`, it takes their place.
@@ -144,6 +173,8 @@ contains
       call self%return%carry(archive)
       call archive%carry(self%change)
       call archive%carry(self%first_dissipation)
+      call self%loading_slip%carry(archive)
+      call self%first_slip%carry(archive)
    end subroutine carry
 
    subroutine carry_turning_point(self, archive)
@@ -154,9 +185,12 @@ contains
       call archive%carry(self%tangential_force)
       call archive%carry(self%approach)
       call archive%carry(self%shift)
+      call archive%carry(self%rotation)
       call archive%carry(self%dissipation)
       call self%edges%carry(archive)
+      call self%slip%carry(archive)
       call archive%carry(self%stiffness_on_leaving)
+      call archive%carry(self%largest_stiffness)
    end subroutine carry_turning_point
 
 end module mfv_cycle

@@ -11,6 +11,7 @@ module mfv_discretisation_error
    use mfv_observer, only: observer_type, relay_type
    use mfv_scene, only: scene_type
    use mfv_simulation, only: history_none, new_simulation, simulation_type, states_steps
+   use mfv_slip_zones, only: contact_interval
    use mfv_status, only: MFV_COMPLETE, MFV_INPUT_ERROR, status_outcome
    use mfv_strings, only: to_text
    use mfv_zone_edges, only: ends_with_body
@@ -51,15 +52,36 @@ contains
       if (estimate%message == '') then
          estimate%companion_nodes = nodes(2:)
          do quantity = 1, quantity_count
-            if (.not. is_there(simulation%contact%model, quantity, values(quantity, :))) cycle
-            estimate%bar(quantity) = new_error_bar(nodes, values(quantity, :), allowances(quantity, :), &
-                                                   any(quantity == [quantity_half_width, quantity_stick_ratio]))
+            if (is_resolved(simulation, quantity) .and. &
+                .not. is_there(simulation%contact%model, quantity, values(quantity, :))) cycle
+            if (is_resolved(simulation, quantity)) then
+               estimate%bar(quantity) = new_error_bar(nodes, values(quantity, :), allowances(quantity, :), &
+                                                      any(quantity == [quantity_half_width, quantity_stick_ratio]), &
+                                                      all(quantity /= [quantity_peak_pressure, quantity_peak_shear]))
+            else
+               estimate%bar(quantity) = unresolved_bar(values(quantity, :))
+            end if
          end do
       end if
       simulation%estimate = estimate
    end subroutine estimate_error
 
-   !> Whether a quantity is modelled and is not zero on all meshes.
+   !> Whether the slip zones that a quantity depends on have enough nodes.
+   pure logical function is_resolved(simulation, quantity)
+      type(simulation_type), intent(in) :: simulation
+      integer, intent(in) :: quantity
+
+      is_resolved = .true.
+      select case (quantity)
+      case (quantity_dissipation)
+         is_resolved = .not. simulation%slip%is_coarse()
+      case (quantity_stick_ratio, quantity_peak_shear)
+         is_resolved = .not. simulation%slip%is_coarse_now(contact_interval(simulation%contact%model, &
+                                                                                simulation%contact%state))
+      end select
+   end function is_resolved
+
+   !> Whether a quantity is modelled and is not zero on all meshes, as far as these tell.
    pure logical function is_there(model, quantity, values)
       type(contact_model_type), intent(in) :: model
       integer, intent(in) :: quantity
@@ -241,8 +263,9 @@ contains
       real(wp) :: values(quantity_count)
 
       associate (state => simulation%contact%state, model => simulation%contact%model)
-         values(quantity_half_width) = 0.5_wp*sum(model%width, mask=in_contact(state%status))
-         values(quantity_stick_ratio) = real(state%stick_nodes(), wp)/max(state%contact_nodes(), 1)
+         values(quantity_half_width) = 0.5_wp*model%interval()*model%intervals(in_contact(state%status))
+         values(quantity_stick_ratio) = model%intervals(holds(state%status))/ &
+                                        max(model%intervals(in_contact(state%status)), tiny(1.0_wp))
          values(quantity_peak_pressure) = maxval(state%fields%pressure)
          values(quantity_peak_shear) = maxval(abs(state%fields%shear))
          values(quantity_dissipation) = state%dissipation

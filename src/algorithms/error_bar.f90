@@ -3,12 +3,12 @@
 !> an interval, so that errors have the shape of a saw over the number of intervals. So no single pair of meshes is
 !> believed: the bar is the mean square over all of them; and what the intervals leave open comes on top.
 module mfv_error_bar
-   use, intrinsic :: ieee_arithmetic, only: ieee_positive_inf, ieee_value
+   use, intrinsic :: ieee_arithmetic, only: ieee_positive_inf, ieee_quiet_nan, ieee_value
    use mfv_kinds, only: wp
    implicit none
    private
-   public :: error_bar_type, error_estimate_type, new_error_bar, quantity_count, quantity_half_width, quantity_stick_ratio, &
-             quantity_peak_pressure, quantity_peak_shear, quantity_dissipation, lowest_order, highest_order
+   public :: error_bar_type, error_estimate_type, new_error_bar, unresolved_bar, quantity_count, quantity_half_width, &
+             quantity_stick_ratio, quantity_peak_pressure, quantity_peak_shear, quantity_dissipation, lowest_order, highest_order
 
    !> What is estimated.
    integer, parameter :: quantity_half_width = 1, quantity_stick_ratio = 2, quantity_peak_pressure = 3, &
@@ -16,8 +16,9 @@ module mfv_error_bar
 
    !> A quantity with its bar.
    type :: error_bar_type
-      !> Whether the scene has this quantity.
-      logical :: known = .false.
+      !> Whether the scene has this quantity; and whether the mesh resolves what it depends on. Error and order of one that is not
+      !> resolved are NaN: coarser meshes tell nothing of it.
+      logical :: known = .false., resolved = .true.
       !> Its value on the finest mesh, and how far from that the limit of ever finer meshes may be: infinite where there is no
       !> limit. In the quantity's unit.
       real(wp) :: value = 0.0_wp, error = 0.0_wp
@@ -44,9 +45,12 @@ module mfv_error_bar
    real(wp), parameter :: lowest_order = 1.0_wp, highest_order = 2.0_wp
    !> Safety on Richardson's estimate; as is usual where three meshes and more take part (Roache 1994).
    real(wp), parameter :: safety = 1.25_wp
-   !> A value that grows from every mesh to the next faster than this power of the number of intervals has no limit: the edge
-   !> of a flat punch grows with the power 1/2.
-   real(wp), parameter :: growth = 0.2_wp
+   !> A peak that grows from every mesh to the next with about the same power of the number of intervals, within this factor, has
+   !> no limit where the power is between these: the edge of a flat punch grows with the power 1/2, and a traction whose sum is a
+   !> force with less than 1.
+   real(wp), parameter :: growth_factor = 1.5_wp, least_growth = 0.2_wp, most_growth = 1.0_wp
+   !> Meshes that such a claim takes.
+   integer, parameter :: fewest_growing = 3
    !> Numbers of intervals times their width are equal to within this.
    real(wp), parameter :: round_off = 1.0e-12_wp
 
@@ -54,11 +58,12 @@ contains
 
    !> The bar of a quantity with `values` on meshes of `nodes` intervals, the finest first, shape (2 or more). `allowances`:
    !> what the interval leaves open on each of the meshes, in the unit of the values, shape of values. `counted`: whether the
-   !> values are numbers of intervals, so that differences that the allowances explain say nothing.
-   pure function new_error_bar(nodes, values, allowances, counted) result(bar)
+   !> values are numbers of intervals, so that differences that the allowances explain say nothing. `bounded`: whether the
+   !> quantity always has a limit.
+   pure function new_error_bar(nodes, values, allowances, counted, bounded) result(bar)
       integer, intent(in) :: nodes(:)
       real(wp), intent(in) :: values(:), allowances(:)
-      logical, intent(in) :: counted
+      logical, intent(in) :: counted, bounded
       type(error_bar_type) :: bar
       real(wp), dimension(size(values) - 1) :: ratio, difference
       real(wp) :: scatter
@@ -66,7 +71,7 @@ contains
       bar%known = .true.
       bar%value = values(1)
       bar%companions = values(2:)
-      if (grows(nodes, abs(values))) then
+      if (.not. bounded .and. grows(nodes, abs(values))) then
          bar%order = -log(abs(values(1)/values(size(values))))/log(real(nodes(1), wp)/nodes(size(nodes)))
          bar%error = ieee_value(1.0_wp, ieee_positive_inf)
          return
@@ -84,13 +89,26 @@ contains
    pure logical function grows(nodes, values)
       integer, intent(in) :: nodes(:)
       real(wp), intent(in) :: values(:)
-      integer :: i
+      real(wp) :: power(size(values) - 1)
 
-      grows = .true.
-      do i = 1, size(values) - 1
-         grows = grows .and. values(i) > values(i + 1)*(real(nodes(i), wp)/nodes(i + 1))**growth
-      end do
+      grows = .false.
+      if (size(values) < fewest_growing .or. .not. all(values > 0.0_wp)) return
+      power = log(values(:size(power))/values(2:))/log(real(nodes(:size(power)), wp)/nodes(2:))
+      grows = minval(power) > least_growth .and. maxval(power) < min(most_growth, growth_factor*minval(power))
    end function grows
+
+   !> The bar of a quantity of which coarser meshes tell nothing. `values`: as above.
+   pure function unresolved_bar(values) result(bar)
+      real(wp), intent(in) :: values(:)
+      type(error_bar_type) :: bar
+
+      bar%known = .true.
+      bar%resolved = .false.
+      bar%value = values(1)
+      bar%error = ieee_value(1.0_wp, ieee_quiet_nan)
+      bar%order = bar%error
+      bar%companions = values(2:)
+   end function unresolved_bar
 
    !> The order p, between lowest_order and highest_order, with which v0 + c/nodes^p comes nearest to the values, by least
    !> squares in which a mesh weighs as much as its errors are small.

@@ -14,6 +14,7 @@
 !> waits while the excess is let go, an internal load with the same search for events: so every state on the way is
 !> admissible, and cascades come out in their order.
 module mfv_first_violation
+   use mfv_accumulation, only: pass_accumulation
    use mfv_contact_path
    use mfv_contact_system
    use mfv_error, only: error_type
@@ -24,6 +25,7 @@ module mfv_first_violation
    use mfv_node_status
    use mfv_observer, only: observer_type
    use mfv_rate_problem, only: settle_by_rates
+   use mfv_scene, only: control_force
    use mfv_status
    use mfv_strings, only: to_text
    implicit none
@@ -35,6 +37,8 @@ module mfv_first_violation
    !> So many increments for this part of a segment, and ten a node, are no progress either (stick-slip without end).
    integer, parameter :: most_events = 5000
    real(wp), parameter :: worth_telling = 1.0e-5_wp
+   !> After so many increments within that part their events may accumulate at a finite load.
+   integer, parameter :: many_events = 100
    !> So many changes at one load, and one a node, before the rates of all are solved for at once.
    integer, parameter :: patience = 30
    !> The rates' round-off where a cycle of statuses suggests that some of them are noise.
@@ -110,7 +114,8 @@ contains
       type(segment_type), intent(in) :: segment
       type(march_type), intent(inout) :: march
       type(error_type), allocatable, intent(out) :: error
-      logical :: drop, ready
+      logical :: drop, ready, passed
+      logical, allocatable :: dropping(:)
 
       march%moved = .false.
       do
@@ -128,8 +133,11 @@ contains
          call path%settle_loads(segment, march%done, march%moment, march%constraints, ready, error)
          if (allocated(error)) return
          if (.not. ready) cycle
-         call find_increment(path, march%constraints, merge(1.0_wp, 1.0_wp - march%done, drop), drop, &
-                             march%moment%round_off, march%increment)
+         passed = .false.
+         if (march%since > many_events) call pass_accumulation(path, march%constraints, 1.0_wp - march%done, worth_telling, &
+                                                               march%moment%round_off, march%increment, passed)
+         if (.not. passed) call find_increment(path, march%constraints, merge(1.0_wp, 1.0_wp - march%done, drop), drop, &
+                                               march%moment%round_off, march%increment)
          call look_for_solution(path, march, ready, error)
          if (allocated(error)) return
          if (ready) exit
@@ -137,11 +145,14 @@ contains
       if (.not. march%increment%step > no_step_of(path)) return
       call path%keep_settled(segment, march%moment)
       associate (step => march%increment%step)
-         march%at_end = .not. drop .and. step*(1.0_wp + tie_of(path)) + no_step_of(path) >= 1.0_wp - march%done
+         march%at_end = .not. drop .and. step*(1.0_wp + tie_of(path)) + last_step(path, segment) >= 1.0_wp - march%done
          if (march%at_end) step = 1.0_wp - march%done
          if (drop .and. step*(1.0_wp + tie_of(path)) + no_step_of(path) >= 1.0_wp) step = 1.0_wp
+         dropping = path%state%excess > 0.0_wp
          call advance(path, march%increment, drop, error)
          if (allocated(error)) return
+         if (drop .and. .not. path%dropping() .and. path%record_events) &
+            call path%record(event_dropped, first_true(dropping), count(dropping), segment%step)
          march%moved = .true.
          if (.not. drop) march%done = march%done + step
          if (march%at_end) return
@@ -155,6 +166,22 @@ contains
          march%since = 0
       end if
    end subroutine make_increment
+
+   !> The shortest step at the end of a segment. Where the normal force falls to zero, what is left of it can be round-off of
+   !> the largest so far: no contact is told from another by that, and the load goes to the end.
+   pure real(wp) function last_step(path, segment)
+      class(contact_path_type), intent(in) :: path
+      type(segment_type), intent(in) :: segment
+      real(wp), parameter :: round_off = 1.0e-14_wp, largest = 1.0e-6_wp
+      real(wp) :: negligible
+
+      last_step = no_step_of(path)
+      negligible = max(round_off, path%system%noise)*path%certificate%force_scale()
+      associate (normal => segment%normal)
+         if (normal%control /= control_force .or. .not. normal%rate < 0.0_wp) return
+         if (abs(normal%value + normal%rate) <= negligible) last_step = max(last_step, min(negligible/(-normal%rate), largest))
+      end associate
+   end function last_step
 
    !> Whether the increment could be found. `found`: it was; else nodes have been let snap, and it is to be found again.
    !> Error MFV_NO_CONTINUATION.
@@ -172,7 +199,7 @@ contains
          return
       end if
       snapped = .false.
-      if (.not. march%moment%snapped) call path%snap(snapped)
+      if (.not. march%moment%snapped) call path%snap(march%moment, snapped)
       march%moment%snapped = snapped
       if (.not. snapped) call path%no_continuation('the equations of friction have no solution nearby', error)
    end subroutine look_for_solution
@@ -265,9 +292,9 @@ contains
                   return
                end if
             end if
-            if (.not. moment%snapped) call path%snap(snapped)
+            if (.not. moment%snapped) call path%snap(moment, snapped)
             if (snapped) then
-               call renew(moment)
+               call renew(moment, moment%event, moment%node, moment%count)
                moment%snapped = .true.
                return
             end if
@@ -332,7 +359,7 @@ contains
       call path%find_corners(path%state%fields, corners)
       if (.not. any(increment%violations%kind == event_stick .and. increment%violations%step <= no_step_of(path) .and. &
                     corners%room < huge(1.0_wp))) return
-      call path%snap(snapped)
+      call path%snap(moment, snapped)
       if (.not. snapped) return
       call renew(moment, moment%event, moment%node, moment%count)
       moment%snapped = .true.

@@ -22,6 +22,7 @@ module mfv_friction
    contains
       procedure :: acts
       procedure :: is_coulomb
+      procedure :: simplify
    end type friction_type
 
 contains
@@ -77,6 +78,18 @@ contains
       allocate (friction%law, source=new_dahl_law(stiffness, exponent))
       friction%name = 'dahl'
    end function dahl_friction
+
+   !> With equal static and kinetic coefficients everywhere, static and kinetic friction and weakening friction are Coulomb's law.
+   subroutine simplify(self)
+      class(friction_type), intent(inout) :: self
+
+      if (.not. allocated(self%law)) return
+      if (.not. (self%law%drops .or. self%law%weakening_distance < huge(1.0_wp))) return
+      if (.not. self%kinetic%equals(self%static)) return
+      deallocate (self%law)
+      allocate (coulomb_law_type :: self%law)
+      self%name = 'coulomb'
+   end subroutine simplify
 
    !> Whether there can be any shear traction.
    pure logical function acts(self)

@@ -14,6 +14,7 @@ module mfv_friction_coefficient
       procedure :: at
       procedure :: largest
       procedure :: is_uniform
+      procedure :: equals
    end type friction_coefficient_type
 
 contains
@@ -70,5 +71,17 @@ contains
       is_uniform = .true.
       if (allocated(self%value)) is_uniform = maxval(self%value) <= minval(self%value)
    end function is_uniform
+
+   !> Whether it has the same values as `other` at the same positions.
+   pure logical function equals(self, other)
+      class(friction_coefficient_type), intent(in) :: self, other
+
+      equals = allocated(self%value) .and. allocated(other%value) .and. (allocated(self%position) .eqv. allocated(other%position))
+      if (equals) equals = size(self%value) == size(other%value)
+      if (equals) equals = .not. any(abs(self%value - other%value) > 0.0_wp)
+      if (.not. equals .or. .not. allocated(self%position)) return
+      equals = size(self%position) == size(other%position)
+      if (equals) equals = .not. any(abs(self%position - other%position) > 0.0_wp)
+   end function equals
 
 end module mfv_friction_coefficient

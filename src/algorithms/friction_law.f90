@@ -103,7 +103,8 @@ contains
       class(friction_law_type), intent(in) :: self
       type(friction_point_type), intent(in) :: point
 
-      first_excess = max(abs(point%shear) - point%kinetic*point%pressure, 0.0_wp)
+      first_excess = 0.0_wp
+      if (point%kinetic < point%static) first_excess = max(abs(point%shear) - point%kinetic*point%pressure, 0.0_wp)
    end function first_excess
 
    !> How far a slipping node has slipped after an increment, length; not counted beyond the weakening distance.
@@ -137,7 +138,7 @@ contains
       real(wp), parameter :: round_off = 1.0e-12_wp
 
       room = huge(1.0_wp)
-      if (self%weakening_distance < huge(1.0_wp) .and. .not. point%excess > 0.0_wp .and. &
+      if (self%weakening_distance < huge(1.0_wp) .and. point%kinetic < point%static .and. .not. point%excess > 0.0_wp .and. &
           point%slipped < self%weakening_distance*(1.0_wp - round_off)) room = self%weakening_distance - point%slipped
    end function room
 

@@ -86,6 +86,8 @@ contains
       type(friction_point_type), intent(in) :: point
       real(wp) :: part
 
+      coefficient = point%static
+      if (.not. point%kinetic < point%static) return
       part = min(point%slipped/self%weakening_distance, 1.0_wp)
       coefficient = (1.0_wp - part)*point%static + part*point%kinetic
    end function coefficient

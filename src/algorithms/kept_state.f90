@@ -65,6 +65,7 @@ contains
       simulation%position_type = self%position
       if (allocated(self%last_cycle) .and. simulation%keep_history == history_none) simulation%cycles = [self%last_cycle]
       if (allocated(simulation%estimate)) deallocate (simulation%estimate)
+      if (allocated(simulation%sensitivity)) deallocate (simulation%sensitivity)
    end subroutine come_back
 
 end module mfv_kept_state

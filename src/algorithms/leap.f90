@@ -1,21 +1,24 @@
-!> Leaps: a part of the load history at once, as an integrator would take it.
+!> Large increments (`stepping='leap'`): a part of a load segment at once, as an integrator would take it.
 !>
-!> A leap holds stuck nodes at the slip that they have at its start, and asks at its end alone that every equality and
-!> inequality of dissertation Table 2.1 holds, slip counted from start to end (mfv_active_set). Two leaps of half the length go
-!> the same way again; where they end with the same tractions, and have dissipated the same, to a part `leap_tolerance` of the
-!> largest, they are taken, else the leap is shortened. Where nodes slip one way only under constant pressures, no way matters
-!> and one leap is exact (Mindlin). Where it matters, a node that touches on the way holds at about the slip that it then had,
-!> and a node that slips and sticks again on the way is taken never to have slipped: errors that fall with the length, which
-!> the tolerance bounds leap by leap, not in sum.
+!> A large increment holds stuck nodes at the slip that they have at its start, and asks at its end alone that every equality
+!> and inequality of dissertation Table 2.1 holds, slip counted from start to end (mfv_active_set): backward Euler. An interval
+!> is taken in one increment, then in 2, 4, 8, ... (a chain), until tractions and dissipation no longer change by more than
+!> half of `leap_tolerance`: tractions of the largest so far, dissipation of that of the interval itself, so that every leg of
+!> every cycle meets it. Where nodes slip one way only under constant pressures, one increment is exact (Mindlin).
 !>
-!> What leaps cannot settle, however short, goes by events (mfv_first_violation) for as long: so gross sliding, separation and
-!> the like end as they do there. Of leaps the certificate checks the ends.
+!> Tractions err at first order where the path matters: a node that touches on the way holds at about the slip that it then had,
+!> and a node that slips and sticks again within an increment is taken never to have slipped. Dissipation: see
+!> mfv_chain_dissipation.
+!>
+!> An interval that would take more solves than it has events goes by events (mfv_first_violation), which are exact; so gross
+!> sliding, separation and the like end as they do there. Of large increments the certificate checks the ends.
 module mfv_leap
+   use mfv_chain_dissipation, only: chain_dissipation, node_wise_dissipation
    use mfv_compliance, only: block_up, block_wt
    use mfv_contact_fields, only: contact_fields_type
-   use mfv_contact_model, only: contact_model_type
    use mfv_contact_path
    use mfv_contact_state, only: contact_state_type
+   use mfv_contact_system, only: constraints_type, response_type
    use mfv_error, only: error_type
    use mfv_first_violation, only: lead_by_violations
    use mfv_kinds, only: wp
@@ -28,28 +31,42 @@ module mfv_leap
    private
    public :: lead_by_leaps
 
-   !> The shortest leap, in parts of a segment; and by how much the next may be longer or shorter than this one.
-   real(wp), parameter :: shortest = 1.0e-4_wp, most_growth = 8.0_wp, least_shrink = 0.125_wp, most_shrink = 0.5_wp, &
-                          safety = 0.7_wp
+   !> An interval shorter than this part of a segment is not divided for want of statuses.
+   real(wp), parameter :: shortest = 0.2_wp
+   !> Increments of an interval at most.
+   integer, parameter :: most_parts = 64
+   !> Linear solves of event stepping per node that changes its status; less, since it can update the inverse from solve to
+   !> solve, and an increment cannot.
+   real(wp), parameter :: solves_per_change = 0.6_wp
+   !> Those of an increment among many.
+   real(wp), parameter :: solves_per_increment = 3.0_wp
+   !> What differences may be, in parts of the tolerance: the error of the finer chain is about as large as its difference from
+   !> one half as fine.
+   real(wp), parameter :: safety = 0.5_wp
 
-   !> A leap and its two halves, or the leap alone where it is exact.
-   type :: leap_type
-      !> State before each part, with the statuses on the way through it; and fields after it; parts.
-      type(contact_state_type) :: state(2)
-      type(contact_fields_type) :: after(2)
-      !> What friction dissipates in each part, force/length, shape (nodes, 2).
-      real(wp), allocatable :: friction_work(:, :)
+   !> An interval in equal increments.
+   type :: chain_type
       integer :: parts = 0
-      !> Whether the statuses were found, or at least the mesh was too short for them.
+      !> States before each increment, with the statuses on the way; fields after it; shape (parts).
+      type(contact_state_type), allocatable :: before(:)
+      type(contact_fields_type), allocatable :: after(:)
+      !> What friction dissipates in each, force/length, shape (nodes, parts).
+      real(wp), allocatable :: friction_work(:, :)
+      !> Whether the statuses were found; if not, whether only the mesh was too short for them.
       logical :: settled = .false., exceeded = .false.
-      !> Largest difference of the tractions at the end between the leap and its halves, and the largest of them,
-      !> force/length^2; the same of what friction dissipates.
-      real(wp) :: difference = 0.0_wp, traction = 0.0_wp, work_difference = 0.0_wp, work = 0.0_wp
-   end type leap_type
+      !> Linear solves, and nodes that changed their status where event stepping would have changed them one by one.
+      integer :: solves = 0, changes = 0
+      !> Estimated errors: of the tractions at the end (force/length^2), of what friction dissipates (force); and that, and the
+      !> largest traction.
+      real(wp) :: traction_error = 0.0_wp, work_error = 0.0_wp, work = 0.0_wp, traction = 0.0_wp
+      !> What of the latter is by the corners that the dissipation has as a function of the load: one where a node changes its
+      !> status, force.
+      real(wp) :: corner_error = 0.0_wp
+   end type chain_type
 
 contains
 
-   !> Lead the loads along one segment by leaps. `observer` is told of every leap, and can have a pause there.
+   !> Lead the loads along one segment by large increments. `observer` is told of every interval, and can have a pause there.
    !> Errors, each leaving the last admissible state in place: those of mfv_first_violation.
    subroutine lead_by_leaps(path, segment, march, observer, error)
       class(contact_path_type), intent(inout) :: path
@@ -71,9 +88,6 @@ contains
          march%goal = before_separation(segment)
          if (carries_nothing_yet(path, segment)) march%goal = 0.0_wp
          march%length = march%goal
-         march%violations_length = shortest
-         march%traction = path%certificate%traction_scale()
-         march%work = path%state%dissipation
       else if (march%part < march%goal .and. .not. march%by_violations) then
          march%paused = .false.
       end if
@@ -89,46 +103,39 @@ contains
       if (goal < 1.0_wp) call lead_by_violations(path, part_of(segment, goal, 1.0_wp), march, observer, error)
    end subroutine lead_by_leaps
 
-   !> Try a leap, and take it where it is right; else the next is shorter, or violations lead on (`march%by_violations`).
+   !> Try the next interval, and take it where it is right; else a shorter one is next, or events lead on
+   !> (`march%by_violations`).
    subroutine leap_on(path, segment, march, observer, error)
       class(contact_path_type), intent(inout) :: path
       type(segment_type), intent(in) :: segment
       type(march_type), intent(inout) :: march
       class(observer_type), intent(inout), optional :: observer
       type(error_type), allocatable, intent(out) :: error
-      type(leap_type) :: leap
-      real(wp) :: error_ratio
+      type(chain_type) :: chain
       logical :: accepted, grown
 
       associate (done => march%part, goal => march%goal, length => march%length)
-         if (length >= (1.0_wp - shortest)*(goal - done)) length = goal - done
-         call try_leap(path, segment, done, length, leap)
-         march%traction = max(march%traction, leap%traction)
-         march%work = max(march%work, path%state%dissipation + leap%work)
-         if (leap%exceeded) then
+         call refine(path, segment, done, length, chain, accepted)
+         if (chain%exceeded) then
             call grow_mesh(path, grown)
             if (grown) return
          end if
-         error_ratio = ratio(leap, path%model%scene%method%leap_tolerance, march%traction, march%work)
-         accepted = leap%settled .and. error_ratio <= 1.0_wp
-         march%factor = change(leap%settled, accepted, error_ratio)
          if (accepted) then
-            call take(path, leap)
+            call take(path, chain)
             done = merge(goal, done + length, length >= goal - done)
-            march%violations_length = shortest
+            length = goal - done
             call close_leap(path, segment, done, observer, error)
             if (allocated(error)) return
             if (present(observer)) march%paused = observer%pause_wanted .and. done < goal
-         else if (length <= shortest) then
-            length = min(march%violations_length, goal - done)
+         else if (.not. chain%settled .and. chain%solves < path%state%contact_nodes() .and. length > shortest) then
+            length = 0.5_wp*length
+         else
             march%by_violations = .true.
-            return
          end if
-         length = max(length*march%factor, shortest)
       end associate
    end subroutine leap_on
 
-   !> Go by violations where leaps do not lead on.
+   !> Go by events where large increments do not lead on, or would cost more.
    subroutine go_by_violations(path, segment, march, observer, error)
       class(contact_path_type), intent(inout) :: path
       type(segment_type), intent(in) :: segment
@@ -141,93 +148,195 @@ contains
          if (allocated(error) .or. march%paused) return
          march%by_violations = .false.
          done = merge(goal, done + length, length >= goal - done)
-         march%violations_length = 2.0_wp*march%violations_length
-         length = max(length*march%factor, shortest)
+         length = goal - done
       end associate
    end subroutine go_by_violations
 
-   !> By how much a leap errs, in parts of what it may: tractions of the largest so far, dissipation of that so far.
-   pure real(wp) function ratio(leap, tolerance, traction, work)
-      type(leap_type), intent(in) :: leap
-      real(wp), intent(in) :: tolerance, traction, work
-
-      ratio = 0.0_wp
-      if (traction > 0.0_wp) ratio = leap%difference/(tolerance*traction)
-      if (work > 0.0_wp) ratio = max(ratio, leap%work_difference/(tolerance*work))
-   end function ratio
-
-   !> By which factor the next leap is longer than this one, as for an integrator of first order.
-   pure real(wp) function change(settled, accepted, error_ratio)
-      logical, intent(in) :: settled, accepted
-      real(wp), intent(in) :: error_ratio
-
-      change = merge(most_growth, most_shrink, settled)
-      if (settled .and. error_ratio > 0.0_wp) change = safety/sqrt(error_ratio)
-      if (accepted) then
-         change = min(max(change, 1.0_wp), most_growth)
-      else
-         change = max(min(change, most_shrink), least_shrink)
-      end if
-   end function change
-
-   !> Leap from the part `done` of the segment as far as `length`, at once and in halves. `path` stays as it is.
-   subroutine try_leap(path, segment, done, length, leap)
+   !> The interval from the part `done` of the segment as far as `length`, in chains of more and more increments, up to the first
+   !> that is right. `accepted`: whether there is one, at fewer solves than event stepping would take; `chain`: it, or the last
+   !> one. `path` stays as it is.
+   subroutine refine(path, segment, done, length, chain, accepted)
       class(contact_path_type), intent(inout) :: path
       type(segment_type), intent(in) :: segment
       real(wp), intent(in) :: done, length
-      type(leap_type), intent(out) :: leap
+      type(chain_type), intent(out) :: chain
+      logical, intent(out) :: accepted
+      type(chain_type) :: finer
+      integer :: parts
+
+      accepted = .false.
+      call make_chain(path, segment, done, length, 1, chain)
+      if (.not. chain%settled) return
+      accepted = moves_nothing(path, segment, chain%after(1))
+      if (accepted) return
+      parts = 2
+      do
+         call make_chain(path, segment, done, length, parts, finer, chain)
+         if (finer%settled) call compare(path, chain, finer)
+         chain = finer
+         if (.not. chain%settled) return
+         call choose(path%model%scene%method%leap_tolerance, max(path%certificate%traction_scale(), chain%traction), chain, &
+                     accepted, parts)
+         if (accepted) accepted = .not. turns_back(path, part_of(segment, done, done + length), chain)
+         if (accepted .or. parts == 0) return
+      end do
+   end subroutine refine
+
+   !> Whether a chain is right to the tolerance; if not, how many increments the next one has, 0: too many.
+   !> `traction`: the largest so far.
+   pure subroutine choose(tolerance, traction, chain, accepted, parts)
+      real(wp), intent(in) :: tolerance, traction
+      type(chain_type), intent(in) :: chain
+      logical, intent(out) :: accepted
+      integer, intent(out) :: parts
+      real(wp) :: by_tractions, by_work, by_corners, wanted
+
+      by_tractions = 0.0_wp
+      by_work = 0.0_wp
+      if (traction > 0.0_wp) by_tractions = chain%traction_error/(safety*tolerance*traction)
+      by_corners = 0.0_wp
+      if (chain%work_error > 0.0_wp) then
+         by_work = chain%work_error/(safety*tolerance*max(chain%work, tiny(1.0_wp)/tolerance))
+         by_corners = chain%corner_error/(safety*tolerance*max(chain%work, tiny(1.0_wp)/tolerance))
+      end if
+      accepted = max(by_tractions, by_work) <= 1.0_wp
+      parts = 0
+      if (accepted) return
+      wanted = min(max(2.0_wp, by_tractions, sqrt(sqrt(by_work)), sqrt(by_corners)), real(most_parts, wp))
+      parts = chain%parts*2**ceiling(log(wanted)/log(2.0_wp) - 1.0e-6_wp)
+      if (parts > most_parts .or. solves_per_increment*parts > solves_per_change*chain%changes) parts = 0
+   end subroutine choose
+
+   !> Whether nodes that slip over the last increment of a chain would slip back at its end: they have come to rest on the way, which
+   !> no chain sees. Where the pressures stay there are none.
+   logical function turns_back(path, segment, chain)
+      class(contact_path_type), intent(inout) :: path
+      type(segment_type), intent(in) :: segment
+      type(chain_type), intent(in) :: chain
+      real(wp), parameter :: negligible = 1.0e-9_wp
       type(contact_state_type) :: start
-      type(contact_fields_type) :: whole
-      integer :: status(size(path%state%status))
+      type(constraints_type) :: constraints
+      type(response_type) :: response
+
+      associate (last => chain%after(chain%parts), begin => chain%before(1)%fields)
+         turns_back = maxval(abs(last%pressure - begin%pressure)) > max(negligible, path%system%noise)*chain%traction
+         if (.not. turns_back) return
+         start = path%state
+         path%state = chain%before(chain%parts)
+         path%state%fields = last
+         call path%loads_at(segment, 1.0_wp, constraints)
+         call path%set_rows(constraints, .false.)
+         call path%system%solve(path%model, constraints, last, response, turns_back)
+         associate (rate => response%rate%slip())
+            if (.not. turns_back) &
+               turns_back = any(-slip_sign(path%state%status)*rate > max(negligible, path%system%noise)*maxval(abs(rate)))
+         end associate
+         path%state = start
+      end associate
+   end function turns_back
+
+   !> An interval in `parts` equal increments. `coarser`: a chain of the same interval, for a first guess of the statuses.
+   !> `path` stays as it is.
+   subroutine make_chain(path, segment, done, length, parts, chain, coarser)
+      class(contact_path_type), intent(inout) :: path
+      type(segment_type), intent(in) :: segment
+      real(wp), intent(in) :: done, length
+      integer, intent(in) :: parts
+      type(chain_type), intent(out) :: chain
+      type(chain_type), intent(in), optional :: coarser
+      type(contact_state_type) :: start
+      integer, allocatable :: status(:)
+      integer :: i
 
       start = path%state
-      allocate (leap%friction_work(size(path%state%status), 2), source=0.0_wp)
-      call guess_slip(path, segment, done + length)
-      call settle_on_mesh(path, segment, done + length, whole, leap%settled, leap%exceeded)
-      status = path%state%status
-      if (leap%settled) then
-         leap%traction = max(maxval(abs(whole%pressure)), maxval(abs(whole%shear)))
-         leap%friction_work(:, 1) = friction_work(path%model, path%state, whole, path%system%noise)
-         leap%work = path%model%force(leap%friction_work(:, 1))
-         if (moves_nothing(path, segment, whole)) then
-            leap%parts = 1
-            leap%state(1) = path%state
-            leap%after(1) = whole
-         else
-            path%state = start
-            call halve(path, segment, done, length, status, leap)
-            if (leap%settled) then
-               leap%difference = max(maxval(abs(leap%after(2)%pressure - whole%pressure)), &
-                                     maxval(abs(leap%after(2)%shear - whole%shear)))
-               leap%work_difference = abs(path%model%force(leap%friction_work(:, 1)) &
-                                           + path%model%force(leap%friction_work(:, 2)) - leap%work)
-            end if
-         end if
-      end if
+      chain%parts = parts
+      allocate (chain%before(parts), chain%after(parts))
+      allocate (chain%friction_work(size(start%status), parts), source=0.0_wp)
+      chain%solves = -path%system%solves
+      do i = 1, parts
+         status = path%state%status
+         if (i == 1) call guess_slip(path, segment, done + length*reached(i))
+         if (present(coarser)) call guess_from(path, coarser, i, parts)
+         call settle_on_mesh(path, segment, done + length*reached(i), chain%after(i), chain%settled, chain%exceeded)
+         if (.not. chain%settled) exit
+         chain%changes = chain%changes + count_changes(status, path%state%status)
+         chain%before(i) = path%state
+         path%state%fields = chain%after(i)
+         chain%traction = max(chain%traction, maxval(abs(chain%after(i)%pressure)), maxval(abs(chain%after(i)%shear)))
+      end do
+      chain%solves = chain%solves + path%system%solves
       path%state = start
-   end subroutine try_leap
 
-   !> The two halves of a leap that ended with the statuses `status`, shape (nodes).
-   subroutine halve(path, segment, done, length, status, leap)
+   contains
+
+      !> How far the first i increments reach: where contact begins, evenly in its width for a parabola, whose load grows with the
+      !> square of that.
+      pure real(wp) function reached(i)
+         integer, intent(in) :: i
+
+         reached = real(i, wp)/real(parts, wp)
+         if (.not. any(in_contact(start%status))) reached = reached**2
+      end function reached
+   end subroutine make_chain
+
+   !> Where increment `i` of `parts` ends as one of a coarser chain does, begin with the statuses there.
+   subroutine guess_from(path, coarser, i, parts)
       class(contact_path_type), intent(inout) :: path
-      type(segment_type), intent(in) :: segment
-      real(wp), intent(in) :: done, length
-      integer, intent(in) :: status(:)
-      type(leap_type), intent(inout) :: leap
-      real(wp), parameter :: half = 0.5_wp
+      type(chain_type), intent(in) :: coarser
+      integer, intent(in) :: i, parts
 
-      leap%parts = 2
-      call guess_slip(path, segment, done + half*length)
-      call settle_on_mesh(path, segment, done + half*length, leap%after(1), leap%settled, leap%exceeded)
-      if (.not. leap%settled) return
-      leap%state(1) = path%state
-      leap%friction_work(:, 1) = friction_work(path%model, path%state, leap%after(1), path%system%noise)
-      path%state%fields = leap%after(1)
-      call path%set_status(in_contact(path%state%status), status)
-      call settle_on_mesh(path, segment, done + length, leap%after(2), leap%settled, leap%exceeded)
-      leap%state(2) = path%state
-      if (leap%settled) leap%friction_work(:, 2) = friction_work(path%model, path%state, leap%after(2), path%system%noise)
-   end subroutine halve
+      if (mod(i*coarser%parts, parts) /= 0) return
+      associate (status => coarser%before(i*coarser%parts/parts)%status)
+         call path%set_status(in_contact(path%state%status) .and. in_contact(status), status)
+      end associate
+   end subroutine guess_from
+
+   !> How many nodes change their status one by one (those that stick as a load is reversed do so all at once).
+   pure integer function count_changes(before, after)
+      integer, intent(in) :: before(:), after(:)
+
+      count_changes = count(before /= after .and. .not. (slips(before) .and. after == node_stick))
+   end function count_changes
+
+   !> What the finer of two chains errs by: its tractions at the end at first order; what it dissipates, see
+   !> mfv_chain_dissipation. What it dissipates is put down to the nodes.
+   subroutine compare(path, coarser, finer)
+      class(contact_path_type), intent(in) :: path
+      type(chain_type), intent(in) :: coarser
+      type(chain_type), intent(inout) :: finer
+      real(wp) :: refinement, node_wise, node_wise_error, one, other, unused, unused_too
+      integer :: i, stride
+
+      refinement = 1.0_wp/(sqrt(real(finer%parts, wp)/real(coarser%parts, wp)) - 1.0_wp)
+      associate (a => coarser%after(coarser%parts), b => finer%after(finer%parts))
+         finer%traction_error = refinement*max(maxval(abs(a%pressure - b%pressure)), maxval(abs(a%shear - b%shear)))
+      end associate
+      node_wise = 0.0_wp
+      node_wise_error = 0.0_wp
+      do i = 1, finer%parts
+         call node_wise_dissipation(path%model, finer%before(i), finer%after(i), path%system%noise, finer%friction_work(:, i), &
+                                    unused)
+         node_wise = node_wise + path%model%force(finer%friction_work(:, i))
+         node_wise_error = node_wise_error + unused
+      end do
+      call chain_dissipation(path%model, finer%before(1)%fields, finer%after, finer%changes, finer%work, finer%work_error, &
+                             finer%corner_error)
+      if (node_wise_error <= finer%work_error .or. .not. node_wise > 0.0_wp) then
+         finer%work = node_wise
+         finer%work_error = node_wise_error
+      else
+         ! Three states can agree with a straight line by chance: then with the other formula too, or on to more of them.
+         if (finer%parts == 2) finer%work_error = max(finer%work_error, abs(finer%work - node_wise))
+         stride = finer%parts/coarser%parts
+         ! The same formula on either chain: what the path makes of it.
+         call chain_dissipation(path%model, finer%before(1)%fields, coarser%after, 1, one, unused, unused_too)
+         call chain_dissipation(path%model, finer%before(1)%fields, &
+                                finer%after(stride::stride), 1, other, unused, unused_too)
+         finer%work_error = max(finer%work_error, finer%corner_error) + refinement*abs(one - other)
+         finer%work = max(finer%work, 0.0_wp)
+         finer%friction_work = finer%friction_work*(finer%work/node_wise)
+      end if
+   end subroutine compare
 
    !> A first guess of who slips at the part `part` of the segment: where the tangential load changes, nodes slip with it.
    !> Where the normal load does not change, nor the pressures with it, and the tangential force does, as many as slip in
@@ -259,7 +368,8 @@ contains
       call path%set_status(in_contact(path%state%status), status)
    end subroutine guess_slip
 
-   !> Whether pressing without coupling, tangential load or shear is all that a leap to the fields `after` does: no way matters.
+   !> Whether pressing without coupling, tangential load or shear is all that an increment to the fields `after` does: no path
+   !> matters.
    logical function moves_nothing(path, segment, after)
       class(contact_path_type), intent(in) :: path
       type(segment_type), intent(in) :: segment
@@ -276,47 +386,19 @@ contains
                       <= max(nothing, path%system%noise)*max(path%certificate%traction_scale(), maxval(abs(after%pressure)))
    end function moves_nothing
 
-   !> Go where the leap led.
-   subroutine take(path, leap)
+   !> Go where the chain leads.
+   subroutine take(path, chain)
       class(contact_path_type), intent(inout) :: path
-      type(leap_type), intent(in) :: leap
+      type(chain_type), intent(in) :: chain
       integer :: i
 
-      do i = 1, leap%parts
-         path%state%status = leap%state(i)%status
-         path%state%stuck_slip = leap%state(i)%stuck_slip
-         call path%take_increment(leap%after(i), leap%after(i)%slip() - path%state%fields%slip(), 0.0_wp, &
-                                  friction_work=leap%friction_work(:, i))
+      do i = 1, chain%parts
+         path%state%status = chain%before(i)%status
+         path%state%stuck_slip = chain%before(i)%stuck_slip
+         call path%take_increment(chain%after(i), chain%after(i)%slip() - path%state%fields%slip(), 0.0_wp, &
+                                  friction_work=chain%friction_work(:, i))
       end do
+      call path%certificate%note_large_increment(chain%traction_error, chain%work_error, chain%work)
    end subroutine take
-
-   !> What friction dissipates on the way from `before`, which has the statuses on the way, to the fields `after`, force/length,
-   !> shape (nodes). Nodes that slip already at the start do so with tractions from those then to those after: the trapezoid.
-   !> Others begin to slip on the way, half way on the average; and nodes that part do so half way on the average. With
-   !> constant pressures this is exact, else of second order in the length of the leap. `noise`: the linear solver's.
-   pure function friction_work(model, before, after, noise) result(work)
-      type(contact_model_type), intent(in) :: model
-      type(contact_state_type), intent(in) :: before
-      type(contact_fields_type), intent(in) :: after
-      real(wp), intent(in) :: noise
-      real(wp), parameter :: at_limit = 1.0e-9_wp, noises = 100.0_wp
-      real(wp), dimension(size(before%status)) :: work
-      real(wp), dimension(size(before%status)) :: slipped, limit
-      logical :: on(size(work))
-
-      slipped = after%slip() - before%stuck_slip
-      limit = model%static_friction*before%fields%pressure
-      on = slips(before%status) .and. -before%fields%shear*slip_sign(before%status) &
-           >= limit*(1.0_wp - max(at_limit, noises*noise))
-      where (on)
-         work = -0.5_wp*(before%fields%shear + after%shear)*slipped
-      elsewhere (slips(before%status))
-         work = (0.75_wp*abs(after%shear) + 0.25_wp*limit)*abs(slipped)
-      elsewhere (.not. in_contact(before%status))
-         work = max(-0.25_wp*before%fields%shear*slipped, 0.0_wp)
-      elsewhere
-         work = 0.0_wp
-      end where
-   end function friction_work
 
 end module mfv_leap

@@ -2,7 +2,7 @@
 module mfv_linear_solvers
    use mfv_augmented_system, only: augmented_system_type
    use mfv_body, only: shape_matrix, shape_profile
-   use mfv_compliance, only: block_up, block_wt
+   use mfv_compliance, only: block_wt
    use mfv_contact_model, only: contact_model_type
    use mfv_contact_system, only: contact_system_type
    use mfv_krylov_system, only: krylov_system_type
@@ -50,8 +50,8 @@ contains
       type(contact_model_type), intent(in) :: model
       logical :: coupled, one_way, at_once
 
-      coupled = model%compliance%has_block(block_wt)
-      one_way = model%compliance%has_block(block_up) .and. .not. coupled
+      one_way = model%compliance%one_way()
+      coupled = model%compliance%has_block(block_wt) .and. .not. one_way
       associate (scene => model%scene)
          at_once = scene%method%algorithm == algorithm_mfv .and. &
                    (scene%method%stepping == stepping_leap .or. &

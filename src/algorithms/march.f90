@@ -23,14 +23,12 @@ module mfv_march
       type(constraints_type) :: constraints
       integer :: standing = 0, creeping = 0, since = 0
       real(wp) :: milestone = 0.0_wp
-      !> By leaps, load steps or straight: the part of the segment that is done.
+      !> By large increments, load steps or straight: the part of the segment that is done.
       real(wp) :: part = 0.0_wp
-      !> By leaps: whether violations lead on from there; how far leaps go, the length of the next leap and of the next part by
-      !> violations, in parts of the segment, and the factor from leap to leap; the largest traction (force/length^2) and
-      !> dissipation (force) so far.
+      !> By large increments: whether events lead on from there; how far increments go, and the length of the next interval, in
+      !> parts of the segment.
       logical :: by_violations = .false.
-      real(wp) :: goal = 0.0_wp, length = 0.0_wp, violations_length = 0.0_wp, factor = 1.0_wp
-      real(wp) :: traction = 0.0_wp, work = 0.0_wp
+      real(wp) :: goal = 0.0_wp, length = 0.0_wp
    contains
       procedure :: carry
    end type march_type
@@ -57,10 +55,6 @@ contains
       call archive%carry(self%by_violations)
       call archive%carry(self%goal)
       call archive%carry(self%length)
-      call archive%carry(self%violations_length)
-      call archive%carry(self%factor)
-      call archive%carry(self%traction)
-      call archive%carry(self%work)
    end subroutine carry
 
 end module mfv_march

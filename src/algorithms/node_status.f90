@@ -5,8 +5,8 @@ module mfv_node_status
    public :: node_open, node_stick, node_slip_right, node_slip_left, node_frictionless, node_creep_right, node_creep_left, &
              node_status_names
    public :: event_none, event_close, event_open, event_slip_right, event_slip_left, event_stick, event_step_end, &
-             event_stopped, event_reverse, event_weakened, event_caught, event_capped, event_names, in_contact, slips, &
-             creeps, holds, slip_sign, motion_sign, is_among
+             event_stopped, event_reverse, event_weakened, event_caught, event_capped, event_dropped, event_names, &
+             in_contact, slips, creeps, holds, slip_sign, motion_sign, is_among
 
    !> Node statuses. `node_frictionless`: in contact while friction is off or absent. `node_creep_right`, `node_creep_left`:
    !> held by bristles below the friction limit (partial slip of Table B.1), which give way to the right or to the left.
@@ -17,12 +17,13 @@ module mfv_node_status
    !> Events: what ended an increment of the load. `event_none`: the start of the history; `event_stopped`: its early end;
    !> `event_reverse`: a creeping node turns round; `event_weakened`: a slipping node's friction has fallen to its last value;
    !> `event_caught`: a node that snapped is where its friction law holds again; `event_capped`: the shear traction of a node whose
-   !> excess is let go has come to the static limit, because its pressure falls faster.
+   !> excess is let go has come to the static limit, because its pressure falls faster; `event_dropped`: the end of a stress drop,
+   !> at the load at which it began.
    integer, parameter :: event_none = 0, event_close = 1, event_open = 2, event_slip_right = 3, event_slip_left = 4, &
                          event_stick = 5, event_step_end = 6, event_stopped = 7, event_reverse = 8, event_weakened = 9, &
-                         event_caught = 10, event_capped = 11
+                         event_caught = 10, event_capped = 11, event_dropped = 12
    character(*), parameter :: event_names = 'start close open slip_right slip_left stick step_end stopped reverse '// &
-                              'weakened caught capped'
+                              'weakened caught capped dropped'
 
 contains
 

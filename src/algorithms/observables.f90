@@ -5,8 +5,11 @@ module mfv_observables
    use, intrinsic :: ieee_arithmetic, only: ieee_quiet_nan, ieee_value
    use mfv_contact_state, only: contact_state_type
    use mfv_cycle, only: cycle_type
+   use mfv_interior, only: interior_type
    use mfv_kinds, only: pi, wp
    use mfv_simulation, only: mark_loading, mark_return, mark_reversal, simulation_type
+   use mfv_state_interior, only: state_interior
+   use mfv_stress_search, only: largest_tension, largest_type
    use mfv_zone_edges, only: find_zone_edges, zone_edges_type
    implicit none
    private
@@ -14,10 +17,10 @@ module mfv_observables
    public :: moment_count, moment_loading, moment_name, tractions_type, observed_tractions, traction_errors
 
    !> Number of observables.
-   integer, parameter :: observable_count = 32
+   integer, parameter :: observable_count = 40
    character(*), parameter :: names(observable_count) = [character(24) :: &
                               'normal_force', 'tangential_force', 'approach', &
-                              'shift', 'dissipation', 'contact_half_width', &
+                              'shift', 'dissipation', 'contact_half_width', 'contact_length', 'patches', &
                               'contact_centre', 'stick_ratio', 'peak_pressure', &
                               'peak_shear', 'cycles', 'cycle_dissipation', &
                               'first_cycle_dissipation', 'cycle_change', 'force_amplitude', &
@@ -26,23 +29,28 @@ module mfv_observables
                               'stick_ratio_return', 'patch_shift_loading', 'patch_shift_reversal', &
                               'patch_shift_return', 'half_width_number', 'pressure_number', &
                               'shear_number', 'force_number', 'shift_number', &
-                              'dissipation_number', 'stiffness_number']
+                              'dissipation_number', 'stiffness_number', &
+                              'creepage', 'creepage_number', &
+                              'lower_tension', 'lower_tension_x', 'upper_tension', 'upper_tension_x']
    character(*), parameter :: units(observable_count) = [character(14) :: &
-                              'force/length', 'force/length', 'length', 'length', 'force', 'length', &
+                              'force/length', 'force/length', 'length', 'length', 'force', 'length', 'length', '1', &
                               'length', '1', 'force/length^2', 'force/length^2', '1', 'force', &
                               'force', '1', 'force/length', 'length', 'force/length^2', 'force/length^2', &
                               '1', '1', '1', '1', '1', '1', &
                               '1', '1', '1', '1', '1', '1', &
-                              '1', '1']
-   character(*), parameter :: meanings(observable_count) = [character(91) :: &
+                              '1', '1', '1', '1', &
+                              'force/length^2', 'length', 'force/length^2', 'length']
+   character(*), parameter :: meanings(observable_count) = [character(96) :: &
                               'normal force P per unit thickness at the end', &
                               'tangential force Q per unit thickness at the end', &
                               'approach of the upper body at the end', &
                               'shift of the upper body to the right at the end', &
                               'energy dissipated in all, per unit thickness', &
-                              'half the length of the contact at the end, from edges between nodes', &
-                              'middle of the contact at the end, from the pole along the surface', &
-                              'length that sticks over length of the contact at the end, from edges between nodes', &
+                              'half the length of the contact at the end, from edges between nodes, where it is one patch', &
+                              'length of the contact at the end, of all its patches, from edges between nodes', &
+                              'contact patches at the end, with open nodes between them', &
+                              'middle between the outermost edges at the end, from the origin along the surface', &
+                              'length of the stick zones over that of the contact at the end, from edges between nodes', &
                               'largest pressure at the end', &
                               'largest size of the shear traction at the end', &
                               'whole cycles of the last step that has any', &
@@ -53,7 +61,7 @@ module mfv_observables
                               'half of what the shift changes by in the last cycle', &
                               'tangential force over shift right after the last reversal', &
                               'tangential force over shift from end to end of the last cycle', &
-                              'cycle_dissipation over 2 pi times the elastic energy of the secant stiffness, at constant P', &
+                              'cycle_dissipation over 2 pi times the energy of the secant stiffness, at constant P, no rotation', &
                               'stick ratio where the cycles begin', &
                               'stick ratio at the far end of the last cycle', &
                               'stick ratio at the end of the last cycle', &
@@ -66,13 +74,20 @@ module mfv_observables
                               'force_amplitude over mu P: the lateral force ratio of section 6.4', &
                               'shift_amplitude times the relative curvature (section 5.2)', &
                               'cycle_dissipation over P^2 A, A = sum of (kappa + 1)/(4 G) (eq. 6.5)', &
-                              'tangential_stiffness times A']
+                              'tangential_stiffness times A', &
+                              'rolling: sliding of the upper body over the lower per rolled distance, both to the right', &
+                              'creepage over mu a K: K relative curvature, a contact_half_width (Carter 1926)', &
+                              'largest tension along the surface of the lower body at the end', &
+                              'where it is: x', &
+                              'largest tension along the surface of the upper body at the end', &
+                              'where it is: x']
    !> Moments of the load history whose tractions are compared: where the cycles begin; the far end of the last cycle; its end.
    integer, parameter :: moment_loading = 1, moment_count = 3
    integer, parameter :: moment_marks(moment_count) = [mark_loading, mark_reversal, mark_return]
    character(*), parameter :: moment_names(moment_count) = [character(8) :: 'loading', 'reversal', 'return']
 
-   !> Tractions, force/length^2, on equal intervals, length, symmetric about the pole; shape (nodes), no nodes: not there.
+   !> Tractions, force/length^2, on equal intervals, length, symmetric about the pole; shape (nodes), no nodes: not there. Those of
+   !> nodes with other widths are multiplied by width over (mean) interval, so that sums over nodes are integrals.
    type :: tractions_type
       real(wp) :: interval = 0.0_wp
       real(wp), allocatable :: pressure(:), shear(:)
@@ -146,7 +161,7 @@ contains
       type(simulation_type), intent(in) :: simulation
       real(wp), intent(inout) :: values(:)
       type(zone_edges_type) :: edges
-      real(wp) :: mean_peak
+      real(wp) :: mean_peak, limit
 
       associate (state => simulation%contact%state, model => simulation%contact%model)
          call find_zone_edges(model, state, edges)
@@ -156,17 +171,42 @@ contains
          call put(values, 'shift', state%fields%shift)
          call put(values, 'dissipation', state%dissipation)
          call put(values, 'contact_half_width', edges%half_width())
+         call put(values, 'contact_length', edges%contact_length)
+         call put(values, 'patches', real(edges%patches, wp))
          call put(values, 'contact_centre', edges%centre())
          call put(values, 'stick_ratio', edges%stick_ratio())
          call put(values, 'peak_pressure', maxval(state%fields%pressure))
          call put(values, 'peak_shear', maxval(abs(state%fields%shear)))
          call put(values, 'half_width_number', edges%half_width()*model%scene%curvature())
+         call add_tension(simulation, .false., 'lower', values)
+         call add_tension(simulation, .true., 'upper', values)
          if (.not. (state%fields%normal_force > 0.0_wp .and. edges%contact)) return
          mean_peak = 2.0_wp*state%fields%normal_force/(pi*edges%half_width())
          call put(values, 'pressure_number', maxval(state%fields%pressure)/mean_peak)
          call put(values, 'shear_number', maxval(abs(state%fields%shear))/mean_peak)
+         call put(values, 'creepage', simulation%contact%rolling%creepage())
+         if (edges%patches /= 1) return
+         limit = model%scene%friction%static%largest()*edges%half_width()*model%scene%curvature()
+         if (limit > 0.0_wp) call put(values, 'creepage_number', simulation%contact%rolling%creepage()/limit)
       end associate
    end subroutine add_present
+
+   !> The largest tension along the surface of a body: none of a rigid body or a matrix, nor where it is singular.
+   subroutine add_tension(simulation, upper, name, values)
+      type(simulation_type), intent(in) :: simulation
+      logical, intent(in) :: upper
+      character(*), intent(in) :: name
+      real(wp), intent(inout) :: values(:)
+      type(interior_type) :: interior
+      type(largest_type) :: largest
+      logical :: available
+
+      call state_interior(simulation%contact%model, simulation%contact%state, upper, interior, available)
+      if (.not. available) return
+      largest = largest_tension(interior)
+      call put(values, name//'_tension', largest%value)
+      call put(values, name//'_tension_x', largest%x)
+   end subroutine add_tension
 
    !> Observables of the last cycle.
    subroutine add_cycle(simulation, cycle, values)
@@ -237,8 +277,11 @@ contains
          if (mark%step == 0 .or. (number /= moment_loading .and. mark%reversal == 0)) then
             allocate (tractions%pressure(0), tractions%shear(0))
          else
-            tractions%pressure = mark%state%fields%pressure
-            tractions%shear = mark%state%fields%shear
+            associate (model => simulation%contact%model, n => size(mark%state%fields%pressure))
+               ! The mesh may have grown since; then all widths are the same.
+               tractions%pressure = mark%state%fields%pressure*model%width(:n)/model%interval()
+               tractions%shear = mark%state%fields%shear*model%width(:n)/model%interval()
+            end associate
          end if
       end associate
    end subroutine observed_tractions

@@ -111,8 +111,7 @@ contains
       logical, intent(out) :: singular
 
       self%solves = self%solves + 1
-      if (model%compliance%has_block(block_up) .and. .not. model%compliance%has_block(block_wt) .and. &
-          (model%rotational .or. model%scene%mesh%radial)) then
+      if (model%compliance%one_way() .and. (model%rotational .or. model%scene%mesh%radial)) then
          self%name = self%augmented%name
          call self%augmented%solve(model, constraints, start, response, singular)
          return

@@ -1,11 +1,13 @@
 !> A scene: what touches what, on which mesh, with which friction, and how it is loaded. No files, no solution.
 module mfv_scene
+   use, intrinsic :: ieee_arithmetic, only: ieee_is_finite
    use mfv_body, only: body_type
    use mfv_compliance, only: coupling_full
    use mfv_friction, only: friction_type
    use mfv_interior, only: interior_type, new_interior
    use mfv_kinds, only: pi, wp
    use mfv_material, only: plane_strain
+   use mfv_surface_tractions, only: zone_list_type
    implicit none
    private
    public :: scene_type, mesh_request_type, step_type, method_type, control_keep, control_force, control_displacement, &
@@ -61,7 +63,7 @@ module mfv_scene
       real(wp) :: linear_tolerance = 1.0e-12_wp
       !> Events closer to each other than this part of what is done of a straight part of the load history are taken together.
       real(wp) :: event_tolerance = 0.0_wp
-      !> By how much a leap and its two halves may differ, in parts of the largest traction.
+      !> Largest error of large increments: of tractions, in parts of the largest; of what a segment dissipates, in parts of that.
       real(wp) :: leap_tolerance = 1.0e-3_wp
    end type method_type
 
@@ -181,11 +183,13 @@ contains
       end function weighed
    end function datum
 
-   !> Radius of the circle on which the nodes lie, length: the smaller one of the elastic circles; 0 where the nodes lie on a
-   !> straight line.
+   !> Radius of the circle on which the nodes lie, length: with radial normals the hole, along whose radii gaps are measured; else
+   !> the smaller one of the elastic circles; 0 where the nodes lie on a straight line.
    pure real(wp) function arc_radius(self)
       class(scene_type), intent(in) :: self
 
+      arc_radius = max(self%lower%radius, self%upper%radius)
+      if (self%mesh%radial) return
       arc_radius = 0.0_wp
       if (self%upper%circular() .and. .not. self%upper%rigid) arc_radius = self%upper%radius
       if (.not. self%lower%circular() .or. self%lower%rigid) return
@@ -203,7 +207,8 @@ contains
       if (radius > 0.0_wp) x = radius*sin(arc/radius)
    end function x_of_arc
 
-   !> Whether both bodies have a surface at an arc length (length) from the pole: on a circle not beyond 90 degrees.
+   !> Whether both bodies have a surface at an arc length (length) from the pole: on a circle not beyond 90 degrees; with radial
+   !> normals, where the hole's radius meets the disk.
    elemental logical function touchable(self, arc)
       class(scene_type), intent(in) :: self
       real(wp), intent(in) :: arc
@@ -211,23 +216,64 @@ contains
 
       radius = self%arc_radius()
       x = self%x_of_arc(arc)
-      touchable = self%lower%covers(x) .and. self%upper%covers(x)
+      if (self%mesh%radial) then
+         touchable = abs(x)*abs(self%lower%radius - self%upper%radius) < radius*min(self%lower%radius, self%upper%radius)
+      else
+         touchable = self%lower%covers(x, self%mesh%parabolic) .and. self%upper%covers(x, self%mesh%parabolic)
+      end if
       if (radius > 0.0_wp) touchable = touchable .and. abs(arc) < 0.5_wp*pi*radius
    end function touchable
 
-   !> The lower or `upper` body under tractions, see mfv_interior; `available`: false for a rigid body or a mere matrix.
-   subroutine interior(self, upper, arc, width, pressure, shear, inside, available)
+   !> The lower or `upper` body under tractions, see mfv_interior. With radial normals the nodes' angles are common to both bodies and
+   !> their forces are equal; arcs and tractions are not. `contact_edge`, `stick_edge`: edges of the zones between nodes, in
+   !> ascending order at the nodes whose values are finite, the left and the right one of each zone in turn; shape (nodes).
+   !> `available`: false for a rigid body or a mere matrix. `fewest_elements`: see mfv_surface_tractions.
+   subroutine interior(self, upper, arc, width, pressure, shear, contact_edge, stick_edge, inside, available, fewest_elements)
       class(scene_type), intent(in) :: self
       logical, intent(in) :: upper
-      real(wp), intent(in) :: arc(:), width(:), pressure(:), shear(:)
+      real(wp), intent(in), dimension(:) :: arc, width, pressure, shear, contact_edge, stick_edge
       type(interior_type), intent(out) :: inside
       logical, intent(out) :: available
+      integer, intent(in), optional :: fewest_elements
+      type(zone_list_type) :: zones
+      real(wp), parameter :: near = 1.0e-6_wp
+      real(wp) :: ratio
+      integer :: side
 
+      ratio = 1.0_wp
+      if (self%mesh%radial) ratio = merge(self%upper%radius, self%lower%radius, upper)/self%arc_radius()
+      zones%contact = pairs(contact_edge)
+      zones%stick = ratio*pairs(stick_edge)
+      allocate (zones%sharp(2, size(zones%contact, 2)))
+      do side = 1, 2
+         associate (edge => zones%contact(side, :), inwards => (3 - 2*side)*near*(zones%contact(2, :) - zones%contact(1, :)))
+            zones%sharp(side, :) = self%touchable(edge + inwards) .and. .not. self%touchable(edge - inwards)
+         end associate
+      end do
+      zones%contact = ratio*zones%contact
+      if (self%coupling == coupling_full) zones%beta = self%dundurs_beta()
+      if (present(fewest_elements)) zones%fewest_elements = fewest_elements
       if (upper) then
-         call new_interior(self%upper, upper, self%plane, self%mesh%radial, arc, width, pressure, shear, inside, available)
+         call new_interior(self%upper, upper, self%plane, self%mesh%radial, ratio*arc, ratio*width, pressure/ratio, &
+                           shear/ratio, zones, inside, available)
       else
-         call new_interior(self%lower, upper, self%plane, self%mesh%radial, arc, width, pressure, shear, inside, available)
+         call new_interior(self%lower, upper, self%plane, self%mesh%radial, ratio*arc, ratio*width, pressure/ratio, &
+                           shear/ratio, zones, inside, available)
       end if
    end subroutine interior
+
+   !> The finite values as pairs, shape (2, pairs); none if they do not ascend.
+   pure function pairs(edges)
+      real(wp), intent(in) :: edges(:)
+      real(wp), allocatable :: pairs(:, :)
+      real(wp), allocatable :: known(:)
+      integer :: n
+
+      known = pack(edges, ieee_is_finite(edges))
+      n = size(known)
+      if (mod(n, 2) /= 0) n = 0
+      if (any(known(2:n) < known(:n - 1))) n = 0
+      pairs = reshape(known(:n), [2, n/2])
+   end function pairs
 
 end module mfv_scene

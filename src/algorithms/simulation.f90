@@ -19,12 +19,14 @@ module mfv_simulation
    use mfv_node_status, only: event_none, event_step_end, event_stopped
    use mfv_observer, only: observer_type
    use mfv_scene
+   use mfv_slip_zones, only: leg_start_type, slip_record_type
    use mfv_status, only: MFV_COMPLETE, MFV_INTERRUPTED
    use mfv_straight, only: lead_straight
    use mfv_strings, only: to_text
    implicit none
    private
-   public :: simulation_type, position_type, new_simulation, snapshot_type, history_events, history_steps, history_none
+   public :: simulation_type, position_type, new_simulation, snapshot_type, sensitivity_type, history_events, history_steps, &
+             history_none
    public :: states_reversals, states_steps, states_none
    public :: mark_loading, mark_reversal, mark_return, mark_cycle_start
 
@@ -63,6 +65,8 @@ module mfv_simulation
       integer :: failed_step = 0, steps_done = 0
       !> The same of the steps of the scene alone, which other steps may come between.
       integer :: failed_scene_step = 0, scene_steps_done = 0
+      !> What is known of the slip zones of all straight segments so far.
+      type(slip_record_type) :: slip
       !> What is known of the steps that were taken, the last one perhaps not to its end.
       type(load_way_type) :: way
       !> What the loads control now.
@@ -72,6 +76,17 @@ module mfv_simulation
       procedure, private :: carry_position
    end type position_type
 
+   !> By how much the final state changes with all coefficients of friction times 1 + `perturbation` (see mfv_sensitivity).
+   type :: sensitivity_type
+      !> How the perturbed run went (see mfv_status); and in words why there is nothing to compare, else empty.
+      integer :: status = 0
+      character(:), allocatable :: message
+      real(wp) :: perturbation = 1.0e-12_wp
+      !> The largest change of a pressure and of a shear traction, in parts of the largest traction; relative change of the dissipation;
+      !> change of the stick ratio between nodes.
+      real(wp) :: pressure = 0.0_wp, shear = 0.0_wp, dissipation = 0.0_wp, stick_ratio = 0.0_wp
+   end type sensitivity_type
+
    !> The step that is being taken: where its loads lead and come from (normal, tangential, rotational), its cycle, and the straight
    !> part of it that is next or under way.
    type :: leg_type
@@ -80,6 +95,7 @@ module mfv_simulation
       type(load_type) :: there(3), back(3)
       type(cycle_type) :: cycle
       type(segment_type) :: segment
+      type(leg_start_type) :: start
    contains
       procedure :: carry => carry_leg
    end type leg_type
@@ -97,6 +113,8 @@ module mfv_simulation
       integer(int64), allocatable, private :: trails(:)
       !> The discretisation error of the present state, where it has been estimated (see mfv_discretisation_error).
       type(error_estimate_type), allocatable :: estimate
+      !> How much the present state depends on round-off, where that has been found out (see mfv_sensitivity).
+      type(sensitivity_type), allocatable :: sensitivity
       !> Where a pause has left it; nothing of meaning between steps.
       type(leg_type), private :: leg
       type(march_type), private :: march
@@ -255,6 +273,7 @@ contains
       call archive%carry(self%steps_done)
       call archive%carry(self%failed_scene_step)
       call archive%carry(self%scene_steps_done)
+      call self%slip%carry(archive)
       call self%way%carry(archive)
       call self%normal%carry(archive)
       call self%tangential%carry(archive)
@@ -283,6 +302,7 @@ contains
       end do
       call self%cycle%carry(archive)
       call self%segment%carry(archive)
+      call self%start%carry(archive)
    end subroutine carry_leg
 
    !> Lead the loads through one more step, from wherever they are; after a pause, the rest of the same step. `before`, `segments`:
@@ -299,6 +319,7 @@ contains
       if (self%outcome /= MFV_COMPLETE) return
       self%paused = .false.
       if (allocated(self%estimate)) deallocate (self%estimate)
+      if (allocated(self%sensitivity)) deallocate (self%sensitivity)
       if (self%leg%number == 0) call self%begin_step(step)
       cycles = 0
       do i = self%leg%number, reversals(step)
@@ -423,7 +444,9 @@ contains
          self%marks(i)%step = 0
       end do
       cycle%step = self%steps_done + 1
-      cycle%return = new_turning_point(self%contact%model, self%contact%state, ieee_value(1.0_wp, ieee_quiet_nan))
+      cycle%return = new_turning_point(self%contact%model, self%contact%state, self%slip, &
+                                       ieee_value(1.0_wp, ieee_quiet_nan))
+      cycle%loading_slip = self%slip
       call self%set_mark(mark_loading, 0)
       call self%set_mark(mark_return, 0)
    end subroutine begin_cycles
@@ -437,7 +460,7 @@ contains
       type(contact_state_type) :: before
 
       if (mod(leg, 2) == 1) then
-         cycle%reversal = new_turning_point(self%contact%model, self%contact%state, self%contact%first_stiffness)
+         cycle%reversal = new_turning_point(self%contact%model, self%contact%state, self%slip, self%contact%first_stiffness)
          call self%set_mark(mark_pending, leg)
          return
       end if
@@ -447,11 +470,12 @@ contains
       cycle%start = cycle%return
       self%marks(mark_cycle_start) = self%marks(mark_return)
       self%marks(mark_reversal) = self%marks(mark_pending)
-      cycle%return = new_turning_point(self%contact%model, self%contact%state, self%contact%first_stiffness)
+      cycle%return = new_turning_point(self%contact%model, self%contact%state, self%slip, self%contact%first_stiffness)
       before = self%padded(self%marks(mark_cycle_start))
       cycle%change = self%change_since(before)
       call self%set_mark(mark_return, leg)
       if (cycle%number == 1) cycle%first_dissipation = cycle%dissipation()
+      if (cycle%number == 1) cycle%first_slip = cycle%slip()
       call append_cycle(self%cycles, self%cycle_count, cycle, self%keep_history == history_none)
    end subroutine end_of_leg
 
@@ -522,6 +546,8 @@ contains
          call lead_straight(self%contact, self%leg%segment, self%march, observer, error)
       end if
       if (self%march%paused) return
+      call self%slip%add_leg(self%contact%model, self%leg%start, self%contact%state, self%contact%slip_zone_nodes, &
+                             self%contact%system%noise)
       self%normal = load_type(targets(1)%control, targets(1)%value)
       self%tangential = load_type(targets(2)%control, targets(2)%value)
       self%rotational = load_type(targets(3)%control, targets(3)%value)
@@ -549,6 +575,10 @@ contains
          segment%segments = reversals(step)
          if (present(before)) segment%number = before + self%leg%number
          if (present(segments)) segment%segments = segments
+      end associate
+      associate (state => self%contact%state)
+         self%leg%start = leg_start_type(state%dissipation, state%fields%normal_force, state%fields%tangential_force, &
+                                         state%fields%shear)
       end associate
       call self%contact%await_increment()
    end subroutine begin_segment

@@ -13,8 +13,8 @@ module mfv_solver_costs
 
    !> Nodes of the mesh up to which linear_solver='auto' takes the reduced system, and beyond which it takes fft. By events: with
    !> pressures and shear coupled, coupled one way (Goodman), and apart (the last two have an exact inverse in fft on a
-   !> half-plane). Straight to the end of a segment or by leaps without coupling, where the reduced system has little to
-   !> update; and with bristles, whose rows change with every increment, or by leaps with coupling.
+   !> half-plane). Straight to the end of a segment or by large increments without coupling, where the reduced system has little to
+   !> update; and with bristles, whose rows change with every increment, or by large increments with coupling.
    integer, parameter :: most_coupled = 1800, most_one_way = 1400, most_apart = 900, most_at_once = 100, most_bristles = 300
 
 contains

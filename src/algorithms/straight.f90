@@ -60,7 +60,7 @@ contains
       call lead_by_violations(path, part_of(segment, march%part, 1.0_wp), march, observer, error)
    end subroutine lead_straight
 
-   !> After a leap to the part `part` of the segment: look at the certificate, and tell the observer.
+   !> After large increments to the part `part` of the segment: look at the certificate, and tell the observer.
    !> Errors MFV_NO_CONTINUATION: the certificate fails by far; MFV_INTERRUPTED.
    subroutine close_leap(path, segment, part, observer, error)
       class(contact_path_type), intent(in) :: path

@@ -1,13 +1,17 @@
 !> Where the model stops holding: warnings that go with a result.
 module mfv_validity
    use mfv_body, only: body_type, shape_matrix
-   use mfv_contact_model, only: along_rotation
    use mfv_contact_state, only: contact_state_type
-   use mfv_interior, only: interior_type, largest_type
+   use mfv_interior, only: interior_type
    use mfv_kinds, only: pi, wp
    use mfv_node_status, only: in_contact
+   use mfv_scene, only: control_displacement
    use mfv_simulation, only: simulation_type
+   use mfv_slip_zones, only: contact_interval, needed_mesh, resolved_nodes, slip_record_type
+   use mfv_state_interior, only: state_interior
+   use mfv_stress_search, only: largest_type, largest_von_mises
    use mfv_strings, only: add_text, string_type, to_text
+   use mfv_surface_warnings, only: warn_of_surface
    implicit none
    private
    public :: validity_warnings
@@ -18,9 +22,9 @@ module mfv_validity
 
 contains
 
-   !> Warnings about a simulation, none as a rule: few nodes in contact; contact at angles for which vertical normals are a
-   !> poor approximation; stresses beyond a yield strength that the user gave (the largest von Mises stress by refinement);
-   !> large rotations; lost digits.
+   !> Warnings about a simulation, none as a rule: few nodes in contact or in slip zones; contact at angles for which vertical normals
+   !> are a poor approximation; surfaces that end, are steep or are not clear between the points of a profile; stresses beyond a
+   !> yield strength that the user gave (the largest von Mises stress by refinement); large rotations; lost digits.
    subroutine validity_warnings(simulation, warnings)
       type(simulation_type), intent(in) :: simulation
       type(string_type), allocatable, intent(out) :: warnings(:)
@@ -29,10 +33,13 @@ contains
       associate (scene => simulation%contact%model%scene)
          call check_angle(simulation, 'lower', scene%lower, warnings)
          call check_angle(simulation, 'upper', scene%upper, warnings)
+         call warn_of_surface(simulation, .false., scene%lower, largest_angle, warnings)
+         call warn_of_surface(simulation, .true., scene%upper, largest_angle, warnings)
          call check_yield(simulation, .false., scene%lower, warnings)
          call check_yield(simulation, .true., scene%upper, warnings)
       end associate
       call check_resolution(simulation, warnings)
+      call check_slip_zones(simulation, warnings)
       call check_order(simulation%contact%model%scene%lower, warnings)
       call check_rotation(simulation, warnings)
       call check_certificate(simulation, warnings)
@@ -51,25 +58,37 @@ contains
          angle = maxval(abs(model%arc), mask=in_contact(simulation%contact%state%status))/body%radius*180.0_wp/pi
       end associate
       if (.not. angle > largest_angle) return
-      call add_text(warnings, 'the contact reaches '//to_text(angle, 3)//' degrees from the pole of the '//name// &
-                    ' body; normals are taken as vertical, which is a poor approximation beyond '// &
-                    to_text(largest_angle, 2))
+      call add_text(warnings, 'the contact reaches '//to_text(angle, 3)//' degrees from the initial point of '// &
+                    'contact on the '//name//' body; normals are taken as vertical, which is a poor approximation beyond '// &
+                    to_text(largest_angle, 2)//' degrees')
    end subroutine check_angle
 
-   !> Nodes opposite each other stay so: a body that has rolled along has left them.
+   !> Rotation is taken to first order: exactly for parabolas that roll, else with errors that grow as the bodies roll or slide along.
    subroutine check_rotation(simulation, warnings)
       type(simulation_type), intent(in) :: simulation
       type(string_type), allocatable, intent(inout) :: warnings(:)
-      real(wp) :: rolled, half_width
+      real(wp), parameter :: small_error = 1.0e-3_wp, small_slide = 0.1_wp
+      real(wp) :: rolled, slid, half_width, error
 
       associate (model => simulation%contact%model, state => simulation%contact%state)
          if (.not. model%rotational .or. state%contact_nodes() == 0) return
-         rolled = abs(state%fields%rotation)*maxval(abs(model%tangential_arm(:, along_rotation)))
+         if (.not. abs(state%fields%rotation) > 0.0_wp) return
          half_width = 0.5_wp*sum(model%width, mask=in_contact(state%status))
+         rolled = model%rolled(state%fields)
+         slid = model%slid(state%fields)
+         error = model%rolling_error(state%fields)
       end associate
-      if (rolled > half_width) &
-         call add_text(warnings, 'the upper body has turned by more than the contact half-width along its surface: rotations '// &
-                       'must be small')
+      if (abs(error) > small_error) &
+         call add_text(warnings, 'the contact has rolled by '//to_text(rolled, 3)//', where the relative curvature is wrong by '// &
+                       to_text(100.0_wp*error, 2)//' % and the contact half-width by about half of that: roll less far')
+      if (simulation%contact%model%scene%mesh%radial) return
+      if (abs(slid) > small_slide*half_width) &
+         call add_text(warnings, 'the upper body has slid by '//to_text(slid, 3)//' along the lower one; '// &
+                       'the contact half-width is '//to_text(half_width, 3)//', and the model assumes that opposite nodes '// &
+                       'stay opposite each other')
+      if (simulation%normal%control == control_displacement .and. rolled**2 > small_slide**2*half_width**2) &
+         call add_text(warnings, 'the bodies have rolled at a prescribed approach, which is measured at the initial '// &
+                       'point of contact, so that the normal force has grown with the distance: prescribe normal_force')
    end subroutine check_rotation
 
    !> Half-width and stick ratio come in whole nodes.
@@ -80,9 +99,69 @@ contains
 
       associate (contact => simulation%contact%state%contact_nodes())
          if (contact > 0 .and. contact < fewest) &
-            call add_text(warnings, 'only '//to_text(contact)//' nodes are in contact: the mesh is too coarse')
+            call add_text(warnings, 'only '//to_text(contact)//trim(merge(' node is  ', ' nodes are', contact == 1))// &
+                          ' in contact: the mesh is too coarse')
       end associate
    end subroutine check_resolution
+
+   !> Slip zones with too few nodes: of which quantities, and how many nodes it takes.
+   subroutine check_slip_zones(simulation, warnings)
+      type(simulation_type), intent(in) :: simulation
+      type(string_type), allocatable, intent(inout) :: warnings(:)
+      character(:), allocatable :: names, text
+      integer :: nodes
+      real(wp) :: width, interval
+
+      names = ''
+      nodes = resolved_nodes
+      width = huge(width)
+      interval = contact_interval(simulation%contact%model, simulation%contact%state)
+      call add_work(simulation%slip, 'dissipation')
+      ! The tension behind a contact grows with the root of its slip zone; a matrix has no inside.
+      call add_zones(simulation%slip, trim(merge('stick_ratio, peak_shear         ', 'stick_ratio, peak_shear, tension', &
+                                                 simulation%contact%model%scene%lower%shape == shape_matrix)))
+      if (simulation%cycle_count > 0) then
+         associate (cycle => simulation%cycles(simulation%cycle_count))
+            call add_work(cycle%slip(), 'cycle_dissipation, loss_factor, nonlinear_shift')
+            call add_work(cycle%first_slip, 'first_cycle_dissipation')
+            call add_zones(cycle%loading_slip, 'stick_ratio_loading')
+            call add_zones(cycle%reversal%slip, 'stick_ratio_reversal')
+            call add_zones(cycle%return%slip, 'stick_ratio_return')
+         end associate
+      end if
+      if (names == '') return
+      text = 'slip zones have only '//to_text(nodes)//trim(merge(' node ', ' nodes', nodes == 1))
+      if (nodes == 0) text = 'no node slips, because slip zones are too narrow'
+      call add_text(warnings, text//' ('//to_text(width/interval, 2)//' intervals); not resolved: '//names(3:)//'; '// &
+                    trim(needed_mesh(simulation%contact%model, simulation%contact%state, width))// &
+                    ' would give them '//to_text(resolved_nodes)//' nodes')
+
+   contains
+
+      subroutine add_work(slip, quantities)
+         type(slip_record_type), intent(in) :: slip
+         character(*), intent(in) :: quantities
+
+         if (slip%is_coarse()) call add(quantities, slip%mean_nodes(), slip%mean_width())
+      end subroutine add_work
+
+      subroutine add_zones(slip, quantities)
+         type(slip_record_type), intent(in) :: slip
+         character(*), intent(in) :: quantities
+
+         if (slip%is_coarse_now(interval)) call add(quantities, slip%nodes_now, slip%width_now)
+      end subroutine add_zones
+
+      subroutine add(quantities, its_nodes, its_width)
+         character(*), intent(in) :: quantities
+         integer, intent(in) :: its_nodes
+         real(wp), intent(in) :: its_width
+
+         names = names//', '//quantities
+         nodes = min(nodes, its_nodes)
+         width = min(width, its_width)
+      end subroutine add
+   end subroutine check_slip_zones
 
    !> A user's matrix whose rows come node by node, not normal components first: almost every node then moves its neighbour in
    !> the matrix, which is its own other component, less than the one after that.
@@ -152,11 +231,9 @@ contains
       type(interior_type) :: interior
       logical :: available
 
-      associate (model => simulation%contact%model)
-         call model%scene%interior(upper, model%arc, model%width, state%fields%pressure, state%fields%shear, interior, &
-                                   available)
-      end associate
-      if (available) largest = interior%largest_von_mises()
+      ! The value, not the place, counts: some elements are enough.
+      call state_interior(simulation%contact%model, state, upper, interior, available, fewest_elements=60)
+      if (available) largest = largest_von_mises(interior)
    end function largest_below
 
 end module mfv_validity

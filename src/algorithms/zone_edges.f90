@@ -10,20 +10,43 @@
 !> to the inverse power is nearly a straight line, which a parabola through a few nodes follows to its zero. The outermost node,
 !> which carries the error of the discretisation, is left out.
 module mfv_zone_edges
+   use, intrinsic :: ieee_arithmetic, only: ieee_quiet_nan, ieee_value
    use mfv_archive, only: archive_type
-   use mfv_compliance, only: block_wt
+   use mfv_body, only: shape_matrix
+   use mfv_compliance, only: block_wp, block_wt
    use mfv_contact_model, only: contact_model_type
    use mfv_contact_state, only: contact_state_type
    use mfv_kinds, only: pi, wp
-   use mfv_node_status, only: holds, in_contact, node_open, slip_sign, slips
+   use mfv_node_status, only: holds, in_contact, slip_sign, slips
    implicit none
    private
-   public :: zone_edges_type, find_zone_edges, ends_with_body
+   public :: zone_type, patch_type, zone_edges_type, find_patches, find_zone_edges, ends_with_body
 
-   !> Edges of the contact and of what sticks in it, lengths along the surface from the pole, to the right positive.
+   !> A zone of neighbouring nodes, from `first` to `last`, and its edges: lengths along the surface from the pole, to the right
+   !> positive.
+   type :: zone_type
+      integer :: first = 0, last = 0
+      real(wp) :: left = 0.0_wp, right = 0.0_wp
+   contains
+      procedure :: length
+   end type zone_type
+
+   !> A contact patch: neighbouring nodes in contact, between open ones.
+   type, extends(zone_type) :: patch_type
+      !> Whether the patch ends where the surface of a body does: the pressure may be singular there. At the other edges it goes
+      !> to zero as the distance to the power `left_power` or `right_power`.
+      logical :: left_ends = .false., right_ends = .false.
+      real(wp) :: left_power = 0.5_wp, right_power = 0.5_wp
+      !> The zones in it that stick, from left to right; none: size 0.
+      type(zone_type), allocatable :: stick(:)
+   end type patch_type
+
+   !> What all patches amount to.
    type :: zone_edges_type
-      !> Whether anything is in contact; and whether anything holds.
+      !> Whether anything is in contact; and whether anything sticks.
       logical :: contact = .false., stick = .false.
+      !> Number of contact patches.
+      integer :: patches = 0
       !> The outermost edges, and the length of all zones together.
       real(wp) :: contact_left = 0.0_wp, contact_right = 0.0_wp, contact_length = 0.0_wp
       real(wp) :: stick_left = 0.0_wp, stick_right = 0.0_wp, stick_length = 0.0_wp
@@ -34,21 +57,36 @@ module mfv_zone_edges
       procedure :: carry
    end type zone_edges_type
 
-   !> A zone of nodes from `first` to `last`.
-   type :: zone_type
-      integer :: first = 0, last = 0
-   end type zone_type
+   !> Most nodes that an edge is found from.
+   integer, parameter :: most_samples = 7
+   real(wp), parameter :: unknown_bend = 1.0e10_wp
+
+   !> A traction near an edge: its values at the outermost nodes of a zone, the outermost first, and how far inwards from that one
+   !> the nodes are, in its intervals.
+   type :: samples_type
+      !> Values, and nodes of the whole zone.
+      integer :: number = 0, zone = 0
+      real(wp) :: inwards(0:most_samples - 1) = 0.0_wp, value(0:most_samples - 1) = 0.0_wp
+   end type samples_type
 
 contains
 
-   !> Half the length of the contact, length.
+   !> Length of a zone.
+   elemental real(wp) function length(self)
+      class(zone_type), intent(in) :: self
+
+      length = self%right - self%left
+   end function length
+
+   !> Half the length of the contact if it is one patch, length; else NaN: that of several patches is no half-width.
    elemental real(wp) function half_width(self)
       class(zone_edges_type), intent(in) :: self
 
       half_width = 0.5_wp*self%contact_length
+      if (self%patches > 1) half_width = ieee_value(1.0_wp, ieee_quiet_nan)
    end function half_width
 
-   !> Middle of the contact, length from the pole.
+   !> Middle between the outermost edges of the contact, length from the pole.
    elemental real(wp) function centre(self)
       class(zone_edges_type), intent(in) :: self
 
@@ -63,37 +101,89 @@ contains
       if (self%contact_length > 0.0_wp) stick_ratio = self%stick_length/self%contact_length
    end function stick_ratio
 
-   !> The edges in a state. Where tractions do not tell (a few nodes, sharp corners, laws of friction without a corner at the limit)
-   !> an edge is in the middle between two nodes, as their numbers have it.
+   !> The outermost edges and total lengths in a state; see find_patches.
    subroutine find_zone_edges(model, state, edges)
       type(contact_model_type), intent(in) :: model
       type(contact_state_type), intent(in) :: state
       type(zone_edges_type), intent(out) :: edges
+      type(patch_type), allocatable :: patches(:)
+      integer :: i, j
+
+      call find_patches(model, state, patches)
+      edges%patches = size(patches)
+      edges%contact = edges%patches > 0
+      do i = 1, edges%patches
+         if (i == 1) edges%contact_left = patches(i)%left
+         edges%contact_right = patches(i)%right
+         edges%contact_length = edges%contact_length + patches(i)%length()
+         do j = 1, size(patches(i)%stick)
+            associate (zone => patches(i)%stick(j))
+               if (.not. edges%stick) edges%stick_left = zone%left
+               edges%stick = .true.
+               edges%stick_right = zone%right
+               edges%stick_length = min(edges%stick_length + zone%length(), edges%contact_length)
+            end associate
+         end do
+      end do
+   end subroutine find_zone_edges
+
+   !> The contact patches in a state, from left to right. Where tractions do not tell (a few nodes, sharp corners, laws of friction
+   !> without a corner at the limit) an edge is where the surface of the outermost node ends.
+   subroutine find_patches(model, state, patches)
+      type(contact_model_type), intent(in) :: model
+      type(contact_state_type), intent(in) :: state
+      type(patch_type), allocatable, intent(out) :: patches(:)
       type(zone_type), allocatable :: zones(:)
-      real(wp) :: left, right
       integer :: i
 
       call find_zones(in_contact(state%status), zones)
+      allocate (patches(size(zones)))
       do i = 1, size(zones)
-         left = contact_edge(model, state, zones(i), -1)
-         right = contact_edge(model, state, zones(i), 1)
-         edges%contact_length = edges%contact_length + (right - left)
-         if (i == 1) edges%contact_left = left
-         edges%contact_right = right
+         patches(i)%first = zones(i)%first
+         patches(i)%last = zones(i)%last
+         patches(i)%left_ends = ends_with_body(model, zones(i)%first, -1)
+         patches(i)%right_ends = ends_with_body(model, zones(i)%last, 1)
+         patches(i)%left_power = contact_power(model, state, zones(i)%first, -1)
+         patches(i)%right_power = contact_power(model, state, zones(i)%last, 1)
+         patches(i)%left = contact_edge(model, state, patches(i), -1)
+         patches(i)%right = contact_edge(model, state, patches(i), 1)
+         if (i > 1) call separate(patches(i - 1), patches(i))
       end do
-      edges%contact = size(zones) > 0
       call find_zones(held(state), zones)
+      do i = 1, size(patches)
+         call find_stick_zones(model, state, pack(zones, zones%first >= patches(i)%first .and. zones%last <= patches(i)%last), &
+                               patches(i))
+      end do
+   end subroutine find_patches
+
+   !> Patches with an open node between them do not overlap, wherever the tractions of a few nodes may point.
+   pure subroutine separate(left, right)
+      type(patch_type), intent(inout) :: left, right
+
+      if (left%right <= right%left) return
+      left%right = 0.5_wp*(left%right + right%left)
+      right%left = left%right
+   end subroutine separate
+
+   !> The edges of the `zones` of a patch that stick.
+   subroutine find_stick_zones(model, state, zones, patch)
+      type(contact_model_type), intent(in) :: model
+      type(contact_state_type), intent(in) :: state
+      type(zone_type), intent(in) :: zones(:)
+      type(patch_type), intent(inout) :: patch
+      real(wp) :: left, right
+      integer :: i
+
+      patch%stick = zones
       do i = 1, size(zones)
          ! What sticks is in contact, wherever the tractions of a few nodes may point.
-         left = max(stick_edge(model, state, zones(i), -1), contact_edge(model, state, whole_contact(state, zones(i)%first), -1))
-         right = min(stick_edge(model, state, zones(i), 1), contact_edge(model, state, whole_contact(state, zones(i)%last), 1))
-         right = max(left, right)
-         edges%stick_length = min(edges%stick_length + (right - left), edges%contact_length)
-         if (i == 1) edges%stick_left = left
-         edges%stick_right = right
+         left = max(stick_edge(model, state, zones(i), patch, -1), patch%left)
+         right = min(stick_edge(model, state, zones(i), patch, 1), patch%right)
+         if (left > right) left = 0.5_wp*(left + right)
+         patch%stick(i)%left = left
+         patch%stick(i)%right = max(left, right)
       end do
-      edges%stick = size(zones) > 0
-   end subroutine find_zone_edges
+   end subroutine find_stick_zones
 
    !> Which nodes hold; those too that may slip from now on and have not done so yet. (Where a cycle repeats the tractions of one
    !> before, many nodes come to their limit together at the very end, and round-off decides how many of them are called slipping.)
@@ -130,67 +220,70 @@ contains
       end do
    end subroutine find_zones
 
-   !> Edge of a contact zone on `side` (-1 left, 1 right), length from the pole.
-   real(wp) function contact_edge(model, state, zone, side) result(edge)
+   !> Edge of a contact patch on `side` (-1 left, 1 right), length from the pole.
+   real(wp) function contact_edge(model, state, patch, side) result(edge)
       type(contact_model_type), intent(in) :: model
       type(contact_state_type), intent(in) :: state
-      type(zone_type), intent(in) :: zone
+      type(patch_type), intent(in) :: patch
       integer, intent(in) :: side
-      real(wp) :: values(0:6), power
-      integer :: last, nodes, i
+      type(samples_type) :: samples
+      integer :: outermost
 
-      last = merge(zone%last, zone%first, side > 0)
-      nodes = min(zone%last - zone%first + 1, size(values))
-      edge = model%arc(last) + 0.5_wp*side*model%interval()
-      if (ends_with_body(model, last, side)) return
-      power = 0.5_wp
-      if (slips(state%status(last)) .and. state%fields%pressure(last) > 0.0_wp) &
-         power = 0.5_wp + side*lean(model, state%fields%shear(last)/state%fields%pressure(last))
-      do i = 0, nodes - 1
-         values(i) = state%fields%pressure(last - side*i)
-      end do
-      edge = edge + side*model%interval()*distance_to_zero(straightened(values(:nodes - 1), power), .false.)
+      outermost = merge(patch%last, patch%first, side > 0)
+      edge = model%arc(outermost) + 0.5_wp*side*model%width(outermost)
+      if (merge(patch%right_ends, patch%left_ends, side > 0)) return
+      samples = sampled(model, state%fields%pressure, outermost, merge(patch%first, patch%last, side > 0))
+      associate (power => merge(patch%right_power, patch%left_power, side > 0))
+         edge = model%arc(outermost) + side*model%width(outermost)*distance_to_zero(straightened(samples, power), .false.)
+      end associate
    end function contact_edge
 
-   !> Edge of a zone that holds, on `side` (-1 left, 1 right), length from the pole: that of the contact where the next node is
-   !> open, else where the shear traction comes to the friction limit.
-   real(wp) function stick_edge(model, state, zone, side) result(edge)
+   !> The power of the distance with which the pressure of an outermost node goes to zero on `side`.
+   real(wp) function contact_power(model, state, node, side) result(power)
+      type(contact_model_type), intent(in) :: model
+      type(contact_state_type), intent(in) :: state
+      integer, intent(in) :: node, side
+
+      power = 0.5_wp
+      if (slips(state%status(node)) .and. state%fields%pressure(node) > 0.0_wp) &
+         power = 0.5_wp + side*lean(model, node, state%fields%shear(node)/state%fields%pressure(node))
+   end function contact_power
+
+   !> Edge of a zone that holds, on `side` (-1 left, 1 right), length from the pole: where the shear traction comes to the friction
+   !> limit. Where the next node is open, that is the edge of the patch or, with a slip zone narrower than an interval, within it.
+   real(wp) function stick_edge(model, state, zone, patch, side) result(edge)
       type(contact_model_type), intent(in) :: model
       type(contact_state_type), intent(in) :: state
       type(zone_type), intent(in) :: zone
+      type(patch_type), intent(in) :: patch
       integer, intent(in) :: side
-      real(wp) :: values(0:6), power, direction
-      integer :: last, nodes, next, i
-      logical :: grown
+      real(wp) :: lack(size(state%status)), power, direction
+      integer :: last, next, other
 
       last = merge(zone%last, zone%first, side > 0)
-      next = min(max(last + side, 1), size(state%status))
-      edge = model%arc(last) + 0.5_wp*side*model%interval()
-      if (next == last .or. state%status(next) == node_open) then
-         edge = contact_edge(model, state, whole_contact(state, last), side)
-         return
+      other = merge(zone%first, zone%last, side > 0)
+      next = last + side
+      edge = model%arc(last) + 0.5_wp*side*model%width(last)
+      if (last == merge(patch%last, patch%first, side > 0)) then
+         edge = merge(patch%right, patch%left, side > 0)
+         if (merge(patch%right_ends, patch%left_ends, side > 0) .or. last == other) return
+         next = last
+         direction = sign(1.0_wp, state%fields%shear(last))
+      else
+         direction = -slip_sign(state%status(next))
       end if
-      if (.not. (slips(state%status(next)) .and. model%scene%friction%is_coulomb())) return
-      direction = -slip_sign(state%status(next))
-      power = 0.5_wp - side*lean(model, direction*model%kinetic_friction(next))
-      nodes = zone%last - zone%first + 1
-      if (nodes > 1 .and. at_its_limit(last)) then
+      if (.not. (abs(direction) > 0.0_wp .and. model%scene%friction%is_coulomb())) return
+      lack = model%static_friction*state%fields%pressure - direction*state%fields%shear
+      if (last /= other .and. at_its_limit(last)) then
          if (at_its_limit(last - side)) then
-            edge = edge + side*model%interval()*distance_by_slip(state, next, side)
+            if (next /= last) edge = edge_by_slip(model, state, next, side, edge)
             return
          end if
          ! One node may hold or slip: the edge must not depend on that.
          last = last - side
-         nodes = nodes - 1
-         edge = edge - side*model%interval()
       end if
-      nodes = min(nodes, size(values))
-      do i = 0, nodes - 1
-         values(i) = lack(last - side*i)
-      end do
-      grown = bend(straightened(values(:nodes - 1), power + 1.0_wp)) < bend(straightened(values(:nodes - 1), power))
-      if (grown) power = power + 1.0_wp
-      edge = edge + side*model%interval()*distance_to_zero(straightened(values(:nodes - 1), power), grown)
+      power = 0.5_wp - side*lean(model, next, direction*model%kinetic_friction(next))
+      edge = model%arc(last) + side*model%width(last)*distance_of_lack(sampled(model, lack, last, other), power)
 
    contains
 
@@ -201,37 +294,77 @@ contains
 
          at_its_limit = lack(node) <= round_off*model%static_friction(node)*state%fields%pressure(node)
       end function at_its_limit
-
-      !> What the shear traction of a node lacks of the friction limit, force/length^2.
-      pure real(wp) function lack(node)
-         integer, intent(in) :: node
-
-         lack = model%static_friction(node)*state%fields%pressure(node) - direction*state%fields%shear(node)
-      end function lack
    end function stick_edge
 
-   !> How far from a straight line the second to fourth of some values are, in parts of their change; large where there are fewer or
-   !> where they do not grow.
-   pure real(wp) function bend(values)
-      real(wp), intent(in) :: values(0:)
+   !> The outermost values of a traction in a zone that goes from node `outermost` to node `other`; shape of the traction (nodes).
+   pure function sampled(model, traction, outermost, other) result(samples)
+      type(contact_model_type), intent(in) :: model
+      real(wp), intent(in) :: traction(:)
+      integer, intent(in) :: outermost, other
+      type(samples_type) :: samples
+      integer :: i, side
 
-      bend = huge(1.0_wp)
-      if (size(values) < 4) return
-      if (values(3) > values(1)) bend = abs(values(1) - 2.0_wp*values(2) + values(3))/(values(3) - values(1))
+      side = merge(1, -1, other >= outermost)
+      samples%zone = abs(other - outermost) + 1
+      samples%number = min(samples%zone, most_samples)
+      associate (unit => model%width(outermost))
+         do i = 0, samples%number - 1
+            samples%value(i) = traction(outermost + side*i)
+            samples%inwards(i) = abs(model%arc(outermost + side*i) - model%arc(outermost))/unit
+         end do
+      end associate
+   end function sampled
+
+   !> Where what the shear traction lacks of the friction limit is zero, intervals outwards from the outermost node. It goes with
+   !> `power`, or, where the zone has grown, with a power larger by one. Short zones do not tell which: there it is `power`. In long
+   !> ones the one that is straighter tells, the larger one if clearly so; between, both have their part, so that no edge is
+   !> decided by round-off.
+   pure real(wp) function distance_of_lack(samples, power) result(distance)
+      type(samples_type), intent(in) :: samples
+      real(wp), intent(in) :: power
+      integer, parameter :: short = 8, steepness = 4
+      real(wp), parameter :: clearly = 2.0_wp
+      real(wp) :: steady, grown, part
+
+      steady = bend(straightened(samples, power))
+      grown = clearly*bend(straightened(samples, power + 1.0_wp))
+      part = 0.0_wp
+      if (min(steady, grown) < unknown_bend) part = min(max((samples%zone - short)/real(short, wp), 0.0_wp), 1.0_wp) &
+                                                    *steady**steepness/(steady**steepness + grown**steepness)
+      distance = 0.0_wp
+      if (part < 1.0_wp) distance = (1.0_wp - part)*distance_to_zero(straightened(samples, power), .false.)
+      if (part > 0.0_wp) distance = distance + part*distance_to_zero(straightened(samples, power + 1.0_wp), .true.)
+   end function distance_of_lack
+
+   !> How far from a straight line the second to fourth value are, in parts of their change; `unknown_bend` where there are fewer
+   !> or where they do not grow.
+   pure real(wp) function bend(samples)
+      type(samples_type), intent(in) :: samples
+      real(wp) :: first, second
+
+      bend = unknown_bend
+      if (samples%number < 4) return
+      associate (t => samples%inwards, value => samples%value)
+         if (.not. value(3) > value(1)) return
+         first = (value(2) - value(1))/(t(2) - t(1))
+         second = (value(3) - value(2))/(t(3) - t(2))
+         bend = min(0.5_wp*abs(second - first)*(t(3) - t(1)), unknown_bend*(value(3) - value(1)))/(value(3) - value(1))
+      end associate
    end function bend
 
    !> The edge of a stick zone whose nodes hold at their limit, as in a cycle that repeats the tractions of one before: tractions do
    !> not tell it, but what the nodes beyond it have slipped since they last held, which grows with the power 3/2 of the distance
-   !> (Mindlin). In intervals outwards from half an interval before node `next`, the first one that slips; 0 where that does not
-   !> tell either.
-   pure real(wp) function distance_by_slip(state, next, side) result(distance)
+   !> (Mindlin). `next`: the first node that slips; `otherwise`: the edge where that does not tell either.
+   pure real(wp) function edge_by_slip(model, state, next, side, otherwise) result(edge)
+      type(contact_model_type), intent(in) :: model
       type(contact_state_type), intent(in) :: state
       integer, intent(in) :: next, side
+      real(wp), intent(in) :: otherwise
       real(wp), parameter :: farthest = 1.5_wp
-      real(wp) :: values(0:1)
+      real(wp) :: values(0:1), distance
       integer :: i, node
 
-      distance = 0.0_wp
+      edge = otherwise
       if (next + side < 1 .or. next + side > size(state%status)) return
       if (state%status(next + side) /= state%status(next)) return
       do i = 0, 1
@@ -239,118 +372,159 @@ contains
          values(i) = abs(state%fields%tangential(node) - state%fields%shift - state%stuck_slip(node))**(2.0_wp/3.0_wp)
       end do
       if (.not. values(1) > values(0)) return
-      if (values(0) <= farthest*(values(1) - values(0))) distance = 0.5_wp - values(0)/(values(1) - values(0))
-   end function distance_by_slip
+      distance = values(0)/(values(1) - values(0))
+      if (distance <= farthest) edge = model%arc(next) - distance*(model%arc(next + side) - model%arc(next))
+   end function edge_by_slip
 
    !> Tractions that go as a power of the distance, raised to the inverse power, in parts of the largest.
-   pure function straightened(tractions, power) result(values)
-      real(wp), intent(in) :: tractions(:), power
-      real(wp) :: values(size(tractions))
+   pure function straightened(samples, power) result(straight)
+      type(samples_type), intent(in) :: samples
+      real(wp), intent(in) :: power
+      type(samples_type) :: straight
       real(wp) :: largest
 
-      values = 0.0_wp
-      largest = maxval(tractions)
-      if (largest > 0.0_wp) values = max(tractions/largest, 0.0_wp)**(1.0_wp/power)
+      straight = samples
+      largest = maxval(samples%value(:samples%number - 1))
+      straight%value = 0.0_wp
+      if (largest > 0.0_wp) straight%value = max(samples%value/largest, 0.0_wp)**(1.0_wp/power)
    end function straightened
 
-   !> The contact zone around a node.
-   pure function whole_contact(state, node) result(zone)
-      type(contact_state_type), intent(in) :: state
-      integer, intent(in) :: node
-      type(zone_type) :: zone
-
-      zone = zone_type(node, node)
-      do while (zone%first > 1)
-         if (.not. in_contact(state%status(zone%first - 1))) exit
-         zone%first = zone%first - 1
-      end do
-      do while (zone%last < size(state%status))
-         if (.not. in_contact(state%status(zone%last + 1))) exit
-         zone%last = zone%last + 1
-      end do
-   end function whole_contact
-
-   !> By how much the exponent of the root is off 1/2 where nodes slip with shear traction over pressure `ratio`: only under full
-   !> coupling, between -1/2 and 1/2.
-   pure real(wp) function lean(model, ratio)
+   !> By how much the exponent of the root is off 1/2 where nodes near `node` slip with shear traction over pressure `ratio`: only
+   !> under full coupling, between -1/2 and 1/2.
+   real(wp) function lean(model, node, ratio)
       type(contact_model_type), intent(in) :: model
+      integer, intent(in) :: node
       real(wp), intent(in) :: ratio
+      real(wp) :: beta
 
       lean = 0.0_wp
-      if (model%compliance%has_block(block_wt)) lean = atan(model%scene%dundurs_beta()*ratio)/pi
+      if (.not. model%compliance%elastic_block(block_wt)) return
+      beta = model%scene%dundurs_beta()
+      if (model%scene%lower%shape == shape_matrix) beta = local_beta(model, node)
+      lean = atan(beta*ratio)/pi
    end function lean
 
-   !> Where nearly straight values, the outermost first, are zero, in intervals outwards from half an interval beyond the first
-   !> one. The second to fourth node tell, the outermost one carrying the largest error; where the third, fifth and seventh say
-   !> nearly the same (near edges of other zones they do not), these tell better. The tractions of a zone that has `grown` node by
-   !> node are ragged: there the second to seventh tell together. Where there are only two or three nodes, a line through the
-   !> outermost; 0 where all this leads nowhere within one interval.
-   pure real(wp) function distance_to_zero(values, grown) result(distance)
-      real(wp), intent(in) :: values(0:)
+   !> Dundurs' beta of bodies whose compliance is a matrix, from the entries about a node: next to a force P, w goes as
+   !> -A ln(r) P/pi, and next to a force Q it jumps from -B Q to B Q, with beta = 2 B/A as for half-planes (A is the sum of
+   !> (kappa + 1)/(4 G), B the difference of (kappa - 1)/(8 G)). What is regular about the node cancels between its sides. 0 where
+   !> there are too few nodes or where the matrix has no such logarithm.
+   real(wp) function local_beta(model, node) result(beta)
+      type(contact_model_type), intent(in) :: model
+      integer, intent(in) :: node
+      integer, parameter :: apart = 3
+      real(wp) :: by_pressure(1, 4), by_shear(1, 4), slope, r(4)
+      integer :: middle, columns(4), n
+
+      beta = 0.0_wp
+      n = model%nodes()
+      if (n < 4*apart + 1) return
+      middle = min(max(node, 1 + 2*apart), n - 2*apart)
+      columns = middle + [-2, -1, 1, 2]*apart
+      call model%compliance%entries(block_wp, [middle], columns, by_pressure)
+      call model%compliance%entries(block_wt, [middle], columns, by_shear)
+      by_pressure(1, :) = by_pressure(1, :)/model%width(columns)
+      by_shear(1, :) = by_shear(1, :)/model%width(columns)
+      r = abs(model%arc(columns) - model%arc(middle))
+      slope = pi*(by_pressure(1, 2) + by_pressure(1, 3) - by_pressure(1, 1) - by_pressure(1, 4))/log(r(1)*r(4)/(r(2)*r(3)))
+      if (slope > 0.0_wp) beta = min(max((by_shear(1, 2) - by_shear(1, 3))/slope, -1.0_wp), 1.0_wp)
+   end function local_beta
+
+   !> Where nearly straight values, the outermost first, are zero, in intervals outwards from the outermost node. The second to
+   !> fourth node tell, the outermost one carrying the largest error; where the third to seventh are smooth (near edges of other
+   !> zones they are not), the third, fifth and seventh tell better. The tractions of a zone that has `grown` node by node are ragged: there
+   !> the second to seventh tell together. Of three nodes all tell, of two a line; 1/2 where all this leads nowhere within
+   !> one interval of that.
+   pure real(wp) function distance_to_zero(samples, grown) result(distance)
+      type(samples_type), intent(in) :: samples
       logical, intent(in) :: grown
-      real(wp), parameter :: nearly = 0.3_wp
-      real(wp) :: farther
-      logical :: found, agree
+      real(wp), parameter :: smooth = 0.04_wp
+      real(wp) :: farther, trust
+      logical :: found, found_farther
 
       found = .false.
-      distance = 0.0_wp
-      if (grown .and. size(values) > 6) call find_zero_of_many(values(1:6), distance, found)
-      if (found) return
-      if (size(values) > 3) call find_zero_of_three(values, 1, 1, distance, found)
-      if (found .and. size(values) > 6) then
-         call find_zero_of_three(values, 2, 2, farther, agree)
-         if (agree .and. abs(farther - distance) <= nearly) distance = farther
-      end if
-      if (found) return
-      distance = 0.0_wp
-      if (size(values) < 2) return
-      if (values(1) > values(0)) distance = values(0)/(values(1) - values(0)) - 0.5_wp
-      if (abs(distance) > 1.0_wp) distance = 0.0_wp
+      found_farther = .false.
+      associate (n => samples%number, t => samples%inwards, values => samples%value)
+         if (grown .and. n == most_samples) call find_zero_of_many(t(1:), values(1:), distance, found)
+         if (found) return
+         if (n == 3) call find_zero_of_three(t(0:2), values(0:2), distance, found)
+         if (n > 3) call find_zero_of_three(t(1:3), values(1:3), distance, found)
+         if (n == most_samples) call find_zero_of_three(t(2:6:2), values(2:6:2), farther, found_farther)
+         if (found_farther) then
+            trust = min(max(2.0_wp - off_parabola(t, values)/smooth, 0.0_wp), 1.0_wp)
+            if (.not. found) distance = farther
+            if (found .or. trust > 0.0_wp) distance = distance + trust*(farther - distance)
+            found = found .or. trust > 0.0_wp
+         end if
+         if (found) return
+         distance = 0.5_wp
+         if (n < 2) return
+         if (values(1) > values(0)) distance = values(0)*t(1)/(values(1) - values(0))
+         if (abs(distance - 0.5_wp) > 1.0_wp) distance = 0.5_wp
+      end associate
    end function distance_to_zero
 
-   !> The same for the parabola through the values `first`, `first` + `apart` and `first` + 2 `apart`.
-   pure subroutine find_zero_of_three(values, first, apart, distance, found)
-      real(wp), intent(in) :: values(0:)
-      integer, intent(in) :: first, apart
+   !> How far the fourth and sixth value are off the parabola through the third, fifth and seventh, in intervals by their slope.
+   pure real(wp) function off_parabola(t, values) result(off)
+      real(wp), intent(in) :: t(0:most_samples - 1), values(0:most_samples - 1)
+      real(wp) :: first, second, bend, slope
+      integer :: i
+
+      first = (values(4) - values(2))/(t(4) - t(2))
+      second = (values(6) - values(4))/(t(6) - t(4))
+      bend = (second - first)/(t(6) - t(2))
+      slope = first - bend*(t(4) - t(2))
+      off = unknown_bend
+      if (.not. slope > 0.0_wp) return
+      off = 0.0_wp
+      do i = 3, 5, 2
+         off = max(off, min(abs(values(i) - values(2) - (t(i) - t(2))*(first + bend*(t(i) - t(4)))), unknown_bend*slope)/slope)
+      end do
+   end function off_parabola
+
+   !> The same as distance_to_zero for the parabola through three values.
+   pure subroutine find_zero_of_three(t, values, distance, found)
+      real(wp), intent(in) :: t(3), values(3)
       real(wp), intent(out) :: distance
       logical, intent(out) :: found
-      real(wp) :: bend
+      real(wp) :: first, second, bend
 
-      bend = (values(first + 2*apart) - 2.0_wp*values(first + apart) + values(first))/(2.0_wp*apart**2)
-      call find_zero(values(first), (values(first + apart) - values(first))/apart - apart*bend, bend, first, distance, found)
+      first = (values(2) - values(1))/(t(2) - t(1))
+      second = (values(3) - values(2))/(t(3) - t(2))
+      bend = (second - first)/(t(3) - t(1))
+      call find_zero(values(1), first - bend*(t(2) - t(1)), bend, t(1), distance, found)
    end subroutine find_zero_of_three
 
-   !> The same for the parabola that is nearest to six values, the first one interval inwards from the outermost node: by the
-   !> orthogonal polynomials of six equidistant points.
-   pure subroutine find_zero_of_many(values, distance, found)
-      real(wp), intent(in) :: values(6)
+   !> The same for the parabola that is nearest to several values, by orthogonal polynomials of their places.
+   pure subroutine find_zero_of_many(t, values, distance, found)
+      real(wp), intent(in) :: t(:), values(:)
       real(wp), intent(out) :: distance
       logical, intent(out) :: found
-      real(wp), parameter :: line(6) = [-2.5_wp, -1.5_wp, -0.5_wp, 0.5_wp, 1.5_wp, 2.5_wp], &
-                             parabola(6) = line**2 - 35.0_wp/12.0_wp
-      real(wp) :: mean, slope, bend
+      real(wp), dimension(size(t)) :: line, parabola
+      real(wp) :: mean, slope, bend, lean
 
-      mean = sum(values)/6
+      line = t - sum(t)/size(t)
+      lean = sum(line**3)/sum(line**2)
+      parabola = line**2 - lean*line - sum(line**2)/size(t)
+      mean = sum(values)/size(t)
       slope = sum(line*values)/sum(line**2)
       bend = sum(parabola*values)/sum(parabola**2)
-      call find_zero(mean + slope*line(1) + bend*parabola(1), slope + 2.0_wp*bend*line(1), bend, 1, distance, found)
+      call find_zero(mean + slope*line(1) + bend*parabola(1), slope + bend*(2.0_wp*line(1) - lean), bend, t(1), distance, found)
    end subroutine find_zero_of_many
 
-   !> Zero of the parabola near + slope*t + bend*t^2, t intervals inwards from node `first` (0: the outermost), the one nearest to
-   !> the edge; `distance` as in distance_to_zero. `found`: it is within one interval.
-   pure subroutine find_zero(near, slope, bend, first, distance, found)
-      real(wp), intent(in) :: near, slope, bend
-      integer, intent(in) :: first
+   !> Zero of the parabola near + slope*t + bend*t^2, t intervals inwards from a place that is `inwards` of the outermost node, the
+   !> zero nearest to the edge; `distance` as in distance_to_zero. `found`: it is within one interval of the outermost node's end.
+   pure subroutine find_zero(near, slope, bend, inwards, distance, found)
+      real(wp), intent(in) :: near, slope, bend, inwards
       real(wp), intent(out) :: distance
       logical, intent(out) :: found
       real(wp) :: discriminant
 
-      distance = 0.0_wp
+      distance = 0.5_wp
       found = .false.
       discriminant = slope**2 - 4.0_wp*bend*near
       if (.not. (slope > 0.0_wp .and. discriminant > 0.0_wp)) return
-      distance = 2.0_wp*near/(slope + sqrt(discriminant)) - first - 0.5_wp
-      found = abs(distance) <= 1.0_wp
+      distance = 2.0_wp*near/(slope + sqrt(discriminant)) - inwards
+      found = abs(distance - 0.5_wp) <= 1.0_wp
    end subroutine find_zero
 
    !> Whether the surface of a body ends where the interval of a node does, on `side` (-1 left, 1 right).
@@ -360,7 +534,7 @@ contains
       real(wp), parameter :: near = 1.0e-6_wp
       real(wp) :: half
 
-      half = 0.5_wp*model%interval()
+      half = 0.5_wp*model%width(node)
       ends_with_body = model%scene%touchable(model%arc(node) + side*half*(1.0_wp - near)) .and. &
                        .not. model%scene%touchable(model%arc(node) + side*half*(1.0_wp + near))
    end function ends_with_body
@@ -372,6 +546,7 @@ contains
 
       call archive%carry(self%contact)
       call archive%carry(self%stick)
+      call archive%carry(self%patches)
       call archive%carry(self%contact_left)
       call archive%carry(self%contact_right)
       call archive%carry(self%contact_length)

@@ -8,9 +8,10 @@ module mfv_contact
    use mfv_case_reader, only: read_case_file, read_case_text
    use mfv_contact_state, only: contact_state_type
    use mfv_discretisation_error, only: estimate_error
+   use mfv_sensitivity, only: find_sensitivity
    use mfv_draft, only: draft_type
    use mfv_error, only: error_type, set_error
-   use mfv_interior, only: interior_type, largest_type, stress_count
+   use mfv_interior, only: interior_type, stress_count
    use mfv_kept_state, only: kept_state_type
    use mfv_kinds, only: wp
    use mfv_observer, only: observer_type
@@ -18,7 +19,9 @@ module mfv_contact
    use mfv_result_file, only: write_result
    use mfv_scene, only: control_displacement, control_force, control_keep, most_cycles, step_type
    use mfv_simulation, only: new_simulation, simulation_type
+   use mfv_state_interior, only: state_interior
    use mfv_status
+   use mfv_stress_search, only: largest_tension, largest_type, largest_von_mises
    use mfv_strings, only: add_text, string_type, to_text
    use mfv_tangent, only: find_tangent
    use mfv_validity, only: validity_warnings
@@ -65,6 +68,7 @@ module mfv_contact
       procedure :: attributes
       procedure :: get_stresses
       procedure :: get_largest_von_mises
+      procedure :: get_largest_tension
       procedure :: make_interior
       procedure :: write
       procedure, private :: get_reals, get_integers, get_real, get_integer, begin, interior_of, forget, expect_made
@@ -128,6 +132,7 @@ contains
       call self%forget()
       call self%simulation%run(observer)
       if (self%case%error_estimate) call estimate_error(self%simulation, observer)
+      if (self%case%sensitivity) call find_sensitivity(self%simulation, observer)
       if (self%simulation%outcome /= MFV_COMPLETE) call self%case%explain(self%simulation)
    end subroutine run
 
@@ -164,8 +169,8 @@ contains
       call self%simulation%advance(absolute, observer=observer)
    end subroutine advance
 
-   !> A step to the targets that are there: normal_force or approach, tangential_force or shift, moment or rotation; units and the rest
-   !> as in step_type.
+   !> A step to the targets that are there: normal_force or approach, tangential_force or shift, moment or rotation; units and
+   !> the rest as in step_type.
    pure function step_to(normal_force, approach, tangential_force, shift, moment, rotation, friction, cycles, steady_tolerance) &
       result(step)
       real(wp), intent(in), optional :: normal_force, approach, tangential_force, shift, moment, rotation, steady_tolerance
@@ -494,8 +499,21 @@ contains
       type(interior_type) :: interior
 
       call self%interior_of(body, interior, error, step)
-      if (.not. allocated(error)) largest = interior%largest_von_mises()
+      if (.not. allocated(error)) largest = largest_von_mises(interior)
    end subroutine get_largest_von_mises
+
+   !> The largest tension along the surface of a body with its place; as get_stresses. Not a number where it is singular.
+   subroutine get_largest_tension(self, body, largest, error, step)
+      class(contact_type), intent(in) :: self
+      integer, intent(in) :: body
+      type(largest_type), intent(out) :: largest
+      type(error_type), allocatable, intent(out) :: error
+      integer, intent(in), optional :: step
+      type(interior_type) :: interior
+
+      call self%interior_of(body, interior, error, step)
+      if (.not. allocated(error)) largest = largest_tension(interior)
+   end subroutine get_largest_tension
 
    !> A body under the tractions of the present state or of a step. Error MFV_BAD_ARGUMENT.
    subroutine interior_of(self, body, interior, error, step)
@@ -506,6 +524,7 @@ contains
       integer, intent(in), optional :: step
       type(contact_state_type) :: state
       integer :: number
+      logical :: available
 
       call self%expect_made(error)
       if (allocated(error)) return
@@ -518,29 +537,46 @@ contains
       end if
       state = self%simulation%contact%state
       if (number > 0) state = self%simulation%padded_state(number)
-      associate (model => self%simulation%contact%model)
-         call self%make_interior(body, model%arc, model%width, state%fields%pressure, state%fields%shear, interior, error)
-      end associate
+      call expect_body(body, error)
+      if (allocated(error)) return
+      call state_interior(self%simulation%contact%model, state, body == body_upper, interior, available)
+      if (.not. available) call refuse_body(body, error)
    end subroutine interior_of
 
-   !> A body under tractions (on the lower body, to the right; force/length^2) on intervals of the lengths `width` around `arc` along
-   !> the surface; shapes (intervals). Error MFV_BAD_ARGUMENT: no such body, a rigid one or a matrix.
-   subroutine make_interior(self, body, arc, width, pressure, shear, interior, error)
+   !> A body under tractions (on the lower body, to the right; force/length^2) at nodes with the intervals `width` around `arc`
+   !> along the surface; `contact_edge`, `stick_edge`: edges between them, as in the state of a result, not a number where there
+   !> is none; shapes (nodes). Error MFV_BAD_ARGUMENT: no such body, a rigid one or a matrix.
+   subroutine make_interior(self, body, arc, width, pressure, shear, contact_edge, stick_edge, interior, error)
       class(contact_type), intent(in) :: self
       integer, intent(in) :: body
-      real(wp), intent(in) :: arc(:), width(:), pressure(:), shear(:)
+      real(wp), intent(in), dimension(:) :: arc, width, pressure, shear, contact_edge, stick_edge
       type(interior_type), intent(out) :: interior
       type(error_type), allocatable, intent(out) :: error
       logical :: available
 
-      if (body /= body_lower .and. body /= body_upper) then
-         call set_error(error, MFV_BAD_ARGUMENT, 'the body must be MFV_LOWER or MFV_UPPER')
-         return
-      end if
-      call self%case%scene%interior(body == body_upper, arc, width, pressure, shear, interior, available)
-      if (.not. available) call set_error(error, MFV_BAD_ARGUMENT, 'the '//merge('upper', 'lower', body == body_upper)// &
-                                          ' body is rigid or a matrix: there are no stresses inside it')
+      call expect_body(body, error)
+      if (allocated(error)) return
+      call self%case%scene%interior(body == body_upper, arc, width, pressure, shear, contact_edge, stick_edge, interior, available)
+      if (.not. available) call refuse_body(body, error)
    end subroutine make_interior
+
+   !> Error MFV_BAD_ARGUMENT for what is not the number of a body.
+   subroutine expect_body(body, error)
+      integer, intent(in) :: body
+      type(error_type), allocatable, intent(out) :: error
+
+      if (body /= body_lower .and. body /= body_upper) &
+         call set_error(error, MFV_BAD_ARGUMENT, 'the body must be MFV_LOWER or MFV_UPPER')
+   end subroutine expect_body
+
+   !> Error MFV_BAD_ARGUMENT for a body without an inside.
+   subroutine refuse_body(body, error)
+      integer, intent(in) :: body
+      type(error_type), allocatable, intent(out) :: error
+
+      call set_error(error, MFV_BAD_ARGUMENT, 'the '//merge('upper', 'lower', body == body_upper)// &
+                     ' body is rigid or a matrix: there are no stresses inside it')
+   end subroutine refuse_body
 
    !> Write the result file to `path`, or where &output says when that is empty. Errors MFV_FILE_ERROR, MFV_BAD_ARGUMENT.
    subroutine write(self, path, error)

@@ -40,10 +40,12 @@ GUARD_CASE(mfv_observe, (mfv_observer observer, void *user), (observer, user))
 GUARD_CASE(mfv_stress, (int body, int step, size_t count, const double *x, const double *y, double *stresses),
            (body, step, count, x, y, stresses))
 GUARD_CASE(mfv_largest_von_mises, (int body, int step, double *place), (body, step, place))
+GUARD_CASE(mfv_largest_tension, (int body, int step, double *place), (body, step, place))
 GUARD_CASE(mfv_stress_under,
            (int body, size_t nodes, const double *arc, const double *width, const double *pressure, const double *shear,
-            size_t count, const double *x, const double *y, double *stresses, double *place),
-           (body, nodes, arc, width, pressure, shear, count, x, y, stresses, place))
+            const double *contact_edge, const double *stick_edge, size_t count, const double *x, const double *y, double *stresses,
+            double *place, double *tension),
+           (body, nodes, arc, width, pressure, shear, contact_edge, stick_edge, count, x, y, stresses, place, tension))
 GUARD_CASE(mfv_write, (const char *path), (path))
 GUARD_QUESTION(mfv_get_loads, (mfv_loads *loads), (loads))
 GUARD_QUESTION(mfv_field_count, (size_t *count), (count))

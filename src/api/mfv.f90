@@ -4,7 +4,7 @@
 !> - contact_type: a contact to be led and asked, from new_contact (of a draft), read_contact (of a file), read_contact_text
 !> - contact%run, contact%advance with step_to(...); contact%loads(), contact%get('state/pressure', values, error)
 !> - contact%get_tangent; contact%keep and contact%come_back with a kept_state_type
-!> - contact%get_stresses, contact%get_largest_von_mises; contact%write
+!> - contact%get_stresses, contact%get_largest_von_mises, contact%get_largest_tension; contact%write
 !> - observer_type: to be extended by who wants to be told of every increment
 !> - error_type: what went wrong; the MFV_... statuses with status_outcome and status_explanation
 !>
@@ -16,7 +16,8 @@ module mfv
    use mfv_draft, only: draft_type, read_draft
    use mfv_error, only: error_type
    use mfv_features, only: has_hdf5
-   use mfv_interior, only: largest_type, stress_count, stress_names
+   use mfv_interior, only: stress_count, stress_names
+   use mfv_stress_search, only: largest_type
    use mfv_kept_state, only: kept_state_type
    use mfv_kinds, only: wp
    use mfv_node_status, only: node_open, node_stick, node_slip_right, node_slip_left, node_frictionless, node_creep_right, &
@@ -24,6 +25,7 @@ module mfv
    use mfv_observer, only: observer_type
    use mfv_reference_flat_punch, only: flat_punch_pressure
    use mfv_reference_hertz, only: hertz_half_width, hertz_force, hertz_pressure, hertz_approach
+   use mfv_reference_indenter, only: indenter_type, power_indenter, rounded_punch_indenter
    use mfv_reference_mindlin, only: mindlin_stick_ratio, mindlin_dissipation, mindlin_history_type, new_mindlin_history
    use mfv_reference_persson, only: persson_force
    use mfv_reference_spence, only: spence_cylinder_shear, spence_flat_punch_shear, spence_stick_ratio

@@ -1,20 +1,21 @@
 !> The C interface of include/mfv.h: thin walls around the library. Unpack, call, return the status. Calls with a handle
 !> come from guards.c, which has looked the handle up: they have the address of its object in its place, and no other call uses it.
 module mfv_c
-   use, intrinsic :: ieee_arithmetic, only: ieee_is_finite
+   use, intrinsic :: ieee_arithmetic, only: ieee_is_finite, ieee_quiet_nan, ieee_value
    use, intrinsic :: iso_c_binding
    use mfv_contact, only: contact_type, loads_type, new_contact, read_contact, read_contact_text
    use mfv_contact_state, only: contact_state_type
    use mfv_draft, only: draft_type, read_draft
    use mfv_error, only: error_type, set_error
    use mfv_features, only: has_hdf5
-   use mfv_interior, only: interior_type, largest_type, stress_count
+   use mfv_interior, only: interior_type, stress_count
    use mfv_kept_state, only: kept_state_type
    use mfv_kinds, only: wp
    use mfv_observer, only: observer_type
    use mfv_result_fields, only: field_type
    use mfv_scene, only: step_type
    use mfv_status
+   use mfv_stress_search, only: largest_tension, largest_type, largest_von_mises
    use mfv_strings, only: copy_to_c, string_type, to_text
    use mfv_version, only: library_version
    implicit none
@@ -896,6 +897,25 @@ contains
       if (status == MFV_COMPLETE) call place_out(largest, place)
    end function mfv_largest_von_mises
 
+   function mfv_largest_tension(handle, body, step, place) result(status) bind(C, name='mfv_largest_tension_unguarded')
+      type(c_ptr), value :: handle, place
+      integer(c_int), value :: body, step
+      integer(c_int) :: status
+      type(handle_type), pointer :: self
+      type(error_type), allocatable :: error
+      type(largest_type) :: largest
+
+      call c_f_pointer(handle, self)
+      status = MFV_COMPLETE
+      if (.not. c_associated(place)) then
+         status = refused(self, 'place is null')
+         return
+      end if
+      call self%contact%get_largest_tension(int(body), largest, error, int(step))
+      status = failed(self, error)
+      if (status == MFV_COMPLETE) call place_out(largest, place)
+   end function mfv_largest_tension
+
    !> A largest stress and its place through a pointer.
    subroutine place_out(largest, place)
       type(largest_type), intent(in) :: largest
@@ -906,9 +926,9 @@ contains
       values = [largest%value, largest%x, largest%y]
    end subroutine place_out
 
-   function mfv_stress_under(handle, body, nodes, arc, width, pressure, shear, count, x, y, stresses, place) &
-      result(status) bind(C, name='mfv_stress_under_unguarded')
-      type(c_ptr), value :: handle, arc, width, pressure, shear, x, y, stresses, place
+   function mfv_stress_under(handle, body, nodes, arc, width, pressure, shear, contact_edge, stick_edge, count, x, y, stresses, &
+                             place, tension) result(status) bind(C, name='mfv_stress_under_unguarded')
+      type(c_ptr), value :: handle, arc, width, pressure, shear, contact_edge, stick_edge, x, y, stresses, place, tension
       integer(c_int), value :: body
       integer(c_size_t), value :: nodes, count
       integer(c_int) :: status
@@ -941,7 +961,8 @@ contains
          status = refused(self, 'mfv_stress_under: values must be finite and widths positive')
          return
       end if
-      call self%contact%make_interior(int(body), positions, widths, pressures, shears, interior, error)
+      call self%contact%make_interior(int(body), positions, widths, pressures, shears, edges_at(contact_edge), &
+                                      edges_at(stick_edge), interior, error)
       status = failed(self, error)
       if (status == MFV_COMPLETE .and. c_associated(stresses)) then
          call take_points(self, count, x, y, stresses, across, up, values, status)
@@ -950,7 +971,22 @@ contains
             values(:, i) = interior%all_stresses(across(i), up(i))
          end do
       end if
-      if (status == MFV_COMPLETE .and. c_associated(place)) call place_out(interior%largest_von_mises(), place)
+      if (status == MFV_COMPLETE .and. c_associated(place)) call place_out(largest_von_mises(interior), place)
+      if (status == MFV_COMPLETE .and. c_associated(tension)) call place_out(largest_tension(interior), tension)
+
+   contains
+
+      !> Edges of the caller's, not numbers where the pointer is null.
+      function edges_at(pointer_to_edges) result(edges)
+         type(c_ptr), intent(in) :: pointer_to_edges
+         real(wp) :: edges(nodes)
+         real(c_double), pointer :: theirs(:)
+
+         edges = ieee_value(1.0_wp, ieee_quiet_nan)
+         if (.not. c_associated(pointer_to_edges)) return
+         call c_f_pointer(pointer_to_edges, theirs, [nodes])
+         edges = theirs
+      end function edges_at
    end function mfv_stress_under
 
    function mfv_write(handle, path) result(status) bind(C, name='mfv_write_unguarded')

@@ -13,7 +13,8 @@ module mfv_gsl
              gsl_multimin_fminimizer_free, gsl_multimin_fminimizer_set, gsl_multimin_fminimizer_iterate, &
              gsl_multimin_fminimizer_x, gsl_multimin_fminimizer_size, gsl_vector_alloc, gsl_vector_free, &
              gsl_vector_get, gsl_vector_set, &
-             gsl_interp_steffen, gsl_interp_alloc, gsl_interp_free, gsl_interp_init, gsl_interp_eval, GSL_PREC_DOUBLE
+             gsl_interp_linear, gsl_interp_steffen, gsl_interp_alloc, gsl_interp_free, gsl_interp_init, gsl_interp_eval, &
+             GSL_PREC_DOUBLE
 
    !> Precision mode of the elliptic integrals: full double precision.
    integer(c_int), parameter :: GSL_PREC_DOUBLE = 0
@@ -31,9 +32,10 @@ module mfv_gsl
       type(c_ptr) :: params
    end type gsl_multimin_function
 
-   !> Brent's bracketing root solver, Steffen's monotone cubic interpolation, Nelder and Mead's simplex search: constants of
+   !> Brent's bracketing root solver, linear and Steffen's monotone cubic interpolation, Nelder and Mead's simplex search: constants of
    !> GSL. They must be public here, or the linker would take them for variables of our own.
    type(c_ptr), protected, bind(C, name='gsl_root_fsolver_brent') :: gsl_root_fsolver_brent
+   type(c_ptr), protected, bind(C, name='gsl_interp_linear') :: gsl_interp_linear
    type(c_ptr), protected, bind(C, name='gsl_interp_steffen') :: gsl_interp_steffen
    type(c_ptr), protected, bind(C, name='gsl_multimin_fminimizer_nmsimplex2') :: gsl_multimin_fminimizer_nmsimplex2
 

@@ -88,7 +88,9 @@ contains
       integer, intent(in) :: digits
       character(len=longest_number) :: text
 
-      if (abs(value) >= 1.0e-3_wp .and. abs(value) < 10.0_wp**min(digits, 6) .or. .not. abs(value) > 0.0_wp) then
+      if (abs(value) <= 0.0_wp) then
+         text = '0'
+      else if (abs(value) >= 1.0e-3_wp .and. abs(value) < 10.0_wp**min(digits, 6) .or. .not. abs(value) > 0.0_wp) then
          text = without_exponent(value, digits)
       else
          text = with_exponent(value, digits)

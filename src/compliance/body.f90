@@ -7,21 +7,26 @@ module mfv_body
    use mfv_circle, only: kernel_exact, new_circle
    use mfv_circle_kernels, only: body_disk, body_hole
    use mfv_compliance, only: compliance_type
-   use mfv_gsl, only: gsl_interp_alloc, gsl_interp_eval, gsl_interp_free, gsl_interp_init, gsl_interp_steffen
+   use mfv_gsl, only: gsl_interp_alloc, gsl_interp_eval, gsl_interp_free, gsl_interp_init, gsl_interp_linear, gsl_interp_steffen
    use mfv_half_plane, only: new_half_plane
    use mfv_kinds, only: wp
    use mfv_material, only: material_type
    use mfv_matrix_compliance, only: new_matrix_compliance
    implicit none
    private
-   public :: body_type, new_half_plane_body, new_disk, new_hole, new_flat_punch, new_profile, new_matrix_body
+   public :: body_type, new_half_plane_body, new_disk, new_hole, new_flat_punch, new_rounded_punch, new_power, new_profile, &
+             new_matrix_body
    public :: gap_between, radial_gap_between
-   public :: shape_half_plane, shape_disk, shape_hole, shape_flat_punch, shape_profile, shape_matrix, shape_names
+   public :: shape_half_plane, shape_disk, shape_hole, shape_flat_punch, shape_rounded_punch, shape_power, shape_profile, &
+             shape_matrix, shape_names
+   public :: interpolation_unset, interpolation_linear, interpolation_cubic
 
-   integer, parameter :: shape_half_plane = 1, shape_disk = 2, shape_hole = 3, shape_flat_punch = 4, shape_profile = 5, &
-                         shape_matrix = 6
-   !> Names of the shapes 1, 2, ...
-   character(*), parameter :: shape_names = 'half_plane disk hole flat_punch profile matrix'
+   integer, parameter :: shape_half_plane = 1, shape_disk = 2, shape_hole = 3, shape_flat_punch = 4, shape_rounded_punch = 5, &
+                         shape_power = 6, shape_profile = 7, shape_matrix = 8
+   !> What a case can name as a shape; a wedge is a power of exponent 1.
+   character(*), parameter :: shape_names = 'half_plane disk hole flat_punch rounded_punch wedge power profile matrix'
+   !> What a profile is between its points: straight, as the user says or because the user says nothing, or monotone cubic.
+   integer, parameter :: interpolation_unset = 0, interpolation_linear = 1, interpolation_cubic = 2
 
    !> A body. Lengths unless told.
    type :: body_type
@@ -29,8 +34,12 @@ module mfv_body
       logical :: rigid = .true.
       !> Material of an elastic body.
       type(material_type) :: material
-      !> Disk and hole: radius R.
+      !> Disk and hole: radius R. Rounded punch: radius of its edges.
       real(wp) :: radius = 0.0_wp
+      !> Rounded punch: half-width of its flat part.
+      real(wp) :: flat_half_width = 0.0_wp
+      !> Power: the surface recedes by coefficient*|x|**exponent; the coefficient is a length^(1 - exponent).
+      real(wp) :: coefficient = 0.0_wp, exponent = 0.0_wp
       !> Elastic bodies: distance from the pole at which displacements are measured.
       real(wp) :: datum = 0.0_wp
       !> Elastic bodies: yield strength, force/length^2; 0: not known.
@@ -39,8 +48,10 @@ module mfv_body
       integer :: kernel = kernel_exact, harmonics = 0
       !> First and last x at which there is a surface to touch.
       real(wp) :: from = -huge(1.0_wp), to = huge(1.0_wp)
-      !> Profile: increasing positions and heights above the flat surface. Matrix: the nodes and their undeformed recess.
+      !> Profile: increasing positions and how far the surface recedes there. Matrix: the nodes and their undeformed recess.
       real(wp), allocatable :: position(:), height(:)
+      !> Profile: one of interpolation_...
+      integer :: interpolation = interpolation_unset
       !> Matrix: surface that belongs to each node, and displacements by nodal forces.
       real(wp), allocatable :: width(:), matrix(:, :)
    contains
@@ -48,7 +59,10 @@ module mfv_body
       procedure :: recess
       procedure :: curvature
       procedure :: circular
+      procedure :: is_regular
       procedure :: half_extent
+      procedure :: size_of_shape
+      procedure :: from_polyline
       procedure :: make_compliance
    end type body_type
 
@@ -91,13 +105,36 @@ contains
       body%to = half_width
    end function new_flat_punch
 
-   !> Profile through the points (position, height), lengths, by Steffen's monotone interpolation: no overshoot, flat
-   !> parts stay flat. The caller makes sure of at least three strictly increasing positions.
-   pure function new_profile(position, height) result(body)
+   !> Punch that is flat over |x| < half_width, with edges that recede by (|x| - half_width)^2/(2 edge_radius); lengths.
+   pure function new_rounded_punch(half_width, edge_radius) result(body)
+      real(wp), intent(in) :: half_width, edge_radius
+      type(body_type) :: body
+
+      body%shape = shape_rounded_punch
+      body%flat_half_width = half_width
+      body%radius = edge_radius
+   end function new_rounded_punch
+
+   !> Body that recedes by coefficient*|x|**exponent; the coefficient is a length^(1 - exponent).
+   pure function new_power(coefficient, exponent) result(body)
+      real(wp), intent(in) :: coefficient, exponent
+      type(body_type) :: body
+
+      body%shape = shape_power
+      body%coefficient = coefficient
+      body%exponent = exponent
+   end function new_power
+
+   !> Profile through the points (position, height), lengths, height the recess. `interpolation`: straight between the points, or
+   !> Steffen's monotone interpolation: no overshoot, flat parts stay flat, corners are rounded. The caller makes sure of at least
+   !> three strictly increasing positions.
+   pure function new_profile(position, height, interpolation) result(body)
       real(wp), intent(in) :: position(:), height(:)
+      integer, intent(in), optional :: interpolation
       type(body_type) :: body
 
       body%shape = shape_profile
+      if (present(interpolation)) body%interpolation = interpolation
       body%position = position
       body%height = height
       body%from = position(1)
@@ -120,12 +157,14 @@ contains
       body%to = position(size(position))
    end function new_matrix_body
 
-   !> Whether the body has a surface at x.
-   elemental logical function covers(self, x)
+   !> Whether the body has a surface at x. `parabolic`: the parabola that stands for a rigid circle has no end. (That for an elastic one
+   !> ends with the circle, whose compliance it has.)
+   elemental logical function covers(self, x, parabolic)
       class(body_type), intent(in) :: self
       real(wp), intent(in) :: x
+      logical, intent(in) :: parabolic
 
-      covers = x >= self%from .and. x <= self%to
+      covers = x >= self%from .and. x <= self%to .or. (parabolic .and. self%rigid .and. self%circular())
    end function covers
 
    !> Whether the body is a disk or a hole.
@@ -134,6 +173,14 @@ contains
 
       circular = self%shape == shape_disk .or. self%shape == shape_hole
    end function circular
+
+   !> Whether the surface is a circle or straight: a profile is neither.
+   pure logical function is_regular(self)
+      class(body_type), intent(in) :: self
+
+      is_regular = self%shape /= shape_profile
+      if (self%shape == shape_matrix) is_regular = all(abs(self%height) <= 0.0_wp)
+   end function is_regular
 
    !> Curvature at the pole, 1/length: positive for a disk, negative for a hole, 0 for what is flat or has no one value.
    elemental real(wp) function curvature(self)
@@ -151,6 +198,14 @@ contains
       half_extent = max(abs(self%from), abs(self%to))
    end function half_extent
 
+   !> A length of the shape, with which contacts may be compared; enormous where there is none.
+   pure real(wp) function size_of_shape(self)
+      class(body_type), intent(in) :: self
+
+      size_of_shape = self%half_extent()
+      if (self%shape == shape_rounded_punch) size_of_shape = self%flat_half_width + self%radius
+   end function size_of_shape
+
    !> How far the surface recedes from the tangent at the pole (length) at the positions `x`; zero where there is no
    !> surface (ask `covers`). `parabolic`: x^2/(2R) in place of the circle.
    function recess(self, x, parabolic) result(depth)
@@ -165,14 +220,30 @@ contains
          if (parabolic) then
             depth = 0.5_wp*self%curvature()*x**2
          else
-            where (self%covers(x)) depth = sign(1.0_wp, self%curvature())*x**2/(self%radius + chord(self%radius, x))
+            where (self%covers(x, parabolic)) depth = sign(1.0_wp, self%curvature())*x**2/(self%radius + chord(self%radius, x))
          end if
+      case (shape_rounded_punch)
+         depth = max(abs(x) - self%flat_half_width, 0.0_wp)**2/(2.0_wp*self%radius)
+      case (shape_power)
+         depth = power_of(self, abs(x))
       case (shape_profile)
-         depth = interpolated(self, x)
+         depth = interpolated(self, x, self%interpolation)
       case (shape_matrix)
          depth = self%height
       end select
    end function recess
+
+   !> C x^n, which does not overflow however far away x >= 0 is.
+   elemental real(wp) function power_of(body, x)
+      type(body_type), intent(in) :: body
+      real(wp), intent(in) :: x
+      real(wp), parameter :: largest = 230.0_wp
+
+      power_of = 0.0_wp
+      if (.not. x > 0.0_wp) return
+      power_of = exp(largest)
+      if (log(body%coefficient) + body%exponent*log(x) < largest) power_of = body%coefficient*x**body%exponent
+   end function power_of
 
    !> Height of a circle's centre over its point at x: sqrt(R^2 - x^2).
    elemental real(wp) function chord(radius, x)
@@ -198,7 +269,7 @@ contains
       else
          gaps = lower%recess(x, parabolic) + upper%recess(x, parabolic)
       end if
-      where (.not. (lower%covers(x) .and. upper%covers(x))) gaps = 0.0_wp
+      where (.not. (lower%covers(x, parabolic) .and. upper%covers(x, parabolic))) gaps = 0.0_wp
    end function gap_between
 
    !> Gap of a disk in a hole, which touch at the pole. With the chords c = sqrt(R^2 - x^2) the difference of
@@ -234,20 +305,24 @@ contains
    end function radial_gap_between
 
    !> The compliance of an elastic body with `nodes` intervals of the width `interval` (length); left unallocated for a
-   !> rigid one. `coupling`, `tangential`: see mfv_compliance; `radial`: see mfv_circle. A profile deforms as the half-plane that it nearly is.
-   subroutine make_compliance(self, nodes, interval, coupling, tangential, radial, compliance)
+   !> rigid one. `coupling`, `tangential`: see mfv_compliance. `common_radius`: where normals are radial, the radius of the arc on
+   !> which the nodes of both bodies are and to which tractions refer (length); else 0. Other shapes deform as the
+   !> half-planes that they nearly are.
+   subroutine make_compliance(self, nodes, interval, coupling, tangential, common_radius, compliance)
       class(body_type), intent(in) :: self
       integer, intent(in) :: nodes, coupling
-      real(wp), intent(in) :: interval
-      logical, intent(in) :: tangential, radial
+      real(wp), intent(in) :: interval, common_radius
+      logical, intent(in) :: tangential
       class(compliance_type), allocatable, intent(out) :: compliance
+      real(wp) :: radius
 
       if (self%rigid) return
       select case (self%shape)
       case (shape_disk, shape_hole)
+         radius = merge(common_radius, self%radius, common_radius > 0.0_wp)
          allocate (compliance, source=new_circle(merge(body_disk, body_hole, self%shape == shape_disk), self%material, &
-                                                 self%radius, nodes, interval, self%datum, self%kernel, &
-                                                 self%harmonics, coupling, tangential, radial))
+                                                 radius, nodes, interval, self%datum*(radius/self%radius), self%kernel, &
+                                                 self%harmonics, coupling, tangential, common_radius > 0.0_wp))
       case (shape_matrix)
          allocate (compliance, source=new_matrix_compliance(self%matrix, self%width, coupling, tangential))
       case default
@@ -255,24 +330,40 @@ contains
       end select
    end subroutine make_compliance
 
-   function interpolated(self, x) result(heights)
+   !> How far a profile's interpolation and the straight lines between its points are apart at `x` or, straight itself, how far it is from
+   !> the monotone cubic interpolation; shape (size(x)), length.
+   function from_polyline(self, x) result(departure)
       class(body_type), intent(in) :: self
       real(wp), intent(in) :: x(:)
+      real(wp) :: departure(size(x))
+
+      departure = interpolated(self, x, interpolation_cubic) - interpolated(self, x, interpolation_linear)
+   end function from_polyline
+
+   !> A profile at `x`, by the given interpolation.
+   function interpolated(self, x, interpolation) result(heights)
+      class(body_type), intent(in) :: self
+      real(wp), intent(in) :: x(:)
+      integer, intent(in) :: interpolation
       real(wp) :: heights(size(x))
-      type(c_ptr) :: interpolation
+      type(c_ptr) :: interpolant
       integer(c_size_t) :: points
       integer(c_int) :: code
       integer :: i
 
       heights = 0.0_wp
       points = size(self%position, kind=c_size_t)
-      interpolation = gsl_interp_alloc(gsl_interp_steffen, points)
-      code = gsl_interp_init(interpolation, self%position, self%height, points)
+      if (interpolation == interpolation_cubic) then
+         interpolant = gsl_interp_alloc(gsl_interp_steffen, points)
+      else
+         interpolant = gsl_interp_alloc(gsl_interp_linear, points)
+      end if
+      code = gsl_interp_init(interpolant, self%position, self%height, points)
       do i = 1, size(x)
-         if (.not. self%covers(x(i))) cycle
-         heights(i) = gsl_interp_eval(interpolation, self%position, self%height, x(i), c_null_ptr)
+         if (.not. self%covers(x(i), .false.)) cycle
+         heights(i) = gsl_interp_eval(interpolant, self%position, self%height, x(i), c_null_ptr)
       end do
-      call gsl_interp_free(interpolation)
+      call gsl_interp_free(interpolant)
    end function interpolated
 
 end module mfv_body

@@ -6,7 +6,7 @@
 !>     C_wp = C1_wp + C2_wp,  C_wt = C1_wt - C2_wt,  C_up = C1_up - C2_up,  C_ut = C1_ut + C2_ut.
 !>
 !> A rigid body has no part in it. Bodies of equal signature (same shape and material) do not couple: C_wt and C_up, the
-!> differences, are then left out.
+!> differences, are then left out of the pair, but not of either body's own displacements.
 module mfv_body_pair
    use mfv_compliance
    use mfv_kinds, only: wp
@@ -53,6 +53,7 @@ contains
             self%nodes = body%nodes
             self%interval = body%interval
             self%has_block = self%has_block .or. body%has_block
+            self%elastic_block = self%elastic_block .or. body%elastic_block
             self%block_values = self%block_values + body%block_values
             flexibility = flexibility + 1.0_wp/body%modulus
          end associate
@@ -60,9 +61,7 @@ contains
       self%modulus = 1.0_wp/flexibility
       if (couples(self)) return
       self%has_block([block_wt, block_up]) = .false.
-      do i = 1, 2
-         if (self%deforms(i)) self%part(i)%compliance%has_block(block_wt) = .false.
-      end do
+      self%elastic_block([block_wt, block_up]) = .false.
    end subroutine new_body_pair
 
    !> Whether anything is left of the coupling blocks.

@@ -12,6 +12,10 @@
 !> chosen as for the half-plane: near the pole a concentrated force leaves
 !> (kappa+1)/(4 pi G) ln(D/distance) with the `datum` D, in w under a normal and in u under a tangential force, so that
 !> disk and hole tend to the half-plane, constant and all, as R grows.
+!>
+!> With radial normals a translation has a part in all four blocks, and so have the displacements that lean with the normals:
+!> neither can be left out of the coupling blocks alone. Without coupling (or with Goodman's) these keep all but what is
+!> proportional to kappa - 1, the coupling of dissimilar materials, which has no translation in it (docs/theory.md).
 module mfv_circle
    use mfv_circle_kernels
    use mfv_compliance
@@ -26,6 +30,7 @@ module mfv_circle
    integer, parameter :: kernel_exact = 1, kernel_fourier = 2
    !> Harmonics in units of the circle's intervals unless told (dissertation section 4.2.2.1).
    integer, parameter :: default_harmonics = 4
+   integer, parameter :: by_normal = 1, by_shear = 2
 
    type, extends(compliance_type) :: circle_type
       private
@@ -41,8 +46,10 @@ module mfv_circle
       logical :: radial = .false.
       !> cos and sin of the angle from the radius to the normal, and from the normal to the vertical, at the nodes.
       real(wp), allocatable :: cosine(:), sine(:), lean_cosine(:), lean_sine(:)
-      !> Products with the kernels.
-      type(toeplitz_type) :: operator
+      !> The cross kernels as far as they are wanted, from distance 0 on, and products with the kernels: by normal and by shear
+      !> traction (by_normal, by_shear).
+      real(wp), allocatable :: cross(:, :)
+      type(toeplitz_type) :: operator(2)
       !> Rigid translation by a unit traction on an interval, in w by pressure and in u by shear.
       real(wp) :: normal_translation = 0.0_wp, tangential_translation = 0.0_wp
    contains
@@ -58,6 +65,8 @@ contains
    !> `interval`, symmetric about the pole. `kernel`: kernel_exact or kernel_fourier; `harmonics`: of the latter, 0 for
    !> four a interval of the circle, which must then be a whole number of intervals (see circle_intervals). `datum`,
    !> length: see above. `coupling`, `tangential`: see mfv_compliance. `radial`: normals along the radius, not vertical.
+   !> With nodes at common angles on circles of different radii, `radius` and `interval` are those of the arc to which
+   !> tractions refer, and `datum` is in proportion: forces on an angle displace a circle of any radius alike, but for ln(D/R).
    function new_circle(body, material, radius, nodes, interval, datum, kernel, harmonics, coupling, tangential, radial) &
       result(self)
       integer, intent(in) :: body, nodes, kernel, harmonics, coupling
@@ -78,7 +87,7 @@ contains
       if (present(radial)) self%radial = radial
       if (harmonics == 0) self%harmonics = default_harmonics*circle_intervals(radius, interval)
       self%modulus = material%plane_modulus()
-      call self%choose_blocks(coupling, tangential)
+      call self%choose_blocks(coupling, tangential, self%radial)
       call set_translations(self)
       call self%resize(nodes)
    end function new_circle
@@ -120,7 +129,11 @@ contains
       else
          self%kernels = exact_kernels(self%body, self%material%kolosov, self%interval/self%radius, nodes)
       end if
-      self%operator = new_toeplitz(self%kernels%radial, self%kernels%cross, self%kernels%tangential)
+      call set_cross(self)
+      self%operator(by_normal) = new_toeplitz(self%kernels%radial, self%cross(:, by_normal), self%kernels%tangential)
+      self%operator(by_shear) = self%operator(by_normal)
+      if (self%radial .and. self%one_way()) &
+         self%operator(by_shear) = new_toeplitz(self%kernels%radial, self%cross(:, by_shear), self%kernels%tangential)
       if (allocated(self%cosine)) deallocate (self%cosine, self%sine, self%lean_cosine, self%lean_sine)
       allocate (self%cosine(nodes), self%lean_cosine(nodes), source=1.0_wp)
       allocate (self%sine(nodes), self%lean_sine(nodes), source=0.0_wp)
@@ -136,6 +149,25 @@ contains
       end do
       self%block_values = 3*nodes
    end subroutine resize
+
+   !> The cross kernels by normal and by shear traction.
+   subroutine set_cross(self)
+      class(circle_type), intent(inout) :: self
+      real(wp) :: dissimilar(self%nodes)
+
+      if (allocated(self%cross)) deallocate (self%cross)
+      allocate (self%cross(0:self%nodes - 1, 2))
+      self%cross = spread(self%kernels%cross, 2, 2)
+      if (.not. self%radial .or. self%elastic_block(block_wt)) return
+      if (self%kernel == kernel_fourier) then
+         dissimilar = fourier_cross_of_dissimilar(self%material%kolosov, circle_intervals(self%radius, self%interval), &
+                                                  self%harmonics, self%nodes)
+      else
+         dissimilar = exact_cross_of_dissimilar(self%material%kolosov, self%interval/self%radius, self%nodes)
+      end if
+      self%cross(:, by_shear) = self%cross(:, by_shear) - dissimilar
+      if (.not. self%elastic_block(block_up)) self%cross(:, by_normal) = self%cross(:, by_shear)
+   end subroutine set_cross
 
    !> Radial and shear traction at unit pressure (`normal`) or unit shear on interval `j`.
    pure subroutine polar_traction(self, normal, j, radial, shear)
@@ -186,7 +218,7 @@ contains
       real(wp), intent(out) :: matrix(:, :)
       real(wp) :: radial, shear, scale, sign, translation(2), row_components(2, size(rows))
       logical :: normal_row, normal_column
-      integer :: distance, i, j
+      integer :: column, distance, i, j
 
       normal_row = block == block_wp .or. block == block_wt
       normal_column = block == block_wp .or. block == block_up
@@ -194,6 +226,7 @@ contains
       do i = 1, size(rows)
          row_components(:, i) = components(self, normal_row, rows(i))
       end do
+      column = merge(by_normal, by_shear, normal_column)
       do j = 1, size(columns)
          call polar_traction(self, normal_column, columns(j), radial, shear)
          translation = [self%normal_translation, self%tangential_translation]*components(self, normal_column, columns(j))
@@ -202,8 +235,8 @@ contains
             sign = merge(1.0_wp, -1.0_wp, rows(i) >= columns(j))
             associate (k => self%kernels)
                matrix(i, j) = scale*cartesian(self%side, normal_row, &
-                                              k%radial(distance)*radial - sign*k%cross(distance)*shear, &
-                                              sign*k%cross(distance)*radial + k%tangential(distance)*shear, &
+                                              k%radial(distance)*radial - sign*self%cross(distance, column)*shear, &
+                                              sign*self%cross(distance, column)*radial + k%tangential(distance)*shear, &
                                               self%cosine(rows(i)), self%sine(rows(i))) &
                               + dot_product(row_components(:, i), translation)
             end associate
@@ -248,7 +281,7 @@ contains
             translation = [side*dot_product(lean_s, traction), dot_product(lean_c, traction)]
          end if
          translation = [self%normal_translation, self%tangential_translation]*translation
-         call self%operator%multiply(radial, outward, shear, around)
+         call self%operator(merge(by_normal, by_shear, by_pressure))%multiply(radial, outward, shear, around)
          normal = scale*side*(around*s - outward*c) + lean_c*translation(1) - side*lean_s*translation(2)
          tangential = scale*(outward*s + around*c) + side*lean_s*translation(1) + lean_c*translation(2)
       end associate

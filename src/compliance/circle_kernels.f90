@@ -18,6 +18,10 @@
 !> The differences between x = theta + a and theta - a are taken by hand (product rule, addition theorems, atanh for the
 !> logarithms), so that nothing cancels however small dtheta is.
 !>
+!> The coefficients of u_theta by a radial traction, [(kappa-1) n -+ (kappa+1)]/(n^2-1) for disk and hole, have two parts. In
+!> a disk in a hole the first one is the coupling of dissimilar materials: it cancels where (kappa-1)/G is equal in both. The
+!> second one adds up: normals elsewhere lean against the load, and the displacement in its direction has a part along them.
+!>
 !> n = 0 and n = 1 are from Tables 4.2, 4.3 and E.1 with kappa - 1 cancelled by hand, without ln(R), which is a rigid
 !> translation. Misprints that matter: Table 4.3 has B_12 of the hole with the wrong sign (sigma_rr = 0 and
 !> sigma_rtheta = S_1 cos theta ask for -(kappa-1)R sin(a)/((kappa+1) pi)), eq. 4.14 has the wrong sign before
@@ -29,6 +33,7 @@ module mfv_circle_kernels
    implicit none
    private
    public :: circle_kernels_type, exact_kernels, fourier_kernels, body_disk, body_hole
+   public :: exact_cross_of_dissimilar, fourier_cross_of_dissimilar
 
    integer, parameter :: body_disk = 1, body_hole = 2
 
@@ -57,6 +62,35 @@ contains
          call add_lower_terms(body, kappa, theta, dtheta, kernels%radial(i), kernels%cross(i), kernels%tangential(i))
       end do
    end function exact_kernels
+
+   !> The part (kappa-1) n/(n^2-1), n >= 2, of the exact cross kernel of a disk or a hole, times G/R, from distance 0 on.
+   pure function exact_cross_of_dissimilar(kappa, dtheta, nodes) result(cross)
+      integer, intent(in) :: nodes
+      real(wp), intent(in) :: kappa, dtheta
+      real(wp) :: cross(nodes), sine_first, sine_second, cosine_first, cosine_second
+      integer :: i
+
+      do i = 1, nodes
+         call differences((i - 1)*dtheta, 0.5_wp*dtheta, sine_first, sine_second, cosine_first, cosine_second)
+         cross(i) = -(kappa - 1.0_wp)*cosine_first/(4.0_wp*pi)
+      end do
+   end function exact_cross_of_dissimilar
+
+   !> The same with the series cut after `harmonics` terms, see fourier_kernels.
+   function fourier_cross_of_dissimilar(kappa, circle_nodes, harmonics, nodes) result(cross)
+      integer, intent(in) :: circle_nodes, harmonics, nodes
+      real(wp), intent(in) :: kappa
+      real(wp) :: cross(nodes)
+      complex(wp), allocatable :: folded(:)
+      real(wp), allocatable :: sums(:)
+      integer :: i
+
+      folded = 0.5_wp*(folded_coefficients(body_disk, kappa, circle_nodes, harmonics) &
+                       + folded_coefficients(body_hole, kappa, circle_nodes, harmonics))
+      allocate (sums(0:circle_nodes - 1))
+      call fourier_sum(folded, sums)
+      cross = [(0.5_wp*(sums(i) - sums(modulo(-i, circle_nodes))), i=0, nodes - 1)]
+   end function fourier_cross_of_dissimilar
 
    !> The kernels at `nodes` distances with the series cut after `harmonics` terms, on a circle of `circle_nodes`
    !> intervals: the coefficients folded onto the circle's nodes and summed by one transform.

@@ -3,7 +3,9 @@
 !>     w = C_wp p + C_wt tau,    u = C_up p + C_ut tau        (dissertation eq. 2.1)
 !>
 !> between equally wide surface intervals, and products with them. Only blocks that the scene needs exist:
-!> C_wt only under full coupling, C_up unless there is no coupling, C_ut and C_up only where friction can act.
+!> C_wt only under full coupling, C_up unless there is no coupling, C_ut and C_up only where friction can act. With radial
+!> normals all four exist where friction can act: without coupling C_wt and C_up still have what inclined normals make of
+!> translations and of displacements in the direction of a load (docs/theory.md).
 module mfv_compliance
    use, intrinsic :: iso_fortran_env, only: int64
    use mfv_kinds, only: wp
@@ -26,8 +28,8 @@ module mfv_compliance
       real(wp) :: interval = 0.0_wp
       !> Stress that scales the blocks: tractions of this size over a length make displacements of that length.
       real(wp) :: modulus = 1.0_wp
-      !> Which blocks exist.
-      logical :: has_block(4) = .false.
+      !> Which blocks exist; and which would with vertical normals: the elastic coupling is in these only.
+      logical :: has_block(4) = .false., elastic_block(4) = .false.
       !> Reals stored for the blocks that exist.
       integer :: block_values = 0
    contains
@@ -38,6 +40,7 @@ module mfv_compliance
       procedure :: displacements
       procedure :: signature
       procedure :: choose_blocks
+      procedure :: one_way
       procedure :: bytes
    end type compliance_type
 
@@ -113,17 +116,30 @@ contains
       signature = huge(1.0_wp)/max(self%nodes, 1)
    end function signature
 
-   !> Which blocks a scene needs. `tangential`: whether friction can act in it.
-   pure subroutine choose_blocks(self, coupling, tangential)
+   !> Which blocks a scene needs. `tangential`: whether friction can act in it. `radial`: whether normals differ from node to
+   !> node.
+   pure subroutine choose_blocks(self, coupling, tangential, radial)
       class(compliance_type), intent(inout) :: self
       integer, intent(in) :: coupling
       logical, intent(in) :: tangential
+      logical, intent(in), optional :: radial
 
-      self%has_block(block_wp) = .true.
-      self%has_block(block_ut) = tangential
-      self%has_block(block_up) = tangential .and. coupling /= coupling_none
-      self%has_block(block_wt) = tangential .and. coupling == coupling_full
+      self%elastic_block(block_wp) = .true.
+      self%elastic_block(block_ut) = tangential
+      self%elastic_block(block_up) = tangential .and. coupling /= coupling_none
+      self%elastic_block(block_wt) = tangential .and. coupling == coupling_full
+      self%has_block = self%elastic_block
+      if (.not. present(radial)) return
+      if (radial) self%has_block([block_wt, block_up]) = tangential
    end subroutine choose_blocks
+
+   !> Whether pressure deforms the surface tangentially but shear does not deform it normally (Goodman): the compliance is not
+   !> symmetric.
+   pure logical function one_way(self)
+      class(compliance_type), intent(in) :: self
+
+      one_way = self%elastic_block(block_up) .and. .not. self%elastic_block(block_wt)
+   end function one_way
 
    !> Memory of the stored kernels or matrices, bytes.
    pure integer(int64) function bytes(self)

@@ -1,26 +1,27 @@
-!> Stresses inside a body of a scene, under the tractions on its surface: coordinates, signs, invariants and the place of
-!> the largest von Mises stress.
+!> Stresses inside a body of a scene, under the tractions on its surface: coordinates, signs and invariants. Between nodes the
+!> tractions are continuous, see mfv_surface_tractions.
 !>
 !> x to the right and y up from the pole; the upper body is the mirror image of a lower one with the shear reversed.
 module mfv_interior
    use, intrinsic :: ieee_arithmetic, only: ieee_is_finite, ieee_is_nan, ieee_quiet_nan, ieee_value
    use mfv_body, only: body_type, shape_disk, shape_hole, shape_matrix
-   use mfv_interior_circle, only: circle_stress
-   use mfv_interior_half_plane, only: half_plane_stress
+   use mfv_interior_circle, only: circle_load_type, longest_element, new_circle_load
+   use mfv_interior_half_plane, only: half_plane_stress, half_plane_surface_stress
    use mfv_kinds, only: wp
    use mfv_material, only: plane_strain
-   use mfv_minimum, only: minimum_near, objective_type
+   use mfv_surface_tractions, only: find_traction_elements, traction_elements_type, zone_list_type
    implicit none
    private
-   public :: interior_type, new_interior, largest_type, von_mises_stress, principal_stresses, polar_stress
+   public :: interior_type, new_interior, von_mises_stress, tresca_stress, principal_stresses, polar_stress
    public :: stress_xx, stress_yy, stress_xy, stress_zz, stress_count, stress_names, stress_von_mises
 
    !> Places of the stresses in what `stress` returns.
    integer, parameter :: stress_xx = 1, stress_yy = 2, stress_xy = 3, stress_zz = 4
-   !> What `all_stresses` returns: those, principal stresses in the plane, von Mises, polar ones about a circle's centre.
-   integer, parameter :: stress_von_mises = 7, stress_count = 10
+   !> What `all_stresses` returns: those, principal stresses in the plane, von Mises, polar ones about a circle's centre,
+   !> Tresca, the direction of the first principal stress.
+   integer, parameter :: stress_von_mises = 7, stress_tresca = 11, stress_angle = 12, stress_count = 12
    character(*), parameter :: stress_names = 'sigma_xx sigma_yy sigma_xy sigma_zz principal_1 principal_2 von_mises '// &
-                              'sigma_rr sigma_thetatheta sigma_rtheta'
+                              'sigma_rr sigma_thetatheta sigma_rtheta tresca principal_angle'
 
    !> A body under tractions.
    type :: interior_type
@@ -32,13 +33,16 @@ module mfv_interior
       real(wp) :: outward = 1.0_wp
       !> Poisson's ratio in plane strain, 0 in plane stress: sigma_zz over sigma_xx + sigma_yy.
       real(wp) :: out_of_plane = 0.0_wp
-      !> Boxes: positions and half-widths along the surface, tractions on the body as if it were below.
-      real(wp), allocatable :: arc(:), half(:), pressure(:), shear(:)
-      !> The same for a circle: angles, polar tractions.
-      real(wp), allocatable :: theta(:), half_angle(:), radial(:), around(:)
+      !> Elements of the surface, their ends along it and over `length`, and p + i tau on the body as if it were below.
+      type(traction_elements_type) :: elements
+      !> A circle under these.
+      type(circle_load_type) :: circle
+      !> Largest pressure at the nodes, force/length^2; unit of the elements of a half-plane, length.
+      real(wp) :: peak = 0.0_wp, length = 1.0_wp
    contains
       procedure :: stress
       procedure :: all_stresses
+      procedure :: surface_stress
       procedure :: half_width
       procedure :: surface
       procedure :: middle
@@ -46,21 +50,13 @@ module mfv_interior
       procedure :: contains_point
       procedure :: is_circle
       procedure :: centre
-      procedure :: largest_von_mises
-      procedure, private :: at_depth
+      procedure :: radius
+      procedure :: knots
+      procedure :: point_at
+      procedure :: is_sheared
+      procedure :: is_singular
+      procedure :: zone_edges
    end type interior_type
-
-   type, extends(objective_type) :: search_type
-      type(interior_type) :: interior
-      real(wp) :: shallowest = 0.0_wp, deepest = 0.0_wp
-   contains
-      procedure :: value => negative_von_mises
-   end type search_type
-
-   !> The largest von Mises stress, force/length^2, and where it is: x and y, length.
-   type :: largest_type
-      real(wp) :: value = 0.0_wp, x = 0.0_wp, y = 0.0_wp
-   end type largest_type
 
 contains
 
@@ -71,41 +67,62 @@ contains
       has_interior = .not. body%rigid .and. body%shape /= shape_matrix
    end function has_interior
 
-   !> The body under `pressure` and `shear` (on the lower body, force/length^2) on boxes around the arc lengths `arc` of
-   !> the widths `width`, lengths; shapes (boxes). `upper`: whether it is the body above. `plane`: see mfv_material.
-   !> `radial`: whether the pressure is along the radius of a disk or hole, not vertical.
-   !> `available`: false for a body that is rigid or a mere matrix.
-   subroutine new_interior(body, upper, plane, radial, arc, width, pressure, shear, self, available)
+   !> The body under `pressure` and `shear` (on the lower body, force/length^2) at nodes with the arc lengths `arc` and the
+   !> intervals `width`, lengths; shapes (nodes). `zones`: edges of contact and stick zones, where they are known. `upper`:
+   !> whether it is the body above. `plane`: see mfv_material. `radial`: whether the pressure is along the radius of a disk or
+   !> hole, not vertical. `available`: false for a body that is rigid or a mere matrix.
+   subroutine new_interior(body, upper, plane, radial, arc, width, pressure, shear, zones, self, available)
       type(body_type), intent(in) :: body
       logical, intent(in) :: upper, radial
       integer, intent(in) :: plane
       real(wp), intent(in) :: arc(:), width(:), pressure(:), shear(:)
+      type(zone_list_type), intent(in) :: zones
       type(interior_type), intent(out) :: self
       logical, intent(out) :: available
-      logical :: loaded(size(arc))
+      type(zone_list_type) :: seen
+      real(wp) :: longest
 
       available = has_interior(body)
       if (.not. available) return
       self%body = body
       self%side = merge(-1.0_wp, 1.0_wp, upper)
-      if (plane == plane_strain) self%out_of_plane = body%material%poisson_ratio
-      loaded = abs(pressure) > 0.0_wp .or. abs(shear) > 0.0_wp
-      self%arc = pack(arc, loaded)
-      self%half = pack(0.5_wp*width, loaded)
-      self%pressure = pack(pressure, loaded)
-      self%shear = self%side*pack(shear, loaded)
-      if (.not. self%is_circle()) return
       if (body%shape == shape_hole) self%outward = -1.0_wp
-      self%theta = self%arc/body%radius
-      self%half_angle = self%half/body%radius
-      if (radial) then
-         self%radial = -self%pressure
-         self%around = self%outward*self%shear
-      else
-         self%radial = -self%pressure*cos(self%theta) + self%outward*self%shear*sin(self%theta)
-         self%around = self%pressure*sin(self%theta) + self%outward*self%shear*cos(self%theta)
-      end if
+      if (plane == plane_strain) self%out_of_plane = body%material%poisson_ratio
+      self%peak = maxval(pressure)
+      longest = huge(1.0_wp)
+      if (self%is_circle()) longest = longest_element*body%radius
+      seen = zones
+      seen%beta = self%side*zones%beta
+      call find_traction_elements(arc, width, pressure, self%side*shear, seen, longest, self%elements)
+      associate (e => self%elements)
+         if (self%is_circle()) then
+            self%length = body%radius
+         else if (size(e%from) > 0) then
+            self%length = 0.5_wp*(maxval(e%to) - minval(e%from))
+         end if
+         e%from = e%from/self%length
+         e%to = e%to/self%length
+         if (self%is_circle()) &
+            self%circle = new_circle_load(body%shape == shape_disk, body%material%kolosov, e%from, e%to, &
+                                          polar(self, radial, e%from, e%first), polar(self, radial, e%to, e%last))
+      end associate
    end subroutine new_interior
+
+   !> sigma_rr + i sigma_rtheta on the circle at an angle from the pole from p + i tau; `radial`: see new_interior.
+   elemental complex(wp) function polar(self, radial, angle, traction)
+      type(interior_type), intent(in) :: self
+      logical, intent(in) :: radial
+      real(wp), intent(in) :: angle
+      complex(wp), intent(in) :: traction
+
+      associate (p => real(traction, wp), tau => self%outward*aimag(traction))
+         if (radial) then
+            polar = cmplx(-p, tau, wp)
+         else
+            polar = cmplx(-p*cos(angle) + tau*sin(angle), p*sin(angle) + tau*cos(angle), wp)
+         end if
+      end associate
+   end function polar
 
    !> Whether the body is a disk or a hole.
    pure logical function is_circle(self)
@@ -160,19 +177,33 @@ contains
       if (self%is_circle()) then
          from_pole = radii_from_pole(self, x, y)
          if (self%body%shape == shape_disk .and. hypot(1.0_wp + from_pole(1), from_pole(2)) < epsilon(1.0_wp)) return
-         turned = circle_stress(self%body%shape == shape_disk, self%body%material%kolosov, self%theta, self%half_angle, &
-                                self%radial, self%around, from_pole)
+         turned = self%circle%stress(from_pole)
          values(stress_xx) = turned(2)
          values(stress_yy) = turned(1)
          values(stress_xy) = merge(turned(3), -turned(3), self%body%shape == shape_disk)
       else
-         values(:3) = half_plane_stress(self%arc, self%half, self%pressure, self%shear, x, abs(y))
+         values(:3) = half_plane_stress(self%elements%from, self%elements%to, self%elements%first, self%elements%last, &
+                                        x/self%length, abs(y)/self%length)
       end if
       values(stress_xy) = self%side*values(stress_xy)
       values(stress_zz) = self%out_of_plane*(values(stress_xx) + values(stress_yy))
    end function stress
 
-   !> All stresses of `stress_names` at (x, y), force/length^2; NaN outside the body, polar ones in a half-plane.
+   !> The stress along the surface, force/length^2, positive in tension, at an arc length from the pole.
+   pure real(wp) function surface_stress(self, arc)
+      class(interior_type), intent(in) :: self
+      real(wp), intent(in) :: arc
+
+      if (self%is_circle()) then
+         surface_stress = self%circle%surface_stress(arc/self%body%radius)
+      else
+         surface_stress = half_plane_surface_stress(self%elements%from, self%elements%to, self%elements%first, &
+                                                    self%elements%last, arc/self%length)
+      end if
+   end function surface_stress
+
+   !> All stresses of `stress_names` at (x, y), force/length^2, and the direction in radians; NaN outside the body, polar ones in a
+   !> half-plane.
    function all_stresses(self, x, y) result(values)
       class(interior_type), intent(in) :: self
       real(wp), intent(in) :: x, y
@@ -183,6 +214,8 @@ contains
       if (ieee_is_nan(values(1))) return
       values(5:6) = principal_stresses(values(:4))
       values(stress_von_mises) = von_mises_stress(values(:4))
+      values(stress_tresca) = tresca_stress(values(:4))
+      values(stress_angle) = principal_angle(values(:4))
       if (self%is_circle()) values(8:10) = polar_stress(values(:4), self%centre(), x, y)
    end function all_stresses
 
@@ -193,19 +226,21 @@ contains
       real(wp) :: depth(1)
 
       surface = ieee_value(1.0_wp, ieee_quiet_nan)
-      if (self%is_circle() .and. .not. self%body%covers(x)) return
+      if (self%is_circle() .and. .not. self%body%covers(x, .false.)) return
       surface = 0.0_wp
       if (.not. self%is_circle()) return
       depth = self%body%recess([x], parabolic=.false.)
       surface = -self%side*depth(1)
    end function surface
 
-   !> Half the length of surface from the first to the last loaded box, length; 0 without load.
+   !> Half the length of surface from the first to the last edge of the loaded zones, length; 0 without load.
    pure real(wp) function half_width(self)
       class(interior_type), intent(in) :: self
 
       half_width = 0.0_wp
-      if (size(self%arc) > 0) half_width = 0.5_wp*(maxval(self%arc + self%half) - minval(self%arc - self%half))
+      associate (e => self%elements)
+         if (size(e%from) > 0) half_width = 0.5_wp*(maxval(e%to) - minval(e%from))*self%length
+      end associate
    end function half_width
 
    !> Middle of the loaded surface, length.
@@ -213,107 +248,65 @@ contains
       class(interior_type), intent(in) :: self
 
       middle = 0.0_wp
-      if (size(self%arc) > 0) middle = 0.5_wp*(maxval(self%arc + self%half) + minval(self%arc - self%half))
+      associate (e => self%elements)
+         if (size(e%from) > 0) middle = 0.5_wp*(maxval(e%to) + minval(e%from))*self%length
+      end associate
    end function middle
 
-   !> Largest pressure, force/length^2.
+   !> Largest pressure at the nodes, force/length^2.
    pure real(wp) function largest_pressure(self)
       class(interior_type), intent(in) :: self
 
-      largest_pressure = 0.0_wp
-      if (size(self%arc) > 0) largest_pressure = maxval(self%pressure)
+      largest_pressure = self%peak
    end function largest_pressure
 
-   !> The largest von Mises stress: the best points of a coarse net below the contact, which is dense towards the surface,
-   !> are each refined by a simplex search (GSL); on the surface itself, where box tractions are singular at the edges of
-   !> boxes, values at the nodes with a parabola through the best three. Depths from 0 to less than a box are not
-   !> searched: there the boxes show; nor is a disk deeper than half its radius or where stresses rise
-   !> towards the force in its centre. Zero where there is no load.
-   function largest_von_mises(self) result(largest)
+   !> Radius of a disk or hole, length.
+   pure real(wp) function radius(self)
       class(interior_type), intent(in) :: self
-      type(largest_type) :: largest
-      integer, parameter :: across = 81, down = 41, starts = 6
-      real(wp) :: left, right, reach, shallowest, place(2), value
-      real(wp), allocatable :: net(:, :), positions(:), depths(:)
-      type(search_type) :: search
-      integer :: best(2), i, j, start
 
-      if (size(self%arc) == 0) return
-      left = minval(self%arc - self%half)
-      right = maxval(self%arc + self%half)
-      reach = max(right - left, 0.0_wp)
-      if (self%is_circle()) reach = min(reach, 0.5_wp*self%body%radius)
-      shallowest = 2.0_wp*minval(self%half)
-      positions = [(left + (right - left)*(i - 1)/(across - 1.0_wp), i=1, across)]
-      depths = [(shallowest*(max(reach/shallowest, 2.0_wp))**((j - 1)/(down - 1.0_wp)), j=1, down)]
-      search%interior = self
-      search%shallowest = shallowest
-      search%deepest = max(depths(down), shallowest)
-      allocate (net(across, down))
-      do j = 1, down
-         do i = 1, across
-            net(i, j) = self%at_depth(positions(i), depths(j))
-         end do
-      end do
-      if (self%is_circle()) call leave_out_rise(net)
-      do start = 1, starts
-         best = maxloc(net)
-         if (.not. net(best(1), best(2)) > 0.0_wp) exit
-         place = [positions(best(1)), depths(best(2))]
-         call minimum_near(search, [(right - left)/across, 0.2_wp*place(2)], place, value)
-         if (place(2) < search%deepest .or. .not. self%is_circle()) &
-            call keep_larger(self, largest, place(1), min(max(place(2), shallowest), search%deepest))
-         call clear_around(net, best)
-      end do
-      call search_surface(self, largest)
-   end function largest_von_mises
+      radius = self%body%radius
+   end function radius
 
-   !> The von Mises stress, to be made large, at an arc length and a depth.
-   function negative_von_mises(self, x) result(value)
-      class(search_type), intent(in) :: self
-      real(wp), intent(in) :: x(:)
-      real(wp) :: value
-
-      value = -self%interior%at_depth(x(1), min(max(x(2), self%shallowest), self%deepest))
-   end function negative_von_mises
-
-   !> Take out of a net (across, down) what only rises towards its lower edge: the force in a disk's centre.
-   pure subroutine leave_out_rise(net)
-      real(wp), intent(inout) :: net(:, :)
-      real(wp) :: below
-      integer :: i, j
-
-      do i = 1, size(net, 1)
-         below = huge(1.0_wp)
-         do j = size(net, 2), 1, -1
-            if (net(i, j) > below) exit
-            below = net(i, j)
-            net(i, j) = -1.0_wp
-         end do
-      end do
-   end subroutine leave_out_rise
-
-   !> Take a place and its neighbours out of a net.
-   pure subroutine clear_around(net, best)
-      real(wp), intent(inout) :: net(:, :)
-      integer, intent(in) :: best(2)
-      integer, parameter :: neighbours = 4
-
-      net(max(1, best(1) - neighbours):min(size(net, 1), best(1) + neighbours), &
-          max(1, best(2) - neighbours):min(size(net, 2), best(2) + neighbours)) = -1.0_wp
-   end subroutine clear_around
-
-   !> Von Mises stress at a depth below the arc length `arc`, -1 where there is none.
-   real(wp) function at_depth(self, arc, depth)
+   !> Whether there is shear on the surface.
+   pure logical function is_sheared(self)
       class(interior_type), intent(in) :: self
-      real(wp), intent(in) :: arc, depth
-      real(wp) :: point(2), values(4)
 
-      point = point_at(self, arc, depth)
-      values = self%stress(point(1), point(2))
-      at_depth = -1.0_wp
-      if (ieee_is_finite(values(1))) at_depth = von_mises_stress(values)
-   end function at_depth
+      is_sheared = any(abs(aimag(self%elements%first)) > 0.0_wp) .or. any(abs(aimag(self%elements%last)) > 0.0_wp)
+   end function is_sheared
+
+   !> Whether there is shear at the end of a body's surface, where the stress along the surface has no limit.
+   pure logical function is_singular(self)
+      class(interior_type), intent(in) :: self
+
+      is_singular = self%elements%singular
+   end function is_singular
+
+   !> Edges of contact and stick zones along the surface from the pole, lengths, ascending, and between them equidistant places,
+   !> together about `most_between`.
+   function zone_edges(self, most_between) result(places)
+      class(interior_type), intent(in) :: self
+      integer, intent(in) :: most_between
+      real(wp), allocatable :: places(:)
+      integer :: i, j, number
+
+      associate (edges => self%elements%edges)
+         places = edges(:1)
+         do i = 2, size(edges)
+            number = ceiling(most_between*(edges(i) - edges(i - 1))/(edges(size(edges)) - edges(1)))
+            places = [places, (edges(i - 1) + (edges(i) - edges(i - 1))*j/(number + 1), j=1, number), edges(i)]
+         end do
+      end associate
+   end function zone_edges
+
+   !> Ends of the elements between which the tractions are linear, along the surface from the pole, lengths.
+   pure function knots(self)
+      class(interior_type), intent(in) :: self
+      real(wp), allocatable :: knots(:)
+      integer :: n
+
+      n = size(self%elements%from)
+      knots = self%length*[self%elements%from, self%elements%to(n:)]
+   end function knots
 
    !> x and y at a depth below the arc length `arc`.
    pure function point_at(self, arc, depth) result(point)
@@ -329,44 +322,6 @@ contains
       point(2) = -self%side*(depth*cos(angle) + self%outward*self%body%radius*2.0_wp*sin(0.5_wp*angle)**2)
    end function point_at
 
-   !> The largest value at the nodes on the surface.
-   subroutine search_surface(self, largest)
-      class(interior_type), intent(in) :: self
-      type(largest_type), intent(inout) :: largest
-      real(wp) :: values(size(self%arc)), shift
-      integer :: i, n
-
-      n = size(values)
-      do i = 1, n
-         values(i) = self%at_depth(self%arc(i), 0.0_wp)
-      end do
-      i = maxloc(values, dim=1)
-      if (.not. values(i) > largest%value) return
-      call keep_larger(self, largest, self%arc(i), 0.0_wp)
-      if (i == 1 .or. i == n) return
-      associate (before => values(i - 1), here => values(i), after => values(i + 1))
-         if (.not. before - 2.0_wp*here + after < 0.0_wp) return
-         shift = 0.5_wp*(before - after)/(before - 2.0_wp*here + after)
-         largest%value = here - 0.25_wp*(before - after)*shift
-      end associate
-      associate (place => point_at(self, self%arc(i) + shift*2.0_wp*self%half(i), 0.0_wp))
-         largest%x = place(1)
-         largest%y = place(2)
-      end associate
-   end subroutine search_surface
-
-   subroutine keep_larger(self, largest, arc, depth)
-      class(interior_type), intent(in) :: self
-      type(largest_type), intent(inout) :: largest
-      real(wp), intent(in) :: arc, depth
-      real(wp) :: value, point(2)
-
-      value = self%at_depth(arc, depth)
-      if (.not. value > largest%value) return
-      point = point_at(self, arc, depth)
-      largest = largest_type(value, point(1), point(2))
-   end subroutine keep_larger
-
    !> Von Mises stress of stresses as `stress` returns them.
    pure real(wp) function von_mises_stress(values)
       real(wp), intent(in) :: values(4)
@@ -374,6 +329,23 @@ contains
       von_mises_stress = sqrt(0.5_wp*((values(stress_xx) - values(stress_yy))**2 + (values(stress_yy) - values(stress_zz))**2 &
                                       + (values(stress_zz) - values(stress_xx))**2) + 3.0_wp*values(stress_xy)**2)
    end function von_mises_stress
+
+   !> Tresca's equivalent stress: the largest difference of the three principal stresses, sigma_zz among them; twice the largest
+   !> shear stress.
+   pure real(wp) function tresca_stress(values)
+      real(wp), intent(in) :: values(4)
+      real(wp) :: principal(3)
+
+      principal = [principal_stresses(values), values(stress_zz)]
+      tresca_stress = maxval(principal) - minval(principal)
+   end function tresca_stress
+
+   !> Direction of the larger principal stress in the plane, radians from the x axis, counterclockwise, in (-pi/2, pi/2].
+   pure real(wp) function principal_angle(values)
+      real(wp), intent(in) :: values(4)
+
+      principal_angle = 0.5_wp*atan2(2.0_wp*values(stress_xy), values(stress_xx) - values(stress_yy))
+   end function principal_angle
 
    !> Principal stresses in the plane, the larger first.
    pure function principal_stresses(values) result(principal)

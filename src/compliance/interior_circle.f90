@@ -1,18 +1,24 @@
-!> Stresses inside a solid disk, or around a hole in an infinite plane, under box tractions on the circle, in closed form.
+!> Stresses inside a solid disk, or around a hole in an infinite plane, under tractions that are linear along elements of the
+!> circle, in closed form.
 !>
 !> Kolosov's potentials on the unit circle (Muskhelishvili 1953, chapters 14 and 15): with the Cauchy integrals
 !>
 !>     I+(z) = 1/(2 pi i) int (sigma_rr + i sigma_rtheta)/(s - z) ds,   I-(z) the same with - i,
 !>
-!> which over a box are logarithms, disk and hole have
+!> disk and hole have
 !>
-!>     disk: Phi = J+ - i M/(2 pi) - N/2 - F/(2 pi (1+kappa) z),  z^2 Psi = J+ - J- - i M/(2 pi) - z J+' + kappa F* z/(2 pi (1+kappa))
+!> disk: Phi = J+ - i M/(2 pi) - N/2 - F/(2 pi (1+kappa) z),  z^2 Psi = J+ - J- - i M/(2 pi) - z J+' + kappa F* z/(2 pi
+!> (1+kappa))
 !>           J+ = I+ + F* z/(pi (1+kappa)),  J- = I- + F* z/(2 pi)
 !>     hole: Phi = -I+ + kappa F/(2 pi (1+kappa) z),  z^2 Psi = I- + Phi - z Phi' + kappa F* z/(2 pi (1+kappa)) - N + i T
 !>
 !> with F the force that the disk's centre, or the tractions in the hole, exert on the body, M the integral and N, T the
 !> means of sigma_rr and sigma_rtheta: the singular terms of dissertation eq. 4.9, and of 4.13, in one piece. Sums of the
 !> series of C.2.1 and D.2.1, whose n = 0 terms are misprinted (docs/theory.md).
+!>
+!> The traction of an element is linear in u = sin(theta - middle)/sin(half its angle), that is, along its chord; u is a sum of
+!> s and 1/s on the circle, so that the integrals are elementary. Where an element is short against its distance, power series
+!> in its length keep their digits.
 !>
 !> Points are given from the pole z = 1, not from the centre, so that nothing cancels close to the contact; Phi' comes
 !> only times |z|^2 - 1, which vanishes on the surface.
@@ -21,93 +27,272 @@ module mfv_interior_circle
    use mfv_logarithms, only: log_ratio
    implicit none
    private
-   public :: circle_stress
+   public :: circle_load_type, new_circle_load, longest_element
+
+   !> Elements that are not longer than this, radians, keep their digits everywhere.
+   real(wp), parameter :: longest_element = 0.1_wp
+   !> Terms that the power series take: enough for the kind of real numbers.
+   integer, parameter :: terms = int(0.25_wp*digits(1.0_wp)) + 2
+
+   !> One element: its ends, radians; its ends and its middle, seen from the pole; direction of the middle; sine of half its
+   !> angle, chord of that; sigma_rr + i sigma_rtheta in the middle, and half of what it changes by.
+   type :: element_type
+      complex(wp) :: first, last, middle, turn, mean, tilt
+      real(wp) :: from, to, half, sine, chord
+   end type element_type
+
+   !> A disk or hole of radius 1 under tractions.
+   type :: circle_load_type
+      private
+      logical :: disk = .true.
+      real(wp) :: kappa = 1.0_wp
+      type(element_type), allocatable :: elements(:)
+      !> Resultant F, and means N + i T of sigma_rr + i sigma_rtheta.
+      complex(wp) :: force = 0.0_wp, mean = 0.0_wp
+   contains
+      procedure :: stress
+      procedure :: surface_stress
+   end type circle_load_type
 
 contains
 
-   !> Stresses (sigma_XX, sigma_YY, sigma_XY), force/length^2, at the point with the coordinates `from_pole` = (X, Y),
-   !> measured from the pole in radii, X outwards from the centre through the pole.
-   !> `disk`: disk or hole. `kappa`: Kolosov's constant. `theta`, `half`: centres and half-widths of the boxes, radians;
-   !> `radial`, `shear`: sigma_rr and sigma_rtheta on them; shapes (boxes). The point must be on or inside the disk, on or
-   !> outside the hole; in the centre of a disk stresses are singular.
-   pure function circle_stress(disk, kappa, theta, half, radial, shear, from_pole) result(stress)
+   !> `disk`: disk or hole. `kappa`: Kolosov's constant. `from`, `to`: ends of the elements, radians, at most `longest_element`
+   !> apart; `first`, `last`: sigma_rr + i sigma_rtheta there, force/length^2; shapes (elements).
+   pure function new_circle_load(disk, kappa, from, to, first, last) result(self)
       logical, intent(in) :: disk
-      real(wp), intent(in) :: kappa, theta(:), half(:), radial(:), shear(:), from_pole(2)
+      real(wp), intent(in) :: kappa, from(:), to(:)
+      complex(wp), intent(in) :: first(:), last(:)
+      type(circle_load_type) :: self
+      complex(wp), parameter :: i = (0.0_wp, 1.0_wp)
+      integer :: j
+
+      self%disk = disk
+      self%kappa = kappa
+      allocate (self%elements(size(from)))
+      do j = 1, size(from)
+         associate (e => self%elements(j), middle => 0.5_wp*(from(j) + to(j)))
+            e%from = from(j)
+            e%to = to(j)
+            e%first = from_pole_to(from(j))
+            e%last = from_pole_to(to(j))
+            e%middle = from_pole_to(middle)
+            e%turn = cmplx(cos(middle), sin(middle), wp)
+            e%half = 0.5_wp*(to(j) - from(j))
+            e%sine = sin(e%half)
+            e%chord = 2.0_wp*sin(0.5_wp*e%half)
+            e%mean = 0.5_wp*(first(j) + last(j))
+            e%tilt = 0.5_wp*(last(j) - first(j))
+            self%force = self%force + i*(e%mean*(e%last - e%first) - e%tilt*e%turn*sum_of_squares(e%chord)/e%sine)
+            self%mean = self%mean + e%mean*e%half/pi
+         end associate
+      end do
+   end function new_circle_load
+
+   !> Integral of sin^2 phi from -half to half, from the chord of half.
+   pure real(wp) function sum_of_squares(chord)
+      real(wp), intent(in) :: chord
+      real(wp) :: root, power
+      integer :: k
+
+      root = 1.0_wp
+      power = 2.0_wp*chord**3
+      sum_of_squares = 0.0_wp
+      do k = 0, terms
+         sum_of_squares = sum_of_squares + root*power/(2*k + 3)
+         root = next_of_root(root, k)
+         power = power*chord**2
+      end do
+   end function sum_of_squares
+
+   !> Coefficient k + 1 of the power series of sqrt(1 - v^2/4) in v^2 from coefficient k.
+   pure real(wp) function next_of_root(root, k)
+      real(wp), intent(in) :: root
+      integer, intent(in) :: k
+
+      next_of_root = -0.25_wp*root*(0.5_wp - k)/(k + 1)
+   end function next_of_root
+
+   !> Stresses (sigma_XX, sigma_YY, sigma_XY), force/length^2, at the point with the coordinates `from_pole` = (X, Y), measured from
+   !> the pole in radii, X outwards from the centre through the pole. The point must be on or inside the disk, on or outside the
+   !> hole; in the centre of a disk stresses are singular. Where tractions jump, the stress along the surface is singular: that
+   !> part is left out.
+   pure function stress(self, from_pole)
+      class(circle_load_type), intent(in) :: self
+      real(wp), intent(in) :: from_pole(2)
       real(wp) :: stress(3)
       complex(wp), parameter :: i = (0.0_wp, 1.0_wp)
-      complex(wp) :: zeta, z, plus, minus, slope, force, logarithm, step, inverse, traction
-      complex(wp) :: potential, potential_slope, rest
-      real(wp) :: beyond, mean_radial, mean_shear, kelvin
+      real(wp), parameter :: round_off = 8.0_wp*epsilon(1.0_wp)
+      complex(wp) :: zeta, z, plus, minus, slope, integral(2), derivative(2), potential, potential_slope, rest, force
+      real(wp) :: beyond, kelvin
       integer :: j
 
       zeta = cmplx(from_pole(1), from_pole(2), wp)
       z = 1.0_wp + zeta
       beyond = 2.0_wp*real(zeta, wp) + abs(zeta)**2
+      if (abs(beyond) <= round_off*(2.0_wp*abs(real(zeta, wp)) + abs(zeta)**2)) beyond = 0.0_wp
       plus = 0.0_wp
       minus = 0.0_wp
       slope = 0.0_wp
-      force = 0.0_wp
-      mean_radial = 0.0_wp
-      mean_shear = 0.0_wp
-      do j = 1, size(theta)
-         if (.not. (abs(radial(j)) > 0.0_wp .or. abs(shear(j)) > 0.0_wp)) cycle
-         traction = cmplx(radial(j), shear(j), wp)
-         call box_integrals(disk, theta(j), half(j), zeta, logarithm, inverse, step)
-         plus = plus + traction*logarithm
-         minus = minus + conjg(traction)*logarithm
-         slope = slope + traction*inverse
-         force = force + i*traction*step
-         mean_radial = mean_radial + radial(j)*half(j)/pi
-         mean_shear = mean_shear + shear(j)*half(j)/pi
+      do j = 1, size(self%elements)
+         call element_integrals(self%elements(j), self%disk, zeta, integral, derivative)
+         associate (e => self%elements(j))
+            plus = plus + e%mean*integral(1) + e%tilt*integral(2)
+            minus = minus + conjg(e%mean)*integral(1) + conjg(e%tilt)*integral(2)
+            slope = slope + e%mean*derivative(1) + e%tilt*derivative(2)
+         end associate
       end do
       plus = plus/(2.0_wp*pi*i)
       minus = minus/(2.0_wp*pi*i)
       slope = slope/(2.0_wp*pi*i)
-      kelvin = 1.0_wp/(2.0_wp*pi*(1.0_wp + kappa))
-      if (disk) then
+      force = self%force
+      kelvin = 1.0_wp/(2.0_wp*pi*(1.0_wp + self%kappa))
+      if (self%disk) then
          plus = plus + 2.0_wp*kelvin*conjg(force)*z
          slope = slope + 2.0_wp*kelvin*conjg(force)
          minus = minus + conjg(force)*z/(2.0_wp*pi)
-         potential = plus - i*mean_shear - 0.5_wp*mean_radial - kelvin*force/z
-         rest = beyond/z*slope + (plus - minus - i*mean_shear)/z**2 &
-                + conjg(z)*kelvin*force/z**2 + kappa*kelvin*conjg(force)/z
+         potential = plus - i*aimag(self%mean) - 0.5_wp*real(self%mean, wp) - kelvin*force/z
+         rest = beyond/z*slope + (plus - minus - i*aimag(self%mean))/z**2 &
+                + conjg(z)*kelvin*force/z**2 + self%kappa*kelvin*conjg(force)/z
       else
-         potential = -plus + kappa*kelvin*force/z
-         potential_slope = -slope - kappa*kelvin*force/z**2
+         potential = -plus + self%kappa*kelvin*force/z
+         potential_slope = -slope - self%kappa*kelvin*force/z**2
          rest = beyond/z*potential_slope &
-                + (minus + potential + kappa*kelvin*conjg(force)*z - cmplx(mean_radial, -mean_shear, wp))/z**2
+                + (minus + potential + self%kappa*kelvin*conjg(force)*z - conjg(self%mean))/z**2
       end if
       stress(1) = 2.0_wp*real(potential, wp) - real(rest, wp)
       stress(2) = 2.0_wp*real(potential, wp) + real(rest, wp)
       stress(3) = aimag(rest)
-   end function circle_stress
+   end function stress
 
-   !> Of one box, with d = s - z from its first to its last point: the change of ln d (continuous on the body's side), the
-   !> integral of ds/d^2, and the change of s.
-   pure subroutine box_integrals(disk, theta, half, zeta, logarithm, inverse, step)
+   !> The stress along the circle at an angle from the pole, radians, as `stress` has it there. On the circle the integrals are real
+   !> but for the traction itself, and only those of the shear are left:
+   !> disk: 2/pi S + sigma_rr + 2 Re(F/z)/(pi (1+kappa)), hole: -2/pi S + sigma_rr - 2 N + 2 kappa Re(F/z)/(pi (1+kappa)).
+   pure real(wp) function surface_stress(self, angle) result(stress)
+      class(circle_load_type), intent(in) :: self
+      real(wp), intent(in) :: angle
+      real(wp) :: from, to, growth, tilted, sum, radial, kelvin, part
+      integer :: j
+
+      sum = 0.0_wp
+      radial = 0.0_wp
+      do j = 1, size(self%elements)
+         associate (e => self%elements(j))
+            from = 2.0_wp*sin(0.5_wp*(e%from - angle))
+            to = 2.0_wp*sin(0.5_wp*(e%to - angle))
+            growth = 0.0_wp
+            if (abs(from) > 0.0_wp) growth = -log(abs(from))
+            if (abs(to) > 0.0_wp) growth = growth + log(abs(to))
+            tilted = tilted_part(e, angle, growth)
+            sum = sum + aimag(e%mean)*growth + aimag(e%tilt)*tilted
+            if (angle >= e%from .and. angle <= e%to) then
+               part = sin(angle - 0.5_wp*(e%from + e%to))/e%sine
+               radial = min(radial, real(e%mean, wp) + part*real(e%tilt, wp))
+            end if
+         end associate
+      end do
+      kelvin = 2.0_wp/(pi*(1.0_wp + self%kappa))*real(self%force*cmplx(cos(angle), -sin(angle), wp), wp)
+      if (self%disk) then
+         stress = 2.0_wp/pi*sum + radial + kelvin
+      else
+         stress = -2.0_wp/pi*sum + radial - 2.0_wp*real(self%mean, wp) + self%kappa*kelvin
+      end if
+   end function surface_stress
+
+   !> The real part of the integral of u/(s - z) ds over an element at an angle on the circle, from that of 1/(s - z).
+   pure real(wp) function tilted_part(element, angle, growth) result(tilted)
+      type(element_type), intent(in) :: element
+      real(wp), intent(in) :: angle, growth
+      real(wp) :: away, square, term, root, power
+      integer :: k
+
+      away = angle - 0.5_wp*(element%from + element%to)
+      square = 4.0_wp*sin(0.5_wp*away)**2
+      if (0.04_wp*square > element%chord**2) then
+         root = 1.0_wp
+         term = 0.0_wp
+         power = -2.0_wp*element%chord**3/element%sine
+         tilted = 0.0_wp
+         do k = 0, terms
+            term = root*power/square + term*(element%chord**2/square)
+            tilted = tilted + term/(2*k + 3)
+            if (abs(term) <= 0.1_wp*epsilon(1.0_wp)*abs(tilted)) exit
+            root = next_of_root(root, k)
+            power = power*element%chord**2
+         end do
+      else
+         tilted = (sin(away)*growth + element%half*cos(away))/element%sine + 1.0_wp
+      end if
+   end function tilted_part
+
+   !> Integrals over an element of 1/(s - z) and u/(s - z) ds, and their derivatives with respect to z (not at its ends, where they
+   !> are multiplied by zero). `zeta`: the point, seen from the pole; the logarithm is continuous on the body's side.
+   pure subroutine element_integrals(element, disk, zeta, integral, derivative)
+      type(element_type), intent(in) :: element
       logical, intent(in) :: disk
-      real(wp), intent(in) :: theta, half
       complex(wp), intent(in) :: zeta
-      complex(wp), intent(out) :: logarithm, inverse, step
-      complex(wp) :: first, last
-      real(wp) :: growth, turn
+      complex(wp), intent(out) :: integral(2), derivative(2)
+      real(wp), parameter :: short = 0.04_wp
+      complex(wp), parameter :: i = (0.0_wp, 1.0_wp)
+      complex(wp) :: first, last, step, place, away, along
+      real(wp) :: turn
 
-      first = from_pole_to(theta - half) - zeta
-      last = from_pole_to(theta + half) - zeta
-      step = 2.0_wp*sin(half)*cmplx(-sin(theta), cos(theta), wp)
+      first = element%first - zeta
+      last = element%last - zeta
+      step = element%last - element%first
       turn = atan2(aimag(conjg(first)*step), real(conjg(first)*last, wp))
       if (disk .and. turn < -0.5_wp*pi) turn = turn + 2.0_wp*pi
-      growth = 0.0_wp
-      inverse = 0.0_wp
-      ! At the very edge of a box on the surface the logarithm is singular where the traction jumps: that part is left out.
-      if (min(abs(first), abs(last)) > epsilon(1.0_wp)*abs(step)) then
-         growth = 0.5_wp*log_ratio(abs(first)**2, abs(last)**2, real(step*conjg(first + last), wp))
-         inverse = step/(first*last)
+      derivative = 0.0_wp
+      if (min(abs(first), abs(last)) > epsilon(1.0_wp)*(abs(step) + 8.0_wp*abs(zeta))) then
+         integral(1) = cmplx(0.5_wp*log_ratio(abs(first)**2, abs(last)**2, real(step*conjg(first + last), wp)), turn, wp)
+         derivative(1) = step/(first*last)
       else
-         turn = merge(0.5_wp*pi + half, half - 0.5_wp*pi, disk)
+         ! At an end on the surface the logarithm of no distance goes out against that of the next element.
+         turn = merge(0.5_wp*pi + element%half, element%half - 0.5_wp*pi, disk)
+         integral(1) = cmplx(merge(1.0_wp, -1.0_wp, abs(first) < abs(last))*log(abs(step)), turn, wp)
       end if
-      logarithm = cmplx(growth, turn, wp)
-   end subroutine box_integrals
+      ! The point in coordinates in which the middle of the element is 1; how far it is from there.
+      place = (1.0_wp + zeta)*conjg(element%turn)
+      away = (element%middle - zeta)*conjg(element%turn)
+      if (element%chord**2*max(1.0_wp, abs(place)) < short*abs(away)**2) then
+         call distant_integrals(element, place, away, integral(2), derivative(2))
+         return
+      end if
+      along = 0.5_wp*i*away*(1.0_wp + place)/(place*element%sine)
+      integral(2) = along*integral(1) + 1.0_wp + element%half/(element%sine*place)
+      derivative(2) = along*derivative(1) - conjg(element%turn)/(place**2*element%sine) &
+                      *(0.5_wp*i*(1.0_wp + place**2)*integral(1) + element%half)
+   end subroutine element_integrals
+
+   !> The integral of u/(s - z) ds and its derivative where the element is short against its distance: with v = 2 sin(phi/2)
+   !> they are those of v^2 sqrt(1 - v^2/4) over away^2 + place v^2, and over the square of that.
+   pure subroutine distant_integrals(element, place, away, integral, derivative)
+      type(element_type), intent(in) :: element
+      complex(wp), intent(in) :: place, away
+      complex(wp), intent(out) :: integral, derivative
+      complex(wp) :: inverse, ratio, once, twice
+      real(wp) :: root, power
+      integer :: k
+
+      inverse = 1.0_wp/away**2
+      ratio = place*(element%chord/away)**2
+      root = 1.0_wp
+      power = 2.0_wp*element%chord**3/element%sine
+      once = 0.0_wp
+      twice = 0.0_wp
+      integral = 0.0_wp
+      derivative = 0.0_wp
+      do k = 0, terms
+         once = inverse*root*power - ratio*once
+         twice = inverse*once - ratio*twice
+         integral = integral + once/(2*k + 3)
+         derivative = derivative + twice/(2*k + 3)
+         if (abs(twice) < 0.1_wp*epsilon(1.0_wp)*abs(derivative)) exit
+         root = next_of_root(root, k)
+         power = power*element%chord**2
+      end do
+      integral = place*integral
+      derivative = conjg(element%turn)*away*(1.0_wp + place)*derivative
+   end subroutine distant_integrals
 
    !> exp(i theta) - 1.
    pure complex(wp) function from_pole_to(theta)

@@ -89,7 +89,8 @@ contains
                     ' pairs of coarse meshes of this case,')
       call add_line(text, 'from '//to_text(advice%pair_nodes(1))//' and '//to_text(3*advice%pair_nodes(1))//' to '// &
                     to_text(advice%pair_nodes(last))//' and '//to_text(3*advice%pair_nodes(last))// &
-                    ' nodes: error = c/nodes, of the dissipation c/nodes^2, with safety.')
+                    ' nodes: error = c/nodes, of the dissipation c/nodes^2')
+      call add_line(text, 'or, if larger, the bound from the width of its slip zones (at least 4 nodes); with safety.')
       present = 'error with '//to_text(advice%present_nodes)
       call add_line(text, '               '//present//'nodes needed')
       do i = 1, advice_count

@@ -4,12 +4,14 @@ module mfv_body_reader
    use mfv_circle, only: kernel_exact, kernel_fourier
    use mfv_error, only: error_type
    use mfv_key_reader
-   use mfv_kinds, only: wp
+   use mfv_kinds, only: pi, wp
    use mfv_material, only: new_material
    use mfv_matrix_file, only: read_matrix_body
-   use mfv_profile_file, only: profile_of_data, read_profile
+   use mfv_profile_file, only: level_line, level_mean, profile_of_data, read_profile, trace_type
+   use mfv_reference_indenter, only: indenter_type
    use mfv_scene, only: scene_type
-   use mfv_strings, only: string_type, to_text
+   use mfv_scene_indenter, only: half_width_of_forces, indenter_of
+   use mfv_strings, only: list_of_words, string_type, to_text
    implicit none
    private
    public :: check_bodies, read_body, check_pair, check_matrix, read_datums
@@ -61,9 +63,8 @@ contains
          return
       end if
       allowed = 'shape rigid'
-      if (shape == 'disk' .or. shape == 'hole') allowed = allowed//' radius'
-      if (shape == 'flat_punch') allowed = allowed//' half_width'
-      if (shape == 'profile' .or. shape == 'matrix') allowed = allowed//' file'
+      allowed = allowed//' '//trim(needed_keys(shape))
+      if (shape == 'profile') allowed = allowed//' interpolation position_scale height_scale level centred'
       if (shape /= 'matrix' .and. .not. rigid) allowed = allowed//' shear_modulus youngs_modulus poisson_ratio '// &
                                                          'yield_strength datum'
       if ((shape == 'disk' .or. shape == 'hole') .and. .not. rigid) allowed = allowed//' kernel harmonics'
@@ -104,15 +105,17 @@ contains
       integer, intent(in) :: number
       type(body_type), intent(out) :: body
       type(error_type), allocatable, intent(out) :: error
-      character(:), allocatable :: shape, needed
+      character(:), allocatable :: shape
+      type(string_type), allocatable :: needed(:)
+      real(wp), parameter :: degree = pi/180.0_wp
+      integer :: i
 
       shape = reader%text_value('body', number, 'shape')
-      needed = ''
-      if (shape == 'disk' .or. shape == 'hole') needed = 'radius'
-      if (shape == 'flat_punch') needed = 'half_width'
-      if (shape == 'profile' .or. shape == 'matrix') needed = 'file'
-      if (needed /= '') call reader%need('body', number, needed, error)
-      if (allocated(error)) return
+      needed = list_of_words(needed_keys(shape))
+      do i = 1, size(needed)
+         call reader%need('body', number, needed(i)%text, error)
+         if (allocated(error)) return
+      end do
       select case (shape)
       case ('half_plane')
          body = new_half_plane_body()
@@ -122,10 +125,39 @@ contains
          body = new_hole(reader%real_value('body', number, 'radius'))
       case ('flat_punch')
          body = new_flat_punch(reader%real_value('body', number, 'half_width'))
+      case ('rounded_punch')
+         body = new_rounded_punch(reader%real_value('body', number, 'half_width'), reader%real_value('body', number, 'edge_radius'))
+      case ('wedge')
+         body = new_power(tan(degree*reader%real_value('body', number, 'angle')), 1.0_wp)
+      case ('power')
+         body = new_power(reader%real_value('body', number, 'coefficient'), reader%real_value('body', number, 'exponent'))
       case default
          call read_body_file(reader, number, body, error)
       end select
    end subroutine read_shape
+
+   !> The keys that a shape cannot do without, separated by blanks and padded with them.
+   pure function needed_keys(shape) result(keys)
+      character(*), intent(in) :: shape
+      character(len=40) :: keys
+
+      select case (shape)
+      case ('disk', 'hole')
+         keys = 'radius'
+      case ('flat_punch')
+         keys = 'half_width'
+      case ('rounded_punch')
+         keys = 'half_width edge_radius'
+      case ('wedge')
+         keys = 'angle'
+      case ('power')
+         keys = 'coefficient exponent'
+      case ('profile', 'matrix')
+         keys = 'file'
+      case default
+         keys = ''
+      end select
+   end function needed_keys
 
    !> The file of a profile or a matrix, beside the case.
    subroutine read_body_file(reader, number, body, error)
@@ -135,24 +167,50 @@ contains
       type(error_type), allocatable, intent(out) :: error
       type(error_type), allocatable :: file_error
       character(:), allocatable :: path
+      type(trace_type) :: trace
       logical :: is_profile
 
       is_profile = reader%text_value('body', number, 'shape') == 'profile'
+      if (is_profile) call read_trace(reader, number, trace, error)
+      if (allocated(error)) return
       call find_file(reader, 'body', number, 'file', path)
       if (reader%data%has_file(reader%text_value('body', number, 'file'))) then
          path = reader%text_value('body', number, 'file')
          if (is_profile) then
-            call profile_of_data(reader%data, path, body, file_error)
+            call profile_of_data(reader%data, path, trace, body, file_error)
          else
             call reader%data%read_matrix_body(path, body, file_error)
          end if
       else if (is_profile) then
-         call read_profile(path, body, file_error)
+         call read_profile(path, trace, body, file_error)
       else
          call read_matrix_body(path, body, file_error)
       end if
       if (allocated(file_error)) call reader%complain('body', number, 'file', file_error%message, error)
    end subroutine read_body_file
+
+   !> How the file of a profile is to be taken.
+   subroutine read_trace(reader, number, trace, error)
+      type(reader_type), intent(in) :: reader
+      integer, intent(in) :: number
+      type(trace_type), intent(out) :: trace
+      type(error_type), allocatable, intent(out) :: error
+
+      trace%position_scale = reader%real_value('body', number, 'position_scale')
+      trace%height_scale = reader%real_value('body', number, 'height_scale')
+      trace%centred = reader%logical_value('body', number, 'centred')
+      select case (reader%text_value('body', number, 'level'))
+      case ('mean')
+         trace%level = level_mean
+      case ('line')
+         trace%level = level_line
+      end select
+      if (reader%has('body', number, 'interpolation')) &
+         trace%interpolation = merge(interpolation_cubic, interpolation_linear, &
+                                     reader%text_value('body', number, 'interpolation') == 'monotone_cubic')
+      if (.not. abs(trace%height_scale) > 0.0_wp) &
+         call reader%complain('body', number, 'height_scale', 'must not be 0', error)
+   end subroutine read_trace
 
    !> The elastic material.
    subroutine read_material(reader, number, plane, body, error)
@@ -184,8 +242,10 @@ contains
       type(reader_type), intent(in) :: reader
       type(scene_type), intent(in) :: scene
       type(error_type), allocatable, intent(out) :: error
+      type(indenter_type) :: indenter
       integer :: number
 
+      indenter = indenter_of(scene)
       if (any([scene%lower%shape, scene%upper%shape] == shape_profile) .or. scene%lower%shape == shape_matrix) return
       number = 2
       if (scene%lower%shape == shape_hole) number = 1
@@ -193,8 +253,8 @@ contains
          if (.not. scene%curvature() > 0.0_wp) &
             call reader%complain('body', number, 'radius', 'a hole needs a disk of a smaller radius in it', error)
       else if (.not. scene%curvature() > 0.0_wp .and. &
-               .not. any([scene%lower%shape, scene%upper%shape] == shape_flat_punch)) then
-         call reader%complain('body', 2, 'shape', 'two half-planes touch everywhere; one body must be curved or a profile', error)
+               .not. any([scene%lower%shape, scene%upper%shape] == shape_flat_punch) .and. indenter%is_flat()) then
+         call reader%complain('body', 2, 'shape', 'two half-planes touch everywhere; one body must have another shape', error)
       end if
    end subroutine check_pair
 
@@ -210,13 +270,15 @@ contains
                            error)
    end subroutine check_matrix
 
-   !> Where the displacements of the elastic bodies are measured.
-   subroutine read_datums(reader, scene)
+   !> Where the displacements of the elastic bodies are measured: by default at a length of the shapes or, where they have none, at the
+   !> half-width of the contact that the closed form expects, else at that of the mesh.
+   subroutine read_datums(reader, scene, error)
       type(reader_type), intent(in) :: reader
       type(scene_type), intent(inout) :: scene
+      type(error_type), allocatable, intent(out) :: error
 
       call read_datum(1, scene%lower, scene%upper)
-      call read_datum(2, scene%upper, scene%lower)
+      if (.not. allocated(error)) call read_datum(2, scene%upper, scene%lower)
 
    contains
 
@@ -225,8 +287,15 @@ contains
          type(body_type), intent(inout) :: body
          type(body_type), intent(in) :: other
 
-         body%datum = merge(body%radius, min(body%half_extent(), other%half_extent()), body%circular())
+         body%datum = merge(body%radius, min(body%size_of_shape(), other%size_of_shape()), body%circular())
          if (reader%has('body', number, 'datum')) body%datum = reader%real_value('body', number, 'datum')
+         if (body%datum < huge(1.0_wp)) return
+         body%datum = half_width_of_forces(scene)
+         if (.not. body%datum > 0.0_wp .and. reader%has('mesh', 1, 'half_width')) &
+            body%datum = reader%real_value('mesh', 1, 'half_width')
+         if (body%rigid .or. body%datum > 0.0_wp) return
+         call reader%complain('body', number, 'datum', 'is needed: the shapes have no length, and there is neither a '// &
+                              'normal_force nor the half_width of a &mesh to take it from', error)
       end subroutine read_datum
    end subroutine read_datums
 

@@ -19,6 +19,8 @@ module mfv_case
       integer :: keep_states = states_reversals
       !> Whether companions on coarser meshes are solved for an estimate of the discretisation error.
       logical :: error_estimate = .false.
+      !> Whether the case is run once more with friction perturbed, to tell how much it depends on round-off.
+      logical :: sensitivity = .false.
       !> Minutes of wall clock from one checkpoint to the next; 0: none but where a run is interrupted.
       real(wp) :: checkpoint_minutes = 0.0_wp
       !> Names of the user's units, for labels.

@@ -65,16 +65,35 @@ contains
       call add_positive_key(keys, 'body', 'yield_strength', 'force/length^2', 'elastic body: a warning is given when '// &
                             'the largest von Mises stress is beyond it')
       call add_positive_key(keys, 'body', 'datum', 'length', 'elastic body: distance from the contact at which '// &
-                            'displacements are measured; left out: the radius of a disk or hole; else the radius, '// &
-                            'half-width or extent of the other body')
+                            'displacements are measured; if omitted: the radius of a disk or hole; else the radius, '// &
+                            'half-width or extent of the other body; else the half-width of the contact, see below')
       call add_positive_key(keys, 'body', 'radius', 'length', 'disk, hole: radius, needed')
-      call add_positive_key(keys, 'body', 'half_width', 'length', 'flat_punch: half its width, needed')
+      call add_positive_key(keys, 'body', 'half_width', 'length', 'flat_punch: half its width; rounded_punch: half the width '// &
+                            'of its flat part; needed')
+      call add_positive_key(keys, 'body', 'edge_radius', 'length', 'rounded_punch: radius of its edges, which are parabolas, '// &
+                            'needed')
+      call add_real_key(keys, 'body', 'angle', 'degrees', 'wedge: angle of either flank to the common tangent, needed', &
+                        lower=0.0_wp, lower_open=.true., upper=80.0_wp)
+      call add_positive_key(keys, 'body', 'coefficient', 'length^(1-exponent)', 'power: the surface recedes '// &
+                            'by coefficient*abs(x)^exponent, needed')
+      call add_real_key(keys, 'body', 'exponent', '', 'power: exponent of the shape, needed; 1: a wedge, 2: a cylinder', &
+                        lower=1.0_wp, upper=100.0_wp)
       call add_choice_key(keys, 'body', 'kernel', 'exact', 'exact fourier', 'elastic disk, hole: closed forms, or the '// &
                           'Fourier series')
-      call add_integer_key(keys, 'body', 'harmonics', '', "kernel='fourier': terms of the series; left out: 4 for each "// &
-                           'interval of the whole circle', 2.0_wp, most_harmonics)
-      call add_text_key(keys, 'body', 'file', '', 'profile: text file with two columns, x and height above the flat '// &
-                        'surface; matrix: HDF5 file, see below; beside the case file; needed')
+      call add_integer_key(keys, 'body', 'harmonics', '', "kernel='fourier': terms of the series; if omitted: 4 for each "// &
+                           'interval of the whole circle; at least half as many as these intervals', 2.0_wp, most_harmonics)
+      call add_text_key(keys, 'body', 'file', '', 'profile: text file with two columns, x and height; matrix: HDF5 file; see '// &
+                        'below; beside the case file; needed')
+      call add_choice_key(keys, 'body', 'interpolation', 'linear', 'linear monotone_cubic', 'profile: straight lines '// &
+                          'between its points, which keep corners, or a smooth curve without overshoot')
+      call add_positive_key(keys, 'body', 'position_scale', '', 'profile: x of the file is multiplied by it')
+      keys(size(keys))%default = '1'
+      call add_real_key(keys, 'body', 'height_scale', '', 'profile: heights of the file are multiplied by it; they are how far '// &
+                        'the surface recedes from the other body: negative where the file counts them outwards')
+      keys(size(keys))%default = '1'
+      call add_choice_key(keys, 'body', 'level', 'none', 'none mean line', 'profile: subtracted from its heights: nothing, '// &
+                          'their mean, or their least-squares line')
+      call add_logical_key(keys, 'body', 'centred', '.false.', 'profile: whether the middle of its positions is moved to x = 0')
    end subroutine add_body_keys
 
    subroutine add_mesh_keys(keys)
@@ -83,14 +102,15 @@ contains
       call add_integer_key(keys, 'mesh', 'nodes', '101', 'number of equal intervals; nodes are their centres', &
                            1.0_wp, most_nodes)
       call add_positive_key(keys, 'mesh', 'half_width', 'length', 'the intervals cover [-half_width, half_width] along '// &
-                            'the surface; left out: chosen from an estimate of the contact, and grown when the contact needs it')
+                            'the surface; if omitted: chosen from an estimate of the contact, and grown when the contact needs it')
       call add_real_key(keys, 'mesh', 'half_angle', 'degrees', 'in place of half_width where a body is an elastic disk or '// &
                         'hole: the intervals cover this angle on either side; 180: the whole circle, of which only '// &
                         'what is near the contact is carried', lower=0.0_wp, lower_open=.true., upper=180.0_wp)
       call add_choice_key(keys, 'mesh', 'gap', 'exact', 'exact parabolic', &
                           'gap of disks and holes: exact circles, or the parabolas x^2/(2R) of Hertz')
       call add_choice_key(keys, 'mesh', 'normals', 'vertical', 'vertical radial', 'vertical: pressure, gap and approach are '// &
-                          'vertical at every node; radial: along the radius, for a disk in a hole, whatever the angle')
+                          'vertical at every node; radial: along the radius, for a disk in a hole, whatever the angle; '// &
+                          'lengths along the surface and tractions are then those of the hole')
    end subroutine add_mesh_keys
 
    subroutine add_friction_keys(keys)
@@ -107,7 +127,7 @@ contains
                             'falls from mu_static to mu_kinetic, needed')
       call add_positive_key(keys, 'friction', 'stiffness', 'force/length^3', 'dahl: stiffness sigma of the bristles, traction '// &
                             'over slip, needed')
-      call add_real_key(keys, 'friction', 'exponent', '', 'dahl: exponent gamma; left out: 1', lower=0.0_wp, &
+      call add_real_key(keys, 'friction', 'exponent', '', 'dahl: exponent gamma; if omitted: 1', lower=0.0_wp, &
                         upper=100.0_wp)
    end subroutine add_friction_keys
 
@@ -142,7 +162,7 @@ contains
       call add_integer_key(keys, 'step', 'cycles', '0', '0: go to the targets; n: go there and back to where the step '// &
                            'began, n times', 0.0_wp, real(most_cycles, wp))
       call add_positive_key(keys, 'step', 'steady_tolerance', '', 'cycles end early when the state after two in a row is the '// &
-                            'same to within this part of the largest traction; left out: never')
+                            'same to within this part of the largest traction; if omitted: never')
    end subroutine add_step_keys
 
    subroutine add_solver_keys(keys)
@@ -151,15 +171,15 @@ contains
       call add_choice_key(keys, 'solver', 'algorithm', 'mfv', 'mfv conventional', 'mfv: Method of First Violation; '// &
                           'conventional: load steps with repairs of statuses, for comparison')
       call add_choice_key(keys, 'solver', 'stepping', 'event', 'event nominal leap', 'mfv: events from rates, or from trial '// &
-                          'load steps and interpolation; both lead to the same states (coulomb, static_kinetic); leap: each '// &
-                          'straight part of the load history at once, halved where halves lead elsewhere (coulomb)')
-      call add_part_key(keys, 'leap_tolerance', '1e-3', "stepping='leap': by how much a leap and its two halves may differ, "// &
-                        'part of the largest traction')
-      call add_real_key(keys, 'solver', 'event_tolerance', '', 'mfv: events closer to each other than this part of what is '// &
-                        'done of a straight part of the load history are taken together: fewer solves, less accuracy '// &
+                          'load steps and interpolation; both lead to the same states (coulomb, static_kinetic); leap: '// &
+                          'large increments, events where these would cost more (coulomb)')
+      call add_part_key(keys, 'leap_tolerance', '1e-3', "stepping='leap': tolerance of the tractions, relative to the largest "// &
+                        'traction, and of the dissipation of each load segment, relative to that')
+      call add_real_key(keys, 'solver', 'event_tolerance', '', 'mfv: events closer to each other than this part of the '// &
+                        'load so far in the load segment are taken together: fewer solves, less accuracy '// &
                         '(coulomb)', lower=0.0_wp, upper=0.1_wp)
       keys(size(keys))%default = '0'
-      call add_part_key(keys, 'load_step', '0.05', 'nominal load step, part of each straight part of the load history: for '// &
+      call add_part_key(keys, 'load_step', '0.05', 'nominal load step, part of each load segment: for '// &
                         "algorithm='conventional', stepping='nominal', integration='explicit'")
       call add_choice_key(keys, 'solver', 'integration', 'second_order', 'second_order explicit', 'dahl: second order with '// &
                           'controlled error, or explicit with load_step (appendix B)')
@@ -185,7 +205,7 @@ contains
    subroutine add_output_keys(keys)
       type(key_type), allocatable, intent(inout) :: keys(:)
 
-      call add_text_key(keys, 'output', 'file', '', 'result file (HDF5); left out: the name of the case file with .h5, '// &
+      call add_text_key(keys, 'output', 'file', '', 'result file (HDF5); if omitted: the name of the case file with .h5, '// &
                         'in the working directory')
       call add_choice_key(keys, 'output', 'history', 'events', 'events steps none', &
                           'a history record an event, a step end, or none')
@@ -193,6 +213,9 @@ contains
                           'step with cycles, only at the end of every step, or none but the last')
       call add_logical_key(keys, 'output', 'error_estimate', '.false.', 'whether the case is also solved on coarser meshes, to '// &
                            'tell the discretisation error of half-width, stick ratio, peak tractions and dissipation')
+      call add_logical_key(keys, 'output', 'sensitivity', '.false.', 'whether the case is run once more with all '// &
+                           'coefficients of friction times 1 + 1e-12, to report how much that changes tractions, '// &
+                           'dissipation and stick ratio')
       call add_real_key(keys, 'output', 'checkpoint_minutes', 'minutes', 'mfv_run: time from one checkpoint to the next, '// &
                         'from which mfv_run --resume goes on; 0: only where the run is interrupted', lower=0.0_wp, upper=1.0e6_wp)
       keys(size(keys))%default = '10'

@@ -88,6 +88,11 @@ contains
       if (reader%text_value('output', 1, 'states') == 'none') case%keep_states = states_none
       case%checkpoint_minutes = reader%real_value('output', 1, 'checkpoint_minutes')
       case%error_estimate = reader%logical_value('output', 1, 'error_estimate')
+      case%sensitivity = reader%logical_value('output', 1, 'sensitivity')
+      if (case%sensitivity .and. .not. case%scene%friction%acts()) &
+         call reader%complain('output', 1, 'sensitivity', 'must be .false. in a case without friction: it perturbs the '// &
+                              'coefficients of friction', error)
+      if (allocated(error)) return
       if (case%error_estimate .and. .not. has_coarser_meshes(case%scene)) &
          call reader%complain('output', 1, 'error_estimate', "must be .false. with shape='matrix', which has no coarser mesh", &
                               error)
@@ -114,9 +119,9 @@ contains
       if (.not. allocated(error)) call read_body(reader, 2, scene%plane, scene%upper, error)
       if (.not. allocated(error)) call check_pair(reader, scene, error)
       if (allocated(error)) return
-      call read_datums(reader, scene)
       call read_friction(reader, scene, error)
       if (.not. allocated(error)) call read_steps(reader, scene, error)
+      if (.not. allocated(error)) call read_datums(reader, scene, error)
       if (.not. allocated(error)) call check_matrix(reader, scene, error)
       if (.not. allocated(error)) call read_mesh(reader, scene, error)
       if (.not. allocated(error)) call check_coefficients_a_node(reader, scene, error)

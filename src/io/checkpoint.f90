@@ -24,7 +24,7 @@ module mfv_checkpoint
 
    character(*), parameter :: signature = 'MFV checkpoint '
    !> To be raised when what an image is made of changes within a version.
-   integer, parameter :: layout = 1
+   integer, parameter :: layout = 2
    !> Bytes of a number; and of both lines, blanks and line feed with them.
    integer, parameter :: number_length = 8, line_length = 120
    integer, parameter :: header_length = 2*line_length + 2*number_length

@@ -37,6 +37,7 @@ contains
          return
       end select
       call read_coefficients(reader, scene%friction, error)
+      if (.not. allocated(error)) call scene%friction%simplify()
    end subroutine read_friction
 
    !> Keys that the law needs, and none that mean nothing to it.

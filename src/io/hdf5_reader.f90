@@ -172,13 +172,14 @@ contains
       has = has .and. code == 0
    end function has
 
-   !> A finite vector of `length` values, of any length where that is negative.
-   subroutine read_vector(file, name, length, values, error)
+   !> A finite vector of `length` values, of any length where that is negative. `gaps`: values that are not numbers are let through.
+   subroutine read_vector(file, name, length, values, error, gaps)
       integer(hid_t), intent(in) :: file
       character(*), intent(in) :: name
       integer, intent(in) :: length
       real(wp), allocatable, intent(inout) :: values(:)
       type(error_type), allocatable, intent(out) :: error
+      logical, intent(in), optional :: gaps
       integer(hsize_t) :: extent(1)
       integer(hid_t) :: dataset
       integer :: code
@@ -199,7 +200,7 @@ contains
          end if
       end if
       call close_dataset(dataset)
-      if (allocated(error)) return
+      if (allocated(error) .or. present(gaps)) return
       if (.not. all(ieee_is_finite(values))) call set_error(error, MFV_INPUT_ERROR, name//' is not finite at node '// &
                                                             to_text(findloc(ieee_is_finite(values), .false., dim=1)))
    end subroutine read_vector

@@ -7,7 +7,7 @@ module mfv_keys
    private
    public :: key_type, catalogue_type, kind_real, kind_integer, kind_logical, kind_text, kind_choice, kind_any, add_key, &
              add_text_key, add_logical_key, add_choice_key, add_integer_key, add_real_key, add_positive_key, &
-             list_keys_as_markdown, describe_allowed, is_reasonable, reasonable_sizes
+             list_keys_as_markdown, describe_allowed, is_reasonable, largest_size, reasonable_sizes
 
    integer, parameter :: kind_real = 1, kind_integer = 2, kind_logical = 3, kind_text = 4, kind_choice = 5, &
                          kind_any = 6

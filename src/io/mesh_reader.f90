@@ -7,6 +7,7 @@ module mfv_mesh_reader
    use mfv_key_reader
    use mfv_kinds, only: pi, wp
    use mfv_scene, only: scene_type
+   use mfv_scene_indenter, only: largest_half_width
    use mfv_strings, only: to_text
    implicit none
    private
@@ -50,7 +51,8 @@ contains
                               error)
          return
       end if
-      call check_mesh_is_under(reader, scene, error)
+      call check_length(reader, scene, error)
+      if (.not. allocated(error)) call check_mesh_is_under(reader, scene, error)
       if (.not. allocated(error)) call check_circle(reader, 1, scene, scene%lower, error)
       if (.not. allocated(error)) call check_circle(reader, 2, scene, scene%upper, error)
    end subroutine read_mesh
@@ -73,6 +75,18 @@ contains
          if (.not. scene%mesh%whole_circle) scene%mesh%half_width = scene%arc_radius()*pi*half_angle/half_turn
       end if
    end subroutine read_half_angle
+
+   !> A mesh that is to be chosen needs a length: shapes without one have it by their load alone.
+   subroutine check_length(reader, scene, error)
+      type(reader_type), intent(in) :: reader
+      type(scene_type), intent(in) :: scene
+      type(error_type), allocatable, intent(out) :: error
+
+      if (scene%lower%shape == shape_matrix .or. scene%mesh%half_width > 0.0_wp .or. scene%mesh%whole_circle) return
+      if (min(scene%lower%half_extent(), scene%upper%half_extent()) < huge(1.0_wp)) return
+      if (largest_half_width(scene, huge(1.0_wp)) > 0.0_wp) return
+      call reader%complain('mesh', 1, 'half_width', 'is needed: no step has a normal_force or approach to choose it from', error)
+   end subroutine check_length
 
    !> A node at least that both bodies can touch.
    subroutine check_mesh_is_under(reader, scene, error)
@@ -105,7 +119,8 @@ contains
       if (reader%has('mesh', 1, 'half_angle')) key = 'half_angle'
    end function mesh_key
 
-   !> A Fourier series needs a circle of a whole number of intervals, and no more of it than there is.
+   !> A Fourier series needs a circle of a whole number of intervals, no more of it than there is, and a harmonic for every
+   !> two of them: with fewer, tractions that alternate from node to node would displace nothing.
    subroutine check_circle(reader, number, scene, body, error)
       type(reader_type), intent(in) :: reader
       integer, intent(in) :: number
@@ -114,12 +129,12 @@ contains
       type(error_type), allocatable, intent(out) :: error
       real(wp), parameter :: whole = 1.0e-9_wp, most_intervals = 5.0e7_wp
       real(wp) :: interval, intervals
-      integer :: nodes
+      integer :: nodes, fewest
       logical :: growing
 
       if (body%rigid .or. .not. body%circular()) return
       call choose_mesh(scene, nodes, interval, growing)
-      intervals = 2.0_wp*pi*body%radius/interval
+      intervals = 2.0_wp*pi*merge(scene%arc_radius(), body%radius, scene%mesh%radial)/interval
       if (nodes > intervals*(1.0_wp + whole)) then
          call reader%complain('mesh', 1, trim(mesh_key(reader)), &
                               'goes more than once round body '//to_text(number), error)
@@ -129,6 +144,12 @@ contains
       else if (body%kernel == kernel_fourier .and. abs(intervals - anint(intervals)) > whole*intervals) then
          call reader%complain('body', number, 'kernel', 'needs a whole number of intervals on the circle, there are '// &
                               to_text(intervals, 10)//"; make 180*nodes/half_angle whole, or use kernel='exact'", error)
+      else if (body%kernel == kernel_fourier .and. body%harmonics > 0) then
+         fewest = (nint(intervals) + 1)/2
+         if (body%harmonics < fewest) &
+            call reader%complain('body', number, 'harmonics', 'must be at least '//to_text(fewest)//', half the '// &
+                                 to_text(nint(intervals))//' intervals of the circle; with fewer the compliance is singular', &
+                                 error)
       end if
    end subroutine check_circle
 

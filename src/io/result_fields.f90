@@ -8,27 +8,30 @@ module mfv_result_fields
    use mfv_certificate, only: residual_count, residual_description, residual_name
    use mfv_closed_form, only: closed_form_of, closed_form_type
    use mfv_compliance, only: block_up, block_ut, block_wp, block_wt
+   use mfv_contact_model, only: along_approach, along_shift
    use mfv_contact_state, only: contact_state_type
    use mfv_error_bar
    use mfv_cycle, only: cycle_type
    use mfv_kinds, only: wp
-   use mfv_node_status, only: event_names, in_contact, node_status_names
+   use mfv_node_status, only: event_names, holds, in_contact, node_status_names
    use mfv_observables, only: observable_count, observable_meaning, observable_name, observable_unit, observables_of
-   use mfv_simulation, only: history_none, mark_cycle_start, mark_return, simulation_type
+   use mfv_scene, only: stepping_leap
+   use mfv_simulation, only: history_none, mark_cycle_start, mark_return, sensitivity_type, simulation_type
+   use mfv_state_interior, only: find_edges_at_nodes
    use mfv_status, only: status_outcome
    use mfv_strings, only: add_text, list_of_words, string_type, to_text
    use mfv_text_file, only: find_working_directory
    use mfv_version, only: library_version
-   use mfv_zone_edges, only: find_zone_edges, zone_edges_type
+   use mfv_zone_edges, only: find_patches, find_zone_edges, patch_type, zone_edges_type
    implicit none
    private
    public :: field_type, result_groups, group_fields, field_named, step_group, along_nodes, along_records, &
-             along_companions, along_cycles, along_nothing, scale_count
+             along_companions, along_cycles, along_patches, along_nothing, scale_count
    public :: result_attributes, labelled_unit
 
    !> What the values of a field run along.
    integer, parameter :: along_nothing = 0, along_nodes = 1, along_records = 2, along_companions = 3, along_cycles = 4, &
-                         scale_count = 4
+                         along_patches = 5, scale_count = 5
 
    !> One named quantity: real `values` or whole numbers `whole`, the other not allocated.
    type :: field_type
@@ -55,6 +58,7 @@ module mfv_result_fields
    character(*), parameter :: dissipation_meaning = 'energy dissipated so far per unit thickness'
    character(*), parameter :: contact_nodes_meaning = 'nodes in contact'
    character(*), parameter :: stick_nodes_meaning = 'stuck nodes'
+   character(*), parameter :: nan_of_several = '; NaN with several patches'
    character(*), parameter :: linear_solves_meaning = 'linear solves so far'
 
 contains
@@ -68,9 +72,11 @@ contains
       groups = list_of_words('mesh scene compliance state summary certificate')
       if (simulation%keep_history /= history_none) call add_text(groups, 'history')
       call add_text(groups, 'observables')
+      if (any(in_contact(simulation%contact%state%status))) call add_text(groups, 'patches')
       if (simulation%cycle_count > 0) call add_text(groups, 'cycles')
       call add_text(groups, 'reference')
       if (has_estimate(simulation)) call add_text(groups, 'error_estimate')
+      if (has_sensitivity(simulation)) call add_text(groups, 'sensitivity')
       do i = 1, simulation%snapshot_count
          call add_text(groups, step_group(i))
       end do
@@ -119,12 +125,16 @@ contains
          call add_certificate(fields, simulation)
       case ('observables')
          call add_observables(fields, simulation, units)
+      case ('patches')
+         call add_patches(fields, simulation, units)
       case ('cycles')
          if (simulation%cycle_count > 0) call add_cycles(fields, simulation, units)
       case ('reference')
          call add_reference(fields, simulation, units)
       case ('error_estimate')
-         if (has_estimate(simulation)) call add_estimate(fields, simulation%estimate, units)
+         if (has_estimate(simulation)) call add_estimate(fields, simulation, simulation%estimate, units)
+      case ('sensitivity')
+         if (has_sensitivity(simulation)) call add_sensitivity(fields, simulation%sensitivity)
       case ('history')
          if (simulation%keep_history /= history_none) call add_history(fields, simulation, units)
       case default
@@ -143,6 +153,14 @@ contains
       has_estimate = .false.
       if (allocated(simulation%estimate)) has_estimate = simulation%estimate%message == ''
    end function has_estimate
+
+   !> Whether a run with perturbed friction has been compared.
+   pure logical function has_sensitivity(simulation)
+      type(simulation_type), intent(in) :: simulation
+
+      has_sensitivity = .false.
+      if (allocated(simulation%sensitivity)) has_sensitivity = simulation%sensitivity%message == ''
+   end function has_sensitivity
 
    !> Place of the field with a name, 0 for none.
    pure integer function field_named(fields, name)
@@ -192,6 +210,8 @@ contains
       call add('upper_body', trim(body_name(case%scene%upper)))
       if (allocated(simulation%estimate)) call add('error_estimate', trim(merge('there', 'none ', has_estimate(simulation)))// &
                                                    separated(simulation%estimate%message))
+      if (allocated(simulation%sensitivity)) call add('sensitivity', trim(merge('there', 'none ', has_sensitivity(simulation)))// &
+                                                      separated(simulation%sensitivity%message))
 
    contains
 
@@ -269,7 +289,7 @@ contains
       call add_scalar(fields, name//'_kolosov_constant', body%material%kolosov, '1', &
                       "Kolosov's constant of the "//name//' body')
       call add_scalar(fields, name//'_datum', body%datum, units%length, &
-                      'distance from the pole at which displacements of the '//name//' body are measured')
+                      'distance from the origin at which displacements of the '//name//' body are measured')
    end subroutine add_body
 
    !> Which compliance blocks the scene needed, and the memory of what they are made from.
@@ -278,10 +298,10 @@ contains
       type(simulation_type), intent(in) :: simulation
 
       associate (pair => simulation%contact%model%compliance)
-         call add_scalar_whole(fields, 'wp', merge(1, 0, pair%has_block(block_wp)), 'whether C_wp exists')
-         call add_scalar_whole(fields, 'wt', merge(1, 0, pair%has_block(block_wt)), 'whether C_wt exists')
-         call add_scalar_whole(fields, 'up', merge(1, 0, pair%has_block(block_up)), 'whether C_up exists')
-         call add_scalar_whole(fields, 'ut', merge(1, 0, pair%has_block(block_ut)), 'whether C_ut exists')
+         call add_scalar_whole(fields, 'wp', merge(1, 0, pair%elastic_block(block_wp)), 'whether C_wp exists')
+         call add_scalar_whole(fields, 'wt', merge(1, 0, pair%elastic_block(block_wt)), 'whether C_wt exists')
+         call add_scalar_whole(fields, 'up', merge(1, 0, pair%elastic_block(block_up)), 'whether C_up exists')
+         call add_scalar_whole(fields, 'ut', merge(1, 0, pair%elastic_block(block_ut)), 'whether C_ut exists')
          call add_scalar_whole(fields, 'lower_bytes', stored(part_lower), 'bytes of the lower body''s kernels or matrix')
          call add_scalar_whole(fields, 'upper_bytes', stored(part_upper), 'bytes of the upper body''s kernels or matrix')
       end associate
@@ -308,7 +328,7 @@ contains
          call add_real(fields, 'initial_gap', visible_gap(simulation, model%initial_gap), along_nodes, units%length, &
                        'gap of the undeformed bodies, infinite where one of them has no surface')
          if (model%scene%arc_radius() > 0.0_wp) &
-            call add_real(fields, 'arc', model%arc, along_nodes, units%length, 'distance of the nodes from the pole along '// &
+            call add_real(fields, 'arc', model%arc, along_nodes, units%length, 'distance of the nodes from the origin along '// &
                           'the surface')
          call add_scalar(fields, 'interval', model%interval(), units%length, 'width of an interval')
          call add_real(fields, 'width', model%width, along_nodes, units%length, 'surface that belongs to each node')
@@ -342,7 +362,24 @@ contains
          if (model%tangential) call add_real(fields, 'friction_work', state%friction_work, along_nodes, units%force, &
                        'energy dissipated so far per unit of surface')
       end associate
+      call add_zone_edges(fields, simulation, state, units)
    end subroutine add_state
+
+   !> Edges of all zones, of which the tractions between nodes are made.
+   subroutine add_zone_edges(fields, simulation, state, units)
+      type(field_type), allocatable, intent(inout) :: fields(:)
+      type(simulation_type), intent(in) :: simulation
+      type(contact_state_type), intent(in) :: state
+      type(units_type), intent(in) :: units
+      real(wp), dimension(simulation%contact%model%nodes()) :: contact_edge, stick_edge
+      character(*), parameter :: where_from = ' zones between nodes, along the surface from the origin: the left '// &
+                                 'edge at the first node of a zone, the right one at its last node; NaN at all others'
+
+      call find_edges_at_nodes(simulation%contact%model, state, contact_edge, stick_edge)
+      call add_real(fields, 'contact_edge', contact_edge, along_nodes, units%length, 'edges of contact'//where_from)
+      if (simulation%contact%model%tangential) &
+         call add_real(fields, 'stick_edge', stick_edge, along_nodes, units%length, 'edges of stick'//where_from)
+   end subroutine add_zone_edges
 
    !> Displacements of the surface of each elastic body.
    subroutine add_displacements(fields, simulation, state, units)
@@ -410,7 +447,9 @@ contains
       type(simulation_type), intent(in) :: simulation
       type(contact_state_type), intent(in) :: state
       type(units_type), intent(in) :: units
+      type(zone_edges_type) :: edges
 
+      call find_zone_edges(simulation%contact%model, state, edges)
       associate (f => state%fields)
          call add_scalar(fields, 'normal_force', f%normal_force, units%force, normal_force_meaning)
          call add_scalar(fields, 'tangential_force', f%tangential_force, units%force, tangential_force_meaning)
@@ -424,36 +463,49 @@ contains
          call add_scalar_whole(fields, 'contact_nodes', state%contact_nodes(), contact_nodes_meaning)
          call add_scalar_whole(fields, 'stick_nodes', state%stick_nodes(), stick_nodes_meaning)
          call add_scalar_whole(fields, 'slip_nodes', state%slip_nodes(), 'slipping nodes')
-         call add_scalar(fields, 'contact_half_width', &
-                         0.5_wp*sum(simulation%contact%model%width, mask=in_contact(state%status)), units%length, &
-                         'half the length of all intervals in contact')
-         call add_scalar(fields, 'stick_ratio', real(state%stick_nodes(), wp)/max(state%contact_nodes(), 1), '1', &
-                         'stuck nodes over nodes in contact')
+         call add_whole(fields, 'patches', [edges%patches], along_nothing, 'contact patches, with open nodes between them')
+         associate (model => simulation%contact%model)
+            call add_scalar(fields, 'contact_half_width', one_patch(0.5_wp*model%interval()*model%intervals( &
+                            in_contact(state%status))), units%length, 'half the length of all intervals in contact'//nan_of_several)
+            call add_scalar(fields, 'stick_ratio', model%intervals(holds(state%status))/ &
+                            max(model%intervals(in_contact(state%status)), tiny(1.0_wp)), '1', &
+                            'length of the intervals of stuck nodes over that of nodes in contact')
+         end associate
       end associate
-      call add_edges(fields, simulation, state, units)
+      call add_edges(fields, simulation, edges, units)
+
+   contains
+
+      !> A half-width where there is one patch, or none; else not a number.
+      pure real(wp) function one_patch(half_width)
+         real(wp), intent(in) :: half_width
+
+         one_patch = half_width
+         if (edges%patches > 1) one_patch = ieee_value(1.0_wp, ieee_quiet_nan)
+      end function one_patch
    end subroutine add_loads
 
    !> Edges between nodes.
-   subroutine add_edges(fields, simulation, state, units)
+   subroutine add_edges(fields, simulation, edges, units)
       type(field_type), allocatable, intent(inout) :: fields(:)
       type(simulation_type), intent(in) :: simulation
-      type(contact_state_type), intent(in) :: state
+      type(zone_edges_type), intent(in) :: edges
       type(units_type), intent(in) :: units
-      type(zone_edges_type) :: edges
-      character(*), parameter :: where_from = ', between nodes, along the surface from the pole'
+      character(*), parameter :: where_from = ', between nodes, along the surface from the origin'
 
-      call find_zone_edges(simulation%contact%model, state, edges)
       if (.not. edges%contact) return
       call add_scalar(fields, 'contact_left', edges%contact_left, units%length, 'left edge of the contact'//where_from)
       call add_scalar(fields, 'contact_right', edges%contact_right, units%length, 'right edge of the contact'//where_from)
+      call add_scalar(fields, 'contact_length', edges%contact_length, units%length, 'length of the contact, of all patches '// &
+                      'together, from edges between nodes')
       call add_scalar(fields, 'edge_half_width', edges%half_width(), units%length, 'half the length of the contact from its '// &
-                      'edges between nodes')
+                      'edges between nodes'//nan_of_several)
       if (.not. simulation%contact%model%tangential) return
       if (edges%stick) then
-         call add_scalar(fields, 'stick_left', edges%stick_left, units%length, 'left edge of what sticks'//where_from)
-         call add_scalar(fields, 'stick_right', edges%stick_right, units%length, 'right edge of what sticks'//where_from)
+         call add_scalar(fields, 'stick_left', edges%stick_left, units%length, 'left edge of the stick zones'//where_from)
+         call add_scalar(fields, 'stick_right', edges%stick_right, units%length, 'right edge of the stick zones'//where_from)
       end if
-      call add_scalar(fields, 'edge_stick_ratio', edges%stick_ratio(), '1', 'length that sticks over length of the contact, '// &
+      call add_scalar(fields, 'edge_stick_ratio', edges%stick_ratio(), '1', 'stick zones over contact length, '// &
                       'from edges between nodes')
    end subroutine add_edges
 
@@ -472,6 +524,82 @@ contains
                          observable_meaning(i))
       end do
    end subroutine add_observables
+
+   !> The contact patches of the present state, from left to right; none without contact.
+   subroutine add_patches(fields, simulation, units)
+      type(field_type), allocatable, intent(inout) :: fields(:)
+      type(simulation_type), intent(in) :: simulation
+      type(units_type), intent(in) :: units
+      integer, parameter :: along = along_patches
+      character(*), parameter :: where_from = ', between nodes, along the surface from the origin'
+      type(patch_type), allocatable :: patches(:)
+      integer :: i
+
+      call find_patches(simulation%contact%model, simulation%contact%state, patches)
+      if (size(patches) == 0) return
+      call add_whole(fields, 'patch', [(i, i=1, size(patches))], along, 'number of the contact patch, from left to right')
+      call add_whole(fields, 'first_node', patches%first, along, 'number, from 1, of its first node')
+      call add_whole(fields, 'last_node', patches%last, along, 'number, from 1, of its last node')
+      call add_real(fields, 'contact_left', patches%left, along, units%length, 'left edge'//where_from)
+      call add_real(fields, 'contact_right', patches%right, along, units%length, 'right edge'//where_from)
+      call add_real(fields, 'contact_length', patches%length(), along, units%length, 'length, from its edges between nodes')
+      call add_patch_loads(fields, simulation, patches, units)
+      if (.not. simulation%contact%model%tangential) return
+      call add_whole(fields, 'stick_zones', [(size(patches(i)%stick), i=1, size(patches))], along, &
+                     'number of stick zones in the patch')
+      call add_real(fields, 'stick_left', [(outermost(patches(i), .false.), i=1, size(patches))], along, units%length, &
+                    'left edge of its first stick zone'//where_from//'; NaN without stick zones')
+      call add_real(fields, 'stick_right', [(outermost(patches(i), .true.), i=1, size(patches))], along, units%length, &
+                    'right edge of its last stick zone'//where_from//'; NaN without stick zones')
+      call add_real(fields, 'stick_length', [(sum(patches(i)%stick%length()), i=1, size(patches))], along, units%length, &
+                    'length of all its stick zones, from edges between nodes')
+
+   contains
+
+      !> The left or right edge of what sticks in a patch.
+      pure real(wp) function outermost(patch, right) result(edge)
+         type(patch_type), intent(in) :: patch
+         logical, intent(in) :: right
+
+         edge = ieee_value(1.0_wp, ieee_quiet_nan)
+         if (size(patch%stick) == 0) return
+         edge = patch%stick(1)%left
+         if (right) edge = patch%stick(size(patch%stick))%right
+      end function outermost
+   end subroutine add_patches
+
+   !> What every patch bears; the forces of all add up to those of the contact.
+   subroutine add_patch_loads(fields, simulation, patches, units)
+      type(field_type), allocatable, intent(inout) :: fields(:)
+      type(simulation_type), intent(in) :: simulation
+      type(patch_type), intent(in) :: patches(:)
+      type(units_type), intent(in) :: units
+      integer, parameter :: along = along_patches
+      real(wp), dimension(simulation%contact%model%nodes()) :: pressure, shear
+      real(wp), dimension(size(patches)) :: normal_force, tangential_force, peak_pressure, peak_shear
+      integer :: i
+
+      associate (model => simulation%contact%model, state => simulation%contact%state%fields)
+         do i = 1, size(patches)
+            pressure = 0.0_wp
+            shear = 0.0_wp
+            associate (first => patches(i)%first, last => patches(i)%last)
+               pressure(first:last) = state%pressure(first:last)
+               shear(first:last) = state%shear(first:last)
+            end associate
+            normal_force(i) = model%resultant(along_approach, pressure, shear)
+            tangential_force(i) = model%resultant(along_shift, pressure, shear)
+            peak_pressure(i) = maxval(pressure)
+            peak_shear(i) = maxval(abs(shear))
+         end do
+      end associate
+      call add_real(fields, 'normal_force', normal_force, along, units%force, 'normal force of the patch per unit thickness')
+      call add_real(fields, 'tangential_force', tangential_force, along, units%force, 'tangential force of the patch on the '// &
+                    'lower body per unit thickness')
+      call add_real(fields, 'peak_pressure', peak_pressure, along, units%traction, 'largest pressure in the patch')
+      if (simulation%contact%model%tangential) call add_real(fields, 'peak_shear', peak_shear, along, units%traction, &
+                                                             'largest size of the shear traction in the patch')
+   end subroutine add_patch_loads
 
    !> The cycles, one by one; and where the last one dissipated.
    subroutine add_cycles(fields, simulation, units)
@@ -497,13 +625,13 @@ contains
       call add_real(fields, 'secant_stiffness', c%secant_stiffness(), along, units%traction, 'tangential force over shift '// &
                     'from end to end')
       call add_real(fields, 'loss_factor', c%loss_factor(), along, '1', 'dissipation over 2 pi times the elastic energy of '// &
-                    'the secant stiffness, at constant normal force')
+                    'the secant stiffness, at constant normal force and rotation')
       call add_real(fields, 'stick_ratio_reversal', c%reversal%edges%stick_ratio(), along, '1', 'stick ratio at the far end')
       call add_real(fields, 'stick_ratio_return', c%return%edges%stick_ratio(), along, '1', 'stick ratio at the end')
       call add_real(fields, 'contact_centre_reversal', c%reversal%edges%centre(), along, units%length, 'middle of the '// &
-                    'contact at the far end, along the surface from the pole')
+                    'contact at the far end, along the surface from the origin')
       call add_real(fields, 'contact_centre_return', c%return%edges%centre(), along, units%length, 'middle of the contact at '// &
-                    'the end, along the surface from the pole')
+                    'the end, along the surface from the origin')
       if (simulation%marks(mark_cycle_start)%step == 0 .or. simulation%marks(mark_return)%reversal == 0) return
       before = simulation%padded(simulation%marks(mark_cycle_start))
       after = simulation%padded(simulation%marks(mark_return))
@@ -521,7 +649,15 @@ contains
       call add_scalar_whole(fields, 'steps_done', simulation%steps_done, 'steps reached')
       call add_scalar_whole(fields, 'events', simulation%contact%events, 'loads at which nodes changed their status')
       call add_scalar_whole(fields, 'leaps', simulation%contact%certificate%leaps, &
-                            'parts of the load history led at once, without looking for events')
+                            'large increments of the load history, without looking for events')
+      if (simulation%contact%model%scene%method%stepping == stepping_leap) then
+         call add_scalar(fields, 'increment_traction_error', simulation%contact%certificate%increment_traction_error, '1', &
+                         "stepping='leap': largest estimated error of the tractions by large increments, in parts of the "// &
+                         'largest traction')
+         call add_scalar(fields, 'increment_dissipation_error', simulation%contact%certificate%increment_dissipation_error, &
+                         '1', "stepping='leap': largest estimated error of the dissipation of a load segment by large "// &
+                         'increments, in parts of that dissipation')
+      end if
       call add_scalar_whole(fields, 'linear_solves', simulation%contact%system%solves, linear_solves_meaning)
       call add_scalar(fields, 'largest_residual', simulation%contact%certificate%largest(), '1', &
                       'largest relative residual of the certificate')
@@ -562,22 +698,51 @@ contains
    end subroutine add_reference
 
    !> Error bars: of each quantity its value, error, order, and its values on the coarser meshes.
-   subroutine add_estimate(fields, estimate, units)
+   subroutine add_estimate(fields, simulation, estimate, units)
       type(field_type), allocatable, intent(inout) :: fields(:)
+      type(simulation_type), intent(in) :: simulation
       type(error_estimate_type), intent(in) :: estimate
       type(units_type), intent(in) :: units
+      type(zone_edges_type) :: edges
+      type(error_bar_type) :: length
 
+      call find_zone_edges(simulation%contact%model, simulation%contact%state, edges)
       call add_scalar_whole(fields, 'nodes', estimate%nodes, 'intervals of the mesh, as &mesh nodes counts them')
       call add_whole(fields, 'companion_nodes', estimate%companion_nodes, along_companions, 'intervals of the coarser meshes')
       associate (bar => estimate%bar)
-         call add_bar(fields, bar(quantity_half_width), 'contact_half_width', units%length, &
-                      'half the length of all intervals in contact')
+         if (edges%patches > 1) then
+            length = bar(quantity_half_width)
+            length%value = 2.0_wp*length%value
+            length%error = 2.0_wp*length%error
+            length%companions = 2.0_wp*length%companions
+            call add_bar(fields, length, 'contact_length', units%length, 'length of all intervals in contact')
+         else
+            call add_bar(fields, bar(quantity_half_width), 'contact_half_width', units%length, &
+                         'half the length of all intervals in contact')
+         end if
          call add_bar(fields, bar(quantity_stick_ratio), 'stick_ratio', '1', 'stuck nodes over nodes in contact')
          call add_bar(fields, bar(quantity_peak_pressure), 'peak_pressure', units%traction, 'largest pressure')
          call add_bar(fields, bar(quantity_peak_shear), 'peak_shear', units%traction, 'largest size of the shear traction')
          call add_bar(fields, bar(quantity_dissipation), 'dissipation', units%energy, dissipation_meaning)
       end associate
    end subroutine add_estimate
+
+   !> What a perturbation of friction changes.
+   subroutine add_sensitivity(fields, sensitivity)
+      type(field_type), allocatable, intent(inout) :: fields(:)
+      type(sensitivity_type), intent(in) :: sensitivity
+
+      call add_scalar(fields, 'perturbation', sensitivity%perturbation, '1', &
+                      'relative change of all coefficients of friction in a second run')
+      call add_scalar(fields, 'pressure_change', sensitivity%pressure, '1', &
+                      'largest change of a pressure over the largest traction, in the second run')
+      call add_scalar(fields, 'shear_change', sensitivity%shear, '1', &
+                      'largest change of a shear traction over the largest traction, in the second run')
+      call add_scalar(fields, 'dissipation_change', sensitivity%dissipation, '1', 'relative change of the dissipation, in the '// &
+                      'second run')
+      call add_scalar(fields, 'stick_ratio_change', sensitivity%stick_ratio, '1', &
+                      'change of the stick ratio between nodes, in the second run')
+   end subroutine add_sensitivity
 
    !> One quantity of the error estimate, where the scene has it.
    subroutine add_bar(fields, bar, name, unit, meaning)
@@ -588,9 +753,9 @@ contains
       if (.not. bar%known) return
       call add_scalar(fields, name, bar%value, unit, meaning)
       call add_scalar(fields, name//'_error', bar%error, unit, 'estimated discretisation error: '//meaning// &
-                      '; infinite where there is no limit')
+                      '; infinite where there is no limit, NaN where slip zones with too few nodes do not resolve it')
       call add_scalar(fields, name//'_order', bar%order, '1', 'observed order of convergence, from 1 to 2 (negative: there '// &
-                      'is no limit): '//meaning)
+                      'is no limit; NaN: not resolved): '//meaning)
       call add_real(fields, name//'_companions', bar%companions, along_companions, unit, 'on the coarser meshes: '//meaning)
    end subroutine add_bar
 
@@ -611,6 +776,7 @@ contains
          if (simulation%contact%model%rotational) then
             call add_real(fields, 'moment', r%moment, along, units%energy, moment_meaning)
             call add_real(fields, 'rotation', r%rotation, along, '1', rotation_meaning)
+            call add_rolling(fields, simulation, units)
          end if
          call add_real(fields, 'dissipation', r%dissipation, along, units%energy, dissipation_meaning)
          call add_whole(fields, 'contact_nodes', r%contact_nodes, along, contact_nodes_meaning)
@@ -623,6 +789,22 @@ contains
          call add_whole(fields, 'linear_solves', r%linear_solves, along, linear_solves_meaning)
       end associate
    end subroutine add_history
+
+   !> How far the bodies have rolled, and slid while they did; where they can roll.
+   subroutine add_rolling(fields, simulation, units)
+      type(field_type), allocatable, intent(inout) :: fields(:)
+      type(simulation_type), intent(in) :: simulation
+      type(units_type), intent(in) :: units
+
+      associate (model => simulation%contact%model, &
+                 r => simulation%contact%history%record(:simulation%contact%history%records))
+         if (.not. model%rolls()) return
+         call add_real(fields, 'rolled', -r%rotation/model%scene%curvature(), along_records, units%length, &
+                       'how far the contact has rolled to the right along the surfaces')
+         call add_real(fields, 'slid', r%shift + model%centre_height()*r%rotation, along_records, units%length, &
+                       'how far the upper surface has slid to the right over the lower one, as rigid bodies')
+      end associate
+   end subroutine add_rolling
 
    !> The non-linear part of the hysteresis loop, as in dissertation Fig. 6.2b: the linear part, that of a contact where all
    !> sticks, is taken out. Where there are cycles whose stiffness is known.

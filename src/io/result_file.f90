@@ -102,7 +102,7 @@ contains
    end subroutine write_groups
 
    !> The fields that are dimension scales: x of the nodes, record of the load history, intervals of the coarser meshes, number of
-   !> the cycle.
+   !> the cycle, number of the patch.
    subroutine find_scales(case, simulation, scales)
       type(case_type), intent(in) :: case
       type(simulation_type), intent(in) :: simulation
@@ -121,6 +121,9 @@ contains
       call group_fields(case, simulation, 'cycles', fields)
       scales(along_cycles)%name = ''
       if (size(fields) > 0) scales(along_cycles) = fields(field_named(fields, 'cycle'))
+      call group_fields(case, simulation, 'patches', fields)
+      scales(along_patches)%name = ''
+      if (size(fields) > 0) scales(along_patches) = fields(field_named(fields, 'patch'))
    end subroutine find_scales
 
    !> One group, with dimension scales of its own: a group can be read alone, and no scale has to list all the datasets of a

@@ -1,5 +1,6 @@
 !> Stresses inside the bodies of a result, put into its file: /stress/<state>/<body>, on a grid or at points.
 module mfv_stress_file
+   use, intrinsic :: ieee_arithmetic, only: ieee_quiet_nan, ieee_value
    use, intrinsic :: iso_fortran_env, only: int64
    use hdf5
    use h5ds
@@ -13,6 +14,7 @@ module mfv_stress_file
    use mfv_result_fields, only: step_group
    use mfv_safe_file, only: identify_file, identity_length
    use mfv_status, only: MFV_INPUT_ERROR
+   use mfv_stress_search, only: largest_tension, largest_type, largest_von_mises
    use mfv_strings, only: list_of_words, string_type
    use mfv_text_file, only: path_from
    implicit none
@@ -37,6 +39,8 @@ module mfv_stress_file
    type :: stress_result_type
       real(wp), allocatable :: x(:), depth(:), y(:), stress(:, :)
       type(largest_type) :: largest
+      !> The largest tension along the surface.
+      type(largest_type) :: tension
       real(wp) :: half_width = 0.0_wp, largest_pressure = 0.0_wp, yield_strength = 0.0_wp
       !> Group of the file they are in, and the names of the units there.
       character(:), allocatable :: group, length_unit, stress_unit
@@ -85,7 +89,7 @@ contains
       character(:), allocatable :: text, source, directory, state
       !> No result has larger numbers; products of them would overflow.
       real(wp), parameter :: largest_size = 1.0e100_wp
-      real(wp), allocatable :: arc(:), width(:), pressure(:), shear(:)
+      real(wp), allocatable, dimension(:) :: arc, width, pressure, shear, contact_edge, stick_edge
       logical :: available
 
       call open_to_read(path, file, error)
@@ -112,19 +116,36 @@ contains
       if (.not. allocated(error)) call read_vector(file, 'mesh/width', size(arc), width, error)
       if (.not. allocated(error)) call read_vector(file, state//'/pressure', size(arc), pressure, error)
       if (.not. allocated(error)) call read_vector(file, state//'/shear', size(arc), shear, error)
+      if (.not. allocated(error)) call read_edges(file, state//'/contact_edge', size(arc), contact_edge, error)
+      if (.not. allocated(error)) call read_edges(file, state//'/stick_edge', size(arc), stick_edge, error)
       call close_read(file)
       if (.not. allocated(error)) then
-         if (any([abs(arc), abs(width), abs(pressure), abs(shear)] > largest_size)) &
+         if (any([abs(arc), abs(width), abs(pressure), abs(shear), abs(contact_edge), abs(stick_edge)] > largest_size)) &
             call set_error(error, MFV_INPUT_ERROR, 'mesh or '//state//' has values beyond 1e100')
       end if
       if (.not. allocated(error)) call read_case_text(text, path_from(directory, source), case, error, &
                                                      without_steps=.true.)
       if (allocated(error)) return
       result%yield_strength = merge(case%scene%upper%yield_strength, case%scene%lower%yield_strength, request%upper)
-      call case%scene%interior(request%upper, arc, width, pressure, shear, interior, available)
+      call case%scene%interior(request%upper, arc, width, pressure, shear, contact_edge, stick_edge, interior, available)
       if (.not. available) call set_error(error, MFV_INPUT_ERROR, 'the '//body_name(request)//' body is rigid or a matrix: '// &
                                           'there are no stresses inside it')
    end subroutine read_interior
+
+   !> Edges between nodes; no edges where the file has none.
+   subroutine read_edges(file, path, nodes, edges, error)
+      integer(hid_t), intent(in) :: file
+      character(*), intent(in) :: path
+      integer, intent(in) :: nodes
+      real(wp), allocatable, intent(out) :: edges(:)
+      type(error_type), allocatable, intent(inout) :: error
+
+      if (has(file, path)) then
+         call read_vector(file, path, nodes, edges, error, gaps=.true.)
+      else
+         allocate (edges(nodes), source=ieee_value(1.0_wp, ieee_quiet_nan))
+      end if
+   end subroutine read_edges
 
    !> lower or upper.
    pure function body_name(request) result(name)
@@ -142,7 +163,8 @@ contains
       real(wp) :: sign
       integer :: i, j, k
 
-      result%largest = interior%largest_von_mises()
+      result%largest = largest_von_mises(interior)
+      result%tension = largest_tension(interior)
       if (allocated(request%x)) then
          result%x = request%x
          result%y = request%y
@@ -231,17 +253,31 @@ contains
       end if
       call field('y', result%y, case%length_unit, 'height above the pole')
       do i = 1, stress_count
-         call field(names(i)%text, result%stress(i, :), unit, trim(meaning(names(i)%text)))
+         call field(names(i)%text, result%stress(i, :), unit_of(names(i)%text), trim(meaning(names(i)%text)))
       end do
       call h5dclose_f(scale_x, code)
       if (.not. allocated(request%x)) call h5dclose_f(scale_depth, code)
       call scalar('largest_von_mises', result%largest%value, unit, 'largest von Mises stress in the body, by refinement')
       call scalar('largest_x', result%largest%x, case%length_unit, 'where it is: x')
       call scalar('largest_y', result%largest%y, case%length_unit, 'where it is: y')
-      call scalar('half_width', result%half_width, case%length_unit, 'half the length of the loaded surface')
+      call scalar('largest_tension', result%tension%value, unit, 'largest tension along the surface; not a number where '// &
+                  'it is singular')
+      call scalar('tension_x', result%tension%x, case%length_unit, 'where it is: x; not a number where there is no tension')
+      call scalar('tension_y', result%tension%y, case%length_unit, 'where it is: y')
+      call scalar('half_width', result%half_width, case%length_unit, 'half the length of the loaded surface, from edges '// &
+                  'between nodes')
       call scalar('largest_pressure', result%largest_pressure, unit, 'largest pressure')
 
    contains
+
+      !> Unit of a stress, or of the direction.
+      function unit_of(name)
+         character(*), intent(in) :: name
+         character(len=merge(1, len(unit), name == 'principal_angle')) :: unit_of
+
+         unit_of = unit
+         if (name == 'principal_angle') unit_of = '1'
+      end function unit_of
 
       !> A dataset along the points, or over the grid with its scales.
       subroutine field(name, values, field_unit, description)
@@ -282,6 +318,10 @@ contains
          text = 'principal stress in the plane, the '//trim(merge('larger ', 'smaller', name == 'principal_1'))
       case ('von_mises')
          text = 'von Mises stress'
+      case ('tresca')
+         text = 'Tresca stress: the largest difference of the three principal stresses, sigma_zz among them'
+      case ('principal_angle')
+         text = 'direction of principal_1 from the x axis, counterclockwise, in radians'
       case ('sigma_rr', 'sigma_thetatheta', 'sigma_rtheta')
          text = 'stress in polar components about the centre of the disk or hole, counterclockwise; none in a half-plane'
       case default

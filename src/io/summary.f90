@@ -24,7 +24,7 @@ contains
       type(string_type), intent(in) :: warnings(:)
       real(wp), intent(in) :: seconds
       character(:), allocatable, intent(out) :: text
-      type(field_type), allocatable :: fields(:)
+      type(field_type), allocatable :: fields(:), seen(:)
       character(:), allocatable :: words
       integer :: i
 
@@ -32,9 +32,7 @@ contains
       text = ''
       associate (model => simulation%contact%model)
          call add_line(text, 'outcome', status_outcome(simulation%outcome)//': '//simulation%message)
-         words = ''
-         if (field_named(fields, 'edge_half_width') > 0) words = amount(fields, 'edge_half_width')//' between nodes, '
-         call add_line(text, 'contact half-width', words//amount(fields, 'contact_half_width')//' as nodes count it')
+         call add_contact(text, fields)
          call add_line(text, 'nodes', to_text(model%nodes())//', in contact '//amount(fields, 'contact_nodes')// &
                        ', stuck '//amount(fields, 'stick_nodes')//', slipping '//amount(fields, 'slip_nodes'))
          words = ''
@@ -45,17 +43,29 @@ contains
             call add_line(text, 'tangential force', amount(fields, 'tangential_force')//', shift '//amount(fields, 'shift'))
             call add_line(text, 'dissipation', amount(fields, 'dissipation'))
          end if
-         if (simulation%cycle_count > 0) call add_last_cycle(text, case, simulation)
-         if (model%rotational) &
+         call group_fields(case, simulation, 'observables', seen)
+         if (simulation%cycle_count > 0) call add_last_cycle(text, seen)
+         if (model%rotational) then
             call add_line(text, 'moment', amount(fields, 'moment')//', rotation '//amount(fields, 'rotation'))
+            call add_creepage(text, seen)
+         end if
+         call add_tension(text, seen)
          words = ''
-         if (simulation%contact%certificate%leaps > 0) words = amount(fields, 'leaps')//' leaps, '
-         if (simulation%contact%certificate%leaps == 1) words = '1 leap, '
-         call add_line(text, 'work', amount(fields, 'events')//' events, '//words//amount(fields, 'linear_solves')// &
-                       ' linear solves ('//trim(simulation%contact%system%name)//'), '//to_text(seconds, 3)//' s')
+         if (simulation%contact%certificate%leaps > 0) words = amount(fields, 'leaps')//' large increments, '
+         if (simulation%contact%certificate%leaps == 1) words = '1 large increment, '
+         words = trim(numbered(simulation%contact%events, 'event'))//', '//words
+         words = words//trim(numbered(simulation%contact%system%solves, 'linear solve'))
+         call add_line(text, 'work', words//' ('//trim(simulation%contact%system%name)//'), '//to_text(seconds, 3)//' s')
          call add_compliance(text, model)
          call add_line(text, 'certificate', 'largest relative residual '//amount(fields, 'largest_residual'))
+         if (field_named(fields, 'increment_traction_error') > 0) &
+            call add_line(text, 'large increments', 'estimated errors: '// &
+                          to_text(simulation%contact%certificate%increment_traction_error, 2)// &
+                          ' of the largest traction, '// &
+                          to_text(simulation%contact%certificate%increment_dissipation_error, 2)// &
+                          ' of the dissipation of a load segment')
          if (allocated(simulation%estimate)) call add_estimate(text, case, simulation)
+         if (allocated(simulation%sensitivity)) call add_sensitivity(text, simulation)
          do i = 1, size(warnings)
             call add_line(text, 'warning', warnings(i)%text)
          end do
@@ -63,15 +73,30 @@ contains
       end associate
    end subroutine summarize
 
-   !> What the last cycle was like.
-   subroutine add_last_cycle(text, case, simulation)
+   !> The size of the contact: a half-width where it is one patch, else the length of all patches and their number.
+   subroutine add_contact(text, fields)
       character(:), allocatable, intent(inout) :: text
-      type(case_type), intent(in) :: case
-      type(simulation_type), intent(in) :: simulation
-      type(field_type), allocatable :: fields(:)
+      type(field_type), intent(in) :: fields(:)
+
+      associate (patches => fields(field_named(fields, 'patches'))%whole(1))
+         if (patches > 1) then
+            call add_line(text, 'contact length', amount(fields, 'contact_length')//' between nodes, in '//to_text(patches)// &
+                          ' patches from '//amount(fields, 'contact_left')//' to '//amount(fields, 'contact_right'))
+         else if (patches == 1) then
+            call add_line(text, 'contact half-width', amount(fields, 'edge_half_width')//' between nodes, '// &
+                          amount(fields, 'contact_half_width')//' as nodes count it')
+         else
+            call add_line(text, 'contact half-width', amount(fields, 'contact_half_width')//' as nodes count it')
+         end if
+      end associate
+   end subroutine add_contact
+
+   !> What the last cycle was like.
+   subroutine add_last_cycle(text, fields)
+      character(:), allocatable, intent(inout) :: text
+      type(field_type), intent(in) :: fields(:)
       character(:), allocatable :: words
 
-      call group_fields(case, simulation, 'observables', fields)
       if (field_named(fields, 'cycle_dissipation') == 0) return
       words = 'dissipation '//amount(fields, 'cycle_dissipation')
       if (field_named(fields, 'loss_factor') > 0) words = words//', loss factor '//amount(fields, 'loss_factor')
@@ -79,6 +104,32 @@ contains
          words = words//', stiffness '//amount(fields, 'tangential_stiffness')
       call add_line(text, 'last cycle', words//', tractions change by '//amount(fields, 'cycle_change'))
    end subroutine add_last_cycle
+
+   !> How the bodies creep, where they roll.
+   subroutine add_creepage(text, fields)
+      character(:), allocatable, intent(inout) :: text
+      type(field_type), intent(in) :: fields(:)
+
+      if (field_named(fields, 'creepage_number') == 0) return
+      call add_line(text, 'creepage', amount(fields, 'creepage')//', over mu a K '//amount(fields, 'creepage_number'))
+   end subroutine add_creepage
+
+   !> The largest tension along the surface of each body that has any.
+   subroutine add_tension(text, fields)
+      character(:), allocatable, intent(inout) :: text
+      type(field_type), intent(in) :: fields(:)
+      character(*), parameter :: bodies(2) = ['lower', 'upper']
+      character(:), allocatable :: words
+      integer :: i
+
+      words = ''
+      do i = 1, size(bodies)
+         if (field_named(fields, bodies(i)//'_tension_x') == 0) cycle
+         words = words//', '//bodies(i)//' body '//amount(fields, bodies(i)//'_tension')//' at x = '// &
+                 amount(fields, bodies(i)//'_tension_x')
+      end do
+      if (words /= '') call add_line(text, 'largest tension', words(3:))
+   end subroutine add_tension
 
    !> Which blocks the scene needed, the memory of what they are made from, and the time that took.
    subroutine add_compliance(text, model)
@@ -90,7 +141,7 @@ contains
 
       words = ''
       do i = 1, size(blocks)
-         if (model%compliance%has_block(i)) words = words//' '//blocks(i)
+         if (model%compliance%elastic_block(i)) words = words//' '//blocks(i)
       end do
       words = words(2:)
       do i = 1, size(bodies)
@@ -122,11 +173,17 @@ contains
          return
       end if
       call group_fields(case, simulation, 'error_estimate', fields)
+      ! Several patches have a length together, no half-width.
+      if (field_named(fields, 'contact_length') > 0) &
+         call add_line(text, 'error estimate', 'contact length '//amount(fields, 'contact_length')//' +- '// &
+                       to_text(2.0_wp*simulation%estimate%bar(quantity_half_width)%error, 2))
       do i = 1, quantity_count
          associate (bar => simulation%estimate%bar(i))
-            if (.not. bar%known) cycle
+            if (.not. bar%known .or. field_named(fields, trim(names(i))) == 0) cycle
             call find_amount(fields, trim(names(i)), value)
-            if (ieee_is_finite(bar%error)) then
+            if (.not. bar%resolved) then
+               call add_line(text, 'error estimate', trim(words(i))//' '//value//' is not resolved: see the warning')
+            else if (ieee_is_finite(bar%error)) then
                call add_line(text, 'error estimate', trim(words(i))//' '//value//' +- '//to_text(bar%error, 2)// &
                              trim(percentage(bar))//', order '//to_text(bar%order, 2))
             else
@@ -145,6 +202,36 @@ contains
          call add_line(text, 'error estimate', 'static and kinetic friction depends on every mesh: '// &
                        'there is no limit that the bars could be from')
    end subroutine add_estimate
+
+   !> A number of things: 1 event, 2 events; padded with blanks.
+   pure function numbered(number, name) result(text)
+      integer, intent(in) :: number
+      character(*), intent(in) :: name
+      character(len=60) :: text
+
+      text = to_text(number)//' '//name//merge('s', ' ', number /= 1)
+   end function numbered
+
+   !> What a second run with perturbed friction changed, or why there is nothing to compare.
+   subroutine add_sensitivity(text, simulation)
+      character(:), allocatable, intent(inout) :: text
+      type(simulation_type), intent(in) :: simulation
+      real(wp), parameter :: chaotic = 1.0e-6_wp
+
+      associate (s => simulation%sensitivity)
+         if (s%message /= '') then
+            call add_line(text, 'sensitivity', 'none: '//s%message)
+            return
+         end if
+         call add_line(text, 'sensitivity', 'coefficients of friction times 1 + '//to_text(s%perturbation, 1)// &
+                       ' change pressures by '//to_text(s%pressure, 1)//' and shear by '//to_text(s%shear, 1)// &
+                       ' of the largest traction,')
+         call add_line(text, 'sensitivity', 'dissipation by '//to_text(s%dissipation, 1)//' (relative), the stick ratio by '// &
+                       to_text(s%stick_ratio, 1))
+         if (max(s%pressure, s%shear, s%dissipation, s%stick_ratio) > chaotic) &
+            call add_line(text, 'sensitivity', 'round-off decides this result: do not quote it more precisely than these changes')
+      end associate
+   end subroutine add_sensitivity
 
    !> The error in percent of the value, in brackets after a blank; padded with blanks.
    pure function percentage(bar) result(text)

@@ -29,7 +29,7 @@ contains
       call add_text_key(keys, 'sweep', 'base', '', 'case file, or several of them, that the values are put into; beside '// &
                         'the sweep file; needed')
       keys(size(keys))%is_list = .true.
-      call add_text_key(keys, 'sweep', 'file', '', 'file of the table (HDF5); left out: the name of the sweep file with '// &
+      call add_text_key(keys, 'sweep', 'file', '', 'file of the table (HDF5); if omitted: the name of the sweep file with '// &
                         '.h5, in the working directory')
       call add_choice_key(keys, 'sweep', 'combine', 'all', 'all paired', 'all combinations of the values, those of the '// &
                           'last &vary fastest; or paired: the first of each, the second of each, ...')
@@ -45,7 +45,7 @@ contains
       call add_text_key(keys, 'vary', 'key', '', "key of the case, such as 'friction%mu' or 'step(2)%normal_force', or "// &
                         "several that move together; 'dundurs_beta': the materials of both bodies; needed")
       keys(size(keys))%is_list = .true.
-      call add_real_key(keys, 'vary', 'factor', '', 'what the value is multiplied by, one for each key; left out: 1')
+      call add_real_key(keys, 'vary', 'factor', '', 'what the value is multiplied by, one for each key; if omitted: 1')
       keys(size(keys))%is_list = .true.
       call add_key(keys, 'vary', 'values', kind_any, '', '', 'the values, in the unit of the key')
       keys(size(keys))%is_list = .true.
@@ -54,7 +54,7 @@ contains
       call add_integer_key(keys, 'vary', 'count', '', 'how many there are', 1.0_wp, most_values)
       call add_choice_key(keys, 'vary', 'spacing', 'linear', 'linear log', 'whether neighbours have the same distance '// &
                           'or the same ratio')
-      call add_text_key(keys, 'vary', 'name', '', 'name of the column in the table; left out: the first key as written')
+      call add_text_key(keys, 'vary', 'name', '', 'name of the column in the table; if omitted: the first key as written')
    end subroutine add_vary_keys
 
 end module mfv_sweep_keys

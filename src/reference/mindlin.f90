@@ -1,22 +1,33 @@
 !> Closed form: a cylinder pressed without shear and then sheared at constant normal force, elastically decoupled
 !> (Cattaneo 1938, Mindlin 1949; dissertation eqs. 3.7, 3.8), with any history of the tangential force: between turning
 !> points the traction changes by twice the first-loading traction of half the change (Mindlin and Deresiewicz 1953).
+!>
+!> On half-planes the same holds for every shape: the shear traction of first loading is mu times the pressure, less mu times the
+!> pressure at the smaller normal force P - |Q|/mu, whose contact is the stick zone (Jaeger 1998, Ciavarella 1998).
 module mfv_reference_mindlin
    use mfv_kinds, only: pi, wp
    use mfv_numerics, only: gauss_legendre
-   use mfv_reference_hertz, only: hertz_approach, hertz_pressure
+   use mfv_reference_hertz, only: hertz_pressure
+   use mfv_reference_indenter, only: indenter_type, power_indenter
    implicit none
    private
    public :: mindlin_stick_ratio, mindlin_slip, mindlin_dissipation, mindlin_history_type, new_mindlin_history
 
-   !> A sheared Hertz contact and what it remembers of its tangential forces.
+   !> A contact of a cylinder (radius: length) or of any indenter.
+   interface new_mindlin_history
+      module procedure new_history_of_cylinder, new_history_of_indenter
+   end interface new_mindlin_history
+
+   !> A sheared contact and what it remembers of its tangential forces.
    type :: mindlin_history_type
-      !> Normal force (force/length), contact half-width, radius, datum (lengths), coefficient of friction.
-      real(wp) :: normal_force, half_width, radius, datum, friction_coefficient
+      type(indenter_type) :: indenter
+      !> Normal force (force/length), contact half-width, datum (lengths), coefficient of friction.
+      real(wp) :: normal_force, half_width, datum, friction_coefficient
       !> Turning points of the tangential force that still matter, and last the force now, force/length.
       real(wp), allocatable :: turning(:)
    contains
       procedure :: load
+      procedure :: stick_half_width
       procedure :: shear
       procedure :: shift
    end type mindlin_history_type
@@ -32,13 +43,28 @@ contains
       ratio = sqrt(max(1.0_wp - abs(tangential_force)/(friction_coefficient*normal_force), 0.0_wp))
    end function mindlin_stick_ratio
 
-   !> A contact that has not been sheared yet. Arguments as the components of the type.
-   pure function new_mindlin_history(normal_force, half_width, radius, datum, friction_coefficient) result(history)
+   !> The contact of a cylinder that has not been sheared yet. Arguments as the components of the type; radius: length.
+   pure function new_history_of_cylinder(normal_force, half_width, radius, datum, friction_coefficient) result(history)
       real(wp), intent(in) :: normal_force, half_width, radius, datum, friction_coefficient
       type(mindlin_history_type) :: history
 
-      history = mindlin_history_type(normal_force, half_width, radius, datum, friction_coefficient, [real(wp) ::])
-   end function new_mindlin_history
+      history = new_history_of_indenter(normal_force, half_width, power_indenter(0.5_wp/radius, 2.0_wp), datum, &
+                                        friction_coefficient)
+   end function new_history_of_cylinder
+
+   !> The contact of an indenter that has not been sheared yet. Arguments as the components of the type.
+   pure function new_history_of_indenter(normal_force, half_width, indenter, datum, friction_coefficient) result(history)
+      real(wp), intent(in) :: normal_force, half_width, datum, friction_coefficient
+      type(indenter_type), intent(in) :: indenter
+      type(mindlin_history_type) :: history
+
+      history%indenter = indenter
+      history%normal_force = normal_force
+      history%half_width = half_width
+      history%datum = datum
+      history%friction_coefficient = friction_coefficient
+      allocate (history%turning(0))
+   end function new_history_of_indenter
 
    !> Lead the tangential force (force/length) straight to `tangential_force`. Closed inner loops are forgotten.
    pure subroutine load(self, tangential_force)
@@ -68,9 +94,22 @@ contains
       end do
    end subroutine load
 
+   !> Half-width of the stick zone on first loading to a tangential force (force/length), length: that of the contact at the normal
+   !> force P - |Q|/mu.
+   pure real(wp) function stick_half_width(self, tangential_force)
+      class(mindlin_history_type), intent(in) :: self
+      real(wp), intent(in) :: tangential_force
+      real(wp) :: part
+
+      part = max(1.0_wp - abs(tangential_force)/(self%friction_coefficient*self%normal_force), 0.0_wp)
+      stick_half_width = 0.0_wp
+      if (part > 0.0_wp) stick_half_width = min(self%indenter%half_width(part*self%indenter%force(self%half_width)), &
+                                                self%half_width)
+   end function stick_half_width
+
    !> Shear traction at x (length), force/length^2. Equation 3.8 (whose second line misprints sqrt(1 - x^2/b^2)) on first
-   !> loading.
-   pure function shear(self, x)
+   !> loading of a cylinder.
+   function shear(self, x)
       class(mindlin_history_type), intent(in) :: self
       real(wp), intent(in) :: x(:)
       real(wp) :: shear(size(x))
@@ -84,20 +123,18 @@ contains
       end do
    end function shear
 
-   pure function first_shear(self, x, tangential_force) result(shear)
+   function first_shear(self, x, tangential_force) result(shear)
       class(mindlin_history_type), intent(in) :: self
       real(wp), intent(in) :: x(:), tangential_force
       real(wp) :: shear(size(x))
-      real(wp) :: c
 
-      c = mindlin_stick_ratio(tangential_force, self%normal_force, self%friction_coefficient)
-      shear = hertz_pressure(x, self%normal_force, self%half_width)
-      if (c > 0.0_wp) shear = shear - hertz_pressure(x, c**2*self%normal_force, c*self%half_width)
-      shear = sign(self%friction_coefficient, tangential_force)*shear
+      shear = self%indenter%pressure(x, self%half_width) &
+              - self%indenter%pressure(x, self%stick_half_width(tangential_force))
+      shear = sign(self%friction_coefficient, tangential_force)*self%normal_force/self%indenter%force(self%half_width)*shear
    end function first_shear
 
-   !> Shift of the upper body, length: mu times the difference of the approaches of two Hertz contacts, of half-widths a
-   !> and b (Jaeger 1998, Ciavarella 1998).
+   !> Shift of the upper body, length: mu times the difference of the approaches of two contacts, of half-widths a and b
+   !> (Jaeger 1998, Ciavarella 1998).
    pure real(wp) function shift(self)
       class(mindlin_history_type), intent(in) :: self
       integer :: i
@@ -113,12 +150,10 @@ contains
    pure real(wp) function first_shift(self, tangential_force) result(shift)
       class(mindlin_history_type), intent(in) :: self
       real(wp), intent(in) :: tangential_force
-      real(wp) :: c
 
-      c = mindlin_stick_ratio(tangential_force, self%normal_force, self%friction_coefficient)
       shift = sign(self%friction_coefficient, tangential_force) &
-              *(hertz_approach(self%half_width, self%radius, self%datum) &
-                - hertz_approach(c*self%half_width, self%radius, self%datum))
+              *(self%indenter%approach(self%half_width, self%datum) &
+                - self%indenter%approach(self%stick_half_width(tangential_force), self%datum))
    end function first_shift
 
    !> Size of the slip on first loading at the distance x from the centre (length), for the stick half-width b (length):

@@ -182,17 +182,18 @@ ROW(mfv_stress) {
   return mfv_stress(OR_NULL(0, b->handle), MFV_LOWER, 0, NODES, OR_NULL(1, b->x), OR_NULL(2, b->x), OR_NULL(3, b->numbers));
 }
 ROW(mfv_largest_von_mises) { return mfv_largest_von_mises(OR_NULL(0, b->handle), MFV_LOWER, 0, OR_NULL(1, b->numbers)); }
+ROW(mfv_largest_tension) { return mfv_largest_tension(OR_NULL(0, b->handle), MFV_LOWER, 0, OR_NULL(1, b->numbers)); }
 ROW(mfv_stress_under) {
   return mfv_stress_under(OR_NULL(0, b->handle), MFV_LOWER, NODES, OR_NULL(1, b->x), OR_NULL(2, b->width), OR_NULL(3, b->pressure),
-                          OR_NULL(4, b->pressure), NODES, OR_NULL(5, b->x), OR_NULL(6, b->x), OR_NULL(7, b->numbers),
-                          OR_NULL(8, b->direction));
+                          OR_NULL(4, b->pressure), OR_NULL(5, b->x), OR_NULL(6, b->x), NODES, OR_NULL(7, b->x), OR_NULL(8, b->x),
+                          OR_NULL(9, b->numbers), OR_NULL(10, b->direction), OR_NULL(11, b->direction));
 }
 ROW(mfv_write) { return mfv_write(OR_NULL(0, b->handle), OR_NULL(1, "no/such/folder/x.h5")); }
 
 /* What null gives: a bad handle, a bad argument, nothing that is wrong, or what the call gives in any case. */
 enum { H = MFV_BAD_HANDLE, A = MFV_BAD_ARGUMENT, OK = MFV_COMPLETE, I = MFV_INPUT_ERROR, F = MFV_FILE_ERROR };
 typedef enum { NO_HANDLE, SCENE, CASE, STATE } sort;
-enum { MOST_POINTERS = 9 };
+enum { MOST_POINTERS = 12 };
 
 /* `of`: what the first handle is of. `frees`: the handle comes by its address. `good`: status of the call with good arguments. */
 typedef struct {
@@ -241,7 +242,8 @@ static const row rows[] = {
     {"mfv_copy_integer", row_mfv_copy_integer, CASE, 0, OK, 3, {H, A, A}},
     {"mfv_stress", row_mfv_stress, CASE, 0, OK, 4, {H, A, A, A}},
     {"mfv_largest_von_mises", row_mfv_largest_von_mises, CASE, 0, OK, 2, {H, A}},
-    {"mfv_stress_under", row_mfv_stress_under, CASE, 0, OK, 9, {H, A, A, A, A, A, A, OK, OK}},
+    {"mfv_largest_tension", row_mfv_largest_tension, CASE, 0, OK, 2, {H, A}},
+    {"mfv_stress_under", row_mfv_stress_under, CASE, 0, OK, 12, {H, A, A, A, A, OK, OK, A, A, OK, OK, OK}},
     {"mfv_write", row_mfv_write, CASE, 0, F, 2, {H, A}},
 };
 enum { ROWS = sizeof rows / sizeof rows[0] };
@@ -254,6 +256,7 @@ typedef struct {
   double (*of4)(double, double, double, double);
   double (*of5)(double, double, double, double, double);
   double (*of2)(double, double);
+  double (*of6)(double, double, double, double, double, double);
 } form;
 static const form forms[] = {
     {"mfv_hertz_half_width", 4, .of4 = mfv_hertz_half_width},
@@ -265,6 +268,18 @@ static const form forms[] = {
     {"mfv_mindlin_stick_ratio", 3, .of3 = mfv_mindlin_stick_ratio},
     {"mfv_mindlin_shear", 5, .of5 = mfv_mindlin_shear},
     {"mfv_mindlin_dissipation", 5, .of5 = mfv_mindlin_dissipation},
+    {"mfv_carter_creepage", 5, .of5 = mfv_carter_creepage},
+    {"mfv_carter_shear", 5, .of5 = mfv_carter_shear},
+    {"mfv_power_half_width", 5, .of5 = mfv_power_half_width},
+    {"mfv_power_approach", 4, .of4 = mfv_power_approach},
+    {"mfv_power_pressure", 4, .of4 = mfv_power_pressure},
+    {"mfv_power_stick_ratio", 4, .of4 = mfv_power_stick_ratio},
+    {"mfv_power_shear", 6, .of6 = mfv_power_shear},
+    {"mfv_rounded_punch_half_width", 5, .of5 = mfv_rounded_punch_half_width},
+    {"mfv_rounded_punch_approach", 4, .of4 = mfv_rounded_punch_approach},
+    {"mfv_rounded_punch_pressure", 4, .of4 = mfv_rounded_punch_pressure},
+    {"mfv_rounded_punch_stick_ratio", 5, .of5 = mfv_rounded_punch_stick_ratio},
+    {"mfv_rounded_punch_shear", 6, .of6 = mfv_rounded_punch_shear},
     {"mfv_persson_force", 4, .of4 = mfv_persson_force},
     {"mfv_yield_contact_arc", 3, .of3 = mfv_yield_contact_arc},
 };
@@ -412,15 +427,18 @@ static void wrong_sizes(void) {
     refused(&b, mfv_attribute_name(b.handle, size, b.buffer, ROOM), "attributes");
     if (size == INT_MAX) continue;
     refused(&b, mfv_stress(b.handle, MFV_LOWER, 0, size, b.x, b.x, b.numbers), "count");
-    refused(&b, mfv_stress_under(b.handle, MFV_LOWER, size, b.x, b.width, b.pressure, b.pressure, 0, NULL, NULL, NULL, b.numbers), "nodes");
-    refused(&b, mfv_stress_under(b.handle, MFV_LOWER, NODES, b.x, b.width, b.pressure, b.pressure, size, b.x, b.x, b.numbers, NULL), "count");
+    refused(&b, mfv_stress_under(b.handle, MFV_LOWER, size, b.x, b.width, b.pressure, b.pressure, NULL, NULL, 0, NULL, NULL, NULL, b.numbers, NULL),
+            "nodes");
+    refused(&b, mfv_stress_under(b.handle, MFV_LOWER, NODES, b.x, b.width, b.pressure, b.pressure, NULL, NULL, size, b.x, b.x, b.numbers, NULL, NULL),
+            "count");
     CHECK(mfv_scene_set_reals(b.scene, "friction%mu", b.x, size) == MFV_BAD_ARGUMENT);
     CHECK(mfv_scene_set_data(b.scene, "file", "x", size, 1, b.x) == MFV_BAD_ARGUMENT);
     CHECK(mfv_scene_set_data(b.scene, "file", "x", 1, size, b.x) == MFV_BAD_ARGUMENT);
   }
   CHECK(mfv_scene_set_reals(b.scene, "friction%mu", b.x, 0) == MFV_BAD_ARGUMENT);
   CHECK(mfv_stress(b.handle, MFV_LOWER, 0, 0, NULL, NULL, NULL) == MFV_COMPLETE);
-  refused(&b, mfv_stress_under(b.handle, MFV_LOWER, 0, b.x, b.width, b.pressure, b.pressure, 0, NULL, NULL, NULL, b.numbers), "nodes");
+  refused(&b, mfv_stress_under(b.handle, MFV_LOWER, 0, b.x, b.width, b.pressure, b.pressure, NULL, NULL, 0, NULL, NULL, NULL, b.numbers, NULL),
+            "nodes");
   /* Texts are cut to the room that there is. */
   char tiny[2] = "z";
   CHECK(mfv_message(b.handle, tiny, 0) == MFV_BAD_ARGUMENT && tiny[0] == 'z');
@@ -472,15 +490,22 @@ static void wrong_numbers(void) {
     CHECK(status == MFV_INPUT_ERROR && strstr(b.buffer, "mu") != NULL); /* sizes are from 1e-100 to 1e100 */
     mfv_free(&none);
     for (int k = 0; k < 4; ++k) {
-      double list[4][NODES];
+      double list[4][NODES], edges[NODES];
       memcpy(list[0], b.x, sizeof b.x);
       memcpy(list[1], b.width, sizeof b.width);
       memcpy(list[2], b.pressure, sizeof b.pressure);
       memcpy(list[3], b.pressure, sizeof b.pressure);
       list[k][3] = odd[i];
-      status = mfv_stress_under(b.handle, MFV_LOWER, NODES, list[0], list[1], list[2], list[3], 1, points, down, stresses, NULL);
+      status = mfv_stress_under(b.handle, MFV_LOWER, NODES, list[0], list[1], list[2], list[3], NULL, NULL, 1, points, down, stresses,
+                                NULL, NULL);
       CHECK(status == MFV_COMPLETE || status == MFV_BAD_ARGUMENT);
       CHECK(isfinite(odd[i]) || status == MFV_BAD_ARGUMENT);
+      /* Edges are the caller's too: what is no zone is none. */
+      memcpy(edges, b.x, sizeof edges);
+      edges[k] = odd[i];
+      status = mfv_stress_under(b.handle, MFV_LOWER, NODES, b.x, b.width, b.pressure, b.pressure, edges, edges, 1, points, down, stresses,
+                                NULL, b.numbers);
+      CHECK(status == MFV_COMPLETE);
     }
   }
   for (size_t i = 0; i < sizeof whole / sizeof whole[0]; ++i) {
@@ -499,6 +524,7 @@ static void wrong_numbers(void) {
     refused(&b, mfv_stress(b.handle, whole[i], 0, 1, b.x, b.x, b.numbers), "MFV_LOWER");
     refused(&b, mfv_stress(b.handle, MFV_LOWER, whole[i], 1, b.x, b.x, b.numbers), "step");
     refused(&b, mfv_largest_von_mises(b.handle, whole[i], 0, b.numbers), "MFV_LOWER");
+    refused(&b, mfv_largest_tension(b.handle, whole[i], 0, b.numbers), "MFV_LOWER");
     refused(&b, mfv_largest_von_mises(b.handle, MFV_LOWER, whole[i], b.numbers), "step");
     CHECK((mfv_status_text(whole[i], b.buffer, ROOM, b.other, ROOM) == MFV_COMPLETE) == (whole[i] == 3 || whole[i] == 7));
     CHECK(mfv_scene_set_integer(b.scene, "friction%mu", whole[i]) == MFV_COMPLETE);
@@ -567,7 +593,8 @@ static double value_of(const form *this, const double *x) {
     case 2: return this->of2(x[0], x[1]);
     case 3: return this->of3(x[0], x[1], x[2]);
     case 4: return this->of4(x[0], x[1], x[2], x[3]);
-    default: return this->of5(x[0], x[1], x[2], x[3], x[4]);
+    case 5: return this->of5(x[0], x[1], x[2], x[3], x[4]);
+    default: return this->of6(x[0], x[1], x[2], x[3], x[4], x[5]);
   }
 }
 
@@ -578,7 +605,7 @@ static void closed_forms(void) {
     for (int one = 0; one < forms[i].count; ++one)
       for (int other = 0; other < forms[i].count; ++other)
         for (int k = 0; k < ODD * ODD; ++k) {
-          double x[5] = {0.3, 0.3, 0.3, 0.3, 0.3};
+          double x[6] = {0.3, 0.3, 0.3, 0.3, 0.3, 0.3};
           x[one] = odd[k / ODD];
           x[other] = odd[k % ODD];
           double value = value_of(&forms[i], x);

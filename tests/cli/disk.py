@@ -1,7 +1,9 @@
 """Programs on a disk that fails, or that are killed while they write: tests/cli/fault.c preloaded."""
 
 import os
+import signal
 import subprocess
+import time
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -48,6 +50,35 @@ def run_on_disk(shim, command, folder, at=0, number=0, stays=False):
         settings["MFV_FAULT_STAYS"] = "1"
     done = run(command, folder, env=settings)
     return done, [line.split(" ") for line in log.read_text().splitlines()] if log.exists() else []
+
+
+def start_until(shim, command, folder, at):
+    """Start a program that stops itself before call `at` (see run_on_disk), and wait until it has; whatever the machine's speed, it
+    is then at the same place. It goes on, or takes a signal, by SIGCONT (`go_on_with`)."""
+    settings = {"LD_PRELOAD": str(shim), "MFV_FAULT_FOLDER": str(Path(folder).resolve()), "MFV_FAULT_AT": str(at), "MFV_FAULT_ERRNO": "-1",
+                "OPENBLAS_NUM_THREADS": "1", "OMP_NUM_THREADS": "1"}
+    process = subprocess.Popen(list(map(str, command)), cwd=folder, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
+                               env={**os.environ, **settings}, start_new_session=True)
+    ended = os.waitid(os.P_PID, process.pid, os.WSTOPPED | os.WEXITED | os.WNOWAIT)
+    assert ended.si_code == os.CLD_STOPPED, process.communicate()
+    return process
+
+
+def go_on_with(process, number):
+    """Send a signal to a process that start_until has stopped, and let it go on; what it printed and said."""
+    process.send_signal(number)
+    process.send_signal(signal.SIGCONT)
+    return process.communicate(timeout=300)
+
+
+def wait_for_work(process, seconds):
+    """Wait until a process has used so many seconds of a processor, however busy the machine is, or has ended."""
+    ticks = os.sysconf("SC_CLK_TCK")
+    while process.poll() is None:
+        words = Path(f"/proc/{process.pid}/stat").read_text().rpartition(")")[2].split()
+        if (int(words[11]) + int(words[12])) / ticks >= seconds:
+            return
+        time.sleep(0.005)
 
 
 def parts(folder):

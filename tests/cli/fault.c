@@ -4,7 +4,8 @@
    MFV_FAULT_FOLDER   only calls on files in this folder count
    MFV_FAULT_LOG      file for one line a call: "write /folder/name", "rename /folder/name /folder/other"; not in the folder
    MFV_FAULT_AT       number of the call that fails, from 1; none where it is not there
-   MFV_FAULT_ERRNO    with this errno; 0: the process is killed in place of the call (SIGKILL)
+   MFV_FAULT_ERRNO    with this errno; 0: the process is killed in place of the call (SIGKILL); -1: it is stopped before the
+                      call (SIGSTOP), which succeeds when it continues
    MFV_FAULT_STAYS    set: every later call that needs space on the disk fails too
 
    Calls that count: making a file (open), write, fsync, ftruncate, close of a file that was made or opened to be written,
@@ -90,6 +91,10 @@ static int fails(const char *kind, const char *name, const char *other, int need
   pthread_mutex_unlock(&mutex);
   errno = before;
   if (!is_it) return 0;
+  if (number < 0) {
+    kill(getpid(), SIGSTOP);
+    return 0;
+  }
   if (number == 0) kill(getpid(), SIGKILL);
   errno = (int)number;
   return 1;

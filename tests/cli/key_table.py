@@ -34,6 +34,11 @@ SCENES: dict[str, Groups] = {
     "fourier": scene(ELASTIC_DISK | {"kernel": "'fourier'"}, RIGID_PLANE, {"nodes": "12", "half_angle": "9"}, COULOMB, PRESS),
     "bore": scene(ELASTIC_DISK, {"shape": "'hole'", "radius": "0.3", "rigid": ".true."}, MESH, {}, {"normal_force": "1e-3"}),
     "punch": scene(ELASTIC, {"shape": "'flat_punch'", "half_width": "0.015", "rigid": ".true."}, MESH, COULOMB, PRESS, SHEAR),
+    "rounded punch": scene(ELASTIC, {"shape": "'rounded_punch'", "half_width": "0.01", "edge_radius": "0.1", "rigid": ".true."}, MESH,
+                           {}, {"normal_force": "1e-3"}),
+    "wedge": scene(ELASTIC, {"shape": "'wedge'", "angle": "3", "rigid": ".true."}, MESH, {}, {"normal_force": "1e-3"}),
+    "power": scene(ELASTIC, {"shape": "'power'", "coefficient": "2.0", "exponent": "2", "rigid": ".true."}, MESH, {},
+                   {"normal_force": "1e-3"}),
     "profile": scene(ELASTIC, {"shape": "'profile'", "file": "'profile.txt'", "rigid": ".true."}, MESH, {},
                      {"normal_force": "1e-3"}),
     "mu from a file": scene(ELASTIC, RIGID_DISK, MESH, {"law": "'coulomb'", "mu_file": "'mu.txt'"}, PRESS, SHEAR),
@@ -140,7 +145,7 @@ def part(place: str, scene: str, value: str, **more: object) -> Row:
     return real(place, scene, value, lower=1e-12, upper=1.0, **more)
 
 
-SHAPES = "half_plane disk hole flat_punch profile matrix"
+SHAPES = "half_plane disk hole flat_punch rounded_punch wedge power profile matrix"
 MODULUS = "force/length^2"
 NO_FRICTION = "must be 0 in a step without friction (or where every coefficient is 0)"
 BELOW_KINETIC = "must not be above mu_static"
@@ -155,6 +160,8 @@ CASE: dict[tuple[str, str], Row] = {
     ("body", "shape"): choice("body(1)", "cylinder", "'half_plane'", SHAPES, needed=": shape is missing; it must be 'half_plane'",
                               refused={"'disk'": "radius is missing", "'hole'": "radius is missing",
                                        "'flat_punch'": "must be .true. for a flat_punch",
+                                       "'rounded_punch'": "half_width is missing", "'wedge'": "angle is missing",
+                                       "'power'": "coefficient is missing",
                                        "'profile'": "means nothing|file is missing", "'matrix'": "means nothing"}),
     ("body", "rigid"): logical("body(2)", "cylinder", ".true.", refused={".false.": "poisson_ratio is missing", "f": "poisson_ratio is missing"}),
     ("body", "shear_modulus"): positive("body(1)", "cylinder", "1.0", MODULUS,
@@ -168,10 +175,25 @@ CASE: dict[tuple[str, str], Row] = {
                                  needed=": radius is missing; it must be a number above 0"),
     ("body", "half_width"): positive("body(2)", "punch", "0.015", "length",
                                      needed=": half_width is missing; it must be a number above 0"),
+    ("body", "edge_radius"): positive("body(2)", "rounded punch", "0.1", "length",
+                                      needed=": edge_radius is missing; it must be a number above 0"),
+    ("body", "angle"): real("body(2)", "wedge", "3", "degrees", lower=0.0, above=True, upper=80.0,
+                            needed=": angle is missing; it must be a number above 0 and at most 80"),
+    ("body", "coefficient"): positive("body(2)", "power", "2.0", "length^(1-exponent)",
+                                      needed=": coefficient is missing; it must be a number above 0"),
+    ("body", "exponent"): real("body(2)", "power", "2", lower=1.0, upper=100.0,
+                               needed=": exponent is missing; it must be a number at least 1 and at most 100"),
     ("body", "kernel"): choice("body(1)", "elastic disk", "'exact'", "exact fourier"),
-    ("body", "harmonics"): whole("body(1)", "fourier", "50", 2, 200000000, dear=("200000000",)),
+    ("body", "harmonics"): whole("body(1)", "fourier", "150", 2, 200000000, dear=("200000000",),
+                                 refused={"2": "must be at least 120, half the 240 intervals of the circle"}),
     ("body", "file"): text("body(2)", "profile", "'profile.txt'", needed=": file is missing; it must be a text between quotes",
                            refused={"''": "the name of a file is empty"}),
+    ("body", "interpolation"): choice("body(2)", "profile", "'linear'", "linear monotone_cubic"),
+    ("body", "position_scale"): positive("body(2)", "profile", "1"),
+    ("body", "height_scale"): real("body(2)", "profile", "1",
+                                   refused=dict.fromkeys(("0", "0.0", "-0.0", "1e-400"), "must not be 0")),
+    ("body", "level"): choice("body(2)", "profile", "'none'", "none mean line"),
+    ("body", "centred"): logical("body(2)", "profile", ".false."),
     ("mesh", "nodes"): whole("mesh", "cylinder", "11", 1, 100000000,
                              refused={"100000000": "can be more than 1000000 only with half_angle=180"}),
     ("mesh", "half_width"): positive("mesh", "cylinder", "0.02", "length"),
@@ -226,6 +248,7 @@ CASE: dict[tuple[str, str], Row] = {
     ("output", "history"): choice("output", "cylinder", "'events'", "events steps none"),
     ("output", "states"): choice("output", "cylinder", "'reversals'", "reversals steps none"),
     ("output", "error_estimate"): logical("output", "cylinder", ".false."),
+    ("output", "sensitivity"): logical("output", "cylinder", ".false."),
     ("output", "checkpoint_minutes"): real("output", "cylinder", "10", "minutes", lower=0.0, upper=1e6),
 }
 

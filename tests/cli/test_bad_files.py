@@ -225,7 +225,12 @@ PROFILES = {
     "Fortran's repeats": ("0 0\n2*1\n2 2\n", "profile.txt:2: must be two numbers"),
     "a null": ("0 0\n1 1\0\n2 2\n", "profile.txt:2: must be two numbers"),
     "a long line": ("0 0\n1 " + "9" * LONG + "\n2 2\n", "profile.txt:2: must be two numbers, x and height, not '1 9999"),
-    "binary": ("\x89HDF\r\n\x1a\n\0\0", "profile.txt:1: must be two numbers"),
+    "binary": ("\x89HDF\r\n\x1a\n\0\0", "profile.txt:2: must be two numbers"),
+    "headings only": ("# trace\nX,Z\nmm,mm\n", "profile.txt:2: must be two numbers, x and height, not 'X,Z'"),
+    "a heading among numbers": ("X;Z\n0;0\nX;Z\n", "profile.txt:3: must be two numbers, x and height, not 'X;Z'"),
+    "NaN at the beginning": ("NaN 0\n1 1\n2 2\n", "profile.txt:1: must be two numbers"),
+    "decimal commas": ("0,5;1,5\n", "profile.txt:1: must be two numbers, x and height, not '0,5;1,5'"),
+    "two semicolons": ("0;;0\n", "profile.txt:1: must be two numbers, x and height, not '0;;0'"),
 }
 
 
@@ -239,7 +244,8 @@ def test_broken_profiles(tmp_path: Path, name: str) -> None:
 
 def test_profiles_of_other_editors(tmp_path: Path) -> None:
     (tmp_path / "case.nml").write_bytes(ELASTIC + b"&body shape='profile', file='profile.txt', rigid=.true. /\n" + MESH + PRESS)
-    for points in (b"-1 1\r\n0 0\r\n1 1\r\n", b"-1\t1\n\n0 , 0\n1,1", b"\xef\xbb\xbf-1 1\n0 0\n 1   1  \n", b"# \xfc\n-1 1\n0 0\n1D0 +1.\n"):
+    for points in (b"-1 1\r\n0 0\r\n1 1\r\n", b"-1\t1\n\n0 , 0\n1,1", b"\xef\xbb\xbf-1 1\n0 0\n 1   1  \n", b"# \xfc\n-1 1\n0 0\n1D0 +1.\n",
+                   b"Trace 1\r\nX (\xb5m);Z (\xb5m)\r\n-1;1\r\n0 ; 0\r\n1;\t1\r\n"):
         (tmp_path / "profile.txt").write_bytes(points)
         done = run(RUN, "--check", "case.nml", cwd=tmp_path)
         assert done.returncode == 0, (points, done)

@@ -4,7 +4,6 @@ import re
 import signal
 import subprocess
 import sys
-import time
 from pathlib import Path
 
 import h5py
@@ -12,6 +11,7 @@ import numpy as np
 import pytest
 import xarray
 
+from disk import wait_for_work
 from terminal import shown_on_a_terminal
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -67,7 +67,8 @@ def test_file_opens_without_help(tmp_path):
     mfv_run(ROOT / "examples/mindlin.nml", cwd=tmp_path)
     path = tmp_path / "mindlin.h5"
     with h5py.File(path) as result:
-        names = {"pressure", "shear", "gap", "slip", "normal_displacement", "tangential_displacement", "status", "friction_work", "x"}
+        names = {"pressure", "shear", "gap", "slip", "normal_displacement", "tangential_displacement", "status", "friction_work", "x",
+                 "contact_edge", "stick_edge"}
         assert set(result["state"]) == names
         assert names < set(result["steps/0001"]) and len(result["steps"]) == 6
         history = {"normal_force", "tangential_force", "approach", "shift", "contact_nodes", "stick_nodes", "dissipation",
@@ -101,7 +102,7 @@ def test_summary_says_what_came_out(tmp_path):
 
 
 def test_help_version_keys_and_check(tmp_path):
-    assert "usage: mfv_run [--estimate] [--resume] CASE.nml" in mfv_run("--help", cwd=tmp_path).stdout
+    assert "usage: mfv_run [--estimate] [--sensitivity] [--resume] CASE.nml" in mfv_run("--help", cwd=tmp_path).stdout
     version = (ROOT / "VERSION").read_text().strip()
     assert mfv_run("--version", cwd=tmp_path).stdout == f"mfv_run {version}\n"
     assert mfv_run("--keys", cwd=tmp_path).stdout in (ROOT / "docs/namelist.md").read_text()
@@ -148,6 +149,23 @@ def test_error_estimate_in_summary_and_file(tmp_path):
     assert "error estimate" in shown.stdout and "peak_shear" in shown.stdout, shown.stderr
 
 
+def test_sensitivity_in_summary_and_file(tmp_path):
+    by_key = case(tmp_path, MINDLIN.format(force=2.8e-4, name="key", more=", sensitivity=.true."), "key.nml")
+    by_option = case(tmp_path, MINDLIN.format(force=2.8e-4, name="option", more=""), "option.nml")
+    for run in [mfv_run(by_key, cwd=tmp_path), mfv_run("--sensitivity", by_option, cwd=tmp_path)]:
+        assert run.returncode == COMPLETE and run.stderr == ""
+        assert re.search(r"^sensitivity +coefficients of friction times 1 \+ 1e-12 change pressures by \S+ and shear by \S+ of the "
+                         r"largest traction,\nsensitivity +dissipation by \S+ \(relative\), the stick ratio by \S+$",
+                         run.stdout, re.MULTILINE), run.stdout
+    with h5py.File(tmp_path / "key.h5") as result, h5py.File(tmp_path / "option.h5") as other:
+        for name, dataset in result["sensitivity"].items():
+            assert dataset.attrs["units"] == "1" and dataset.attrs["long_name"]
+            assert dataset[()] == other["sensitivity"][name][()]
+    refused = case(tmp_path, re.sub("&friction.*", "", MINDLIN.format(force=0, name="none", more="")), "none.nml")
+    run = mfv_run("--sensitivity", refused, cwd=tmp_path)
+    assert run.returncode == 2 and "none.nml: --sensitivity: the case has no friction to perturb" in run.stderr
+
+
 def test_no_error_estimate_of_what_ended_early(tmp_path):
     path = case(tmp_path, MINDLIN.format(force=8e-4, name="early", more=", error_estimate=.true."))
     run = mfv_run(path, cwd=tmp_path)
@@ -160,13 +178,13 @@ def test_no_error_estimate_of_what_ended_early(tmp_path):
 def test_interrupted_error_estimate_keeps_the_result(tmp_path):
     text = MINDLIN.format(force=2.8e-4, name="long", more=", history='none', states='steps'").replace("nodes=61", "nodes=41")
     path = case(tmp_path, text.replace("&output", "&step tangential_force=-2.8e-4, cycles=6000 /\n&output"))
-    started = time.time()
+    before = os.times().children_user
     assert mfv_run(path, cwd=tmp_path).returncode == COMPLETE
-    alone = time.time() - started
+    alone = os.times().children_user - before
     (tmp_path / "long.h5").unlink()
     process = subprocess.Popen([PROGRAM, "--estimate", str(path)], cwd=tmp_path, stdout=subprocess.PIPE,
                                stderr=subprocess.PIPE, text=True)
-    time.sleep(1.15 * alone)
+    wait_for_work(process, 1.15 * alone)
     process.send_signal(signal.SIGINT)
     output, errors = process.communicate(timeout=60)
     with h5py.File(tmp_path / "long.h5") as result:
@@ -316,7 +334,7 @@ def test_other_files_are_not_replaced(tmp_path):
 def test_profile_and_chosen_mesh(tmp_path):
     x = np.linspace(-0.1, 0.1, 401)
     np.savetxt(tmp_path / "profile.txt", np.column_stack([x, x**2 / 0.5]))
-    bodies = BODIES.replace("shape='disk', radius=0.25", "shape='profile', file='profile.txt'")
+    bodies = BODIES.replace("shape='disk', radius=0.25", "shape='profile', file='profile.txt', interpolation='monotone_cubic'")
     profile = bodies.replace("nu=", "").replace("poisson_ratio=0.3", "poisson_ratio=0.3, datum=0.25")
     mesh = "&mesh nodes=101, half_width=0.0127{} / &step normal_force=1e-3 /"
     mfv_run(case(tmp_path, profile + mesh.format(""), "profile.nml").name, cwd=tmp_path)
@@ -334,7 +352,7 @@ def test_interrupt_leaves_a_readable_file(tmp_path):
                      "&step tangential_force=2e-4 / &step tangential_force=-2e-4, cycles=10000 /")
     case(tmp_path, long)
     run = subprocess.Popen([PROGRAM, "case.nml"], cwd=tmp_path, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
-    time.sleep(2)
+    wait_for_work(run, 0.5)
     assert run.poll() is None
     run.send_signal(signal.SIGINT)
     output, errors = run.communicate(timeout=60)

@@ -18,6 +18,7 @@ import pandas  # xarray brings it
 import pytest
 
 import mfv
+from disk import build_shim, go_on_with, run_on_disk, start_until
 from terminal import shown_on_a_terminal
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -106,6 +107,17 @@ def wait_for_records(journal, number, run):
             return True
         time.sleep(0.002)
     return False
+
+
+@pytest.fixture(scope="module")
+def shim(tmp_path_factory):
+    return build_shim(tmp_path_factory.mktemp("shim"))
+
+
+def start_until_records(shim, number, *arguments, cwd):
+    """Start a sweep that stops when its journal has `number` more records, or up to twice as many, whatever the machine's speed."""
+    calls_before_the_first_record = 8
+    return start_until(shim, [MFV_SWEEP, *arguments], cwd, calls_before_the_first_record + 2 * number)
 
 
 @pytest.fixture(scope="module")
@@ -311,7 +323,8 @@ def test_input_errors_of_ranks_come_once(tmp_path):
     assert run.returncode == INPUT and run.stderr.count("unknown key of &friction") == 1
 
 
-def test_killed_at_any_moment(tmp_path):
+def test_killed_at_any_moment(shim, tmp_path):
+    """Before any of the calls that change a file, on disk: whatever the machine's speed."""
     cases = long_study(tmp_path)
     undisturbed = tmp_path / "undisturbed"
     undisturbed.mkdir()
@@ -320,11 +333,8 @@ def test_killed_at_any_moment(tmp_path):
     chance = random.Random(6)
     before = []
     for _ in range(6):
-        run = start("--threads", 2, "study.nml", cwd=tmp_path)
-        assert wait_for_records(journal, len(before) + chance.randint(0, 6), run)
-        time.sleep(chance.uniform(0.0, 0.01))
-        run.kill()
-        output, _ = run.communicate()
+        run, _ = run_on_disk(shim, [MFV_SWEEP, "--threads", "2", "study.nml"], tmp_path.resolve(), at=chance.randint(7, 24))
+        output = run.stdout
         assert run.returncode == -signal.SIGKILL and not (tmp_path / "study.h5").exists()
         after = numbers_in(journal)
         assert after[:len(before)] == before  # nothing is lost
@@ -340,13 +350,10 @@ def test_killed_at_any_moment(tmp_path):
     assert sorted(path.name for path in tmp_path.iterdir()) == ["base.nml", "study.h5", "study.nml", "undisturbed"]
 
 
-def test_end_of_the_journal_that_is_not_whole(study, tmp_path):
+def test_end_of_the_journal_that_is_not_whole(shim, tmp_path):
     cases = long_study(tmp_path, count=20)
     journal = tmp_path / "study.h5.journal"
-    run = start("--threads", 1, "study.nml", cwd=tmp_path)
-    assert wait_for_records(journal, 5, run)
-    run.kill()
-    run.communicate()
+    go_on_with(start_until_records(shim, 5, "--threads", 1, "study.nml", cwd=tmp_path), signal.SIGKILL)
     whole = numbers_in(journal)
     data = journal.read_bytes()
     for damaged in (data[:-3], data[:-1] + bytes([data[-1] ^ 1])):
@@ -390,27 +397,21 @@ def test_locks_that_fail(number, words, tmp_path):
     assert run.returncode == FILE and f"study.h5.journal: {words}" in run.stderr, run.stderr
 
 
-def test_a_second_process_is_refused(tmp_path):
-    long_study(tmp_path, count=200)
-    run = start("--threads", 1, "study.nml", cwd=tmp_path)
-    assert wait_for_records(tmp_path / "study.h5.journal", 2, run)
+def test_a_second_process_is_refused(shim, tmp_path):
+    cases = long_study(tmp_path, count=4)
+    run = start_until_records(shim, 2, "--threads", 1, "study.nml", cwd=tmp_path)
     second = mfv_sweep("study.nml", cwd=tmp_path)
     assert run.poll() is None
-    run.kill()
-    run.communicate()
+    go_on_with(run, signal.SIGKILL)
     assert second.returncode == FILE and "study.h5.journal: another process is at work on this sweep" in second.stderr
-    third = start("study.nml", cwd=tmp_path)  # a killed process leaves no lock
-    assert wait_for_records(tmp_path / "study.h5.journal", 4, third)
-    third.kill()
-    third.communicate()
+    third = mfv_sweep("study.nml", cwd=tmp_path)  # a killed process leaves no lock
+    assert third.returncode == COMPLETE and f"of {cases} cases were there" in third.stdout
 
 
-def test_interrupt_keeps_what_is_there(tmp_path):
-    cases = long_study(tmp_path, count=100)
-    run = start("--threads", 2, "study.nml", cwd=tmp_path)
-    assert wait_for_records(tmp_path / "study.h5.journal", 5, run)
-    run.send_signal(signal.SIGINT)
-    _, errors = run.communicate(timeout=60)
+def test_interrupt_keeps_what_is_there(shim, tmp_path):
+    cases = long_study(tmp_path)
+    run = start_until_records(shim, 5, "--threads", 2, "study.nml", cwd=tmp_path)
+    _, errors = go_on_with(run, signal.SIGINT)
     assert run.returncode == INTERRUPTED
     kept = int(re.match(rf"interrupted: (\d+) of {cases} cases are kept in study.h5.journal; the same command goes on", errors)[1])
     table = mfv.read_table(tmp_path / "study.h5")
@@ -435,15 +436,13 @@ def test_a_finished_sweep_is_left_alone(study, tmp_path):
     assert digest(tmp_path / "study.h5") == digest(study / "study.h5")
 
 
-def test_again_that_is_interrupted_is_continued(tmp_path):
+def test_again_that_is_interrupted_is_continued(shim, tmp_path):
     cases = long_study(tmp_path, count=60)
     journal = tmp_path / "study.h5.journal"
     assert mfv_sweep("study.nml", cwd=tmp_path).returncode == COMPLETE
     whole = digest(tmp_path / "study.h5")
-    run = start("--again", "--threads", 1, "study.nml", cwd=tmp_path)
-    assert wait_for_records(journal, 5, run)
-    run.send_signal(signal.SIGINT)
-    _, errors = run.communicate(timeout=60)
+    run = start_until_records(shim, 5, "--again", "--threads", 1, "study.nml", cwd=tmp_path)
+    _, errors = go_on_with(run, signal.SIGINT)
     assert run.returncode == INTERRUPTED
     assert "are kept in study.h5.journal; the same command without --again goes on" in errors
     kept = numbers_in(journal)
@@ -483,14 +482,12 @@ def test_parts_over_a_complete_table(study, tmp_path):
     assert not list(tmp_path.glob("*.journal"))
 
 
-def test_another_input(study, tmp_path):
+def test_another_input(study, shim, tmp_path):
     long_study(tmp_path)
     shutil.copy(study / "study.h5", tmp_path)
     journal = tmp_path / "study.h5.journal"
-    run = start("--threads", 1, "study.nml", cwd=tmp_path)
-    assert wait_for_records(journal, 3, run)
-    run.send_signal(signal.SIGTERM)
-    run.communicate(timeout=60)
+    run = start_until_records(shim, 3, "--threads", 1, "study.nml", cwd=tmp_path)
+    go_on_with(run, signal.SIGTERM)
     assert run.returncode == INTERRUPTED
     assert digest(tmp_path / "study.h5") == digest(study / "study.h5")  # that of another input stays until all is there
     kept = journal.read_bytes()

@@ -9,7 +9,7 @@ module fuzz_readers
    use mfv_kinds, only: wp
    use mfv_matrix_file, only: read_matrix_body
    use mfv_observables, only: moment_count
-   use mfv_profile_file, only: read_profile, read_table
+   use mfv_profile_file, only: read_profile, read_table, trace_type
    use mfv_status, only: MFV_COMPLETE
    use mfv_stress_file, only: add_stresses, stress_request_type, stress_result_type
    use mfv_strings, only: copy_to_c, from_c
@@ -146,7 +146,7 @@ contains
       real(wp), allocatable :: table(:, :)
 
       call read_table(from_c(path), 'x, mu_static and mu_kinetic', 3, .true., table, error)
-      call read_profile(from_c(path), body, error)
+      call read_profile(from_c(path), trace_type(), body, error)
       call tell(error, message, size, fuzz_columns)
    end function fuzz_columns
 

@@ -40,6 +40,10 @@ VARIANTS = {
     "&body shape='disk', radius=0.25, rigid=.true. /": [
         "&body shape='disk', radius=0.25, shear_modulus=2.0, poisson_ratio=0.2 /",
         "&body shape='flat_punch', half_width=0.01, rigid=.true. /",
+        "&body shape='rounded_punch', half_width=0.01, edge_radius=0.1, rigid=.true. /",
+        "&body shape='wedge', angle=3, rigid=.true. /",
+        "&body shape='power', coefficient=2.0, exponent=4, rigid=.true. /",
+        "&body shape='profile', file='columns.txt', interpolation='monotone_cubic', level='line', height_scale=-1, rigid=.true. /",
         "&body shape='profile', file='columns.txt', rigid=.true. /",
     ],
     "&body shape='half_plane', shear_modulus=1.0, poisson_ratio=0.3 /": [

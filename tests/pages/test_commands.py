@@ -6,6 +6,7 @@ import csv
 import importlib.util
 import io
 import os
+import re
 import subprocess
 import sys
 from pathlib import Path
@@ -74,6 +75,15 @@ def test_what_differs_is_told(tmp_path: Path) -> None:
     largest = np.max(np.abs(first.state.pressure - second.state.pressure))
     assert found.tractions[0].largest_difference == pytest.approx(largest / second.state.pressure.max(), rel=1e-12)
     assert found.largest_difference == pytest.approx(largest / second.state.pressure.max(), rel=1e-12)
+
+
+def test_columns_stay_apart_and_zero_has_no_sign(tmp_path: Path) -> None:
+    first, second = solved(tmp_path / "a.h5"), solved(tmp_path / "b.h5", coupling="full")
+    second.attributes.pop("coupling")
+    first.attributes.pop("friction_law")
+    text = compare(first, second).describe()
+    assert "firstsecond" not in text and re.search(r"first +second$", text, re.M)
+    assert not re.search(r"-0\.?(?![.\de])", text)
 
 
 def test_tractions_on_other_meshes_are_interpolated() -> None:
@@ -416,19 +426,26 @@ def test_the_matrix_of_the_template_is_a_half_plane(tmp_path: Path) -> None:
     given = mfv.run(tmp_path / "case.nml")
     body = "shape = 'half_plane', shear_modulus = 1.0, poisson_ratio = 0.3 /"
     text = template.text("matrix").replace("shape = 'matrix'", body + "\n&mesh nodes = 81, half_width = 0.0127")
-    known = mfv.run(text=text.replace("   file = 'matrix.h5'\n", ""))
+    known = mfv.run(text=text.replace("   file = 'compliance.h5'\n", ""))
     assert compare(given, known).largest_difference < 1e-10
     assert given.summary.approach == pytest.approx(known.summary.approach, rel=1e-3)
 
 
+def test_the_matrix_template_does_not_write_over_its_input(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    assert main(["new", "matrix"]) == 0
+    subprocess.run([PROGRAMS["mfv_run"], "matrix.nml"], check=True, capture_output=True)
+    assert mfv.read("matrix.h5").outcome == "complete"
+
+
 def test_nothing_is_overwritten_unless_told(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    (tmp_path / "matrix.h5").write_text("mine\n")
+    (tmp_path / "compliance.h5").write_text("mine\n")
     arguments = ["new", "matrix", "-o", str(tmp_path / "case.nml")]
     assert main(arguments) == 2
-    assert f"{tmp_path / 'matrix.h5'}: exists already" in capsys.readouterr().err
-    assert (tmp_path / "matrix.h5").read_text() == "mine\n" and len(list(tmp_path.iterdir())) == 1
+    assert f"{tmp_path / 'compliance.h5'}: exists already" in capsys.readouterr().err
+    assert (tmp_path / "compliance.h5").read_text() == "mine\n" and len(list(tmp_path.iterdir())) == 1
     assert main([*arguments, "--force"]) == 0
-    assert (tmp_path / "matrix.h5").read_bytes().startswith(b"\x89HDF")
+    assert (tmp_path / "compliance.h5").read_bytes().startswith(b"\x89HDF")
     # What a sweep needs may be there already, the same.
     for template_name in ("cylinder", "sweep"):
         assert main(["new", template_name, "-o", str(tmp_path / f"{template_name}.nml")]) == 0

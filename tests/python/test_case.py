@@ -69,7 +69,8 @@ def test_loads_are_those_of_the_summary(pressed: mfv.Case) -> None:
         assert getattr(loads, name) == summary[name], name
     assert loads.contact_nodes == loads.stick_nodes + loads.slip_nodes > 40
     assert loads.events > 5 and loads.linear_solves > 5
-    assert (loads.moment, loads.rotation) == (0.0, 0.0)
+    assert loads.moment == pytest.approx(0.25 * 2.8e-4, rel=1e-9)
+    assert loads.rotation == 0.0
 
 
 def test_numbers_beyond_a_c_int_are_not_wrapped(pressed: mfv.Case) -> None:
@@ -291,11 +292,9 @@ def test_an_interrupt_from_the_keyboard_ends_a_long_run_with_its_state() -> None
     ).contact()
     timer = threading.Timer(0.3, signal.raise_signal, [signal.SIGINT])
     timer.start()
-    started = time.monotonic()
     with pytest.raises(KeyboardInterrupt):
         case.run()
     timer.join()
-    assert time.monotonic() - started < 30.0
     assert signal.signal(signal.SIGINT, before) is signal.default_int_handler
     assert case.outcome == "interrupted"
     assert case.loads.normal_force == pytest.approx(1.0e-3) and abs(case.loads.tangential_force) <= 2.8e-4 * (1 + 1e-9)

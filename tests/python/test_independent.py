@@ -195,3 +195,48 @@ def test_two_nodes_by_hand(mu: float) -> None:
     assert end.shift == pytest.approx(shift, rel=1e-12) and end.slip[1] == pytest.approx(slip, rel=1e-12)
     mean = 0.5 * (mu * (p - b * first / (4 * h)) + shear[1])
     assert end.dissipation == pytest.approx(-2 * h * mean * slip, rel=1e-12)
+
+
+def michell(nodes: int, step: float, nu: float, hole: bool, terms: int = 20000) -> np.ndarray:
+    """Displacement into a body, times G/R, by a unit pressure on the angle `step`, at so many distances: Michell's
+    series, and of n = 1 what is no translation, the part without u_theta (dissertation tables 4.2, 4.3, E.1).
+    """
+    n, kappa, a = np.arange(2, terms), 3 - 4 * nu, step / 2
+    first, second = (1, kappa) if hole else (kappa, 1)
+    angle = np.arange(nodes) * step
+    series = np.cos(np.outer(angle, n)) @ (np.sin(n * a) / n * (first / (n + 1) + second / (n - 1)))
+    zeroth = a if hole else (kappa - 1) * a / 2
+    once = 2 if hole else (kappa * (kappa - 3) + kappa**2 + kappa - 4) / (kappa + 1)
+    return (series + zeroth + once * np.sin(a) / 2 * np.cos(angle)) / (2 * np.pi)
+
+
+@pytest.mark.parametrize("datum", [0.3, 50.0])
+def test_smooth_pin(datum: float) -> None:
+    """A pin in a bore of a radius 5 % larger, in contact over 47 degrees: forces on common angles, by active sets."""
+    nodes, bore, force, moduli, ratios = 61, 1.05, 0.02, (0.4, 0.9), (0.3, 0.1)
+    text = "".join(
+        f"&body shape='{shape}', radius={radius}, shear_modulus={modulus}, poisson_ratio={nu}, datum={datum} /\n"
+        for shape, radius, modulus, nu in zip(("hole", "disk"), (bore, 1.0), moduli, ratios)
+    )
+    result = solved(text + f"&mesh nodes={nodes}, half_angle=51.5, normals='radial' /\n&step normal_force={force} /\n")
+    step = 2 * np.radians(51.5) / nodes
+    angle = (np.arange(nodes) - (nodes - 1) / 2) * step
+    distance = np.abs(np.arange(nodes)[:, None] - np.arange(nodes))
+    kernels = [michell(nodes, step, nu, hole) / g for g, nu, hole in zip(moduli, ratios, (True, False))]
+    matrix = bore * sum(kernels)[distance]
+    play = bore - 1
+    gap = play * (1 - np.cos(angle)) + 1 - np.sqrt(1 - (play * np.sin(angle)) ** 2)
+    touches, normal = abs(angle) < 0.3, np.cos(angle)
+    for _ in range(20):
+        system = np.block([[matrix[np.ix_(touches, touches)], -normal[touches, None]], [normal[touches], 0.0]])
+        solution = np.linalg.solve(system, np.append(-gap[touches], force / (bore * step)))
+        pressure = np.zeros(nodes)
+        pressure[touches] = solution[:-1]
+        after = np.where(touches, pressure > 0, gap + matrix @ pressure < solution[-1] * normal)
+        if np.array_equal(after, touches):
+            break
+        touches = after
+    else:
+        raise AssertionError("the active set does not settle")
+    assert 30 < touches.sum() < nodes - 2
+    assert np.allclose(result.state.pressure, pressure, rtol=0, atol=1e-6 * pressure.max())

@@ -136,6 +136,16 @@ def test_groups_are_compared_by_their_values_which_cannot_be_set(cycled: mfv.Res
     np.testing.assert_array_equal(other.state.pressure, cycled.state.pressure)
 
 
+def test_groups_know_what_their_quantities_run_along(cycled: mfv.Result) -> None:
+    np.testing.assert_array_equal(cycled.state.x, cycled.mesh.x)
+    np.testing.assert_array_equal(cycled.steps[0]["x"], cycled.mesh.x)
+    assert "x" in cycled.state and "x" in dir(cycled.state) and "x" not in list(cycled.state)
+    assert cycled.state.unit("x") == "mm"
+    assert "x" not in cycled.summary and "record" not in cycled.state
+    with pytest.raises(AttributeError, match="cannot be set"):
+        cycled.state.x = 1.0
+
+
 def test_notebooks_show_results_without_scripts(cycled: mfv.Result) -> None:
     shown = cycled._repr_html_()
     for word in ("to &amp; fro", "complete: step 3 was reached", "certificate", "<svg", "<polyline"):
@@ -196,6 +206,7 @@ PANELS: dict[str, tuple[str, str, str]] = {
     "nonlinear_loop": ("cycled", "non-linear shift $U - Q/k$ [mm]", "tangential force $Q$ [N/mm]"),
     "friction_work": ("cycled", "position $x$ [mm]", "dissipated per cycle and surface $d$ [N/mm]"),
     "turning": ("pressed", r"rotation $\varphi$ [rad]", "moment $M$"),
+    "rolling": ("pressed", "rolled distance $s$", r"sliding $U + h\varphi$"),
 }
 
 

@@ -11,7 +11,7 @@ module test_random_scenes_support
    use mfv_scene
    implicit none
    private
-   public :: random_scene, law_count, law_names, patience_type
+   public :: random_scene, random_pin, law_count, law_names, patience_type
 
    integer, parameter :: law_count = 5
    character(*), parameter :: law_names(law_count) = [character(14) :: 'none', 'coulomb', 'static_kinetic', 'weakening', 'dahl']
@@ -65,6 +65,55 @@ contains
       call choose_steps(random, scene, sizes)
       scene%method%friction_tolerance = 1.0e-2_wp
    end subroutine random_scene
+
+   !> Pin `number` >= 1 in its bore, with radial normals: couplings, materials, clearances, the pin below or above, one of the bodies
+   !> rigid or none, up to 40 degrees; pressed, sheared, pressed again and perhaps turned, by forces.
+   subroutine random_pin(number, scene)
+      integer, intent(in) :: number
+      type(scene_type), intent(out) :: scene
+      type(generator_type) :: random
+      type(body_type) :: pin, bore
+      type(step_type) :: press, shear
+      real(wp) :: force, mu, unused
+      integer :: elastic, i
+
+      random%state = 1 + 6007_int64*number
+      do i = 1, 5
+         unused = random%between(0.0_wp, 1.0_wp)
+      end do
+      scene%title = 'random pin'
+      scene%plane = merge(plane_strain, plane_stress, random%chance(0.7_wp))
+      scene%coupling = random%one_of([coupling_full, coupling_goodman, coupling_none])
+      pin = new_disk(10.0_wp**random%between(-2.0_wp, 2.0_wp))
+      bore = new_hole(pin%radius*(1.0_wp + 10.0_wp**random%between(-4.0_wp, -0.3_wp)))
+      elastic = random%one_of([1, 2, 3, 3, 3])
+      if (elastic /= 2) call make_elastic(random, scene%plane, pin%radius, pin)
+      if (elastic /= 1) call make_elastic(random, scene%plane, bore%radius, bore)
+      scene%lower = bore
+      scene%upper = pin
+      if (random%chance(0.5_wp)) then
+         scene%lower = pin
+         scene%upper = bore
+      end if
+      scene%mesh = mesh_request_type(nodes=21 + int(random%between(0.0_wp, 15.99_wp)), half_width=1.2_wp*bore%radius, &
+                                     radial=.true.)
+      mu = random%between(0.05_wp, 0.8_wp)
+      scene%friction = coulomb_friction(mu)
+      force = 0.25_wp*pi*scene%modulus()*scene%curvature()*(random%between(0.2_wp, 0.7_wp)*bore%radius)**2
+
+      press%normal_control = control_force
+      press%normal_target = force
+      shear%tangential_control = control_force
+      shear%tangential_target = random%between(-0.5_wp, 0.5_wp)*mu*force
+      shear%cycles = random%one_of([0, 0, 1])
+      scene%steps = [press, shear]
+      press%normal_target = random%between(0.4_wp, 1.2_wp)*force
+      scene%steps = [scene%steps, press]
+      if (.not. random%chance(0.5_wp)) return
+      shear = step_type(rotational_control=control_force, &
+                        rotational_target=random%between(-0.2_wp, 0.2_wp)*mu*force*pin%radius)
+      scene%steps = [scene%steps, shear]
+   end subroutine random_pin
 
    !> Both bodies and the mesh, for a half-width of 2 to 8 % of a radius.
    subroutine choose_bodies(random, scene, sizes)

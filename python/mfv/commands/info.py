@@ -39,6 +39,7 @@ def description(result: Result) -> str:
         ["summary", *_lines(result.summary)],
         *([["observables", *_lines(result.observables)]] if result.observables else []),
         ["certificate", *_lines(result.certificate)],
+        *([["sensitivity", *_lines(result.sensitivity)]] if result.sensitivity else []),
         *([["error estimate", *_bars(result.error_estimate)]] if result.error_estimate else []),
         ["closed form", *(f"  {line}" for line in sources)] if sources else ["closed form: none"],
         [f"{result.mesh.x.size} nodes, {kept(result)}"],

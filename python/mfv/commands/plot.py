@@ -22,6 +22,8 @@ examples:
   python -m mfv plot mindlin.h5             draw mindlin.png
   python -m mfv plot mindlin.h5 --stress von_mises
                                             draw the stresses inside the lower body
+  python -m mfv plot mindlin.h5 --stress sigma_xx --axes physical
+                                            the same in the units of the case, the largest tension marked
   python -m mfv plot mindlin.h5 -o fig3.pdf --step 2
                                             draw the state after step 2, for print
   python -m mfv plot shear_cycles.h5 --cycles
@@ -46,14 +48,19 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     kind.add_argument(
         "--stress",
         metavar="NAME",
-        help="contours of a stress inside a body in place of the panels: von_mises, sigma_xx, sigma_yy, sigma_xy, ...",
+        help="contours of a stress inside a body in place of the panels: von_mises, tresca, principal_1, sigma_xx, ...",
     )
     kind.add_argument(
         "--cycles",
         action="store_true",
         help="the cycles in place of the panels: hysteresis loop, its non-linear part, where the last one dissipates",
     )
-    parser.add_argument("--body", choices=("lower", "upper"), help="which body, with --stress; lower unless told")
+    parser.add_argument("--body", choices=("lower", "upper"), help="which body, with --stress; lower by default")
+    parser.add_argument(
+        "--axes",
+        choices=("normalised", "physical"),
+        help="with --stress: over the largest pressure and the contact half-width (normalised, the default), or as they are (physical)",
+    )
 
 
 def run(options: argparse.Namespace) -> None:
@@ -62,6 +69,8 @@ def run(options: argparse.Namespace) -> None:
 
     if options.body is not None and options.stress is None:
         raise ValueError("--body says inside which body a stress is drawn: give --stress NAME too")
+    if options.axes is not None and options.stress is None:
+        raise ValueError("--axes says how a stress is drawn: give --stress NAME too")
     if options.step is not None and options.cycles:
         raise ValueError("--step chooses a state, which --cycles does not draw: give one of them")
     body = options.body or "lower"
@@ -71,7 +80,7 @@ def run(options: argparse.Namespace) -> None:
         name += "_cycles"
     output = target(options.output, options.file.with_name(f"{name}.png"), PICTURES, [options.file])
     if options.stress:
-        picture = plot.stress_figure(result, options.stress, body, options.step)
+        picture = plot.stress_figure(result, options.stress, body, options.step, options.axes or "normalised")
     elif options.cycles:
         picture = plot.cycles_figure(result)
     else:

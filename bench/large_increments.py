@@ -1,0 +1,175 @@
+"""Large increments (stepping='leap') against events: coupled cycles, and random scenes.
+
+    PYTHONPATH=python python bench/large_increments.py cycles 100
+    PYTHONPATH=python python bench/large_increments.py random 250 1e-3
+
+The first prints, for some tolerances, the linear solves and the largest error of what a cycle dissipates. The second compares
+tractions and the dissipation of every load segment in random scenes of Coulomb friction: couplings, materials, disks and a flat
+punch, 101 to 401 nodes, pressing with friction, oblique loads, cycles of either force, unloading, prescribed displacements. It
+prints the scenes beyond the tolerance, and how often the estimated errors cover the true ones.
+"""
+
+from __future__ import annotations
+
+import math
+import sys
+
+import numpy as np
+
+import mfv
+from mfv import Body, Friction, Mesh, Output, Scene, Solver, Step
+
+NODES = (101, 161, 241, 401)
+#: Differences below these parts of the largest are round-off.
+ROUND_OFF_TRACTION, ROUND_OFF_DISSIPATION = 1e-9, 1e-9
+
+
+def cycles_scene(solver: Solver, cycles: int) -> Scene:
+    """A rigid disk pressed on a half-plane with friction and full coupling, and sheared back and forth."""
+    force = math.pi / 4
+    steps = [
+        Step(normal_force=force),
+        Step(tangential_force=0.24 * force),
+        Step(tangential_force=-0.24 * force, cycles=cycles),
+    ]
+    return Scene(
+        Body.half_plane(youngs_modulus=100.0, poisson_ratio=0.0),
+        Body.disk(100.0, rigid=True),
+        mesh=Mesh(nodes=256, half_width=1.25, gap="parabolic"),
+        friction=Friction.coulomb(0.3),
+        steps=steps,
+        solver=solver,
+        output=Output(history="steps", states="none"),
+    )
+
+
+def study_cycles(cycles: int) -> None:
+    events = cycles_scene(Solver(stepping="event"), cycles).run()
+    exact = np.array(events.cycles.dissipation)
+    print(f"events: {events.summary.linear_solves} solves")
+    for tolerance in (1e-2, 1e-3, 1e-4):
+        result = cycles_scene(Solver(stepping="leap", leap_tolerance=tolerance), cycles).run()
+        error = np.array(result.cycles.dissipation) / exact - 1
+        shear = np.abs(result.state.shear - events.state.shear).max() / np.abs(events.state.pressure).max()
+        print(
+            f"leap_tolerance {tolerance:.0e}: {result.summary.linear_solves} solves, {result.summary.leaps} increments, error of "
+            f"a cycle {np.abs(error).max():.1e}, of the first {error[0]:.1e}, of the last {error[-1]:.1e}, of the shear {shear:.0e}, "
+            f"estimated {result.summary.increment_dissipation_error:.0e} and {result.summary.increment_traction_error:.0e}"
+        )
+
+
+def random_scene(seed: int, solver: Solver) -> Scene:
+    """Scene number `seed`; lengths in units of some radius, moduli of the half-plane's shear modulus."""
+    draw = np.random.default_rng(seed)
+    poisson = float(draw.choice([0.0, 0.1, 0.2, 0.3, 0.4, 0.49]))
+    mu = float(10 ** draw.uniform(-1.3, 0.2))
+    coupling = str(draw.choice(["full", "full", "goodman", "none"]))
+    nodes, radius = int(draw.choice(NODES)), float(10.0 ** draw.integers(-2, 3))
+    width, shape = 0.02 * radius, int(draw.integers(0, 5))
+    modulus, half_width = 1 / (1 - poisson), 1.25 * width
+    if shape == 4:
+        upper, half_width = Body.flat_punch(width), width
+    elif shape == 3:
+        shear_modulus, ratio = float(10 ** draw.uniform(-1, 1)), float(draw.uniform(0, 0.5))
+        upper = Body.disk(radius, shear_modulus=shear_modulus, poisson_ratio=ratio)
+        modulus = 1 / (1 - poisson + (1 - ratio) / shear_modulus)
+    else:
+        upper = Body.disk(radius, rigid=True)
+    force = 0.01 * modulus * width if shape == 4 else math.pi * modulus * width**2 / (2 * radius)
+    return Scene(
+        Body.half_plane(shear_modulus=1.0, poisson_ratio=poisson),
+        upper,
+        mesh=Mesh(nodes=nodes, half_width=half_width),
+        friction=Friction.coulomb(mu),
+        steps=random_steps(draw, force, mu, force / (math.pi * modulus) * (0.5 + math.log(100))),
+        coupling=coupling,
+        solver=solver,
+        output=Output(history="steps"),
+    )
+
+
+def random_steps(draw: np.random.Generator, force: float, mu: float, approach: float) -> list[Step]:
+    """One of seven kinds of load histories up to a normal `force` (an `approach`)."""
+
+    def part(low: float, high: float) -> float:
+        return float(draw.uniform(low, high))
+
+    friction, kind = bool(draw.random() < 0.7), int(draw.integers(0, 7))
+    limit, sign = mu * force, float(draw.choice([-1, 1]))
+    press = Step(normal_force=force, friction=friction)
+    part_press = Step(normal_force=part(0.4, 1) * force, friction=friction)
+    if kind == 0:
+        shear = sign * part(0.1, 0.95) * limit
+        back = Step(tangential_force=-shear * part(-0.5, 1), cycles=int(draw.integers(1, 4)))
+        return [press, Step(tangential_force=shear), back]
+    if kind == 1:
+        oblique = Step(normal_force=force, tangential_force=sign * part(0.05, 0.9) * limit)
+        return [part_press, oblique, Step(normal_force=part(0.3, 0.9) * force, tangential_force=part(-0.25, 0.25) * limit)]
+    if kind == 2:
+        shear = part(0.1, 0.5)
+        return [press, Step(tangential_force=sign * shear * limit), Step(normal_force=part(1.1 * shear, 1) * force)]
+    if kind == 3:
+        shift = mu * approach * part(0.05, 0.8)
+        return [press, Step(shift=shift), Step(shift=-shift * part(-0.5, 1), cycles=int(draw.integers(1, 3)))]
+    if kind == 4:
+        cycles = Step(normal_force=part(0.4, 0.8) * force, cycles=int(draw.integers(1, 3)))
+        return [part_press, Step(tangential_force=sign * part(0.05, 0.25) * limit), Step(normal_force=force), cycles]
+    if kind == 5:
+        walk = [part_press]
+        for _ in range(int(draw.integers(2, 6))):
+            normal = part(0.3, 1) * force
+            walk.append(Step(normal_force=normal, tangential_force=part(-0.9, 0.9) * mu * normal))
+        return walk
+    return [
+        Step(approach=part(0.3, 1) * approach, friction=friction),
+        Step(shift=part(-0.5, 0.5) * mu * approach),
+        Step(approach=part(0.2, 1) * approach, shift=part(-0.5, 0.5) * mu * approach),
+    ]
+
+
+def differences(events: mfv.Result, result: mfv.Result) -> tuple[float, float]:
+    """The largest error of a traction, in parts of the largest traction; and of what a load segment dissipates, in parts of that."""
+    traction = largest = 0.0
+    for one, other in zip(events.steps, result.steps):
+        largest = max(largest, np.abs(one.pressure).max(), np.abs(one.shear).max())
+        difference = max(np.abs(one.pressure - other.pressure).max(), np.abs(one.shear - other.shear).max())
+        traction = max(traction, difference / largest)
+    history = events.history
+    exact, found = np.diff(history.dissipation, prepend=0), np.diff(result.history.dissipation, prepend=0)
+    work = np.abs(history.normal_force * history.approach).max()
+    counts = exact > max(ROUND_OFF_DISSIPATION * np.sum(exact), 1e-12 * work)
+    return traction, float(np.max(np.abs(found - exact)[counts] / exact[counts], initial=0))
+
+
+def study_random(scenes: int, tolerance: float) -> None:
+    rows, solves, beyond = [], np.zeros(2, int), 0
+    for seed in range(scenes):
+        events = random_scene(seed, Solver(stepping="event")).run()
+        result = random_scene(seed, Solver(stepping="leap", leap_tolerance=tolerance)).run()
+        if events.outcome != result.outcome:
+            print(f"scene {seed}: {events.outcome} by events, {result.outcome} by large increments")
+        if "complete" not in (events.outcome, result.outcome) or events.outcome != result.outcome:
+            continue
+        solves += [events.summary.linear_solves, result.summary.linear_solves]
+        traction, dissipation = differences(events, result)
+        estimates = result.summary.increment_traction_error, result.summary.increment_dissipation_error
+        rows.append((traction, estimates[0], dissipation, estimates[1]))
+        if max(traction, dissipation) > tolerance:
+            beyond += 1
+            print(f"scene {seed}: traction {traction:.1e}, dissipation {dissipation:.1e}, estimated {estimates}")
+    table = np.array(rows)
+    print(f"{len(rows)} scenes, {beyond} beyond {tolerance:g}; largest errors: tractions {table[:, 0].max():.1e}, dissipation "
+          f"{table[:, 2].max():.1e}; solves {solves[1]} for {solves[0]} by events ({solves[1] / solves[0]:.2f})")  # fmt: skip
+    for name, true, estimate in (("tractions", table[:, 0], table[:, 1]), ("dissipation", table[:, 2], table[:, 3])):
+        erring = true > (ROUND_OFF_TRACTION if name == "tractions" else ROUND_OFF_DISSIPATION)
+        if erring.any():
+            ratio = estimate[erring] / true[erring]
+            print(f"{name}: {erring.sum()} err, {100 * np.mean(ratio >= 1):.0f} % of them by no more than estimated, "
+                  f"{100 * np.mean(ratio >= 1 / 3):.0f} % by no more than three times that; median estimate/error {np.median(ratio):.1f}")  # fmt: skip
+
+
+if __name__ == "__main__":
+    if sys.argv[1] == "cycles":
+        study_cycles(int(sys.argv[2]))
+    else:
+        study_random(int(sys.argv[2]), float(sys.argv[3]))

@@ -1,0 +1,134 @@
+!> What friction dissipates along a chain of large increments.
+!>
+!> Along the path of the exact solution the dissipation is -int tau ds, summed over the surface. Each node's part has corners
+!> where it begins to slip, to stick or to touch; the sum is smooth (by energy: it is the work of the loads, less what is
+!> stored), and what the compliance makes of shear in it, tau C dtau, is integrated exactly by every interpolation of tau,
+!> since C is symmetric. So the sum is integrated with parabolas through three states each (Simpson's rule), and improved once
+!> (Boole's rule, Richardson 1911). How much that changes with half the number of states tells the error.
+!>
+!> Node by node tau is mu p wherever a node slips, so that what it dissipates lies between its slip times the smaller and times
+!> the larger limit at both ends of an increment. Under constant pressures that is exact.
+module mfv_chain_dissipation
+   use mfv_contact_fields, only: contact_fields_type
+   use mfv_contact_model, only: contact_model_type
+   use mfv_contact_state, only: contact_state_type
+   use mfv_kinds, only: wp
+   use mfv_node_status
+   implicit none
+   private
+   public :: chain_dissipation, node_wise_dissipation
+
+contains
+
+   !> What friction dissipates from the fields `start` through the fields `after`, evenly spaced along a smooth path, shape
+   !> (parts), a power of two; force. `error`: what of it is estimated to be wrong, the change from half the number of states to
+   !> this one (which has a fraction of that error), or that from Simpson's to Boole's rule. `corners`: what the corners of this
+   !> path make of it, one where a node changes its status, at `changes` of them. (A corner is taken for part of a parabola: an
+   !> error of random sign, 0.4 of that of the trapezoidal rule for each on the average, if they share the curvature.)
+   subroutine chain_dissipation(model, start, after, changes, work, error, corners)
+      class(contact_model_type), intent(in) :: model
+      type(contact_fields_type), intent(in) :: start, after(:)
+      integer, intent(in) :: changes
+      real(wp), intent(out) :: work, error, corners
+      real(wp), parameter :: part = 0.8_wp
+      integer :: parts
+      real(wp) :: simpson, coarser, unused
+
+      parts = size(after)
+      call integrate(1, work, simpson)
+      error = abs(work)
+      corners = 0.0_wp
+      if (parts == 1) return
+      corners = part*abs(trapezoidal() - simpson)/sqrt(real(max(changes, 1), wp))
+      call integrate(2, coarser, unused)
+      error = max(abs(work - coarser), abs(work - simpson))
+
+   contains
+
+      !> The best rule for every `stride`-th state, and Simpson's for them.
+      subroutine integrate(stride, best, simpson)
+         integer, intent(in) :: stride
+         real(wp), intent(out) :: best, simpson
+
+         simpson = composite(stride)
+         best = simpson
+         if (parts/stride >= 4) best = simpson + (simpson - composite(2*stride))/15.0_wp
+      end subroutine integrate
+
+      !> Parabolas through every `stride`-th state; one interval alone: a straight line.
+      real(wp) function composite(stride)
+         integer, intent(in) :: stride
+         integer :: i
+
+         if (parts == stride) then
+            composite = straight(start, after(parts))
+            return
+         end if
+         composite = curved(start, after(stride), after(2*stride))
+         do i = 2*stride, parts - 2*stride, 2*stride
+            composite = composite + curved(after(i), after(i + stride), after(i + 2*stride))
+         end do
+      end function composite
+
+      !> Straight lines through all states.
+      real(wp) function trapezoidal()
+         integer :: i
+
+         trapezoidal = straight(start, after(1))
+         do i = 2, parts
+            trapezoidal = trapezoidal + straight(after(i - 1), after(i))
+         end do
+      end function trapezoidal
+
+      !> -int tau ds along a straight line.
+      real(wp) function straight(a, b)
+         type(contact_fields_type), intent(in) :: a, b
+
+         straight = -0.5_wp*model%force((a%shear + b%shear)*(b%slip() - a%slip()))
+      end function straight
+
+      !> -int tau ds along parabolas through three evenly spaced states.
+      real(wp) function curved(a, b, c)
+         type(contact_fields_type), intent(in) :: a, b, c
+         real(wp), dimension(size(a%shear)) :: slope, turn, slip_slope, slip_turn
+
+         slope = 0.5_wp*(c%shear - a%shear)
+         turn = 0.5_wp*((c%shear - b%shear) - (b%shear - a%shear))
+         slip_slope = 0.5_wp*(c%slip() - a%slip())
+         slip_turn = 0.5_wp*((c%slip() - b%slip()) - (b%slip() - a%slip()))
+         curved = -2.0_wp*model%force(b%shear*slip_slope + (2.0_wp*slope*slip_turn + turn*slip_slope)/3.0_wp)
+      end function curved
+   end subroutine chain_dissipation
+
+   !> What friction dissipates node by node on the way from `before`, which has the statuses on the way, to the fields `after`,
+   !> force/length, shape (nodes); and by how much the sum may err, force. Nodes that slip already at the start do so with
+   !> tractions from those then to those after: the trapezoid. Others begin to slip on the way, half way on the average; and
+   !> nodes that part do so half way on the average. `noise`: the linear solver's.
+   pure subroutine node_wise_dissipation(model, before, after, noise, work, error)
+      class(contact_model_type), intent(in) :: model
+      type(contact_state_type), intent(in) :: before
+      type(contact_fields_type), intent(in) :: after
+      real(wp), intent(in) :: noise
+      real(wp), intent(out) :: work(:), error
+      real(wp), parameter :: at_limit = 1.0e-9_wp, noises = 100.0_wp
+      real(wp), dimension(size(work)) :: slipped, limit, limit_after
+      logical :: on(size(work))
+
+      slipped = after%slip() - before%stuck_slip
+      limit = model%static_friction*before%fields%pressure
+      limit_after = model%static_friction*max(after%pressure, 0.0_wp)
+      on = slips(before%status) .and. -before%fields%shear*slip_sign(before%status) &
+           >= limit*(1.0_wp - max(at_limit, noises*noise))
+      where (on)
+         work = -0.5_wp*(before%fields%shear + after%shear)*slipped
+      elsewhere (slips(before%status))
+         work = (0.75_wp*abs(after%shear) + 0.25_wp*limit)*abs(slipped)
+      elsewhere (.not. in_contact(before%status))
+         work = max(-0.25_wp*before%fields%shear*slipped, 0.0_wp)
+      elsewhere
+         work = 0.0_wp
+      end where
+      error = model%force(merge(0.5_wp*abs(limit - limit_after)*abs(slipped), 0.0_wp, before%status /= node_stick))
+   end subroutine node_wise_dissipation
+
+end module mfv_chain_dissipation

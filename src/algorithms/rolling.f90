@@ -1,0 +1,107 @@
+!> How two bodies creep while they roll on each other: the sliding per rolled distance, over the last few intervals of the mesh.
+!> In steady rolling it repeats with every interval, as nodes enter and leave one by one; between events it is linear, and
+!> interpolated where the contact has rolled by a whole number of intervals.
+module mfv_rolling
+   use, intrinsic :: ieee_arithmetic, only: ieee_quiet_nan, ieee_value
+   use mfv_archive, only: archive_type
+   use mfv_kinds, only: wp
+   implicit none
+   private
+   public :: rolling_type
+
+   !> Over how many intervals the creepage is measured.
+   integer, parameter :: intervals = 4
+
+   type :: rolling_type
+      private
+      !> Which way it rolls, 1 to the right, -1 to the left; how many interval ends it has passed that way, counted to `intervals` + 1.
+      integer :: direction = 0, passed = 0
+      !> How far it has rolled that way under constant forces, length.
+      real(wp) :: distance = 0.0_wp
+      !> Sliding at the ends of the last intervals, length, the last one first; and an interval, length.
+      real(wp) :: slid(intervals + 1) = 0.0_wp, interval = 0.0_wp
+   contains
+      procedure :: follow
+      procedure :: creepage
+      procedure :: is_steady
+      procedure :: heads_right
+      procedure :: carry
+   end type rolling_type
+
+contains
+
+   !> Follow an increment, in which the contact rolls from `rolled(1)` to `rolled(2)` and the surfaces slide from `slid(1)` to
+   !> `slid(2)`, lengths; `forces_stay`: under constant forces. What does not roll, or rolls back, begins anew.
+   pure subroutine follow(self, interval, rolled, slid, forces_stay)
+      class(rolling_type), intent(inout) :: self
+      real(wp), intent(in) :: interval, rolled(2), slid(2)
+      logical, intent(in) :: forces_stay
+      real(wp) :: ends, last, part
+      integer :: direction, i
+
+      direction = 0
+      if (abs(rolled(2) - rolled(1)) > 0.0_wp) direction = merge(1, -1, rolled(2) > rolled(1))
+      if (direction /= self%direction) self%passed = 0
+      if (direction /= self%direction .or. .not. forces_stay) self%distance = 0.0_wp
+      if (forces_stay) self%distance = self%distance + abs(rolled(2) - rolled(1))
+      self%direction = direction
+      self%interval = interval
+      if (direction == 0) return
+      last = aint_down(direction*rolled(2)/interval)
+      ends = last - aint_down(direction*rolled(1)/interval)
+      do i = nint(min(ends, real(intervals + 1, wp))) - 1, 0, -1
+         part = ((last - i)*direction*interval - rolled(1))/(rolled(2) - rolled(1))
+         self%slid(2:) = self%slid(:intervals)
+         self%slid(1) = slid(1) + part*(slid(2) - slid(1))
+         self%passed = min(self%passed + 1, intervals + 1)
+      end do
+   end subroutine follow
+
+   !> The largest whole number that is not above a number.
+   pure real(wp) function aint_down(number)
+      real(wp), intent(in) :: number
+
+      aint_down = aint(number)
+      if (aint_down > number) aint_down = aint_down - 1.0_wp
+   end function aint_down
+
+   !> Sliding of the upper surface over the lower one per rolled distance, both to the right; NaN where it has not rolled over
+   !> enough intervals.
+   pure real(wp) function creepage(self)
+      class(rolling_type), intent(in) :: self
+
+      creepage = ieee_value(1.0_wp, ieee_quiet_nan)
+      if (self%passed > intervals) &
+         creepage = (self%slid(1) - self%slid(intervals + 1))/(self%direction*intervals*self%interval)
+   end function creepage
+
+   !> Whether it has rolled by twice the length of a contact of this half-width (length) under constant forces: transients of
+   !> the tractions have left it.
+   pure logical function is_steady(self, half_width)
+      class(rolling_type), intent(in) :: self
+      real(wp), intent(in) :: half_width
+      real(wp), parameter :: lengths = 2.0_wp, round_off = 1.0e-6_wp
+
+      is_steady = self%distance*(1.0_wp + round_off) >= lengths*2.0_wp*half_width .and. half_width > 0.0_wp
+   end function is_steady
+
+   !> Whether it rolls to the right.
+   pure logical function heads_right(self)
+      class(rolling_type), intent(in) :: self
+
+      heads_right = self%direction > 0
+   end function heads_right
+
+   !> See mfv_archive.
+   subroutine carry(self, archive)
+      class(rolling_type), intent(inout) :: self
+      type(archive_type), intent(inout) :: archive
+
+      call archive%carry(self%direction)
+      call archive%carry(self%passed)
+      call archive%carry(self%distance)
+      call archive%fill(self%slid)
+      call archive%carry(self%interval)
+   end subroutine carry
+
+end module mfv_rolling

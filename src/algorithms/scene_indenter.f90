@@ -1,0 +1,68 @@
+!> The gap of a scene as closed forms have it, and the contact that they expect.
+module mfv_scene_indenter
+   use mfv_body, only: body_type, shape_flat_punch, shape_half_plane, shape_power, shape_rounded_punch
+   use mfv_kinds, only: wp
+   use mfv_reference_indenter, only: flat_indenter, indenter_type, power_indenter, rounded_punch_indenter
+   use mfv_scene, only: control_displacement, control_force, scene_type
+   implicit none
+   private
+   public :: indenter_of, largest_half_width, half_width_of_forces
+
+contains
+
+   !> The gap of both bodies, circles as parabolas and flat punches as half-planes; flat where a body has no such form.
+   pure function indenter_of(scene) result(indenter)
+      type(scene_type), intent(in) :: scene
+      type(indenter_type) :: indenter
+
+      indenter = flat_indenter()
+      if (.not. (has_form(scene%lower) .and. has_form(scene%upper))) return
+      if (scene%curvature() > 0.0_wp) call indenter%add(power_indenter(0.5_wp*scene%curvature(), 2.0_wp))
+      call add_body(indenter, scene%lower)
+      call add_body(indenter, scene%upper)
+   end function indenter_of
+
+   !> Whether a body's shape is one of which there are closed forms.
+   pure logical function has_form(body)
+      type(body_type), intent(in) :: body
+
+      has_form = body%circular() .or. any(body%shape == [shape_half_plane, shape_flat_punch, shape_rounded_punch, shape_power])
+   end function has_form
+
+   pure subroutine add_body(indenter, body)
+      type(indenter_type), intent(inout) :: indenter
+      type(body_type), intent(in) :: body
+
+      if (body%shape == shape_power) call indenter%add(power_indenter(body%coefficient, body%exponent))
+      if (body%shape == shape_rounded_punch) call indenter%add(rounded_punch_indenter(body%flat_half_width, body%radius))
+   end subroutine add_body
+
+   !> The largest contact half-width, length, that the closed form expects of the targets of the scene's steps, of approaches at most
+   !> `most` (length); 0 where there is no closed form, or none of the targets presses.
+   pure real(wp) function largest_half_width(scene, most) result(largest)
+      type(scene_type), intent(in) :: scene
+      real(wp), intent(in) :: most
+      type(indenter_type) :: indenter
+      real(wp) :: approach
+
+      largest = half_width_of_forces(scene)
+      indenter = indenter_of(scene)
+      approach = maxval(scene%steps%normal_target, mask=scene%steps%normal_control == control_displacement)
+      if (approach > 0.0_wp .and. .not. indenter%is_flat() .and. scene%modulus() > 0.0_wp) &
+         largest = max(largest, indenter%half_width_at_approach(approach, scene%datum(), most))
+   end function largest_half_width
+
+   !> The same of the normal forces alone.
+   pure real(wp) function half_width_of_forces(scene) result(half_width)
+      type(scene_type), intent(in) :: scene
+      type(indenter_type) :: indenter
+      real(wp) :: force
+
+      half_width = 0.0_wp
+      indenter = indenter_of(scene)
+      force = maxval(scene%steps%normal_target, mask=scene%steps%normal_control == control_force)
+      if (force > 0.0_wp .and. .not. indenter%is_flat() .and. scene%modulus() > 0.0_wp) &
+         half_width = indenter%half_width(0.5_wp*force/scene%modulus())
+   end function half_width_of_forces
+
+end module mfv_scene_indenter

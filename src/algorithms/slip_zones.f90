@@ -1,0 +1,370 @@
+!> Whether a mesh resolves the slip zones of partial slip.
+!>
+!> What a leg of the load history (a straight segment) dissipates goes with the third power of the width of its slip zones, so
+!> that zones of a few nodes tell it badly: by no more than dissipation_constant/c^2, relative, where the widest is c intervals
+!> wide (measured against Mindlin's closed form, docs/verification.md). Where not even one node slips, the width comes from
+!> the tractions. Next to the edge of the contact, at the distance d, the friction limit goes as M sqrt(d) (M is mu L on first
+!> loading and 2 mu L after a reversal, L sqrt(d) the pressure), and the change of the shear traction of a contact where all
+!> sticks as K/sqrt(d). The slip zone of Cattaneo and Mindlin, M (sqrt(d) - sqrt(d - c)), has the same far field where
+!> c = 2 K/M: for small forces, c/a = Q/(2 mu P). It dissipates pi mu L M c^3/(24 m), m the contact modulus.
+module mfv_slip_zones
+   use mfv_archive, only: archive_type
+   use mfv_body, only: shape_matrix
+   use mfv_compliance, only: block_up
+   use mfv_contact_model, only: contact_model_type
+   use mfv_contact_state, only: contact_state_type
+   use mfv_kinds, only: pi, wp
+   use mfv_node_status, only: holds, in_contact, motion_sign, node_frictionless
+   use mfv_reference_spence, only: spence_stick_ratio
+   use mfv_strings, only: to_text
+   use mfv_zone_edges, only: ends_with_body, find_zone_edges, zone_edges_type
+   implicit none
+   private
+   public :: slip_record_type, leg_start_type, widest_slip_zone, resolved_nodes, needed_mesh, &
+             contact_interval, largest_resolved_error
+
+   !> Nodes that a slip zone should have.
+   integer, parameter :: resolved_nodes = 4
+   !> Intervals that a slip zone should be wide so that it has them.
+   real(wp), parameter :: resolving_intervals = 4.5_wp
+   !> See above.
+   real(wp), parameter :: dissipation_constant = 0.7_wp
+   !> What the dissipation of slip zones that the mesh just resolves errs by at most, relative.
+   real(wp), parameter :: largest_resolved_error = dissipation_constant/resolving_intervals**2
+   !> Legs with too few nodes matter to the dissipation if they have more than this part of it.
+   real(wp), parameter :: coarse_share = 0.05_wp
+   !> Hidden slip zones narrower than this part of an interval matter to the dissipation only; narrower than this part of the
+   !> contact half-width to nothing.
+   real(wp), parameter :: visible = 0.05_wp, negligible = 1.0e-6_wp
+   !> The same of pressing with friction, where slip zones shrink exponentially with mu.
+   real(wp), parameter :: negligible_pressing = 1.0e-4_wp
+
+   !> What a leg began from.
+   type :: leg_start_type
+      real(wp) :: dissipation = 0.0_wp, normal_force = 0.0_wp, tangential_force = 0.0_wp
+      !> Shear traction, force/length^2, shape (nodes).
+      real(wp), allocatable :: shear(:)
+   contains
+      procedure :: carry => carry_leg_start
+   end type leg_start_type
+
+   !> What is known of the slip zones of all legs so far: sums, so that the difference of two records is the record of what is
+   !> between them.
+   type :: slip_record_type
+      !> Energy per unit thickness (force): dissipated, with an estimate of what slip zones of no node would have; the part of legs
+      !> whose slip zones have too few nodes.
+      real(wp) :: work = 0.0_wp, coarse_work = 0.0_wp
+      !> Sums over these legs of their work times the nodes (force), and times the width of their slip zones (force*length).
+      real(wp) :: nodes = 0.0_wp, width = 0.0_wp
+      !> Sum over all legs of their work over the square of the width of their slip zones, force/length^2.
+      real(wp) :: sharpness = 0.0_wp
+      !> The widest slip zone now: its nodes, and its width, length. Width 0: none.
+      integer :: nodes_now = 0
+      real(wp) :: width_now = 0.0_wp
+   contains
+      procedure :: add_leg
+      procedure :: since
+      procedure :: is_coarse
+      procedure :: error_number
+      procedure :: mean_nodes
+      procedure :: mean_width
+      procedure :: is_coarse_now
+      procedure :: carry
+   end type slip_record_type
+
+contains
+
+   !> Nodes of the widest slip zone: next to each other, moving, and bordering on nodes that hold. 0 where there is none; where a
+   !> whole patch slides there is no zone to resolve either, and it counts with its nodes, but as resolved at least.
+   pure integer function widest_slip_zone(status) result(widest)
+      integer, intent(in) :: status(:)
+      integer :: first, last, n
+      logical :: partial
+
+      widest = 0
+      n = size(status)
+      last = 0
+      do while (last < n)
+         first = last + 1
+         last = first
+         if (motion_sign(status(first)) == 0) cycle
+         do while (last < n)
+            if (motion_sign(status(last + 1)) == 0) exit
+            last = last + 1
+         end do
+         partial = .false.
+         if (first > 1) partial = holds(status(first - 1))
+         if (last < n) partial = partial .or. holds(status(last + 1))
+         widest = max(widest, merge(last - first + 1, max(last - first + 1, resolved_nodes), partial))
+      end do
+   end function widest_slip_zone
+
+   !> Add a leg that has led from `start` to `state`. `nodes`: the most that a slip zone had on the way; `noise`: relative, of the
+   !> linear solver.
+   subroutine add_leg(self, model, start, state, nodes, noise)
+      class(slip_record_type), intent(inout) :: self
+      type(contact_model_type), intent(in) :: model
+      type(leg_start_type), intent(in) :: start
+      type(contact_state_type), intent(in) :: state
+      integer, intent(in) :: nodes
+      real(wp), intent(in) :: noise
+      real(wp) :: work, width
+
+      if (.not. model%tangential .or. .not. allocated(model%scene%friction%law)) return
+      if (nodes == 0) then
+         call estimate_hidden_slip(model, start, state, noise, width, work)
+         if (.not. work > 0.0_wp .and. widest_slip_zone(state%status) > 0) return
+      else
+         work = state%dissipation - start%dissipation
+         width = max(mean_slip_width(model, state), (nodes - 1)*contact_interval(model, state))
+      end if
+      self%nodes_now = nodes
+      self%width_now = width
+      self%work = self%work + work
+      if (width > 0.0_wp) self%sharpness = self%sharpness + work/width**2
+      if (nodes >= resolved_nodes) return
+      self%coarse_work = self%coarse_work + work
+      self%nodes = self%nodes + nodes*work
+      self%width = self%width + width*work
+   end subroutine add_leg
+
+   !> Width of the slip zones at the edges of stick zones, on the average, length.
+   real(wp) function mean_slip_width(model, state) result(width)
+      type(contact_model_type), intent(in) :: model
+      type(contact_state_type), intent(in) :: state
+      real(wp), parameter :: narrowest = 0.1_wp
+      type(zone_edges_type) :: edges
+      logical :: moves(0:size(state%status))
+
+      moves(0) = .false.
+      moves(1:) = motion_sign(state%status) /= 0
+      call find_zone_edges(model, state, edges)
+      width = (edges%contact_length - edges%stick_length)/max(count(moves(1:) .and. .not. moves(:size(state%status) - 1)), 1)
+      width = max(width, narrowest*contact_interval(model, state))
+   end function mean_slip_width
+
+   !> Width (length) of the slip zone that a leg has made although no node slips, and what it dissipates, force; 0 for both where
+   !> the theory has no slip either, or where it does not hold: a wider zone would show.
+   subroutine estimate_hidden_slip(model, start, state, noise, width, missing)
+      type(contact_model_type), intent(in) :: model
+      type(leg_start_type), intent(in) :: start
+      type(contact_state_type), intent(in) :: state
+      real(wp), intent(in) :: noise
+      real(wp), intent(out) :: width, missing
+      integer, parameter :: fewest = 6
+      real(wp), parameter :: widest = 1.5_wp
+      real(wp) :: change(size(state%status)), one_width, one_work
+      integer :: first, last, side
+
+      width = 0.0_wp
+      missing = 0.0_wp
+      if (.not. model%scene%friction%law%sticks .or. any(state%status == node_frictionless)) return
+      first = findloc(in_contact(state%status), .true., dim=1)
+      last = findloc(in_contact(state%status), .true., dim=1, back=.true.)
+      if (last - first + 1 < fewest) return
+      if (.not. start%normal_force > 0.0_wp) then
+         call add_pressing
+         return
+      end if
+      if (presses_within_friction(model, start, state)) return
+      change = change_of_shear(start, state)
+      if (.not. maxval(abs(change)) > significant(model, state, noise)) return
+      do side = -1, 1, 2
+         call hidden_at_edge(model, state, change, merge(first, last, side < 0), side, one_width, one_work)
+         width = max(width, one_width)
+         missing = missing + one_work
+      end do
+      if (width > widest*contact_interval(model, state)) missing = 0.0_wp
+      if (.not. missing > 0.0_wp) width = 0.0_wp
+
+   contains
+
+      !> Bodies that couple always slip next to the edge where they are pressed with friction from the start (Spence 1973).
+      subroutine add_pressing
+         real(wp) :: ratio, half_width
+
+         if (.not. model%compliance%has_block(block_up) .or. .not. model%scene%modulus() > 0.0_wp) return
+         half_width = 0.5_wp*sum(model%width(first:last))
+         ratio = spence_stick_ratio(model%scene%friction%static%largest(), model%scene%dundurs_beta())
+         width = half_width*(1.0_wp - ratio)
+         if (width > negligible_pressing*half_width .and. width <= widest*contact_interval(model, state)) &
+            missing = model%scene%friction%static%largest()**2/model%scene%modulus()*state%fields%normal_force**2 &
+                      *(width/half_width)**3
+         if (.not. missing > 0.0_wp) width = 0.0_wp
+      end subroutine add_pressing
+   end subroutine estimate_hidden_slip
+
+   !> Whether more pressure comes with a leg than its tangential force needs: what newly touches then holds the change of the
+   !> tangential force below the friction limit everywhere (Mindlin and Deresiewicz 1953).
+   pure logical function presses_within_friction(model, start, state)
+      type(contact_model_type), intent(in) :: model
+      type(leg_start_type), intent(in) :: start
+      type(contact_state_type), intent(in) :: state
+      real(wp), parameter :: round_off = 1.0e-9_wp
+      real(wp) :: pressed, sheared
+
+      pressed = state%fields%normal_force - start%normal_force
+      sheared = abs(state%fields%tangential_force - start%tangential_force)
+      presses_within_friction = pressed > round_off*state%fields%normal_force .and. &
+                                sheared <= model%scene%friction%static%largest()*pressed*(1.0_wp + round_off)
+   end function presses_within_friction
+
+   !> By how much a leg has changed the shear traction, force/length^2; its mesh may have grown at both ends.
+   pure function change_of_shear(start, state) result(change)
+      type(leg_start_type), intent(in) :: start
+      type(contact_state_type), intent(in) :: state
+      real(wp) :: change(size(state%status))
+      integer :: added, before
+
+      before = size(start%shear)
+      added = (size(change) - before)/2
+      change = state%fields%shear
+      change(added + 1:added + before) = change(added + 1:added + before) - start%shear
+   end function change_of_shear
+
+   !> Changes of the shear traction below this are round-off, force/length^2.
+   pure real(wp) function significant(model, state, noise)
+      type(contact_model_type), intent(in) :: model
+      type(contact_state_type), intent(in) :: state
+      real(wp), intent(in) :: noise
+      real(wp), parameter :: round_off = 1.0e-9_wp, noises = 100.0_wp
+
+      significant = max(round_off, noises*noise)*model%scene%friction%static%largest()*maxval(state%fields%pressure)
+   end function significant
+
+   !> Width (length) of the slip zone that the `change` of the shear traction, force/length^2, makes at the edge of the contact
+   !> on `side` (-1 left, 1 right), whose outermost node `edge` holds; and what it dissipates, force. The squares of the friction
+   !> limit and of what the shear traction lacks of it are straight lines next to the edge; their zeros are the width apart.
+   !> Room for the change, over the friction limit: 2 after a reversal, for the edge slips under any shear, seen on the mesh or not.
+   subroutine hidden_at_edge(model, state, change, edge, side, width, work)
+      type(contact_model_type), intent(in) :: model
+      type(contact_state_type), intent(in) :: state
+      real(wp), intent(in) :: change(:)
+      integer, intent(in) :: edge, side
+      real(wp), intent(out) :: width, work
+      real(wp), parameter :: largest_room = 2.0_wp, least_room = 0.05_wp, round_off = 1.0e-6_wp
+      real(wp), dimension(3) :: limit, before, towards, room
+      real(wp) :: room_number, slope, lack_slope, intervals
+      integer :: node(3), i
+
+      width = 0.0_wp
+      work = 0.0_wp
+      node = [(edge - side*i, i=1, 3)]
+      if (ends_with_body(model, edge, side) .or. .not. all(in_contact(state%status(node)))) return
+      limit = model%static_friction(node)*state%fields%pressure(node)
+      if (.not. (all(limit > 0.0_wp) .and. limit(3) > limit(1))) return
+      towards = sign(1.0_wp, change(node(2)))*change(node)
+      before = sign(1.0_wp, change(node(2)))*(state%fields%shear(node) - change(node))
+      room_number = min(max(1.0_wp - sum(before/limit)/3, least_room), largest_room)
+      if (before(2) < 0.0_wp .and. towards(2) <= 2.0_wp*abs(before(2))*(1.0_wp + round_off)) room_number = largest_room
+      room = room_number*limit
+      slope = 0.5_wp*(room(3)**2 - room(1)**2)
+      room(1) = max(room(1) - towards(1), 0.0_wp)
+      room(3) = max(room(3) - towards(3), 0.0_wp)
+      lack_slope = 0.5_wp*(room(3)**2 - room(1)**2)
+      if (.not. lack_slope > 0.0_wp) return
+      intervals = (room_number*limit(1))**2/slope - room(1)**2/lack_slope
+      if (.not. intervals > negligible) return
+      width = intervals*model%width(edge)
+      work = pi*slope/model%width(edge)*width**3/(24.0_wp*room_number*model%compliance%modulus)
+   end subroutine hidden_at_edge
+
+   !> The record of what has come since another one of the same run.
+   elemental type(slip_record_type) function since(self, before)
+      class(slip_record_type), intent(in) :: self
+      type(slip_record_type), intent(in) :: before
+
+      since = slip_record_type(self%work - before%work, self%coarse_work - before%coarse_work, self%nodes - before%nodes, &
+                               self%width - before%width, self%sharpness - before%sharpness, self%nodes_now, self%width_now)
+   end function since
+
+   !> Whether slip zones with too few nodes matter to the dissipation.
+   elemental logical function is_coarse(self)
+      class(slip_record_type), intent(in) :: self
+
+      is_coarse = self%coarse_work > coarse_share*self%work
+   end function is_coarse
+
+   !> The relative error of the dissipation over the square of the interval, 1/length^2; 0 where nothing slips.
+   elemental real(wp) function error_number(self)
+      class(slip_record_type), intent(in) :: self
+
+      error_number = 0.0_wp
+      if (self%work > 0.0_wp) error_number = dissipation_constant*self%sharpness/self%work
+   end function error_number
+
+   !> Nodes of these slip zones, on the average by the work of the legs.
+   elemental integer function mean_nodes(self)
+      class(slip_record_type), intent(in) :: self
+
+      mean_nodes = 0
+      if (self%coarse_work > 0.0_wp) mean_nodes = nint(self%nodes/self%coarse_work)
+   end function mean_nodes
+
+   !> Their width, length, in the same way.
+   elemental real(wp) function mean_width(self)
+      class(slip_record_type), intent(in) :: self
+
+      mean_width = 0.0_wp
+      if (self%coarse_work > 0.0_wp) mean_width = self%width/self%coarse_work
+   end function mean_width
+
+   !> Whether the slip zones at the end of the last leg have too few nodes for the stick ratio. `interval`: length.
+   elemental logical function is_coarse_now(self, interval)
+      class(slip_record_type), intent(in) :: self
+      real(wp), intent(in) :: interval
+
+      is_coarse_now = self%nodes_now < resolved_nodes .and. &
+                      (self%nodes_now > 0 .or. self%width_now > visible*interval)
+   end function is_coarse_now
+
+   !> Width of the intervals in contact, on the average, length; without contact of all.
+   pure real(wp) function contact_interval(model, state)
+      type(contact_model_type), intent(in) :: model
+      type(contact_state_type), intent(in) :: state
+
+      contact_interval = model%interval()
+      if (state%contact_nodes() > 0) contact_interval = sum(model%width, mask=in_contact(state%status))/state%contact_nodes()
+   end function contact_interval
+
+   !> In words, the mesh that resolves slip zones of a width (length).
+   function needed_mesh(model, state, width) result(words)
+      type(contact_model_type), intent(in) :: model
+      type(contact_state_type), intent(in) :: state
+      real(wp), intent(in) :: width
+      character(len=80) :: words
+      real(wp), parameter :: countable = 1.0e8_wp
+      real(wp) :: nodes, digits
+
+      words = 'intervals of '//to_text(width/resolving_intervals, 2)
+      if (model%scene%lower%shape == shape_matrix) return
+      nodes = model%scene%mesh%nodes*resolving_intervals*contact_interval(model, state)/width
+      digits = 10.0_wp**(floor(log10(nodes)) - 1)
+      if (nodes < countable) words = 'about '//to_text(nint(digits*ceiling(nodes/digits)))//' nodes ('//trim(words)//')'
+   end function needed_mesh
+
+   !> See mfv_archive.
+   subroutine carry(self, archive)
+      class(slip_record_type), intent(inout) :: self
+      type(archive_type), intent(inout) :: archive
+
+      call archive%carry(self%work)
+      call archive%carry(self%coarse_work)
+      call archive%carry(self%nodes)
+      call archive%carry(self%width)
+      call archive%carry(self%sharpness)
+      call archive%carry(self%nodes_now)
+      call archive%carry(self%width_now)
+   end subroutine carry
+
+   subroutine carry_leg_start(self, archive)
+      class(leg_start_type), intent(inout) :: self
+      type(archive_type), intent(inout) :: archive
+
+      call archive%carry(self%dissipation)
+      call archive%carry(self%normal_force)
+      call archive%carry(self%tangential_force)
+      call archive%carry(self%shear)
+   end subroutine carry_leg_start
+
+end module mfv_slip_zones

@@ -1,0 +1,57 @@
+!> The inside of a body in a contact state, with the edges that the state has between the nodes.
+module mfv_state_interior
+   use, intrinsic :: ieee_arithmetic, only: ieee_quiet_nan, ieee_value
+   use mfv_contact_model, only: contact_model_type
+   use mfv_contact_state, only: contact_state_type
+   use mfv_interior, only: interior_type
+   use mfv_kinds, only: wp
+   use mfv_zone_edges, only: find_patches, patch_type
+   implicit none
+   private
+   public :: state_interior, find_edges_at_nodes
+
+contains
+
+   !> The lower or `upper` body under the tractions of a state; `available`: false for a rigid body or a mere matrix.
+   !> `fewest_elements`: see mfv_surface_tractions.
+   subroutine state_interior(model, state, upper, interior, available, fewest_elements)
+      type(contact_model_type), intent(in) :: model
+      type(contact_state_type), intent(in) :: state
+      logical, intent(in) :: upper
+      type(interior_type), intent(out) :: interior
+      logical, intent(out) :: available
+      integer, intent(in), optional :: fewest_elements
+      real(wp), dimension(model%nodes()) :: contact_edge, stick_edge
+
+      call find_edges_at_nodes(model, state, contact_edge, stick_edge)
+      call model%scene%interior(upper, model%arc, model%width, state%fields%pressure, state%fields%shear, contact_edge, &
+                                stick_edge, interior, available, fewest_elements)
+   end subroutine state_interior
+
+   !> Edges of the contact and stick zones of a state, lengths along the surface from the pole, each at the first or last node
+   !> of its zone, and not a number elsewhere; shape (nodes). Zones of one node are those of its interval. Stick zones only
+   !> where friction has a corner at the limit.
+   subroutine find_edges_at_nodes(model, state, contact_edge, stick_edge)
+      type(contact_model_type), intent(in) :: model
+      type(contact_state_type), intent(in) :: state
+      real(wp), intent(out) :: contact_edge(:), stick_edge(:)
+      type(patch_type), allocatable :: patches(:)
+      integer :: i, j
+
+      contact_edge = ieee_value(1.0_wp, ieee_quiet_nan)
+      stick_edge = contact_edge
+      call find_patches(model, state, patches)
+      do i = 1, size(patches)
+         associate (patch => patches(i))
+            if (patch%last > patch%first) contact_edge([patch%first, patch%last]) = [patch%left, patch%right]
+            if (.not. model%scene%friction%is_coulomb()) cycle
+            do j = 1, size(patch%stick)
+               associate (zone => patch%stick(j))
+                  if (zone%last > zone%first) stick_edge([zone%first, zone%last]) = [zone%left, zone%right]
+               end associate
+            end do
+         end associate
+      end do
+   end subroutine find_edges_at_nodes
+
+end module mfv_state_interior

@@ -1,0 +1,169 @@
+!> Warnings about the undeformed surfaces under a contact: where they end, what they are between the points of a profile, how steep
+!> they are.
+module mfv_surface_warnings
+   use mfv_body, only: body_type, interpolation_cubic, interpolation_linear, shape_flat_punch, shape_power, shape_profile
+   use mfv_contact_state, only: contact_state_type
+   use mfv_kinds, only: pi, wp
+   use mfv_node_status, only: in_contact
+   use mfv_simulation, only: simulation_type
+   use mfv_strings, only: add_text, string_type, to_text
+   implicit none
+   private
+   public :: warn_of_surface
+
+contains
+
+   !> Add warnings about the surface of the lower or `upper` body of a simulation; `steepest`: degrees up to which flanks are small
+   !> enough for a half-plane.
+   subroutine warn_of_surface(simulation, upper, body, steepest, warnings)
+      type(simulation_type), intent(in) :: simulation
+      logical, intent(in) :: upper
+      type(body_type), intent(in) :: body
+      real(wp), intent(in) :: steepest
+      type(string_type), allocatable, intent(inout) :: warnings(:)
+      character(len=5) :: name
+      logical, allocatable :: contact(:)
+      real(wp) :: angle
+
+      name = merge('upper', 'lower', upper)
+      contact = touched(simulation)
+      if (.not. any(contact)) return
+      call check_end(simulation, contact, name, body, warnings)
+      if (body%shape == shape_profile) call check_interpolation(simulation, contact, name, body, warnings)
+      if (body%shape /= shape_power .or. body%exponent > 1.0_wp) return
+      angle = atan(body%coefficient)*180.0_wp/pi
+      if (angle > steepest) call add_text(warnings, 'the flanks of the '//name//' body rise by '//to_text(angle, 3)// &
+                                          ' degrees; bodies deform as half-planes, which is a poor approximation beyond '// &
+                                          to_text(steepest, 2)//' degrees')
+   end subroutine warn_of_surface
+
+   !> The nodes in contact in the last state or in that of the largest normal force among those kept.
+   function touched(simulation) result(contact)
+      type(simulation_type), intent(in) :: simulation
+      logical, allocatable :: contact(:)
+      type(contact_state_type) :: state
+      integer :: i, n
+
+      contact = in_contact(simulation%contact%state%status)
+      n = simulation%snapshot_count
+      if (n == 0) return
+      i = maxloc([(simulation%snapshots(i)%state%fields%normal_force, i=1, n)], dim=1)
+      state = simulation%padded_state(i)
+      contact = contact .or. in_contact(state%status)
+   end function touched
+
+   !> A contact cannot grow beyond the end of a surface. (That of a flat punch is a corner by design.)
+   subroutine check_end(simulation, contact, name, body, warnings)
+      type(simulation_type), intent(in) :: simulation
+      logical, intent(in) :: contact(:)
+      character(*), intent(in) :: name
+      type(body_type), intent(in) :: body
+      type(string_type), allocatable, intent(inout) :: warnings(:)
+      integer :: i, side
+
+      if (body%shape == shape_flat_punch) return
+      do side = -1, 1, 2
+         do i = 1, size(contact)
+            if (.not. contact(i) .or. .not. ends_at(i, side)) cycle
+            call add_text(warnings, 'the contact reaches the end of the surface of the '//name//' body, near x = '// &
+                          to_text(simulation%contact%model%x(i), 4)//', and cannot grow beyond it: the tractions there are '// &
+                          'those at a sharp corner')
+            return
+         end do
+      end do
+
+   contains
+
+      !> Whether the body has no surface one node further.
+      pure logical function ends_at(node, side)
+         integer, intent(in) :: node, side
+         real(wp) :: arc
+
+         associate (model => simulation%contact%model)
+            arc = model%arc(node) + side*model%interval()
+            if (node + side >= 1 .and. node + side <= model%nodes()) arc = model%arc(node + side)
+            ends_at = .not. model%scene%touchable(arc) .and. &
+                      (.not. body%covers(model%scene%x_of_arc(arc), model%scene%mesh%parabolic) .or. &
+                       (body%circular() .and. .not. body%rigid .and. abs(arc) >= 0.5_wp*pi*body%radius))
+         end associate
+      end function ends_at
+   end subroutine check_end
+
+   !> Points further apart than the nodes leave open what is between them, where that matters: a bump of the height e and the width h
+   !> takes a pressure of pi m e/h to be pressed flat (Johnson 1985, section 13.2: pi E* (e/2)/h of a sinusoid, E* = 2 m).
+   subroutine check_interpolation(simulation, contact, name, body, warnings)
+      type(simulation_type), intent(in) :: simulation
+      logical, intent(in) :: contact(:)
+      character(*), intent(in) :: name
+      type(body_type), intent(in) :: body
+      type(string_type), allocatable, intent(inout) :: warnings(:)
+      real(wp), parameter :: matters = 0.02_wp, further = 1.5_wp
+      real(wp), allocatable :: x(:), departure(:), spacing(:)
+      real(wp) :: part
+
+      x = pack(simulation%contact%model%x, contact)
+      departure = abs(body%from_polyline(x))
+      spacing = spacing_at(body%position, x)
+      if (maxval(spacing) <= further*simulation%contact%model%interval()) return
+      associate (model => simulation%contact%model, pressure => simulation%contact%state%fields%pressure)
+         if (model%scene%modulus() > 0.0_wp .and. maxval(pressure) > 0.0_wp) then
+            part = pi*model%scene%modulus()*maxval(departure/spacing)/maxval(pressure)
+         else
+            part = maxval(departure)/max(maxval(pack(model%initial_gap, contact)) - minval(pack(model%initial_gap, contact)), &
+                                         tiny(1.0_wp))
+         end if
+      end associate
+      if (part < matters) return
+      if (body%interpolation == interpolation_linear .and. corners_under(body, x) <= 2) return
+      call add_text(warnings, 'the profile of the '//name//' body is coarser than the mesh: its points are up to '// &
+                    to_text(maxval(spacing), 3)//' apart in the contact; straight lines and a smooth curve through them differ '// &
+                    'by up to '//to_text(maxval(departure), 3)//', equivalent to some '//to_text(100.0_wp*part, 2)// &
+                    ' % of the largest pressure: give more points, or '//trim(advice_for(body%interpolation)))
+   end subroutine check_interpolation
+
+   !> What to do about a profile that is not clear between its points; padded with blanks.
+   pure function advice_for(interpolation) result(advice)
+      integer, intent(in) :: interpolation
+      character(len=120) :: advice
+
+      select case (interpolation)
+      case (interpolation_cubic)
+         advice = "interpolation='linear' if the profile has corners at its points; they are rounded now"
+      case (interpolation_linear)
+         advice = "interpolation='monotone_cubic' if the profile is smooth; now it has corners at its points"
+      case default
+         advice = "interpolation='monotone_cubic' if the profile is smooth, 'linear' (the default) if it has corners at its points"
+      end select
+   end function advice_for
+
+   !> Distance of the points of a profile on either side of each x, length.
+   pure function spacing_at(position, x) result(spacing)
+      real(wp), intent(in) :: position(:), x(:)
+      real(wp) :: spacing(size(x))
+      integer :: i, k
+
+      k = 1
+      do i = 1, size(x)
+         do while (k < size(position) - 1)
+            if (position(k + 1) >= x(i)) exit
+            k = k + 1
+         end do
+         spacing(i) = position(k + 1) - position(k)
+      end do
+   end function spacing_at
+
+   !> Number of points between the outermost nodes in contact at which a profile changes its slope.
+   pure integer function corners_under(body, x) result(corners)
+      type(body_type), intent(in) :: body
+      real(wp), intent(in) :: x(:)
+      real(wp), parameter :: round_off = 1.0e-9_wp
+      real(wp), allocatable :: slope(:)
+      integer :: i, n
+
+      n = size(body%position)
+      slope = (body%height(2:) - body%height(:n - 1))/(body%position(2:) - body%position(:n - 1))
+      corners = count([(abs(slope(i) - slope(i - 1)) > round_off*maxval(abs(slope)) .and. &
+                        body%position(i) > minval(x) .and. body%position(i) < maxval(x), i=2, n - 1)])
+   end function corners_under
+
+end module mfv_surface_warnings

@@ -1,0 +1,234 @@
+!> Where in a body stresses are largest: the von Mises stress, and the tension along the surface.
+module mfv_stress_search
+   use, intrinsic :: ieee_arithmetic, only: ieee_is_finite, ieee_quiet_nan, ieee_value
+   use mfv_interior, only: interior_type, von_mises_stress
+   use mfv_kinds, only: pi, wp
+   use mfv_minimum, only: minimum_near, objective_type
+   implicit none
+   private
+   public :: largest_type, largest_von_mises, largest_tension
+
+   !> A largest stress, force/length^2, and where it is: x and y, length.
+   type :: largest_type
+      real(wp) :: value = 0.0_wp, x = 0.0_wp, y = 0.0_wp
+   end type largest_type
+
+   type, extends(objective_type) :: search_type
+      type(interior_type) :: interior
+      real(wp) :: deepest = 0.0_wp
+   contains
+      procedure :: value => negative_von_mises
+   end type search_type
+
+contains
+
+   !> The largest von Mises stress: the best points of a coarse net below the contact, which is dense towards the surface, are each
+   !> refined by a simplex search (GSL), those on the surface along it. A disk is not searched deeper than half its radius nor where
+   !> stresses rise towards the force in its centre. Zero where there is no load.
+   function largest_von_mises(interior) result(largest)
+      type(interior_type), intent(in) :: interior
+      type(largest_type) :: largest
+      integer, parameter :: across = 81, down = 41, starts = 6
+      real(wp), parameter :: shallowest = 1.0e-3_wp
+      real(wp) :: length, reach, place(2), value
+      real(wp), allocatable :: net(:, :), positions(:), depths(:)
+      type(search_type) :: search
+      integer :: best(2), i, j, start
+
+      length = 2.0_wp*interior%half_width()
+      if (.not. length > 0.0_wp) return
+      reach = length
+      if (interior%is_circle()) reach = min(reach, 0.5_wp*interior%radius())
+      positions = [(interior%middle() + length*((i - 1)/(across - 1.0_wp) - 0.5_wp), i=1, across)]
+      depths = [(reach*shallowest**((down - j)/(down - 1.0_wp)), j=1, down)]
+      search%interior = interior
+      search%deepest = reach
+      allocate (net(across, down))
+      do j = 1, down
+         do i = 1, across
+            net(i, j) = von_mises_at(interior, positions(i), depths(j))
+         end do
+      end do
+      if (interior%is_circle()) call leave_out_rise(net)
+      do start = 1, starts
+         best = maxloc(net)
+         if (.not. net(best(1), best(2)) > 0.0_wp) exit
+         place = [positions(best(1)), depths(best(2))]
+         call minimum_near(search, [length/across, 0.2_wp*place(2)], place, value)
+         if (place(2) < search%deepest .or. .not. interior%is_circle()) &
+            call keep_larger(interior, largest, place(1), min(max(place(2), 0.0_wp), search%deepest))
+         call clear_around(net, best)
+      end do
+      call search_surface(interior, largest)
+   end function largest_von_mises
+
+   !> The von Mises stress, to be made large, at an arc length and a depth.
+   function negative_von_mises(self, x) result(value)
+      class(search_type), intent(in) :: self
+      real(wp), intent(in) :: x(:)
+      real(wp) :: value
+
+      value = -von_mises_at(self%interior, x(1), min(max(x(2), 0.0_wp), self%deepest))
+   end function negative_von_mises
+
+   !> Take out of a net (across, down) what only rises towards its lower edge: the force in a disk's centre.
+   pure subroutine leave_out_rise(net)
+      real(wp), intent(inout) :: net(:, :)
+      real(wp) :: below
+      integer :: i, j
+
+      do i = 1, size(net, 1)
+         below = huge(1.0_wp)
+         do j = size(net, 2), 1, -1
+            if (net(i, j) > below) exit
+            below = net(i, j)
+            net(i, j) = -1.0_wp
+         end do
+      end do
+   end subroutine leave_out_rise
+
+   !> Take a place and its neighbours out of a net.
+   pure subroutine clear_around(net, best)
+      real(wp), intent(inout) :: net(:, :)
+      integer, intent(in) :: best(2)
+      integer, parameter :: neighbours = 4
+
+      net(max(1, best(1) - neighbours):min(size(net, 1), best(1) + neighbours), &
+          max(1, best(2) - neighbours):min(size(net, 2), best(2) + neighbours)) = -1.0_wp
+   end subroutine clear_around
+
+   !> The largest von Mises stress on the loaded surface.
+   subroutine search_surface(interior, largest)
+      type(interior_type), intent(in) :: interior
+      type(largest_type), intent(inout) :: largest
+      real(wp), allocatable :: places(:)
+      real(wp) :: place, value
+
+      places = interior%knots()
+      call refine_along(interior, places, .true., place, value)
+      call keep_larger(interior, largest, place, 0.0_wp)
+   end subroutine search_surface
+
+   !> The largest tension along the surface, force/length^2: at the edges of contact and stick zones, where it has cusps,
+   !> between them and beside the contact (of a circle, all around). Not a number where tractions are singular, at the end of a
+   !> body's surface that carries shear; `x` and `y` are not numbers where there is no tension anywhere.
+   function largest_tension(interior) result(largest)
+      type(interior_type), intent(in) :: interior
+      type(largest_type) :: largest
+      real(wp), allocatable :: places(:)
+      real(wp) :: place, point(2)
+
+      largest%x = ieee_value(1.0_wp, ieee_quiet_nan)
+      largest%y = largest%x
+      if (.not. interior%half_width() > 0.0_wp) return
+      if (.not. interior%is_circle() .and. .not. interior%is_sheared()) return
+      largest%value = ieee_value(1.0_wp, ieee_quiet_nan)
+      if (interior%is_singular()) return
+      places = candidates(interior)
+      call refine_along(interior, places, .false., place, largest%value)
+      if (largest%value > 0.0_wp) then
+         point = interior%point_at(place, 0.0_wp)
+         largest%x = point(1)
+         largest%y = point(2)
+      else
+         largest%value = 0.0_wp
+      end if
+   end function largest_tension
+
+   !> Places on the surface, ascending, among which the largest tension is looked for: zone edges, some knots between, and places
+   !> farther and farther beside the contact.
+   function candidates(interior) result(places)
+      type(interior_type), intent(in) :: interior
+      real(wp), allocatable :: places(:)
+      real(wp), allocatable :: inside(:), beside(:)
+      integer, parameter :: steps = 10
+      real(wp) :: farthest, nearest
+      integer :: i
+
+      inside = interior%zone_edges(most_between=16)
+      nearest = 1.0e-3_wp*interior%half_width()
+      farthest = 4.0_wp*interior%half_width()
+      if (interior%is_circle()) farthest = max(farthest, pi*interior%radius())
+      beside = [(nearest*(farthest/nearest)**((i - 1)/(steps - 1.0_wp)), i=1, steps)]
+      if (interior%is_circle()) &
+         beside = pack(beside, beside <= pi*interior%radius() - max(abs(inside(1)), abs(inside(size(inside)))))
+      places = [inside(1) - beside(size(beside):1:-1), inside, inside(size(inside)) + beside]
+   end function candidates
+
+   !> The best of ascending places on the surface, refined between its neighbours by golden sections.
+   subroutine refine_along(interior, places, von_mises, place, value)
+      type(interior_type), intent(in) :: interior
+      real(wp), intent(in) :: places(:)
+      logical, intent(in) :: von_mises
+      real(wp), intent(out) :: place, value
+      real(wp), parameter :: golden = 0.6180339887498949_wp, nearly = 1.0e-5_wp
+      real(wp) :: left, right, inner(2), values(2), before
+      integer :: best, i
+
+      best = 1
+      value = -huge(1.0_wp)
+      do i = 1, size(places)
+         before = stress_at(places(i))
+         if (.not. before > value) cycle
+         best = i
+         value = before
+      end do
+      place = places(best)
+      left = places(max(best - 1, 1))
+      right = places(min(best + 1, size(places)))
+      inner = [right - golden*(right - left), left + golden*(right - left)]
+      values = [stress_at(inner(1)), stress_at(inner(2))]
+      do while (right - left > max(nearly*interior%half_width(), 4.0_wp*epsilon(left)*max(abs(left), abs(right))))
+         if (values(1) >= values(2)) then
+            right = inner(2)
+            inner = [right - golden*(right - left), inner(1)]
+            values = [stress_at(inner(1)), values(1)]
+         else
+            left = inner(1)
+            inner = [inner(2), left + golden*(right - left)]
+            values = [values(2), stress_at(inner(2))]
+         end if
+      end do
+      i = maxloc(values, dim=1)
+      if (.not. values(i) > value) return
+      value = values(i)
+      place = inner(i)
+
+   contains
+
+      real(wp) function stress_at(arc)
+         real(wp), intent(in) :: arc
+
+         if (von_mises) then
+            stress_at = von_mises_at(interior, arc, 0.0_wp)
+         else
+            stress_at = interior%surface_stress(arc)
+         end if
+      end function stress_at
+   end subroutine refine_along
+
+   !> Von Mises stress at a depth below the arc length `arc`, -1 where there is none.
+   real(wp) function von_mises_at(interior, arc, depth)
+      type(interior_type), intent(in) :: interior
+      real(wp), intent(in) :: arc, depth
+      real(wp) :: point(2), values(4)
+
+      point = interior%point_at(arc, depth)
+      values = interior%stress(point(1), point(2))
+      von_mises_at = -1.0_wp
+      if (ieee_is_finite(values(1))) von_mises_at = von_mises_stress(values)
+   end function von_mises_at
+
+   subroutine keep_larger(interior, largest, arc, depth)
+      type(interior_type), intent(in) :: interior
+      type(largest_type), intent(inout) :: largest
+      real(wp), intent(in) :: arc, depth
+      real(wp) :: value, point(2)
+
+      value = von_mises_at(interior, arc, depth)
+      if (.not. value > largest%value) return
+      point = interior%point_at(arc, depth)
+      largest = largest_type(value, point(1), point(2))
+   end subroutine keep_larger
+
+end module mfv_stress_search

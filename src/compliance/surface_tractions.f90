@@ -1,0 +1,690 @@
+!> Tractions between the nodes: continuous, from the values at nodes and the edges of contact and stick zones between them.
+!>
+!> A pressure goes to zero at a smooth edge as the root of the distance, and so does, at the edge of a stick zone, what the shear
+!> traction lacks of the friction limit (Hertz; Cattaneo and Mindlin, dissertation eqs. 3.1, 3.7). The pressure and the lack, each
+!> over its roots, are smooth: they are interpolated linearly and continued to the edges. Nodes next to an edge, which carry the error of the discretisation (a fifth of the value at the outermost), are left
+!> out; the resultant forces are those of the nodal values. The whole is projected onto linear elements that are graded towards
+!> the edges: of the elements only their sums with other functions matter for stresses, which a projection keeps.
+module mfv_surface_tractions
+   use mfv_kinds, only: pi, wp
+   use mfv_lapack, only: dgesv
+   implicit none
+   private
+   public :: zone_list_type, traction_elements_type, find_traction_elements
+
+   !> Edges along the surface, lengths, the left one first; shapes (2, zones). A sharp edge is one at which the pressure does
+   !> not go to zero: the end of a body's surface. `beta`: Dundurs' parameter that couples tractions and displacements, 0
+   !> without coupling.
+   type :: zone_list_type
+      real(wp), allocatable :: contact(:, :), stick(:, :)
+      logical, allocatable :: sharp(:, :)
+      real(wp) :: beta = 0.0_wp
+      !> Elements that a contact zone has at least: with few the place of the largest von Mises stress, whose maximum is flat, is
+      !> drawn to their ends.
+      integer :: fewest_elements = 300
+   end type zone_list_type
+
+   !> Elements from `from` to `to`, lengths, in ascending order; p + i tau is `first` and `last` there, force/length^2, and linear
+   !> between; shapes (elements). `edges`: of contact and stick zones, ascending. `singular`: whether there is shear at a sharp
+   !> edge, where the stress along the surface has no limit.
+   type :: traction_elements_type
+      real(wp), allocatable :: from(:), to(:), edges(:)
+      complex(wp), allocatable :: first(:), last(:)
+      logical :: singular = .false.
+   end type traction_elements_type
+
+   !> A function known at some positions, linear between.
+   type :: table_type
+      real(wp), allocatable :: x(:), value(:)
+   contains
+      procedure :: at
+      procedure :: continued
+   end type table_type
+
+   !> A zone with the sides (left, right) on which something goes to zero as a root, the powers of these, and what is left when
+   !> it is divided by them.
+   type :: zone_type
+      real(wp) :: edge(2) = 0.0_wp, power(2) = 0.5_wp
+      logical :: rooted(2) = .true.
+      type(table_type) :: rest
+   contains
+      procedure :: contains_place
+      procedure :: roots
+   end type zone_type
+
+   !> One contact zone: the pressure; tau/p, `limit` in slip zones and between their ends; what tau lacks of it in the stick
+   !> zones, over the pressure where a stick zone ends with the contact. Where nodes without pressure have shear, `shear` in place of these.
+   type :: patch_type
+      real(wp), allocatable :: arc(:), width(:), pressure(:), shear(:)
+      type(zone_type) :: contact
+      type(zone_type), allocatable :: stick(:)
+      type(table_type) :: limit, shear_rest
+      logical :: has_ratio = .true.
+   contains
+      procedure :: tractions
+   end type patch_type
+
+contains
+
+   !> The elements under `pressure` and `shear` (on the lower body, force/length^2) at the nodes `arc`, whose intervals have the
+   !> lengths `width`; shapes (nodes). `zones`: the edges; contact zones that it does not have end with the intervals of their
+   !> nodes. `longest`: no element is longer.
+   subroutine find_traction_elements(arc, width, pressure, shear, zones, longest, elements)
+      real(wp), intent(in) :: arc(:), width(:), pressure(:), shear(:), longest
+      type(zone_list_type), intent(in) :: zones
+      type(traction_elements_type), intent(out) :: elements
+      type(patch_type) :: patch
+      real(wp), allocatable :: edges(:, :)
+      logical, allocatable :: sharp(:, :)
+      integer, allocatable :: owner(:)
+      integer :: i
+
+      allocate (elements%from(0), elements%to(0), elements%edges(0), elements%first(0), elements%last(0))
+      call assign_nodes(arc, width, abs(pressure) > 0.0_wp .or. abs(shear) > 0.0_wp, zones, edges, sharp, owner)
+      do i = 1, size(edges, 2)
+         if (.not. any(owner == i)) cycle
+         patch%arc = pack(arc, owner == i)
+         patch%width = pack(width, owner == i)
+         patch%pressure = pack(pressure, owner == i)
+         patch%shear = pack(shear, owner == i)
+         patch%contact = zone_type(edge=edges(:, i), rooted=.not. sharp(:, i))
+         call fit_patch(patch, zones)
+         call add_elements(patch, min(longest, (edges(2, i) - edges(1, i))/zones%fewest_elements), elements)
+      end do
+   end subroutine find_traction_elements
+
+   !> Which contact zone each loaded node belongs to, 0 for none: the nearest; zones of their own for nodes that are in none.
+   subroutine assign_nodes(arc, width, loaded, zones, edges, sharp, owner)
+      real(wp), intent(in) :: arc(:), width(:)
+      logical, intent(in) :: loaded(:)
+      type(zone_list_type), intent(in) :: zones
+      real(wp), allocatable, intent(out) :: edges(:, :)
+      logical, allocatable, intent(out) :: sharp(:, :)
+      integer, allocatable, intent(out) :: owner(:)
+      real(wp) :: distance
+      integer :: i, nearest
+
+      edges = zones%contact
+      sharp = zones%sharp
+      allocate (owner(size(arc)), source=0)
+      do i = 1, size(arc)
+         if (.not. loaded(i)) cycle
+         nearest = 0
+         if (size(edges, 2) > 0) nearest = minloc(max(edges(1, :) - arc(i), arc(i) - edges(2, :)), dim=1)
+         distance = huge(1.0_wp)
+         if (nearest > 0) distance = max(edges(1, nearest) - arc(i), arc(i) - edges(2, nearest))
+         if (distance > 0.75_wp*width(i)) then
+            edges = reshape([edges, arc(i) - 0.5_wp*width(i), arc(i) + 0.5_wp*width(i)], [2, size(edges, 2) + 1])
+            sharp = reshape([sharp, .false., .false.], [2, size(edges, 2)])
+            nearest = size(edges, 2)
+         else if (nearest > size(zones%contact, 2)) then
+            edges(2, nearest) = arc(i) + 0.5_wp*width(i)
+         end if
+         owner(i) = nearest
+      end do
+   end subroutine assign_nodes
+
+   !> Everything of a patch from its nodes and edges.
+   subroutine fit_patch(patch, zones)
+      type(patch_type), intent(inout) :: patch
+      type(zone_list_type), intent(in) :: zones
+      real(wp) :: values(size(patch%arc))
+      integer :: i
+
+      patch%has_ratio = all(patch%pressure > 0.0_wp)
+      if (allocated(patch%stick)) deallocate (patch%stick)
+      if (patch%has_ratio) then
+         patch%stick = stick_zones(patch, zones)
+         call find_limit(patch)
+         call find_powers(patch, zones%beta)
+      else
+         allocate (patch%stick(0))
+         call fit_zone(patch, patch%shear, patch%contact)
+         patch%shear_rest = patch%contact%rest
+      end if
+      values = patch%pressure
+      call refine_edges(patch, values, patch%contact)
+      call fit_zone(patch, values, patch%contact)
+      do i = 1, size(patch%stick)
+         values = patch%limit%at(patch%arc)*patch%pressure - patch%shear
+         call refine_edges(patch, values, patch%stick(i))
+         call keep_in_order(patch, i)
+         if (.not. all(patch%stick(i)%rooted)) values = values/patch%pressure
+         call fit_zone(patch, values, patch%stick(i))
+      end do
+   end subroutine fit_patch
+
+   !> Edges that have been refined one by one stay in the order of the zones: stick zones are in the contact and do not overlap.
+   pure subroutine keep_in_order(patch, number)
+      type(patch_type), intent(inout) :: patch
+      integer, intent(in) :: number
+      real(wp) :: lowest
+
+      lowest = patch%contact%edge(1)
+      if (number > 1) lowest = patch%stick(number - 1)%edge(2)
+      associate (zone => patch%stick(number))
+         zone%edge(1) = min(max(zone%edge(1), lowest), patch%contact%edge(2))
+         zone%edge(2) = min(max(zone%edge(2), zone%edge(1)), patch%contact%edge(2))
+      end associate
+   end subroutine keep_in_order
+
+   !> The powers at edges next to which nodes slip: see mfv_zone_edges.
+   subroutine find_powers(patch, beta)
+      type(patch_type), intent(inout) :: patch
+      real(wp), intent(in) :: beta
+      integer :: i, side, outermost
+
+      do side = 1, 2
+         outermost = merge(1, size(patch%arc), side == 1)
+         if (any(patch%stick%contains_place(patch%arc(outermost)))) cycle
+         patch%contact%power(side) = 0.5_wp + (2*side - 3)*lean(patch%arc(outermost))
+      end do
+      do i = 1, size(patch%stick)
+         patch%stick(i)%power = 0.5_wp + [1, -1]*lean(patch%stick(i)%edge)
+      end do
+
+   contains
+
+      elemental real(wp) function lean(place)
+         real(wp), intent(in) :: place
+
+         lean = atan(beta*patch%limit%at(place))/pi
+      end function lean
+   end subroutine find_powers
+
+   !> The stick zones in a patch that have nodes; `rooted` on the sides where nodes slip.
+   function stick_zones(patch, zones) result(stick)
+      type(patch_type), intent(in) :: patch
+      type(zone_list_type), intent(in) :: zones
+      type(zone_type), allocatable :: stick(:)
+      type(zone_type) :: zone
+      real(wp) :: before, next
+      integer :: i
+
+      allocate (stick(0))
+      before = -huge(1.0_wp)
+      do i = 1, size(zones%stick, 2)
+         zone%edge = [max(zones%stick(1, i), patch%contact%edge(1)), min(zones%stick(2, i), patch%contact%edge(2))]
+         if (.not. any(zone%contains_place(patch%arc))) cycle
+         next = huge(1.0_wp)
+         if (i < size(zones%stick, 2)) next = zones%stick(1, i + 1)
+         zone%rooted(1) = any(patch%arc > before .and. patch%arc <= zone%edge(1))
+         zone%rooted(2) = any(patch%arc >= zone%edge(2) .and. patch%arc < next)
+         stick = [stick, zone]
+         before = zone%edge(2)
+      end do
+   end function stick_zones
+
+   !> tau/p of the slipping nodes, and at the rooted edges of the stick zones as at the next such node.
+   subroutine find_limit(patch)
+      type(patch_type), intent(inout) :: patch
+      logical :: slips(size(patch%arc))
+      integer :: i, side, node, next
+
+      slips = slipping_nodes(patch)
+      patch%limit = table_type()
+      allocate (patch%limit%x(0), patch%limit%value(0))
+      node = 0
+      do i = 1, size(patch%stick)
+         associate (zone => patch%stick(i))
+            do side = 1, 2
+               if (side == 1) call add_nodes_before(zone%edge(1))
+               if (side == 2) then
+                  do while (node < size(patch%arc))
+                     if (patch%arc(node + 1) >= zone%edge(2)) exit
+                     node = node + 1
+                  end do
+               end if
+               if (.not. zone%rooted(side)) cycle
+               if (side == 1) next = findloc(slips(:node), .true., dim=1, back=.true.)
+               if (side == 2) next = node + findloc(slips(node + 1:), .true., dim=1)
+               patch%limit%x = [patch%limit%x, zone%edge(side)]
+               patch%limit%value = [patch%limit%value, patch%shear(next)/patch%pressure(next)]
+            end do
+         end associate
+      end do
+      call add_nodes_before(huge(1.0_wp))
+
+   contains
+
+      subroutine add_nodes_before(place)
+         real(wp), intent(in) :: place
+
+         do while (node < size(patch%arc))
+            if (patch%arc(node + 1) > place) exit
+            node = node + 1
+            if (.not. slips(node)) cycle
+            patch%limit%x = [patch%limit%x, patch%arc(node)]
+            patch%limit%value = [patch%limit%value, patch%shear(node)/patch%pressure(node)]
+         end do
+      end subroutine add_nodes_before
+   end subroutine find_limit
+
+   !> The nodes outside all stick zones, but for those within half an interval of an edge that have another such node behind them: an
+   !> edge may be so far inside the last node that holds.
+   pure function slipping_nodes(patch) result(slips)
+      type(patch_type), intent(in) :: patch
+      logical :: slips(size(patch%arc))
+      integer :: i, side, beside, behind
+
+      slips = [(.not. any(patch%stick%contains_place(patch%arc(i))), i=1, size(slips))]
+      do i = 1, size(patch%stick)
+         do side = 1, 2
+            if (.not. patch%stick(i)%rooted(side)) cycle
+            beside = merge(count(patch%arc <= patch%stick(i)%edge(1)), count(patch%arc < patch%stick(i)%edge(2)) + 1, side == 1)
+            behind = beside + 2*side - 3
+            if (behind < 1 .or. behind > size(slips)) cycle
+            if (slips(behind) .and. abs(patch%arc(beside) - patch%stick(i)%edge(side)) < 0.5_wp*patch%width(beside)) &
+               slips(beside) = .false.
+         end do
+      end do
+   end function slipping_nodes
+
+   !> Move the edges of a zone at which `values`, at the nodes of a patch, go to zero: stresses beside an edge are sensitive to
+   !> hundredths of an interval. A value to the inverse power of the root is a parabola in the distance d, and the error that the
+   !> discretisation makes at the edge decays in it as 1/d: least squares of both over nodes some intervals inwards, whose values
+   !> are freed of that error. Edges and values stay where this does not fit, or where there are few nodes.
+   subroutine refine_edges(patch, values, zone)
+      type(patch_type), intent(in) :: patch
+      real(wp), intent(inout) :: values(:)
+      type(zone_type), intent(inout) :: zone
+      integer, parameter :: most = 6, fewest = 8, rounds = 6
+      real(wp), parameter :: farthest = 0.75_wp, good = 1.0e-3_wp
+      integer, allocatable :: inside(:), nodes(:)
+      real(wp), allocatable :: d(:)
+      real(wp) :: interval, edge, shift, error, residual, direction
+      integer :: side, inwards, n, i, round, skipped
+
+      skipped = skipped_intervals(patch, zone)
+      inside = pack([(i, i=1, size(values))], patch%arc - zone%edge(1) > skipped*patch%width .and. &
+                    zone%edge(2) - patch%arc > skipped*patch%width)
+      do side = 1, 2
+         if (.not. zone%rooted(side)) cycle
+         inwards = 3 - 2*side
+         nodes = inside
+         if (side == 2) nodes = nodes(size(nodes):1:-1)
+         n = min(most*skipped, size(nodes)/2)
+         if (n < fewest) cycle
+         nodes = nodes(:n)
+         direction = sign(1.0_wp, values(nodes(1)))
+         if (.not. all(direction*values(nodes) > 0.0_wp)) cycle
+         interval = abs(patch%arc(nodes(2)) - patch%arc(nodes(1)))
+         edge = zone%edge(side)
+         do round = 1, rounds
+            d = inwards*(patch%arc(nodes) - edge)/interval
+            call find_shift(d, (direction*values(nodes))**(1.0_wp/zone%power(side)), shift, error, residual)
+            edge = edge + inwards*shift*interval
+            if (.not. (abs(edge - zone%edge(side)) <= farthest*interval .and. residual <= good)) exit
+         end do
+         if (.not. (abs(edge - zone%edge(side)) <= farthest*interval .and. residual <= good)) cycle
+         zone%edge(side) = edge
+         values(nodes) = direction*max((direction*values(nodes))**(1.0_wp/zone%power(side)) - error/d, 0.0_wp)**zone%power(side)
+      end do
+   end subroutine refine_edges
+
+   !> How many intervals next to an edge are left out: two, and of many more, so that with finer meshes the error of the
+   !> discretisation there, which is a function of the distance in intervals, goes out of sight.
+   pure integer function skipped_intervals(patch, zone)
+      type(patch_type), intent(in) :: patch
+      type(zone_type), intent(in) :: zone
+
+      skipped_intervals = max(2, nint(0.4_wp*sqrt(real(count(zone%contains_place(patch%arc)), wp))))
+   end function skipped_intervals
+
+   !> How far inwards the zero is of the parabola in `d` that is, with a part `error`/d, nearest to some values; `residual`: what is
+   !> left, over the change of the values. Shapes (nodes).
+   subroutine find_shift(d, values, shift, error, residual)
+      real(wp), intent(in) :: d(:), values(:)
+      real(wp), intent(out) :: shift, error, residual
+      real(wp) :: basis(size(d), 4), matrix(4, 4), coefficients(4, 1), discriminant
+      integer :: pivots(4), info
+
+      basis = reshape([spread(1.0_wp, 1, size(d)), d, d**2, 1.0_wp/d], shape(basis))
+      matrix = matmul(transpose(basis), basis)
+      coefficients(:, 1) = matmul(values, basis)
+      shift = huge(1.0_wp)
+      residual = huge(1.0_wp)
+      error = 0.0_wp
+      call dgesv(4, 1, matrix, 4, pivots, coefficients, 4, info)
+      if (info /= 0) return
+      discriminant = coefficients(2, 1)**2 - 4.0_wp*coefficients(1, 1)*coefficients(3, 1)
+      if (.not. (coefficients(2, 1) > 0.0_wp .and. discriminant > 0.0_wp)) return
+      shift = -2.0_wp*coefficients(1, 1)/(coefficients(2, 1) + sqrt(discriminant))
+      error = coefficients(4, 1)
+      residual = maxval(abs(values - matmul(basis, coefficients(:, 1))))/(maxval(values) - minval(values))
+   end subroutine find_shift
+
+   !> `values` at the nodes of a patch over the roots of a zone, as a table of the nodes in the zone; without those that are
+   !> nearer to a rooted edge than skipped_intervals, if others are left.
+   subroutine fit_zone(patch, values, zone)
+      type(patch_type), intent(in) :: patch
+      real(wp), intent(in) :: values(:)
+      type(zone_type), intent(inout) :: zone
+      logical :: used(size(values))
+      integer :: intervals
+
+      do intervals = skipped_intervals(patch, zone), 0, -1
+         used = zone%contains_place(patch%arc)
+         if (zone%rooted(1)) used = used .and. patch%arc - zone%edge(1) > intervals*patch%width
+         if (zone%rooted(2)) used = used .and. zone%edge(2) - patch%arc > intervals*patch%width
+         if (count(used) > merge(1, 0, intervals > 0)) exit
+      end do
+      if (.not. any(used)) then
+         ! The edges are beside the only nodes: what counts is the resultant.
+         zone%rest%x = [0.5_wp*sum(zone%edge)]
+         zone%rest%value = [sum(values)/size(values)/max(zone%roots(zone%rest%x(1)), tiny(1.0_wp))]
+         return
+      end if
+      zone%rest%x = pack(patch%arc, used)
+      zone%rest%value = pack(values, used)/zone%roots(zone%rest%x)
+   end subroutine fit_zone
+
+   !> Whether a place is inside a zone.
+   elemental logical function contains_place(self, x)
+      class(zone_type), intent(in) :: self
+      real(wp), intent(in) :: x
+
+      contains_place = x > self%edge(1) .and. x < self%edge(2)
+   end function contains_place
+
+   !> Roots of the distances from the rooted edges, over the length of the zone; 0 outside.
+   elemental real(wp) function roots(self, x)
+      class(zone_type), intent(in) :: self
+      real(wp), intent(in) :: x
+
+      roots = 1.0_wp
+      associate (length => max(self%edge(2) - self%edge(1), tiny(1.0_wp)))
+         if (self%rooted(1)) roots = roots*(max(x - self%edge(1), 0.0_wp)/length)**self%power(1)
+         if (self%rooted(2)) roots = roots*(max(self%edge(2) - x, 0.0_wp)/length)**self%power(2)
+      end associate
+   end function roots
+
+   !> Linear between the positions of a table, constant outside; 0 of an empty one.
+   elemental real(wp) function at(self, x)
+      class(table_type), intent(in) :: self
+      real(wp), intent(in) :: x
+      integer :: i, n
+
+      at = 0.0_wp
+      n = size(self%x)
+      if (n == 0) return
+      i = interval_of(self%x, x)
+      if (i == 0) at = self%value(1)
+      if (i == n) at = self%value(n)
+      if (i == 0 .or. i == n) return
+      at = self%value(i) + (self%value(i + 1) - self%value(i))*(x - self%x(i))/(self%x(i + 1) - self%x(i))
+   end function at
+
+   !> The same, continued outside linearly, but to between half and twice the last value.
+   elemental real(wp) function continued(self, x)
+      class(table_type), intent(in) :: self
+      real(wp), intent(in) :: x
+      integer :: i, last, n
+      real(wp) :: bounds(2)
+
+      continued = self%at(x)
+      n = size(self%x)
+      if (n < 2) return
+      i = interval_of(self%x, x)
+      if (i > 0 .and. i < n) return
+      i = max(1, min(i, n - 1))
+      last = merge(1, n, x < self%x(1))
+      bounds = [0.5_wp, 2.0_wp]*self%value(last)
+      continued = self%value(i) + (self%value(i + 1) - self%value(i))*(x - self%x(i))/(self%x(i + 1) - self%x(i))
+      continued = min(max(continued, minval(bounds)), maxval(bounds))
+   end function continued
+
+   !> Number of the last of ascending positions that is not beyond `x`, 0 for none, by bisection.
+   pure integer function interval_of(positions, x) result(low)
+      real(wp), intent(in) :: positions(:), x
+      integer :: high, middle
+
+      low = 0
+      high = size(positions) + 1
+      do while (high - low > 1)
+         middle = (low + high)/2
+         if (positions(middle) <= x) then
+            low = middle
+         else
+            high = middle
+         end if
+      end do
+   end function interval_of
+
+   !> p + i tau of a patch at a place.
+   elemental complex(wp) function tractions(self, x)
+      class(patch_type), intent(in) :: self
+      real(wp), intent(in) :: x
+      real(wp) :: pressure, shear, lack
+      integer :: i
+
+      pressure = self%contact%roots(x)*self%contact%rest%continued(x)
+      if (self%has_ratio) then
+         shear = self%limit%at(x)*pressure
+         do i = 1, size(self%stick)
+            if (.not. self%stick(i)%contains_place(x)) cycle
+            lack = self%stick(i)%roots(x)*self%stick(i)%rest%continued(x)
+            if (.not. all(self%stick(i)%rooted)) lack = lack*pressure
+            shear = shear - lack
+         end do
+         tractions = cmplx(pressure, shear, wp)
+      else
+         tractions = cmplx(pressure, self%contact%roots(x)*self%shear_rest%continued(x), wp)
+      end if
+   end function tractions
+
+   !> Append the elements of a patch.
+   subroutine add_elements(patch, longest, elements)
+      type(patch_type), intent(in) :: patch
+      real(wp), intent(in) :: longest
+      type(traction_elements_type), intent(inout) :: elements
+      real(wp), allocatable :: knots(:)
+      complex(wp), allocatable :: values(:)
+      integer :: n
+
+      knots = knots_of(patch, longest)
+      n = size(knots)
+      if (n < 2) return
+      allocate (values(n))
+      values(:) = projected(patch, knots)
+      call balance(patch, knots, values)
+      elements%from = [elements%from, knots(:n - 1)]
+      elements%to = [elements%to, knots(2:)]
+      elements%first = [elements%first, values(:n - 1)]
+      elements%last = [elements%last, values(2:)]
+      elements%edges = [elements%edges, patch%contact%edge(1), stick_edges(patch), patch%contact%edge(2)]
+      elements%singular = elements%singular .or. abs(aimag(values(1))) > 0.0_wp .or. abs(aimag(values(n))) > 0.0_wp
+   end subroutine add_elements
+
+   !> Ends of the elements of a patch: its nodes and edges, and between them as many that no element is longer than half its
+   !> distance from the next rooted edge (a ratio of the root of 1/2 beside it) or than `longest`: sigma_xx on the surface
+   !> has a kink at each end of an element. The same from left to right as from right to left.
+   function knots_of(patch, longest) result(knots)
+      type(patch_type), intent(in) :: patch
+      real(wp), intent(in) :: longest
+      real(wp), allocatable :: knots(:)
+      real(wp), allocatable :: roots(:), points(:)
+      logical :: kept(size(patch%arc))
+      !> Nodes nearer to an edge, in intervals, are no ends; an edge that is found by counting is half an interval away.
+      real(wp), parameter :: apart = 0.4_wp
+      integer :: i
+
+      roots = [stick_edges(patch), pack(patch%contact%edge, patch%contact%rooted)]
+      points = [patch%contact%edge(1), stick_edges(patch), patch%contact%edge(2)]
+      do i = 1, size(kept)
+         kept(i) = all(abs(patch%arc(i) - points) > apart*patch%width(i)) .and. &
+                   patch%contact%contains_place(patch%arc(i))
+      end do
+      points = merged(points, pack(patch%arc, kept))
+      knots = points(:1)
+      do i = 2, size(points)
+         if (points(i) > knots(size(knots))) &
+            knots = [knots, between(knots(size(knots)), points(i), roots, longest), points(i)]
+      end do
+   end function knots_of
+
+   !> Edges of the stick zones of a patch next to which nodes slip, ascending.
+   pure function stick_edges(patch) result(edges)
+      type(patch_type), intent(in) :: patch
+      real(wp), allocatable :: edges(:)
+      integer :: i
+
+      allocate (edges(0))
+      do i = 1, size(patch%stick)
+         edges = [edges, pack(patch%stick(i)%edge, patch%stick(i)%rooted)]
+      end do
+   end function stick_edges
+
+   !> Two ascending lists as one.
+   pure function merged(one, other) result(both)
+      real(wp), intent(in) :: one(:), other(:)
+      real(wp) :: both(size(one) + size(other))
+      integer :: i, j, k
+
+      i = 1
+      j = 1
+      do k = 1, size(both)
+         if (j > size(other)) then
+            both(k) = one(i)
+            i = i + 1
+         else if (i > size(one)) then
+            both(k) = other(j)
+            j = j + 1
+         else if (one(i) <= other(j)) then
+            both(k) = one(i)
+            i = i + 1
+         else
+            both(k) = other(j)
+            j = j + 1
+         end if
+      end do
+   end function merged
+
+   !> The knots between two points: see knots_of.
+   pure recursive function between(left, right, roots, longest) result(knots)
+      real(wp), intent(in) :: left, right, roots(:), longest
+      real(wp), allocatable :: knots(:)
+      integer, parameter :: parts = 54
+      real(wp), parameter :: most = 1000.0_wp, ratio = sqrt(0.5_wp)
+      real(wp) :: distance
+      integer :: i, pieces
+
+      if (any(is_at(left)) .and. any(is_at(right))) then
+         associate (middle => 0.5_wp*(left + right))
+            knots = [between(left, middle, roots, longest), middle, between(middle, right, roots, longest)]
+         end associate
+      else if (any(is_at(left))) then
+         knots = [(left + (right - left)*ratio**i, i=parts, 1, -1)]
+      else if (any(is_at(right))) then
+         knots = [(right - (right - left)*ratio**i, i=1, parts)]
+      else
+         distance = longest
+         if (size(roots) > 0) distance = min(distance, 0.5_wp*minval(abs(left - roots)), 0.5_wp*minval(abs(right - roots)))
+         pieces = 1
+         if (distance < right - left) pieces = ceiling(min((right - left)/distance, most)*(1.0_wp - 1.0e-9_wp))
+         knots = [(left + (right - left)*i/pieces, i=1, pieces - 1)]
+      end if
+
+   contains
+
+      pure function is_at(point)
+         real(wp), intent(in) :: point
+         logical :: is_at(size(roots))
+
+         is_at = .not. abs(roots - point) > 0.0_wp
+      end function is_at
+   end function between
+
+   !> Values at the knots of the continuous function, linear between them, that is nearest to the tractions in the mean square;
+   !> zero at rooted ends.
+   function projected(patch, knots) result(values)
+      type(patch_type), intent(in) :: patch
+      real(wp), intent(in) :: knots(:)
+      complex(wp) :: values(size(knots))
+      real(wp), parameter :: place(4) = [-0.86113631159405258_wp, -0.33998104358485626_wp, 0.33998104358485626_wp, &
+                                         0.86113631159405258_wp], &
+                             weight(4) = [0.34785484513745386_wp, 0.65214515486254614_wp, 0.65214515486254614_wp, &
+                                          0.34785484513745386_wp]
+      real(wp) :: diagonal(size(knots)), beside(size(knots) - 1), factor
+      complex(wp) :: there(4)
+      integer :: i, n
+
+      n = size(knots)
+      diagonal = 0.0_wp
+      values = 0.0_wp
+      do i = 1, n - 1
+         associate (length => knots(i + 1) - knots(i))
+            there = patch%tractions(knots(i) + 0.5_wp*length*(1.0_wp + place))*weight*length
+            values(i) = values(i) + 0.25_wp*sum(there*(1.0_wp - place))
+            values(i + 1) = values(i + 1) + 0.25_wp*sum(there*(1.0_wp + place))
+            diagonal(i:i + 1) = diagonal(i:i + 1) + length/3.0_wp
+            beside(i) = length/6.0_wp
+         end associate
+      end do
+      if (patch%contact%rooted(1)) call fix(1, 1)
+      if (patch%contact%rooted(2)) call fix(n, n - 1)
+      do i = 2, n
+         factor = beside(i - 1)/diagonal(i - 1)
+         diagonal(i) = diagonal(i) - factor*beside(i - 1)
+         values(i) = values(i) - factor*values(i - 1)
+      end do
+      values(n) = values(n)/diagonal(n)
+      do i = n - 1, 1, -1
+         values(i) = (values(i) - beside(i)*values(i + 1))/diagonal(i)
+      end do
+
+   contains
+
+      subroutine fix(knot, neighbour)
+         integer, intent(in) :: knot, neighbour
+
+         diagonal(knot) = 1.0_wp
+         beside(neighbour) = 0.0_wp
+         values(knot) = 0.0_wp
+      end subroutine fix
+   end function projected
+
+   !> Give the elements of a patch the resultants of its nodes: tractions are scaled by the normal force, and what lacks in the
+   !> tangential one is put where nodes hold, or everywhere where none do.
+   subroutine balance(patch, knots, values)
+      type(patch_type), intent(in) :: patch
+      real(wp), intent(in) :: knots(:)
+      complex(wp), intent(inout) :: values(:)
+      real(wp) :: shape(size(knots)), wanted(2), there(2)
+      integer :: i
+
+      wanted = [sum(patch%pressure*patch%width), sum(patch%shear*patch%width)]
+      there = integrals(values)
+      if (abs(there(1)) > 0.0_wp .and. patch%has_ratio) values = values*(wanted(1)/there(1))
+      shape = patch%contact%roots(knots)
+      if (patch%has_ratio) shape = real(values, wp)
+      if (size(patch%stick) > 0) then
+         shape = 0.0_wp
+         do i = 1, size(patch%stick)
+            where (patch%stick(i)%contains_place(knots)) shape = patch%stick(i)%roots(knots)*real(values, wp)
+         end do
+      end if
+      there = integrals(values)
+      values = values + cmplx(0.0_wp, shape*(wanted(2) - there(2))/dot_product_of(shape), wp)
+      if (.not. patch%has_ratio) values = values + shape*(wanted(1) - there(1))/dot_product_of(shape)
+
+   contains
+
+      !> Integrals of p and tau.
+      pure function integrals(of)
+         complex(wp), intent(in) :: of(:)
+         real(wp) :: integrals(2)
+         complex(wp) :: total
+
+         total = 0.5_wp*sum((of(2:) + of(:size(of) - 1))*(knots(2:) - knots(:size(of) - 1)))
+         integrals = [real(total, wp), aimag(total)]
+      end function integrals
+
+      pure real(wp) function dot_product_of(of)
+         real(wp), intent(in) :: of(:)
+
+         dot_product_of = max(0.5_wp*sum((of(2:) + of(:size(of) - 1))*(knots(2:) - knots(:size(of) - 1))), tiny(1.0_wp))
+      end function dot_product_of
+   end subroutine balance
+
+end module mfv_surface_tractions

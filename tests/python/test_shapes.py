@@ -1,0 +1,222 @@
+"""Wedges, powers, rounded punches and profiles: contacts against their closed forms, and the warnings that go with surfaces."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+from scenes import HALF_PLANE
+
+import mfv
+
+G, KAPPA, MU, SLOPE = 1.0, 1.8, 0.3, 0.01
+#: The force on a wedge that makes a contact of the half-width 1.
+WEDGE_FORCE = 2.0 / 0.7 * SLOPE
+ANGLE = float(np.degrees(np.arctan(SLOPE)))
+
+
+def scene(upper: mfv.Body, force: float, *, lower: mfv.Body = HALF_PLANE, nodes: int = 401, **mesh: Any) -> mfv.Scene:
+    """Two bodies without coupling, pressed without friction, then sheared to 0.3 of sliding; the mesh is chosen."""
+    steps = [mfv.Step(normal_force=force, friction=False), mfv.Step(force_ratio=0.3)]
+    return mfv.Scene(
+        lower,
+        upper,
+        steps=steps,
+        friction=mfv.Friction.coulomb(MU),
+        mesh=mfv.Mesh(nodes=nodes, **mesh),
+        coupling="none",
+    )
+
+
+def edges(result: mfv.Result) -> tuple[float, float]:
+    """Half-width of the contact and stick ratio, between nodes."""
+    return float(result.summary.edge_half_width), float(result.summary.edge_stick_ratio)
+
+
+def warnings(result: mfv.Result) -> list[str]:
+    """What the summary warns of."""
+    return str(result.attributes.get("warnings", "")).splitlines()
+
+
+def half_width_of(force: Callable[[float], float], wanted: float) -> float:
+    """The half-width of a growing force, by bisection."""
+    lower, upper = 0.0, 10.0
+    for _ in range(100):
+        middle = 0.5 * (lower + upper)
+        lower, upper = (middle, upper) if force(middle) < wanted else (lower, middle)
+    return lower
+
+
+def rounded_force(a: float, b: float, radius: float) -> float:
+    """The force on a rounded punch over E*, from the integral of the slope, by the midpoint rule in asin(x/a)."""
+    if a <= b:
+        return 0.0
+    ends = np.linspace(np.arcsin(b / a), np.pi / 2, 20001)
+    t = 0.5 * (ends[1:] + ends[:-1])
+    return float(np.sum(a * np.sin(t) * (a * np.sin(t) - b)) * (ends[1] - ends[0]) / radius)
+
+
+def test_a_wedge() -> None:
+    """401 nodes: half-width 1, stick ratio 0.7; a profile of three points is the same, its corner on a node or between two."""
+    named = mfv.run(scene(mfv.Body.wedge(ANGLE, rigid=True), WEDGE_FORCE))
+    assert edges(named) == pytest.approx((1.0, 0.7), abs=2e-4)
+    assert edges(named)[0] == pytest.approx(1.0, abs=1e-4)
+    points = np.array([-1.5, 0.0, 1.5])
+    for nodes in (401, 400):
+        profile = mfv.Body.profile(points, SLOPE * np.abs(points), interpolation="linear", rigid=True)
+        result = mfv.run(scene(profile, WEDGE_FORCE, nodes=nodes, half_width=1.2))
+        assert edges(result)[0] == pytest.approx(1.0, abs=1e-4)
+        assert len(warnings(result)) == 0
+    reference = named.reference
+    exact = mfv.reference.wedge_half_width(WEDGE_FORCE, SLOPE, G, KAPPA)
+    assert reference.contact_half_width == pytest.approx(exact, rel=1e-14)
+    assert mfv.reference.wedge_stick_ratio(0.3, 1.0, 1.0) == pytest.approx(0.7)
+    inside = (np.abs(named.mesh.x) > 0.02) & (np.abs(named.mesh.x) < 0.95)
+    x = named.mesh.x[inside]
+    np.testing.assert_allclose(mfv.reference.wedge_pressure(x, WEDGE_FORCE, 1.0), reference.pressure[inside], rtol=1e-12)
+    np.testing.assert_allclose(named.state.pressure[inside], reference.pressure[inside], rtol=2e-3)
+    shear = mfv.reference.wedge_shear(x, 0.3 * MU * WEDGE_FORCE, WEDGE_FORCE, 1.0, MU)
+    np.testing.assert_allclose(shear, reference.shear[inside], rtol=1e-10, atol=1e-14)
+    assert np.max(np.abs(named.state.shear[inside] - shear)) < 0.02 * np.max(shear)
+
+
+@pytest.mark.parametrize("exponent", [1.5, 3.0, 4.0, 6.0])
+def test_powers(exponent: float) -> None:
+    force = mfv.run(scene(mfv.Body.power(0.01, exponent, rigid=True), 0.02))
+    a = mfv.reference.power_half_width(0.02, 0.01, exponent, G, KAPPA)
+    assert force.reference.contact_half_width == pytest.approx(a, rel=1e-14)
+    assert edges(force)[0] == pytest.approx(a, rel=3e-4 if exponent > 4 else 1.2e-4)
+    ratio = mfv.reference.power_stick_ratio(0.3, 1.0, 1.0, exponent)
+    assert ratio == pytest.approx(0.7 ** (1 / exponent), rel=1e-14)
+    assert edges(force)[1] == pytest.approx(ratio, abs=5e-4)
+    approach = mfv.reference.power_approach(a, 0.01, exponent, a)
+    assert force.summary.approach == pytest.approx(approach, rel=1e-3)  # the datum of a power is the half-width
+
+
+@pytest.mark.parametrize("b", [0.05, 0.5, 0.8])
+def test_rounded_punches(b: float) -> None:
+    radius = 100.0
+    force = 2.0 / 0.7 * rounded_force(1.0, b, radius)
+    assert mfv.reference.rounded_punch_half_width(force, b, radius, G, KAPPA) == pytest.approx(1.0, rel=1e-7)
+    stick = half_width_of(lambda a: rounded_force(a, b, radius), 0.7 * rounded_force(1.0, b, radius))
+    assert mfv.reference.rounded_punch_stick_ratio(0.3, 1.0, 1.0, 1.0, b) == pytest.approx(stick, rel=1e-6)
+    result = mfv.run(scene(mfv.Body.rounded_punch(b, radius, rigid=True), force))
+    assert edges(result) == (pytest.approx(1.0, abs=1e-4), pytest.approx(stick, abs=2e-4))
+    assert result.reference.contact_half_width == pytest.approx(1.0, rel=1e-7)
+    x = result.mesh.x
+    pressure = mfv.reference.rounded_punch_pressure(x, force, 1.0, b)
+    np.testing.assert_allclose(pressure, result.reference.pressure, rtol=1e-4, atol=1e-5)
+    inside = np.abs(x) < 0.97
+    assert np.max(np.abs(result.state.pressure - result.reference.pressure)[inside]) < 5e-3 * np.max(result.state.pressure)
+
+
+def sizes(result: mfv.Result) -> NDArray[np.float64]:
+    """What must not depend on which body is below, on units, or on how a mesh came about."""
+    shear = np.abs(result.state.shear)
+    return np.array([*edges(result), result.state.pressure.max(), shear.max()])
+
+
+def test_either_way_up_rigid_or_elastic() -> None:
+    """A wedge above or below; of two equal materials the half-width is twice as large at the same force."""
+    force = WEDGE_FORCE / 2
+    rigid_plane, wedge = mfv.Body.half_plane(rigid=True), {"shear_modulus": 1.0, "poisson_ratio": 0.3}
+    above = mfv.run(scene(mfv.Body.wedge(ANGLE, rigid=True), force, nodes=101))
+    below = mfv.run(scene(rigid_plane, force, lower=mfv.Body.wedge(ANGLE, **wedge), nodes=101))
+    both = mfv.run(scene(mfv.Body.wedge(ANGLE, **wedge), force, nodes=101))
+    np.testing.assert_allclose(sizes(below), sizes(above), rtol=1e-10)
+    assert both.reference.contact_half_width == pytest.approx(1.0, rel=1e-12)
+    np.testing.assert_allclose(sizes(both), sizes(above) * [2, 1, 1 / 2 * 1, 1 / 2 * 1], rtol=1e-10)
+
+
+def test_sums_of_shapes() -> None:
+    """A wedge against a disk and a rounded punch: the closed form adds the gaps at one half-width."""
+    lower = mfv.Body.rounded_punch(0.3, 50.0, shear_modulus=1.0, poisson_ratio=0.3)
+    force = 2.0 / 0.7 * (0.8 * SLOPE + rounded_force(0.8, 0.3, 50.0))
+    result = mfv.run(scene(mfv.Body.wedge(ANGLE, rigid=True), force, lower=lower))
+    assert result.reference.contact_half_width == pytest.approx(0.8, rel=1e-7)
+    assert edges(result)[0] == pytest.approx(0.8, abs=1e-4)
+    disk = mfv.Body.disk(200.0, rigid=True)
+    wedge = mfv.Body.wedge(ANGLE, shear_modulus=1.0, poisson_ratio=0.3)
+    result = mfv.run(scene(disk, 2.0 / 0.7 * (0.8 * SLOPE + np.pi * 0.64 / 800), lower=wedge))
+    assert result.reference.contact_half_width == pytest.approx(0.8, rel=1e-12)
+    assert edges(result)[0] == pytest.approx(0.8, abs=1e-4)
+
+
+def test_meshes_grow_under_named_shapes() -> None:
+    """A load that the scene's steps do not have; and datums: only the approach knows them."""
+    pressed = scene(mfv.Body.wedge(ANGLE, rigid=True), 0.1 * WEDGE_FORCE, nodes=41)
+    with pressed.contact() as contact:
+        contact.advance(normal_force=WEDGE_FORCE)
+        assert contact.result().summary.edge_half_width == pytest.approx(1.0, abs=5e-4)
+    with pytest.raises(mfv.errors.InputError, match="datum: is needed"):
+        mfv.run(mfv.Scene(HALF_PLANE, mfv.Body.wedge(1.0, rigid=True), steps=[mfv.Step(approach=0.01)]))
+    with pytest.raises(mfv.errors.InputError, match="half_width: is needed"):
+        lower = mfv.Body.half_plane(shear_modulus=1.0, poisson_ratio=0.3, datum=1.0)
+        mfv.run(mfv.Scene(lower, mfv.Body.wedge(1.0, rigid=True), steps=[mfv.Step(shift=0.01)]))
+
+
+def test_parabolas_have_no_end() -> None:
+    """A rigid disk of the radius 1 with gap='parabolic': the contact goes on beyond |x| = 1, as Hertz's does."""
+    lower = mfv.Body.half_plane(youngs_modulus=1.0, poisson_ratio=0.0)
+    for force in (0.785, 1.1):
+        press = [mfv.Step(normal_force=force)]
+        for mesh in (mfv.Mesh(nodes=201, half_width=1.25, gap="parabolic"), mfv.Mesh(nodes=201, gap="parabolic")):
+            result = mfv.run(mfv.Scene(lower, mfv.Body.disk(1.0, rigid=True), mesh=mesh, steps=press))
+            exact = np.sqrt(4 * force / np.pi)
+            assert result.reference.contact_half_width == pytest.approx(exact, rel=1e-14)
+            assert result.summary.edge_half_width == pytest.approx(exact, rel=3e-4)
+            assert result.state.pressure.max() == pytest.approx(exact / 2, rel=1e-3)
+            assert len(warnings(result)) == 0
+
+
+def test_warnings_of_surfaces_that_end() -> None:
+    """Disk, profile and wedge of a file; but not the corner of a flat punch."""
+    lower = mfv.Body.half_plane(youngs_modulus=1.0, poisson_ratio=0.0)
+    x = np.linspace(-1.0, 1.0, 2001)
+    keys: dict[str, Any] = {"mesh": mfv.Mesh(nodes=101, half_width=1.25), "steps": [mfv.Step(normal_force=2.5)]}
+    for upper in (mfv.Body.disk(1.0, rigid=True), mfv.Body.profile(x, 0.01 * x**2, rigid=True)):
+        result = mfv.run(mfv.Scene(lower, upper, **keys))
+        assert [True] == ["reaches the end of the surface of the upper body" in text for text in warnings(result)]
+    punch = mfv.run(mfv.Scene(lower, mfv.Body.flat_punch(1.0), **keys))
+    assert len(warnings(punch)) == 0
+
+
+def test_warnings_of_what_is_between_points() -> None:
+    """Corners that are rounded, a smooth curve of few points that is not; not where it does not matter or corners are meant."""
+    x = np.array([-1.5, 0.0, 1.5])
+
+    def warned(profile: mfv.Body) -> list[str]:
+        result = mfv.run(scene(profile, WEDGE_FORCE, nodes=101, half_width=1.2))
+        return [text for text in warnings(result) if "profile" in text]
+
+    rounded = warned(mfv.Body.profile(x, SLOPE * np.abs(x), interpolation="monotone_cubic", rigid=True))
+    assert len(rounded) == 1 and "interpolation='linear' if the profile has corners" in rounded[0]
+    assert len(warned(mfv.Body.profile(x, SLOPE * np.abs(x), rigid=True))) == 1
+    assert len(warned(mfv.Body.profile(x, SLOPE * np.abs(x), interpolation="linear", rigid=True))) == 0
+    few, many = np.linspace(-1.5, 1.5, 11), np.linspace(-1.5, 1.5, 401)
+    polygon = mfv.Body.profile(few, 0.01 * few**2, interpolation="linear", rigid=True)
+    assert "interpolation='monotone_cubic'" in warned(polygon)[0]
+    assert len(warned(mfv.Body.profile(many, 0.01 * many**2, rigid=True))) == 0
+    assert len(warned(mfv.Body.profile(many, 0.01 * many**2, interpolation="monotone_cubic", rigid=True))) == 0
+
+
+def test_a_trace_as_it_comes(tmp_path: Path) -> None:
+    """Micrometres, outwards, tilted, not centred, with a heading: the same contact as the profile in the case's own units."""
+    x = np.linspace(-0.6, 0.6, 601)
+    recess = 0.02 * (x**2 - 0.3 * x**4)
+    outwards = -recess + 0.004 * x + 0.3
+    columns = np.column_stack([1e3 * (x + 0.6), 1e3 * outwards])
+    (tmp_path / "trace.csv").write_text(
+        "Instrument 7, trace 3\nX [um],Z [um]\n" + "\n".join(f"{a:.12g}, {b:.12g}" for a, b in columns) + "\n"
+    )
+    scales: dict[str, Any] = {"position_scale": 1e-3, "height_scale": -1e-3, "level": "line", "centred": True}
+    trace = mfv.Body(shape="profile", file=tmp_path / "trace.csv", rigid=True, **scales)
+    level = recess - np.polyval(np.polyfit(x, recess, 1), x)
+    own = mfv.Body.profile(x, level, rigid=True)
+    results = [mfv.run(scene(body, 0.002, nodes=61, half_width=0.6)) for body in (trace, own)]
+    np.testing.assert_allclose(sizes(results[0]), sizes(results[1]), rtol=1e-6)
+    assert results[0].summary.approach == pytest.approx(results[1].summary.approach, rel=1e-6)
