@@ -1,12 +1,15 @@
 !> Warnings about the undeformed surfaces under a contact: where they end, what they are between the points of a profile, how steep
 !> they are.
 module mfv_surface_warnings
-   use mfv_body, only: body_type, interpolation_cubic, interpolation_linear, shape_flat_punch, shape_power, shape_profile
+   use mfv_body, only: body_type, interpolation_cubic, interpolation_linear, shape_flat_punch, shape_power, shape_profile, &
+                       shape_rounded_punch
    use mfv_contact_state, only: contact_state_type
    use mfv_kinds, only: pi, wp
    use mfv_node_status, only: in_contact
    use mfv_simulation, only: simulation_type
+   use mfv_slip_zones, only: needed_mesh, resolved_nodes
    use mfv_strings, only: add_text, string_type, to_text
+   use mfv_zone_edges, only: find_zone_edges, zone_edges_type
    implicit none
    private
    public :: warn_of_surface
@@ -30,6 +33,7 @@ contains
       if (.not. any(contact)) return
       call check_end(simulation, contact, name, body, warnings)
       if (body%shape == shape_profile) call check_interpolation(simulation, contact, name, body, warnings)
+      if (body%shape == shape_rounded_punch) call check_rounded_edges(simulation, name, body, warnings)
       if (body%shape /= shape_power .or. body%exponent > 1.0_wp) return
       angle = atan(body%coefficient)*180.0_wp/pi
       if (angle > steepest) call add_text(warnings, 'the flanks of the '//name//' body rise by '//to_text(angle, 3)// &
@@ -88,6 +92,25 @@ contains
          end associate
       end function ends_at
    end subroutine check_end
+
+   !> Between the flat of a punch and the edge of the contact the pressure rises to its peak and falls to zero.
+   subroutine check_rounded_edges(simulation, name, body, warnings)
+      type(simulation_type), intent(in) :: simulation
+      character(*), intent(in) :: name
+      type(body_type), intent(in) :: body
+      type(string_type), allocatable, intent(inout) :: warnings(:)
+      type(zone_edges_type) :: edges
+      real(wp) :: width
+
+      associate (model => simulation%contact%model, state => simulation%contact%state)
+         call find_zone_edges(model, state, edges)
+         width = 0.5_wp*(edges%contact_right - edges%contact_left) - body%flat_half_width
+         if (.not. edges%contact .or. .not. width > 0.0_wp .or. width >= resolved_nodes*model%interval()) return
+         call add_text(warnings, 'the rounded edges of the '//name//' body are in contact over a width of '//to_text(width, 3)// &
+                       ', '//to_text(width/model%interval(), 2)//' intervals: the peak of the pressure, slip and stresses '// &
+                       'there are not resolved; use '//trim(needed_mesh(model, state, width)))
+      end associate
+   end subroutine check_rounded_edges
 
    !> Points further apart than the nodes leave open what is between them, where that matters: a bump of the height e and the width h
    !> takes a pressure of pi m e/h to be pressed flat (Johnson 1985, section 13.2: pi E* (e/2)/h of a sinusoid, E* = 2 m).

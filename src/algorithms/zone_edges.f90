@@ -8,7 +8,8 @@
 !> from the other side). Where a stick zone grows, what lacks has come about bit by bit behind its edge, and goes with a power
 !> larger by one (integrate the root; so do the closed forms of Spence): the straighter of the two tells. So the traction raised
 !> to the inverse power is nearly a straight line, which a parabola through a few nodes follows to its zero. The outermost node,
-!> which carries the error of the discretisation, is left out.
+!> which carries the largest error of the discretisation, is left out, and that of the others, which is known, is taken off: see
+!> `less_discretisation_error`.
 module mfv_zone_edges
    use, intrinsic :: ieee_arithmetic, only: ieee_quiet_nan, ieee_value
    use mfv_archive, only: archive_type
@@ -18,6 +19,7 @@ module mfv_zone_edges
    use mfv_contact_state, only: contact_state_type
    use mfv_kinds, only: pi, wp
    use mfv_node_status, only: holds, in_contact, slip_sign, slips
+   use mfv_surface_tractions, only: root_shift
    implicit none
    private
    public :: zone_type, patch_type, zone_edges_type, find_patches, find_zone_edges, ends_with_body
@@ -67,6 +69,8 @@ module mfv_zone_edges
       !> Values, and nodes of the whole zone.
       integer :: number = 0, zone = 0
       real(wp) :: inwards(0:most_samples - 1) = 0.0_wp, value(0:most_samples - 1) = 0.0_wp
+      !> Whether the error of the discretisation is known: see has_known_error.
+      logical :: is_regular = .false.
    end type samples_type
 
 contains
@@ -234,7 +238,7 @@ contains
       if (merge(patch%right_ends, patch%left_ends, side > 0)) return
       samples = sampled(model, state%fields%pressure, outermost, merge(patch%first, patch%last, side > 0))
       associate (power => merge(patch%right_power, patch%left_power, side > 0))
-         edge = model%arc(outermost) + side*model%width(outermost)*distance_to_zero(straightened(samples, power), .false.)
+         edge = model%arc(outermost) + side*model%width(outermost)*refined_distance(straightened(samples, power))
       end associate
    end function contact_edge
 
@@ -297,7 +301,7 @@ contains
    end function stick_edge
 
    !> The outermost values of a traction in a zone that goes from node `outermost` to node `other`; shape of the traction (nodes).
-   pure function sampled(model, traction, outermost, other) result(samples)
+   function sampled(model, traction, outermost, other) result(samples)
       type(contact_model_type), intent(in) :: model
       real(wp), intent(in) :: traction(:)
       integer, intent(in) :: outermost, other
@@ -307,6 +311,7 @@ contains
       side = merge(1, -1, other >= outermost)
       samples%zone = abs(other - outermost) + 1
       samples%number = min(samples%zone, most_samples)
+      if (samples%number == most_samples) samples%is_regular = has_known_error(model, outermost)
       associate (unit => model%width(outermost))
          do i = 0, samples%number - 1
             samples%value(i) = traction(outermost + side*i)
@@ -332,7 +337,7 @@ contains
       if (min(steady, grown) < unknown_bend) part = min(max((samples%zone - short)/real(short, wp), 0.0_wp), 1.0_wp) &
                                                     *steady**steepness/(steady**steepness + grown**steepness)
       distance = 0.0_wp
-      if (part < 1.0_wp) distance = (1.0_wp - part)*distance_to_zero(straightened(samples, power), .false.)
+      if (part < 1.0_wp) distance = (1.0_wp - part)*refined_distance(straightened(samples, power))
       if (part > 0.0_wp) distance = distance + part*distance_to_zero(straightened(samples, power + 1.0_wp), .true.)
    end function distance_of_lack
 
@@ -401,7 +406,7 @@ contains
       if (.not. model%compliance%elastic_block(block_wt)) return
       beta = model%scene%dundurs_beta()
       if (model%scene%lower%shape == shape_matrix) beta = local_beta(model, node)
-      lean = atan(beta*ratio)/pi
+      lean = root_shift(beta*ratio)
    end function lean
 
    !> Dundurs' beta of bodies whose compliance is a matrix, from the entries about a node: next to a force P, w goes as
@@ -428,6 +433,90 @@ contains
       slope = pi*(by_pressure(1, 2) + by_pressure(1, 3) - by_pressure(1, 1) - by_pressure(1, 4))/log(r(1)*r(4)/(r(2)*r(3)))
       if (slope > 0.0_wp) beta = min(max((by_shear(1, 2) - by_shear(1, 3))/slope, -1.0_wp), 1.0_wp)
    end function local_beta
+
+   !> Whether the equations about a node are those of less_discretisation_error: tractions uniform on equal intervals, normal
+   !> displacements -ln(r) P at their middles, uncoupled. Matrices are judged by their entries.
+   logical function has_known_error(model, node)
+      type(contact_model_type), intent(in) :: model
+      integer, intent(in) :: node
+      integer, parameter :: about = 2
+      real(wp), parameter :: near = 5.0e-3_wp
+      !> (C(0) - C(1))/(C(1) - C(2)), C(j) = (j - 1/2) ln|j - 1/2| - (j + 1/2) ln(j + 1/2).
+      real(wp), parameter :: ratio = 1.5_wp*log(3.0_wp)/(2.5_wp*log(2.5_wp) - 3.0_wp*log(1.5_wp) - 0.5_wp*log(2.0_wp))
+      real(wp) :: entries(1, -about:about), steps(2)
+      integer :: j
+
+      has_known_error = .false.
+      if (model%compliance%elastic_block(block_wt)) return
+      if (node - about < 1 .or. node + about > model%nodes()) return
+      call model%compliance%entries(block_wp, [node], [(node + j, j=-about, about)], entries)
+      entries(1, :) = entries(1, :)/model%width(node - about:node + about)
+      steps = [2.0_wp*entries(1, 0) - entries(1, -1) - entries(1, 1), &
+               entries(1, -1) + entries(1, 1) - entries(1, -2) - entries(1, 2)]
+      has_known_error = abs(steps(1) - ratio*steps(2)) <= near*abs(steps(1)) .and. &
+                        maxval(abs(model%width(node - about:node + about) - model%width(node))) <= near*model%width(node)
+   end function has_known_error
+
+   !> See distance_to_zero; of long zones the second to fourth value tell, freed of the error of the discretisation.
+   pure real(wp) function refined_distance(samples) result(distance)
+      type(samples_type), intent(in) :: samples
+      type(samples_type) :: corrected
+      integer, parameter :: passes = 4
+      integer :: pass
+      real(wp) :: before
+      logical :: found
+
+      distance = distance_to_zero(samples, .false.)
+      if (.not. samples%is_regular) return
+      before = distance
+      corrected = samples
+      do pass = 1, passes
+         corrected = less_discretisation_error(samples, distance, slope_at_edge(corrected, distance))
+         call find_zero_of_three(corrected%inwards(1:3), corrected%value(1:3), distance, found)
+         if (found) cycle
+         distance = before
+         return
+      end do
+   end function refined_distance
+
+   !> Slope at the edge, an interval inwards, of the parabola through the third, fifth and seventh value.
+   pure real(wp) function slope_at_edge(samples, distance) result(slope)
+      type(samples_type), intent(in) :: samples
+      real(wp), intent(in) :: distance
+      real(wp) :: first, second
+
+      associate (t => samples%inwards, values => samples%value)
+         first = (values(4) - values(2))/(t(4) - t(2))
+         second = (values(6) - values(4))/(t(6) - t(4))
+         slope = first - (second - first)/(t(6) - t(2))*(t(2) + t(4) + 2.0_wp*distance)
+      end associate
+   end function slope_at_edge
+
+   !> Straightened tractions less the error of tractions that are uniform on equal intervals of a half-plane's surface, where the
+   !> edge is `distance` intervals outwards from the outermost node. Next to an edge the discrete equations have two solutions
+   !> g(j) and k(j), j = 0 at the outermost node, with the generating functions (1 - z)^(-3/2) E(z) and (1 - z)^(-1/2) E(z); E is
+   !> a Wiener-Hopf factor of |2 sin(t/2)| times the symbol, the sum over k of (-1)^k 2 pi sin(t/2)/(|t + 2 pi k| (t + 2 pi k)).
+   !> Scaled to go as the roots of u = j + offset and of 1/u, g + r k is the traction with its edge at `distance` = offset + 2 r,
+   !> and its square is u + 2 r + (g^2 - u) + 2 r (g k - 1) + r^2 k^2. tests/python/test_edge_solutions.py has the numbers.
+   pure function less_discretisation_error(samples, distance, slope) result(corrected)
+      type(samples_type), intent(in) :: samples
+      real(wp), intent(in) :: distance, slope
+      type(samples_type) :: corrected
+      real(wp), parameter :: offset_of_factor = 0.0753467_wp
+      real(wp), parameter :: of_first(most_samples - 1) = &
+         [0.027053_wp, 0.019433_wp, 0.014202_wp, 0.011236_wp, 0.009277_wp, 0.007895_wp]
+      real(wp), parameter :: of_product(most_samples - 1) = &
+         [0.106751_wp, 0.098408_wp, 0.069204_wp, 0.054513_wp, 0.044815_wp, 0.038040_wp]
+      real(wp), parameter :: of_second(most_samples - 1) = &
+         [0.661249_wp, 0.424110_wp, 0.297743_wp, 0.229914_wp, 0.187097_wp, 0.157689_wp]
+      real(wp) :: r
+
+      corrected = samples
+      r = 0.5_wp*(distance - offset_of_factor - 0.75_wp)
+      associate (n => samples%number - 1, t => samples%inwards, values => samples%value)
+         corrected%value(1:n) = values(1:n) - slope*(of_first(:n) + 2.0_wp*r*of_product(:n) + r**2*of_second(:n))
+      end associate
+   end function less_discretisation_error
 
    !> Where nearly straight values, the outermost first, are zero, in intervals outwards from the outermost node. The second to
    !> fourth node tell, the outermost one carrying the largest error; where the third to seventh are smooth (near edges of other

@@ -12,7 +12,7 @@ module mfv_interior
    use mfv_surface_tractions, only: find_traction_elements, traction_elements_type, zone_list_type
    implicit none
    private
-   public :: interior_type, new_interior, von_mises_stress, tresca_stress, principal_stresses, polar_stress
+   public :: interior_type, new_interior, has_interior, von_mises_stress, tresca_stress, principal_stresses, polar_stress
    public :: stress_xx, stress_yy, stress_xy, stress_zz, stress_count, stress_names, stress_von_mises
 
    !> Places of the stresses in what `stress` returns.

@@ -28,7 +28,7 @@ contains
    function largest_von_mises(interior) result(largest)
       type(interior_type), intent(in) :: interior
       type(largest_type) :: largest
-      integer, parameter :: across = 81, down = 41, starts = 6
+      integer, parameter :: across = 41, down = 21, starts = 6
       real(wp), parameter :: shallowest = 1.0e-3_wp
       real(wp) :: length, reach, place(2), value
       real(wp), allocatable :: net(:, :), positions(:), depths(:)
@@ -91,7 +91,7 @@ contains
    pure subroutine clear_around(net, best)
       real(wp), intent(inout) :: net(:, :)
       integer, intent(in) :: best(2)
-      integer, parameter :: neighbours = 4
+      integer, parameter :: neighbours = 2
 
       net(max(1, best(1) - neighbours):min(size(net, 1), best(1) + neighbours), &
           max(1, best(2) - neighbours):min(size(net, 2), best(2) + neighbours)) = -1.0_wp

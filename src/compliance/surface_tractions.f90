@@ -10,7 +10,7 @@ module mfv_surface_tractions
    use mfv_lapack, only: dgesv
    implicit none
    private
-   public :: zone_list_type, traction_elements_type, find_traction_elements
+   public :: zone_list_type, traction_elements_type, find_traction_elements, root_shift
 
    !> Edges along the surface, lengths, the left one first; shapes (2, zones). A sharp edge is one at which the pressure does
    !> not go to zero: the end of a body's surface. `beta`: Dundurs' parameter that couples tractions and displacements, 0
@@ -188,9 +188,18 @@ contains
       elemental real(wp) function lean(place)
          real(wp), intent(in) :: place
 
-         lean = atan(beta*patch%limit%at(place))/pi
+         lean = root_shift(beta*patch%limit%at(place))
       end function lean
    end subroutine find_powers
+
+   !> By how much tractions at the edge of a slip zone go to zero with another power of the distance than 1/2, `product` being
+   !> Dundurs' beta times tau/p (Johnson 1985, section 8.1). Not quite 1/2, so that powers stay above zero.
+   elemental real(wp) function root_shift(product)
+      real(wp), intent(in) :: product
+      real(wp), parameter :: most = 0.49_wp
+
+      root_shift = min(max(atan(product)/pi, -most), most)
+   end function root_shift
 
    !> The stick zones in a patch that have nodes; `rooted` on the sides where nodes slip.
    function stick_zones(patch, zones) result(stick)

@@ -1,6 +1,6 @@
 !> Stresses inside the bodies of a result, put into its file: /stress/<state>/<body>, on a grid or at points.
 module mfv_stress_file
-   use, intrinsic :: ieee_arithmetic, only: ieee_quiet_nan, ieee_value
+   use, intrinsic :: ieee_arithmetic, only: ieee_is_nan, ieee_quiet_nan, ieee_value
    use, intrinsic :: iso_fortran_env, only: int64
    use hdf5
    use h5ds
@@ -120,7 +120,8 @@ contains
       if (.not. allocated(error)) call read_edges(file, state//'/stick_edge', size(arc), stick_edge, error)
       call close_read(file)
       if (.not. allocated(error)) then
-         if (any([abs(arc), abs(width), abs(pressure), abs(shear), abs(contact_edge), abs(stick_edge)] > largest_size)) &
+         if (any(abs([arc, width, pressure, shear, pack(contact_edge, .not. ieee_is_nan(contact_edge)), &
+                      pack(stick_edge, .not. ieee_is_nan(stick_edge))]) > largest_size)) &
             call set_error(error, MFV_INPUT_ERROR, 'mesh or '//state//' has values beyond 1e100')
       end if
       if (.not. allocated(error)) call read_case_text(text, path_from(directory, source), case, error, &

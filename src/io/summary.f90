@@ -4,6 +4,7 @@ module mfv_summary
    use mfv_case, only: case_type
    use mfv_contact_model, only: contact_model_type, new_contact_model
    use mfv_error_bar
+   use mfv_interior, only: has_interior
    use mfv_kinds, only: wp
    use mfv_result_fields, only: field_named, field_type, group_fields
    use mfv_simulation, only: simulation_type
@@ -49,7 +50,7 @@ contains
             call add_line(text, 'moment', amount(fields, 'moment')//', rotation '//amount(fields, 'rotation'))
             call add_creepage(text, seen)
          end if
-         call add_tension(text, seen)
+         call add_tension(text, seen, model, simulation%contact%state%contact_nodes() > 0)
          words = ''
          if (simulation%contact%certificate%leaps > 0) words = amount(fields, 'leaps')//' large increments, '
          if (simulation%contact%certificate%leaps == 1) words = '1 large increment, '
@@ -114,19 +115,26 @@ contains
       call add_line(text, 'creepage', amount(fields, 'creepage')//', over mu a K '//amount(fields, 'creepage_number'))
    end subroutine add_creepage
 
-   !> The largest tension along the surface of each body that has any.
-   subroutine add_tension(text, fields)
+   !> The largest tension along the surface of each body that has any, or that it is singular: then there is no observable.
+   subroutine add_tension(text, fields, model, touches)
       character(:), allocatable, intent(inout) :: text
       type(field_type), intent(in) :: fields(:)
+      type(contact_model_type), intent(in) :: model
+      logical, intent(in) :: touches
       character(*), parameter :: bodies(2) = ['lower', 'upper']
       character(:), allocatable :: words
+      logical :: has_stresses(2)
       integer :: i
 
       words = ''
+      has_stresses = [has_interior(model%scene%lower), has_interior(model%scene%upper)]
       do i = 1, size(bodies)
-         if (field_named(fields, bodies(i)//'_tension_x') == 0) cycle
-         words = words//', '//bodies(i)//' body '//amount(fields, bodies(i)//'_tension')//' at x = '// &
-                 amount(fields, bodies(i)//'_tension_x')
+         if (field_named(fields, bodies(i)//'_tension_x') > 0) then
+            words = words//', '//bodies(i)//' body '//amount(fields, bodies(i)//'_tension')//' at x = '// &
+                    amount(fields, bodies(i)//'_tension_x')
+         else if (touches .and. has_stresses(i) .and. field_named(fields, bodies(i)//'_tension') == 0) then
+            words = words//', '//bodies(i)//' body singular at a sharp corner'
+         end if
       end do
       if (words /= '') call add_line(text, 'largest tension', words(3:))
    end subroutine add_tension

@@ -138,6 +138,7 @@ contains
          a = min(a, self%flat(i) + 2.0_wp*sqrt(force*self%radius(i)))
       end do
       do i = 1, most_iterations
+         if (.not. self%slope(a) > 0.0_wp) exit
          next = a - (self%force(a) - force)/self%slope(a)
          if (.not. next < a) exit
          a = next
