@@ -184,6 +184,18 @@ def test_warnings_of_surfaces_that_end() -> None:
     assert len(warnings(punch)) == 0
 
 
+def test_warnings_of_rounded_edges_that_the_mesh_does_not_resolve() -> None:
+    """Contact beyond the flat over less than four intervals, until the mesh that the warning asks for."""
+    lower = mfv.Body.half_plane(youngs_modulus=115000.0, poisson_ratio=0.32)
+    upper = mfv.Body.rounded_punch(3.0, 3.0, youngs_modulus=115000.0, poisson_ratio=0.32)
+    texts = {}
+    for nodes in (201, 670):
+        keys: dict[str, Any] = {"mesh": mfv.Mesh(nodes=nodes), "steps": [mfv.Step(normal_force=500.0)]}
+        texts[nodes] = warnings(mfv.run(mfv.Scene(lower, upper, **keys)))
+    assert len(texts[201]) == 1 and "rounded edges of the upper body" in texts[201][0] and "about 670 nodes" in texts[201][0]
+    assert texts[670] == []
+
+
 def test_warnings_of_what_is_between_points() -> None:
     """Corners that are rounded, a smooth curve of few points that is not; not where it does not matter or corners are meant."""
     x = np.array([-1.5, 0.0, 1.5])
