@@ -311,7 +311,7 @@ contains
       side = merge(1, -1, other >= outermost)
       samples%zone = abs(other - outermost) + 1
       samples%number = min(samples%zone, most_samples)
-      if (samples%number == most_samples) samples%is_regular = has_known_error(model, outermost)
+      if (samples%number > 3) samples%is_regular = has_known_error(model, outermost)
       associate (unit => model%width(outermost))
          do i = 0, samples%number - 1
             samples%value(i) = traction(outermost + side*i)
@@ -461,7 +461,7 @@ contains
    pure real(wp) function refined_distance(samples) result(distance)
       type(samples_type), intent(in) :: samples
       type(samples_type) :: corrected
-      integer, parameter :: passes = 4
+      integer, parameter :: passes = 8
       integer :: pass
       real(wp) :: before
       logical :: found
@@ -479,16 +479,16 @@ contains
       end do
    end function refined_distance
 
-   !> Slope at the edge, an interval inwards, of the parabola through the third, fifth and seventh value.
+   !> Slope at the edge, an interval inwards, of the parabola through the second to fourth value.
    pure real(wp) function slope_at_edge(samples, distance) result(slope)
       type(samples_type), intent(in) :: samples
       real(wp), intent(in) :: distance
       real(wp) :: first, second
 
       associate (t => samples%inwards, values => samples%value)
-         first = (values(4) - values(2))/(t(4) - t(2))
-         second = (values(6) - values(4))/(t(6) - t(4))
-         slope = first - (second - first)/(t(6) - t(2))*(t(2) + t(4) + 2.0_wp*distance)
+         first = (values(2) - values(1))/(t(2) - t(1))
+         second = (values(3) - values(2))/(t(3) - t(2))
+         slope = first - (second - first)/(t(3) - t(1))*(t(1) + t(2) + 2.0_wp*distance)
       end associate
    end function slope_at_edge
 
