@@ -9,7 +9,7 @@
 !> larger by one (integrate the root; so do the closed forms of Spence): the straighter of the two tells. So the traction raised
 !> to the inverse power is nearly a straight line, which a parabola through a few nodes follows to its zero. The outermost node,
 !> which carries the largest error of the discretisation, is left out, and that of the others, which is known, is taken off: see
-!> `less_discretisation_error`.
+!> `refined_distance`.
 module mfv_zone_edges
    use, intrinsic :: ieee_arithmetic, only: ieee_quiet_nan, ieee_value
    use mfv_archive, only: archive_type
@@ -62,6 +62,10 @@ module mfv_zone_edges
    !> Most nodes that an edge is found from.
    integer, parameter :: most_samples = 7
    real(wp), parameter :: unknown_bend = 1.0e10_wp
+   !> Powers for which the error of the discretisation is known, and nodes that have to slip next to an edge for that if normal and
+   !> tangential motions couple.
+   real(wp), parameter :: least_power = 0.29_wp, most_power = 0.71_wp
+   integer, parameter :: fewest_slipping = 6
 
    !> A traction near an edge: its values at the outermost nodes of a zone, the outermost first, and how far inwards from that one
    !> the nodes are, in its intervals.
@@ -69,8 +73,11 @@ module mfv_zone_edges
       !> Values, and nodes of the whole zone.
       integer :: number = 0, zone = 0
       real(wp) :: inwards(0:most_samples - 1) = 0.0_wp, value(0:most_samples - 1) = 0.0_wp
-      !> Whether the error of the discretisation is known: see has_known_error.
+      !> The power of the distance with which the traction goes to zero, and whether the error of the discretisation is known.
+      real(wp) :: power = 0.5_wp
       logical :: is_regular = .false.
+   contains
+      procedure :: first_regular
    end type samples_type
 
 contains
@@ -237,10 +244,28 @@ contains
       edge = model%arc(outermost) + 0.5_wp*side*model%width(outermost)
       if (merge(patch%right_ends, patch%left_ends, side > 0)) return
       samples = sampled(model, state%fields%pressure, outermost, merge(patch%first, patch%last, side > 0))
+      if (model%compliance%elastic_block(block_wt)) &
+         samples%is_regular = samples%is_regular .and. slipping_run(state, outermost, -side) >= fewest_slipping
       associate (power => merge(patch%right_power, patch%left_power, side > 0))
          edge = model%arc(outermost) + side*model%width(outermost)*refined_distance(straightened(samples, power))
       end associate
    end function contact_edge
+
+   !> How many nodes slip in one direction from a node on, going to the left (-1) or right (1).
+   pure integer function slipping_run(state, from, direction) result(nodes)
+      type(contact_state_type), intent(in) :: state
+      integer, intent(in) :: from, direction
+      integer :: node
+
+      nodes = 0
+      if (.not. slips(state%status(from))) return
+      node = from
+      do while (node >= 1 .and. node <= size(state%status))
+         if (state%status(node) /= state%status(from)) return
+         nodes = nodes + 1
+         node = node + direction
+      end do
+   end function slipping_run
 
    !> The power of the distance with which the pressure of an outermost node goes to zero on `side`.
    real(wp) function contact_power(model, state, node, side) result(power)
@@ -262,6 +287,7 @@ contains
       type(patch_type), intent(in) :: patch
       integer, intent(in) :: side
       real(wp) :: lack(size(state%status)), power, direction
+      type(samples_type) :: samples
       integer :: last, next, other
 
       last = merge(zone%last, zone%first, side > 0)
@@ -287,7 +313,9 @@ contains
          last = last - side
       end if
       power = 0.5_wp - side*lean(model, next, direction*model%kinetic_friction(next))
-      edge = model%arc(last) + side*model%width(last)*distance_of_lack(sampled(model, lack, last, other), power)
+      samples = sampled(model, lack, last, other)
+      if (model%compliance%elastic_block(block_wt)) samples%is_regular = .false.
+      edge = model%arc(last) + side*model%width(last)*distance_of_lack(samples, power)
 
    contains
 
@@ -311,7 +339,7 @@ contains
       side = merge(1, -1, other >= outermost)
       samples%zone = abs(other - outermost) + 1
       samples%number = min(samples%zone, most_samples)
-      if (samples%number > 3) samples%is_regular = has_known_error(model, outermost)
+      if (samples%number > 4) samples%is_regular = has_known_error(model, outermost)
       associate (unit => model%width(outermost))
          do i = 0, samples%number - 1
             samples%value(i) = traction(outermost + side*i)
@@ -389,6 +417,8 @@ contains
       real(wp) :: largest
 
       straight = samples
+      straight%power = power
+      straight%is_regular = samples%is_regular .and. power > least_power .and. power < most_power
       largest = maxval(samples%value(:samples%number - 1))
       straight%value = 0.0_wp
       if (largest > 0.0_wp) straight%value = max(samples%value/largest, 0.0_wp)**(1.0_wp/power)
@@ -434,8 +464,8 @@ contains
       if (slope > 0.0_wp) beta = min(max((by_shear(1, 2) - by_shear(1, 3))/slope, -1.0_wp), 1.0_wp)
    end function local_beta
 
-   !> Whether the equations about a node are those of less_discretisation_error: tractions uniform on equal intervals, normal
-   !> displacements -ln(r) P at their middles, uncoupled. Matrices are judged by their entries.
+   !> Whether the equations about a node are those of refined_distance: tractions uniform on equal intervals, normal
+   !> displacements -ln(r) P at their middles. Matrices are judged by their entries.
    logical function has_known_error(model, node)
       type(contact_model_type), intent(in) :: model
       integer, intent(in) :: node
@@ -447,7 +477,6 @@ contains
       integer :: j
 
       has_known_error = .false.
-      if (model%compliance%elastic_block(block_wt)) return
       if (node - about < 1 .or. node + about > model%nodes()) return
       call model%compliance%entries(block_wp, [node], [(node + j, j=-about, about)], entries)
       entries(1, :) = entries(1, :)/model%width(node - about:node + about)
@@ -457,66 +486,99 @@ contains
                         maxval(abs(model%width(node - about:node + about) - model%width(node))) <= near*model%width(node)
    end function has_known_error
 
-   !> See distance_to_zero; of long zones the second to fourth value tell, freed of the error of the discretisation.
+   !> See distance_to_zero; where the error of the discretisation is known (docs/theory.md) values and edge fit together: near the
+   !> edge, at which tractions uniform on equal intervals of a half-plane go to zero with the power m, the discrete equations have two
+   !> solutions g(j) and k(j), j = 0 at the outermost node. Scaled to go as u^m and u^(m-1), u = j + offset, g + 2 m r k is the
+   !> traction with its edge offset + 2 r intervals outwards from the outermost node. To the power 1/m it makes the second to fourth
+   !> value (with m < 1/2, where k is ragged, the third to fifth) with a parabola without linear term.
    pure real(wp) function refined_distance(samples) result(distance)
       type(samples_type), intent(in) :: samples
-      type(samples_type) :: corrected
-      integer, parameter :: passes = 8
-      integer :: pass
-      real(wp) :: before
+      integer, parameter :: steps = 44, halvings = 40
+      real(wp), parameter :: nearest = -0.6_wp, step = 0.05_wp
+      real(wp) :: start, left, right, middle, at_left, at_right, at_middle
       logical :: found
+      integer :: i, j
 
-      distance = distance_to_zero(samples, .false.)
+      start = distance_to_zero(samples, .false.)
+      distance = start
       if (.not. samples%is_regular) return
-      before = distance
-      corrected = samples
-      do pass = 1, passes
-         corrected = less_discretisation_error(samples, distance, slope_at_edge(corrected, distance))
-         call find_zero_of_three(corrected%inwards(1:3), corrected%value(1:3), distance, found)
-         if (found) cycle
-         distance = before
-         return
+      found = .false.
+      at_right = misfit(samples, nearest)
+      do i = 1, steps
+         left = nearest + (i - 1)*step
+         right = left + step
+         at_left = at_right
+         at_right = misfit(samples, right)
+         if (at_left*at_right > 0.0_wp .or. .not. abs(at_left) > 0.0_wp) cycle
+         do j = 1, halvings
+            middle = 0.5_wp*(left + right)
+            at_middle = misfit(samples, middle)
+            if (at_left*at_middle > 0.0_wp) then
+               left = middle
+            else
+               right = middle
+            end if
+         end do
+         if (.not. found .or. abs(middle - start) < abs(distance - start)) distance = middle
+         found = .true.
       end do
    end function refined_distance
 
-   !> Slope at the edge, an interval inwards, of the parabola through the second to fourth value.
-   pure real(wp) function slope_at_edge(samples, distance) result(slope)
+   !> The determinant of three values, of those that the solutions of the discrete equations give them with the edge at `distance`,
+   !> and of the squares of their distances from it: zero at the edge.
+   pure real(wp) function misfit(samples, distance)
       type(samples_type), intent(in) :: samples
       real(wp), intent(in) :: distance
-      real(wp) :: first, second
+      real(wp) :: offset, g(4), k(4), value(3), discrete(3), square(3)
+      integer :: first
 
-      associate (t => samples%inwards, values => samples%value)
-         first = (values(2) - values(1))/(t(2) - t(1))
-         second = (values(3) - values(2))/(t(3) - t(2))
-         slope = first - (second - first)/(t(3) - t(1))*(t(1) + t(2) + 2.0_wp*distance)
-      end associate
-   end function slope_at_edge
+      call find_edge_solutions(samples%power, offset, g, k)
+      first = samples%first_regular()
+      value = samples%value(first:first + 2)
+      discrete = max(g(first:first + 2) + samples%power*(distance - offset)*k(first:first + 2), 0.0_wp)**(1.0_wp/samples%power)
+      square = (samples%inwards(first:first + 2) + distance)**2
+      misfit = value(1)*(discrete(2)*square(3) - discrete(3)*square(2)) &
+               - value(2)*(discrete(1)*square(3) - discrete(3)*square(1)) &
+               + value(3)*(discrete(1)*square(2) - discrete(2)*square(1))
+   end function misfit
 
-   !> Straightened tractions less the error of tractions that are uniform on equal intervals of a half-plane's surface, where the
-   !> edge is `distance` intervals outwards from the outermost node. Next to an edge the discrete equations have two solutions
-   !> g(j) and k(j), j = 0 at the outermost node, with the generating functions (1 - z)^(-3/2) E(z) and (1 - z)^(-1/2) E(z); E is
-   !> a Wiener-Hopf factor of |2 sin(t/2)| times the symbol, the sum over k of (-1)^k 2 pi sin(t/2)/(|t + 2 pi k| (t + 2 pi k)).
-   !> Scaled to go as the roots of u = j + offset and of 1/u, g + r k is the traction with its edge at `distance` = offset + 2 r,
-   !> and its square is u + 2 r + (g^2 - u) + 2 r (g k - 1) + r^2 k^2. tests/python/test_edge_solutions.py has the numbers.
-   pure function less_discretisation_error(samples, distance, slope) result(corrected)
-      type(samples_type), intent(in) :: samples
-      real(wp), intent(in) :: distance, slope
-      type(samples_type) :: corrected
-      real(wp), parameter :: offset_of_factor = 0.0753467_wp
-      real(wp), parameter :: of_first(most_samples - 1) = &
-         [0.027053_wp, 0.019433_wp, 0.014202_wp, 0.011236_wp, 0.009277_wp, 0.007895_wp]
-      real(wp), parameter :: of_product(most_samples - 1) = &
-         [0.106751_wp, 0.098408_wp, 0.069204_wp, 0.054513_wp, 0.044815_wp, 0.038040_wp]
-      real(wp), parameter :: of_second(most_samples - 1) = &
-         [0.661249_wp, 0.424110_wp, 0.297743_wp, 0.229914_wp, 0.187097_wp, 0.157689_wp]
-      real(wp) :: r
+   !> The first of the three values that tell the edge.
+   pure integer function first_regular(self)
+      class(samples_type), intent(in) :: self
 
-      corrected = samples
-      r = 0.5_wp*(distance - offset_of_factor - 0.75_wp)
-      associate (n => samples%number - 1, t => samples%inwards, values => samples%value)
-         corrected%value(1:n) = values(1:n) - slope*(of_first(:n) + 2.0_wp*r*of_product(:n) + r**2*of_second(:n))
-      end associate
-   end function less_discretisation_error
+      first_regular = merge(2, 1, self%power < 0.5_wp)
+   end function first_regular
+
+   !> The offset and the two solutions for j = 1 to 4 for a power, between those that are tabulated: to 1e-5, k to 6e-4.
+   !> tests/python/test_edge_solutions.py has the numbers.
+   pure subroutine find_edge_solutions(power, offset, g, k)
+      real(wp), intent(in) :: power
+      real(wp), intent(out) :: offset, g(4), k(4)
+      integer, parameter :: powers = 7
+      integer :: i
+      real(wp), parameter :: tabulated(powers) = [(least_power + (i - 1)*(most_power - least_power)/(powers - 1), i=1, powers)]
+      real(wp), parameter :: solutions(9, powers) = reshape([ &
+         0.860655_wp, 1.175358_wp, 1.370073_wp, 1.481191_wp, 1.584615_wp, 0.150503_wp, 0.671431_wp, 0.383166_wp, 0.356635_wp, &
+         0.841286_wp, 1.246079_wp, 1.464396_wp, 1.626871_wp, 1.767032_wp, 0.544208_wp, 0.606435_wp, 0.451321_wp, 0.389337_wp, &
+         0.829361_wp, 1.304766_wp, 1.570424_wp, 1.785116_wp, 1.970880_wp, 0.725241_wp, 0.617810_wp, 0.499283_wp, 0.432011_wp, &
+         0.825347_wp, 1.361029_wp, 1.686648_wp, 1.959477_wp, 2.199223_wp, 0.813172_wp, 0.651237_wp, 0.545658_wp, 0.479493_wp, &
+         0.829399_wp, 1.420521_wp, 1.814357_wp, 2.153109_wp, 2.456090_wp, 0.858901_wp, 0.690941_wp, 0.594302_wp, 0.531546_wp, &
+         0.841354_wp, 1.486743_wp, 1.955829_wp, 2.369472_wp, 2.746252_wp, 0.885941_wp, 0.732947_wp, 0.646318_wp, 0.588719_wp, &
+         0.860741_wp, 1.562005_wp, 2.113650_wp, 2.612415_wp, 3.075201_wp, 0.905789_wp, 0.776965_wp, 0.702486_wp, 0.651810_wp], &
+         [9, powers])
+      real(wp) :: found(9)
+      logical :: others(powers)
+
+      found = 0.0_wp
+      do i = 1, powers
+         others = .true.
+         others(i) = .false.
+         found = found + solutions(:, i)*product((power - tabulated)/(tabulated(i) - tabulated), mask=others)
+      end do
+      offset = found(1)
+      g = found(2:5)
+      k = found(6:9)
+   end subroutine find_edge_solutions
 
    !> Where nearly straight values, the outermost first, are zero, in intervals outwards from the outermost node. The second to
    !> fourth node tell, the outermost one carrying the largest error; where the third to seventh are smooth (near edges of other
