@@ -17,6 +17,7 @@ module mfv_zone_edges
    use mfv_compliance, only: block_wp, block_wt
    use mfv_contact_model, only: contact_model_type
    use mfv_contact_state, only: contact_state_type
+   use mfv_edge_solutions, only: find_edge_solutions, least_power, most_power
    use mfv_kinds, only: pi, wp
    use mfv_node_status, only: holds, in_contact, slip_sign, slips
    use mfv_surface_tractions, only: root_shift
@@ -62,9 +63,7 @@ module mfv_zone_edges
    !> Most nodes that an edge is found from.
    integer, parameter :: most_samples = 7
    real(wp), parameter :: unknown_bend = 1.0e10_wp
-   !> Powers for which the error of the discretisation is known, and nodes that have to slip next to an edge for that if normal and
-   !> tangential motions couple.
-   real(wp), parameter :: least_power = 0.29_wp, most_power = 0.71_wp
+   !> Nodes that have to slip next to an edge for its error to be known if normal and tangential motions couple.
    integer, parameter :: fewest_slipping = 6
 
    !> A traction near an edge: its values at the outermost nodes of a zone, the outermost first, and how far inwards from that one
@@ -548,37 +547,6 @@ contains
 
       first_regular = merge(2, 1, self%power < 0.5_wp)
    end function first_regular
-
-   !> The offset and the two solutions for j = 1 to 4 for a power, between those that are tabulated: to 1e-5, k to 6e-4.
-   !> tests/python/test_edge_solutions.py has the numbers.
-   pure subroutine find_edge_solutions(power, offset, g, k)
-      real(wp), intent(in) :: power
-      real(wp), intent(out) :: offset, g(4), k(4)
-      integer, parameter :: powers = 7
-      integer :: i
-      real(wp), parameter :: tabulated(powers) = [(least_power + (i - 1)*(most_power - least_power)/(powers - 1), i=1, powers)]
-      real(wp), parameter :: solutions(9, powers) = reshape([ &
-         0.860655_wp, 1.175358_wp, 1.370073_wp, 1.481191_wp, 1.584615_wp, 0.150503_wp, 0.671431_wp, 0.383166_wp, 0.356635_wp, &
-         0.841286_wp, 1.246079_wp, 1.464396_wp, 1.626871_wp, 1.767032_wp, 0.544208_wp, 0.606435_wp, 0.451321_wp, 0.389337_wp, &
-         0.829361_wp, 1.304766_wp, 1.570424_wp, 1.785116_wp, 1.970880_wp, 0.725241_wp, 0.617810_wp, 0.499283_wp, 0.432011_wp, &
-         0.825347_wp, 1.361029_wp, 1.686648_wp, 1.959477_wp, 2.199223_wp, 0.813172_wp, 0.651237_wp, 0.545658_wp, 0.479493_wp, &
-         0.829399_wp, 1.420521_wp, 1.814357_wp, 2.153109_wp, 2.456090_wp, 0.858901_wp, 0.690941_wp, 0.594302_wp, 0.531546_wp, &
-         0.841354_wp, 1.486743_wp, 1.955829_wp, 2.369472_wp, 2.746252_wp, 0.885941_wp, 0.732947_wp, 0.646318_wp, 0.588719_wp, &
-         0.860741_wp, 1.562005_wp, 2.113650_wp, 2.612415_wp, 3.075201_wp, 0.905789_wp, 0.776965_wp, 0.702486_wp, 0.651810_wp], &
-         [9, powers])
-      real(wp) :: found(9)
-      logical :: others(powers)
-
-      found = 0.0_wp
-      do i = 1, powers
-         others = .true.
-         others(i) = .false.
-         found = found + solutions(:, i)*product((power - tabulated)/(tabulated(i) - tabulated), mask=others)
-      end do
-      offset = found(1)
-      g = found(2:5)
-      k = found(6:9)
-   end subroutine find_edge_solutions
 
    !> Where nearly straight values, the outermost first, are zero, in intervals outwards from the outermost node. The second to
    !> fourth node tell, the outermost one carrying the largest error; where the third to seventh are smooth (near edges of other

@@ -2,12 +2,13 @@
 !>
 !> A pressure goes to zero at a smooth edge as the root of the distance, and so does, at the edge of a stick zone, what the shear
 !> traction lacks of the friction limit (Hertz; Cattaneo and Mindlin, dissertation eqs. 3.1, 3.7). The pressure and the lack, each
-!> over its roots, are smooth: they are interpolated linearly and continued to the edges. Nodes next to an edge, which carry the error of the discretisation (a fifth of the value at the outermost), are left
-!> out; the resultant forces are those of the nodal values. The whole is projected onto linear elements that are graded towards
-!> the edges: of the elements only their sums with other functions matter for stresses, which a projection keeps.
+!> over its roots, are smooth: they are interpolated linearly and continued to the edges. Values at nodes are freed of the error of
+!> the discretisation where it is known (mfv_edge_solutions); those within two intervals of an edge are left out. The resultant
+!> forces are those of the nodal values. The whole is projected onto linear elements that are graded towards the edges: of the
+!> elements only their sums with other functions matter for stresses, which a projection keeps.
 module mfv_surface_tractions
+   use mfv_edge_solutions, only: discrete_over_exact, least_power, most_power
    use mfv_kinds, only: pi, wp
-   use mfv_lapack, only: dgesv
    implicit none
    private
    public :: zone_list_type, traction_elements_type, find_traction_elements, root_shift
@@ -46,6 +47,8 @@ module mfv_surface_tractions
    type :: zone_type
       real(wp) :: edge(2) = 0.0_wp, power(2) = 0.5_wp
       logical :: rooted(2) = .true.
+      !> Whether the error of the discretisation at the edges is known.
+      logical :: known(2) = .false.
       type(table_type) :: rest
    contains
       procedure :: contains_place
@@ -142,31 +145,41 @@ contains
          call fit_zone(patch, patch%shear, patch%contact)
          patch%shear_rest = patch%contact%rest
       end if
+      call find_known(patch, zones%beta)
       values = patch%pressure
-      call refine_edges(patch, values, patch%contact)
+      call free_of_error(patch, patch%contact, values)
       call fit_zone(patch, values, patch%contact)
       do i = 1, size(patch%stick)
          values = patch%limit%at(patch%arc)*patch%pressure - patch%shear
-         call refine_edges(patch, values, patch%stick(i))
-         call keep_in_order(patch, i)
+         call free_of_error(patch, patch%stick(i), values)
          if (.not. all(patch%stick(i)%rooted)) values = values/patch%pressure
          call fit_zone(patch, values, patch%stick(i))
       end do
    end subroutine fit_patch
 
-   !> Edges that have been refined one by one stay in the order of the zones: stick zones are in the contact and do not overlap.
-   pure subroutine keep_in_order(patch, number)
+   !> The edges at which the error of the discretisation is known: of contact zones where enough nodes slip, of stick zones without
+   !> coupling (`beta` 0).
+   subroutine find_known(patch, beta)
       type(patch_type), intent(inout) :: patch
-      integer, intent(in) :: number
-      real(wp) :: lowest
+      real(wp), intent(in) :: beta
+      integer, parameter :: fewest_nodes = 5, fewest_slipping = 4
+      logical :: slips(size(patch%arc))
+      integer :: i, n
 
-      lowest = patch%contact%edge(1)
-      if (number > 1) lowest = patch%stick(number - 1)%edge(2)
-      associate (zone => patch%stick(number))
-         zone%edge(1) = min(max(zone%edge(1), lowest), patch%contact%edge(2))
-         zone%edge(2) = min(max(zone%edge(2), zone%edge(1)), patch%contact%edge(2))
-      end associate
-   end subroutine keep_in_order
+      n = size(patch%arc)
+      patch%contact%known = patch%has_ratio .and. n >= fewest_nodes .and. patch%contact%power > least_power .and. &
+                            patch%contact%power < most_power
+      if (.not. patch%has_ratio) return
+      if (abs(beta) > 0.0_wp) then
+         slips = [(.not. any(patch%stick%contains_place(patch%arc(i))), i=1, n)]
+         patch%contact%known = patch%contact%known .and. &
+                               [all(slips(:min(n, fewest_slipping))), all(slips(max(1, n - fewest_slipping + 1):))]
+      else
+         do i = 1, size(patch%stick)
+            patch%stick(i)%known = count(patch%stick(i)%contains_place(patch%arc)) >= fewest_nodes
+         end do
+      end if
+   end subroutine find_known
 
    !> The powers at edges next to which nodes slip: see mfv_zone_edges.
    subroutine find_powers(patch, beta)
@@ -289,82 +302,30 @@ contains
       end do
    end function slipping_nodes
 
-   !> Move the edges of a zone at which `values`, at the nodes of a patch, go to zero: stresses beside an edge are sensitive to
-   !> hundredths of an interval. A value to the inverse power of the root is a parabola in the distance d, and the error that the
-   !> discretisation makes at the edge decays in it as 1/d: least squares of both over nodes some intervals inwards, whose values
-   !> are freed of that error. Edges and values stay where this does not fit, or where there are few nodes.
-   subroutine refine_edges(patch, values, zone)
-      type(patch_type), intent(in) :: patch
-      real(wp), intent(inout) :: values(:)
-      type(zone_type), intent(inout) :: zone
-      integer, parameter :: most = 6, fewest = 8, rounds = 6
-      real(wp), parameter :: farthest = 0.75_wp, good = 1.0e-3_wp
-      integer, allocatable :: inside(:), nodes(:)
-      real(wp), allocatable :: d(:)
-      real(wp) :: interval, edge, shift, error, residual, direction
-      integer :: side, inwards, n, i, round, skipped
-
-      skipped = skipped_intervals(patch, zone)
-      inside = pack([(i, i=1, size(values))], patch%arc - zone%edge(1) > skipped*patch%width .and. &
-                    zone%edge(2) - patch%arc > skipped*patch%width)
-      do side = 1, 2
-         if (.not. zone%rooted(side)) cycle
-         inwards = 3 - 2*side
-         nodes = inside
-         if (side == 2) nodes = nodes(size(nodes):1:-1)
-         n = min(most*skipped, size(nodes)/2)
-         if (n < fewest) cycle
-         nodes = nodes(:n)
-         direction = sign(1.0_wp, values(nodes(1)))
-         if (.not. all(direction*values(nodes) > 0.0_wp)) cycle
-         interval = abs(patch%arc(nodes(2)) - patch%arc(nodes(1)))
-         edge = zone%edge(side)
-         do round = 1, rounds
-            d = inwards*(patch%arc(nodes) - edge)/interval
-            call find_shift(d, (direction*values(nodes))**(1.0_wp/zone%power(side)), shift, error, residual)
-            edge = edge + inwards*shift*interval
-            if (.not. (abs(edge - zone%edge(side)) <= farthest*interval .and. residual <= good)) exit
-         end do
-         if (.not. (abs(edge - zone%edge(side)) <= farthest*interval .and. residual <= good)) cycle
-         zone%edge(side) = edge
-         values(nodes) = direction*max((direction*values(nodes))**(1.0_wp/zone%power(side)) - error/d, 0.0_wp)**zone%power(side)
-      end do
-   end subroutine refine_edges
-
-   !> How many intervals next to an edge are left out: two, and of many more, so that with finer meshes the error of the
-   !> discretisation there, which is a function of the distance in intervals, goes out of sight.
-   pure integer function skipped_intervals(patch, zone)
+   !> Take the error of the discretisation off the `values` at the nodes of a zone, next to edges where it is known. The outermost
+   !> node may be just outside of its edge.
+   subroutine free_of_error(patch, zone, values)
       type(patch_type), intent(in) :: patch
       type(zone_type), intent(in) :: zone
+      real(wp), intent(inout) :: values(:)
+      real(wp), parameter :: round_off = 1.0e-9_wp
+      integer, allocatable :: nodes(:)
+      real(wp) :: distance
+      integer :: i, side
 
-      skipped_intervals = max(2, nint(0.4_wp*sqrt(real(count(zone%contains_place(patch%arc)), wp))))
-   end function skipped_intervals
-
-   !> How far inwards the zero is of the parabola in `d` that is, with a part `error`/d, nearest to some values; `residual`: what is
-   !> left, over the change of the values. Shapes (nodes).
-   subroutine find_shift(d, values, shift, error, residual)
-      real(wp), intent(in) :: d(:), values(:)
-      real(wp), intent(out) :: shift, error, residual
-      real(wp) :: basis(size(d), 4), matrix(4, 4), coefficients(4, 1), discriminant
-      integer :: pivots(4), info
-
-      basis = reshape([spread(1.0_wp, 1, size(d)), d, d**2, 1.0_wp/d], shape(basis))
-      matrix = matmul(transpose(basis), basis)
-      coefficients(:, 1) = matmul(values, basis)
-      shift = huge(1.0_wp)
-      residual = huge(1.0_wp)
-      error = 0.0_wp
-      call dgesv(4, 1, matrix, 4, pivots, coefficients, 4, info)
-      if (info /= 0) return
-      discriminant = coefficients(2, 1)**2 - 4.0_wp*coefficients(1, 1)*coefficients(3, 1)
-      if (.not. (coefficients(2, 1) > 0.0_wp .and. discriminant > 0.0_wp)) return
-      shift = -2.0_wp*coefficients(1, 1)/(coefficients(2, 1) + sqrt(discriminant))
-      error = coefficients(4, 1)
-      residual = maxval(abs(values - matmul(basis, coefficients(:, 1))))/(maxval(values) - minval(values))
-   end subroutine find_shift
+      do side = 1, 2
+         if (.not. (zone%rooted(side) .and. zone%known(side))) cycle
+         nodes = pack([(i, i=1, size(values))], zone%contains_place(patch%arc) .or. &
+                      (abs(patch%arc - zone%edge(side)) < 0.5_wp*patch%width .and. abs(values) > round_off*maxval(abs(values))))
+         if (side == 2) nodes = nodes(size(nodes):1:-1)
+         distance = (2*side - 3)*(zone%edge(side) - patch%arc(nodes(1)))/patch%width(nodes(1))
+         nodes = nodes(2:)
+         values(nodes) = values(nodes)/discrete_over_exact(zone%power(side), distance, size(nodes))
+      end do
+   end subroutine free_of_error
 
    !> `values` at the nodes of a patch over the roots of a zone, as a table of the nodes in the zone; without those that are
-   !> nearer to a rooted edge than skipped_intervals, if others are left.
+   !> nearer than two intervals to a rooted edge, or than one, if others are left.
    subroutine fit_zone(patch, values, zone)
       type(patch_type), intent(in) :: patch
       real(wp), intent(in) :: values(:)
@@ -372,7 +333,7 @@ contains
       logical :: used(size(values))
       integer :: intervals
 
-      do intervals = skipped_intervals(patch, zone), 0, -1
+      do intervals = 2, 0, -1
          used = zone%contains_place(patch%arc)
          if (zone%rooted(1)) used = used .and. patch%arc - zone%edge(1) > intervals*patch%width
          if (zone%rooted(2)) used = used .and. zone%edge(2) - patch%arc > intervals*patch%width

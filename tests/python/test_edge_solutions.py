@@ -10,49 +10,68 @@ import numpy as np
 
 import mfv
 
-SOURCE = Path(__file__).resolve().parents[2] / "src" / "algorithms" / "zone_edges.f90"
+SOURCE = Path(__file__).resolve().parents[2] / "src" / "compliance" / "edge_solutions.f90"
 
 
-def numbers(name: str) -> np.ndarray:
-    """The numbers of a parameter of the module."""
-    text = re.search(rf":: {name}\b[^=]*=\s*(?:&\s*)?(\[[^\]]*\]|\S+)", SOURCE.read_text())
-    assert text, name
-    return np.array([float(value) for value in re.findall(r"(\d+\.\d+)_wp", text[1])])
+def numbers(text: str, pattern: str) -> np.ndarray:
+    """The real numbers in the part of a text that a pattern matches."""
+    found = re.search(pattern, text, re.DOTALL)
+    assert found, pattern
+    return np.array([float(value) for value in re.findall(r"\d+\.\d+(?=_wp)", found[0])])
 
 
-def logarithm_of_symbol(places: int, aliases: int) -> tuple[np.ndarray, np.ndarray]:
-    """Wave numbers, and the logarithm of |2 sin(t/2)|/pi times the symbol of uniform tractions on equal intervals of a half-plane,
-    seen at the middles."""
+def solutions(power: float, nodes: int) -> tuple[float, np.ndarray, np.ndarray]:
+    """Offset, g(j) and k(j), j = 0 to nodes - 1, by Wiener and Hopf's method (docs/theory.md, edges between nodes)."""
+    places, aliases, terms = 2**14, 200, 150
     t = (np.arange(places) + 0.5) * 2 * np.pi / places - np.pi
-    symbol = np.zeros(places)
-    for k in range(-aliases, aliases + 1):
-        symbol += (-1) ** k / (abs(t + 2 * np.pi * k) * (t + 2 * np.pi * k))
-    symbol *= 2 * np.pi * np.sin(t / 2)
-    return t, np.log(symbol * abs(2 * np.sin(t / 2)) / np.pi)
-
-
-def test_edge_numbers_follow_from_the_symbol() -> None:
-    """g and k from their generating functions; a Wiener-Hopf factor is exp of half the Fourier series."""
-    terms = 100
-    t, logarithm = logarithm_of_symbol(2**14, 200)
-    series = np.array([np.mean(logarithm * np.cos(n * t)) for n in range(terms)])
+    symbol = sum((-1.0) ** k / (abs(t + 2 * np.pi * k) * (t + 2 * np.pi * k)) for k in range(-aliases, aliases + 1))
+    symbol = symbol * 2 * np.pi * np.sin(t / 2) + 0.5j * np.pi * np.tan(np.pi * (0.5 - power)) / np.tan(t / 2)
+    z = np.exp(1j * t)
+    logarithm = np.log(symbol) + (1 - power) * np.log(1 - z) + power * np.log(1 - 1 / z)
+    series = np.array([np.mean(logarithm * z**-n).real for n in range(terms)])
     factor = np.zeros(terms)  # exp(-sum of series[n] z^n, n > 0)
     factor[0] = 1.0
-    first, second = np.ones(terms), np.ones(terms)  # (1 - z)^(-3/2), (1 - z)^(-1/2)
+    first, second = np.ones(terms), np.ones(terms)  # (1 - z)^(-1 - power), (1 - z)^(-power)
     for n in range(1, terms):
         factor[n] = -sum(m * series[m] * factor[n - m] for m in range(1, n + 1)) / n
-        first[n] = first[n - 1] * (n + 0.5) / n
-        second[n] = second[n - 1] * (n - 0.5) / n
+        first[n] = first[n - 1] * (n + power) / n
+        second[n] = second[n - 1] * (n - 1 + power) / n
     at_one = math.exp(-series[1:].sum())
-    g = np.convolve(factor, first)[:terms] * math.gamma(1.5) / at_one
-    k = np.convolve(factor, second)[:terms] * math.gamma(0.5) / at_one
-    # Minus the derivative of the factor's logarithm at z = 1, by the sum of n cos(n t), -1/(4 sin(t/2)^2).
-    offset = -np.mean(logarithm / (4 * np.sin(t / 2) ** 2))
-    np.testing.assert_allclose(numbers("offset_of_factor"), offset, atol=1e-6)
-    j = np.arange(1, 7)
-    np.testing.assert_allclose(numbers("of_first"), g[j] ** 2 - (j + 0.75 + offset), atol=2e-6)
-    np.testing.assert_allclose(numbers("of_product"), g[j] * k[j] - 1.0, atol=2e-6)
-    np.testing.assert_allclose(numbers("of_second"), k[j] ** 2, atol=2e-6)
+    g = np.convolve(factor, first)[:nodes] * math.gamma(1 + power) / at_one
+    k = np.convolve(factor, second)[:nodes] * math.gamma(power) / at_one
+    return (1 + power) / 2 + float(np.sum(np.arange(terms) * series)), g, k
+
+
+def test_tabulated_solutions() -> None:
+    """Every number of the table, from the symbol of the equations."""
+    text = SOURCE.read_text()
+    ends = numbers(text, r"least_power = .*")[:2]
+    table = numbers(text, r":: solutions\(9, powers\) = .*?\], &").reshape(-1, 9)
+    assert len(table) == 7
+    for power, row in zip(np.linspace(*ends, len(table)), table):
+        offset, g, k = solutions(float(power), 5)
+        # The series of the offset converges slowly: its error is that of the last terms.
+        np.testing.assert_allclose(row[0], offset, atol=1e-4, err_msg=str(power))
+        np.testing.assert_allclose(row[1:], [*g[1:], *k[1:]], atol=5e-6, err_msg=str(power))
+
+
+def test_discrete_solution_is_that_of_hertz() -> None:
+    """Pressures of a run over the exact ones, at the first ten nodes from the edge."""
+    half_plane = mfv.Body.half_plane(shear_modulus=1.0, poisson_ratio=0.3)
+    exact = float(mfv.reference.power_half_width(0.01, 1e-2, 2.0, 1.0, 3 - 4 * 0.3))
+    for margin in (1.2, 1.213, 1.253):
+        mesh = mfv.Mesh(nodes=801, half_width=margin * exact)
+        steps = [mfv.Step(normal_force=0.01)]
+        scene = mfv.Scene(half_plane, mfv.Body.power(1e-2, 2.0, rigid=True), mesh=mesh, friction=mfv.Friction(law="none"), steps=steps)
+        state = mfv.run(scene).state
+        touching = np.asarray(state.pressure) > 0
+        x, pressure = np.asarray(state.x)[touching][:10], np.asarray(state.pressure)[touching][:10]
+        distance = (x[0] + exact) / (x[1] - x[0])
+        offset, g, k = solutions(0.5, 10)
+        found = pressure[1:] / (2 * 0.01 / (np.pi * exact) * np.sqrt(1 - (x[1:] / exact) ** 2))
+        expected = (g[1:] + 0.5 * (distance - offset) * k[1:]) / np.sqrt(np.arange(1, 10) + distance)
+        np.testing.assert_allclose(found, expected, atol=1e-4)
+        assert max(abs(found - 1)) > 2e-4
 
 
 def test_edges_are_exact_wherever_they_are_between_nodes() -> None:
@@ -76,3 +95,25 @@ def test_edges_are_exact_wherever_they_are_between_nodes() -> None:
                 errors.append(abs(found - exact) / (2 * margin * exact / nodes))
             print(body.shape, body.exponent, nodes, max(errors))
             assert max(errors) < bound, (body.shape, nodes)
+
+
+def test_edges_and_tension_with_full_coupling() -> None:
+    """A rigid cylinder, pressed and sheared: edges within hundredths of an interval of a fine mesh's, the largest tension converges."""
+    errors: dict[int, tuple[float, float]] = {}
+    runs = {}
+    for nodes in (1601, 101, 201, 401):
+        scene = mfv.Scene(
+            mfv.Body.half_plane(youngs_modulus=72100.0, poisson_ratio=0.33),
+            mfv.Body.disk(10.0, rigid=True),
+            mesh=mfv.Mesh(nodes=nodes, half_width=0.18275, gap="parabolic"),
+            friction=mfv.Friction.coulomb(0.85),
+            steps=[mfv.Step(normal_force=135.75, friction=False), mfv.Step(tangential_force=38.79)],
+        )
+        runs[nodes] = mfv.run(scene)
+        seen, fine = runs[nodes].summary, runs[1601].summary
+        interval = 2 * 0.18275 / nodes
+        edge = max(abs(seen.contact_left - fine.contact_left), abs(seen.contact_right - fine.contact_right)) / interval
+        errors[nodes] = (edge, abs(runs[nodes].observables.lower_tension / runs[1601].observables.lower_tension - 1))
+    print(errors)
+    assert errors[101][0] < 0.1 and errors[201][0] < 0.03 and errors[401][0] < 0.01
+    assert errors[101][1] < 0.015 and errors[201][1] < 2e-3 and errors[401][1] < 5e-4

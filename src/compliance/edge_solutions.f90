@@ -1,0 +1,70 @@
+!> The two solutions of the discrete equations next to an edge of contact, by which tractions at nodes are off.
+!>
+!> Tractions are uniform on equal intervals of a half-plane's surface, and displacements are those at the middles. At the edge the
+!> tractions go to zero with the power m of the distance. Far from everything else the discrete equations have two solutions, g(j)
+!> and k(j), j = 0 at the outermost node; scaled to go as u^m and u^(m-1), u = j + offset. g + 2 m r k is the discrete traction that
+!> stands for d^m with its edge offset + 2 r intervals outwards from the outermost node. They follow from the Wiener-Hopf factors
+!> of the equations' symbol (docs/theory.md, edges between nodes).
+module mfv_edge_solutions
+   use mfv_kinds, only: wp
+   implicit none
+   private
+   public :: find_edge_solutions, discrete_over_exact, least_power, most_power
+
+   !> Powers for which the solutions are tabulated.
+   real(wp), parameter :: least_power = 0.29_wp, most_power = 0.71_wp
+
+contains
+
+   !> The offset and the two solutions for j = 1 to 4 for a power, between those that are tabulated: to 1e-5, k to 6e-4.
+   !> tests/python/test_edge_solutions.py has the numbers.
+   pure subroutine find_edge_solutions(power, offset, g, k)
+      real(wp), intent(in) :: power
+      real(wp), intent(out) :: offset, g(4), k(4)
+      integer, parameter :: powers = 7
+      integer :: i
+      real(wp), parameter :: tabulated(powers) = [(least_power + (i - 1)*(most_power - least_power)/(powers - 1), i=1, powers)]
+      real(wp), parameter :: solutions(9, powers) = reshape([ &
+         0.860699_wp, 1.175358_wp, 1.370073_wp, 1.481191_wp, 1.584615_wp, 0.150503_wp, 0.671431_wp, 0.383166_wp, 0.356635_wp, &
+         0.841320_wp, 1.246079_wp, 1.464396_wp, 1.626871_wp, 1.767032_wp, 0.544208_wp, 0.606435_wp, 0.451321_wp, 0.389337_wp, &
+         0.829380_wp, 1.304766_wp, 1.570424_wp, 1.785116_wp, 1.970880_wp, 0.725241_wp, 0.617810_wp, 0.499283_wp, 0.432011_wp, &
+         0.825347_wp, 1.361029_wp, 1.686648_wp, 1.959477_wp, 2.199223_wp, 0.813172_wp, 0.651237_wp, 0.545658_wp, 0.479493_wp, &
+         0.829380_wp, 1.420521_wp, 1.814357_wp, 2.153109_wp, 2.456090_wp, 0.858901_wp, 0.690941_wp, 0.594302_wp, 0.531546_wp, &
+         0.841320_wp, 1.486743_wp, 1.955829_wp, 2.369472_wp, 2.746252_wp, 0.885941_wp, 0.732947_wp, 0.646318_wp, 0.588719_wp, &
+         0.860699_wp, 1.562005_wp, 2.113650_wp, 2.612415_wp, 3.075201_wp, 0.905789_wp, 0.776965_wp, 0.702486_wp, 0.651810_wp], &
+         [9, powers])
+      real(wp) :: found(9)
+      logical :: others(powers)
+
+      found = 0.0_wp
+      do i = 1, powers
+         others = .true.
+         others(i) = .false.
+         found = found + solutions(:, i)*product((power - tabulated)/(tabulated(i) - tabulated), mask=others)
+      end do
+      offset = found(1)
+      g = found(2:5)
+      k = found(6:9)
+   end subroutine find_edge_solutions
+
+   !> The discrete traction over d^power at the nodes j = 1, 2, ..., the edge being `distance` intervals outwards from the outermost
+   !> node; 1 where the discrete equations have none. Its difference from 1 decays as the inverse square of the distance.
+   pure function discrete_over_exact(power, distance, nodes) result(ratio)
+      real(wp), intent(in) :: power, distance
+      integer, intent(in) :: nodes
+      real(wp) :: ratio(nodes)
+      real(wp) :: offset, g(4), k(4)
+      integer :: j
+
+      call find_edge_solutions(power, offset, g, k)
+      do j = 1, nodes
+         if (j <= 4) then
+            ratio(j) = (g(j) + power*(distance - offset)*k(j))/(j + distance)**power
+         else
+            ratio(j) = 1.0_wp + (ratio(4) - 1.0_wp)*((4 + distance)/(j + distance))**2
+         end if
+      end do
+      where (.not. ratio > 0.5_wp) ratio = 1.0_wp
+   end function discrete_over_exact
+
+end module mfv_edge_solutions
