@@ -581,7 +581,8 @@ def test_stresses_on_the_surface_converge_to_the_tractions() -> None:
             found.append(at["sigma_xx"] * across + at["sigma_xy"] * up - side * shear)
             found.append(at["sigma_xy"] * across + at["sigma_yy"] * up + side * pressure)
         errors.append(np.max(np.abs(found)) / pressure.max())
-    assert errors[0] < 4e-4 and errors[1] < errors[0] / 8.0
+    # Below 2e-5 the difference is that of the linear elements.
+    assert errors[0] < 1e-4 and errors[1] < 2e-5
 
 
 def test_largest_von_mises_is_not_missed_by_grids(two_disks: mfv.Result) -> None:
