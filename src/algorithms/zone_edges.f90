@@ -75,8 +75,6 @@ module mfv_zone_edges
       !> The power of the distance with which the traction goes to zero, and whether the error of the discretisation is known.
       real(wp) :: power = 0.5_wp
       logical :: is_regular = .false.
-   contains
-      procedure :: first_regular
    end type samples_type
 
 contains
@@ -486,33 +484,35 @@ contains
    end function has_known_error
 
    !> See distance_to_zero; where the error of the discretisation is known (docs/theory.md) values and edge fit together: near the
-   !> edge, at which tractions uniform on equal intervals of a half-plane go to zero with the power m, the discrete equations have two
-   !> solutions g(j) and k(j), j = 0 at the outermost node. Scaled to go as u^m and u^(m-1), u = j + offset, g + 2 m r k is the
+   !> edge, at which tractions uniform on equal intervals of a half-plane go to zero with the power m, the discrete equations have
+   !> two solutions g(j) and k(j), j = 0 at the outermost node. Scaled to go as u^m and u^(m-1), u = j + offset, g + 2 m r k is the
    !> traction with its edge offset + 2 r intervals outwards from the outermost node. To the power 1/m it makes the second to fourth
-   !> value (with m < 1/2, where k is ragged, the third to fifth) with a parabola without linear term.
+   !> value (with m < 1/2, where k is ragged, the third to fifth) with a parabola without linear term. Of several such edges it
+   !> is the one nearest to that of distance_to_zero.
    pure real(wp) function refined_distance(samples) result(distance)
       type(samples_type), intent(in) :: samples
-      integer, parameter :: steps = 44, halvings = 40
-      real(wp), parameter :: nearest = -0.6_wp, step = 0.05_wp
-      real(wp) :: start, left, right, middle, at_left, at_right, at_middle
+      integer, parameter :: steps = 22, halvings = 40
+      real(wp), parameter :: least = -0.6_wp, step = 0.1_wp
+      real(wp) :: start, left, right, middle, at_left, at_right, offset, g(4), k(4)
       logical :: found
-      integer :: i, j
+      integer :: first, i, j
 
       start = distance_to_zero(samples, .false.)
       distance = start
       if (.not. samples%is_regular) return
+      call find_edge_solutions(samples%power, offset, g, k)
+      first = merge(2, 1, samples%power < 0.5_wp)
       found = .false.
-      at_right = misfit(samples, nearest)
+      at_right = misfit(least)
       do i = 1, steps
-         left = nearest + (i - 1)*step
+         left = least + (i - 1)*step
          right = left + step
          at_left = at_right
-         at_right = misfit(samples, right)
+         at_right = misfit(right)
          if (at_left*at_right > 0.0_wp .or. .not. abs(at_left) > 0.0_wp) cycle
          do j = 1, halvings
             middle = 0.5_wp*(left + right)
-            at_middle = misfit(samples, middle)
-            if (at_left*at_middle > 0.0_wp) then
+            if (at_left*misfit(middle) > 0.0_wp) then
                left = middle
             else
                right = middle
@@ -521,32 +521,24 @@ contains
          if (.not. found .or. abs(middle - start) < abs(distance - start)) distance = middle
          found = .true.
       end do
+
+   contains
+
+      !> The determinant of the three values, of those that the discrete equations give them with the edge at `edge`, and of the
+      !> squares of their distances from it.
+      pure real(wp) function misfit(edge)
+         real(wp), intent(in) :: edge
+         real(wp) :: discrete(3), square(3)
+
+         associate (value => samples%value(first:first + 2), last => first + 2)
+            discrete = max(g(first:last) + samples%power*(edge - offset)*k(first:last), 0.0_wp)**(1.0_wp/samples%power)
+            square = (samples%inwards(first:last) + edge)**2
+            misfit = value(1)*(discrete(2)*square(3) - discrete(3)*square(2)) &
+                     - value(2)*(discrete(1)*square(3) - discrete(3)*square(1)) &
+                     + value(3)*(discrete(1)*square(2) - discrete(2)*square(1))
+         end associate
+      end function misfit
    end function refined_distance
-
-   !> The determinant of three values, of those that the solutions of the discrete equations give them with the edge at `distance`,
-   !> and of the squares of their distances from it: zero at the edge.
-   pure real(wp) function misfit(samples, distance)
-      type(samples_type), intent(in) :: samples
-      real(wp), intent(in) :: distance
-      real(wp) :: offset, g(4), k(4), value(3), discrete(3), square(3)
-      integer :: first
-
-      call find_edge_solutions(samples%power, offset, g, k)
-      first = samples%first_regular()
-      value = samples%value(first:first + 2)
-      discrete = max(g(first:first + 2) + samples%power*(distance - offset)*k(first:first + 2), 0.0_wp)**(1.0_wp/samples%power)
-      square = (samples%inwards(first:first + 2) + distance)**2
-      misfit = value(1)*(discrete(2)*square(3) - discrete(3)*square(2)) &
-               - value(2)*(discrete(1)*square(3) - discrete(3)*square(1)) &
-               + value(3)*(discrete(1)*square(2) - discrete(2)*square(1))
-   end function misfit
-
-   !> The first of the three values that tell the edge.
-   pure integer function first_regular(self)
-      class(samples_type), intent(in) :: self
-
-      first_regular = merge(2, 1, self%power < 0.5_wp)
-   end function first_regular
 
    !> Where nearly straight values, the outermost first, are zero, in intervals outwards from the outermost node. The second to
    !> fourth node tell, the outermost one carrying the largest error; where the third to seventh are smooth (near edges of other
