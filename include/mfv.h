@@ -237,8 +237,8 @@ int mfv_largest_tension(mfv_case *handle, int body, int step, double *place);
 /* All of these for tractions of the caller's, such as those of a result file: pressure and shear (on the lower body, to the
  * right) at `nodes` nodes with intervals of the lengths width[] around the positions arc[] along the surface. contact_edge,
  * stick_edge: edges of contact and stick zones between the nodes, the left and the right one of each zone in turn, at any
- * nodes in ascending order, NaN at all others (state/contact_edge and state/stick_edge); or NULL: zones end with the
- * intervals of their nodes. stresses, place and tension may be NULL. Since 0.1.0. */
+ * nodes in ascending order, NaN at all others (state/contact_edge and state/stick_edge); or NULL: edges of contact are
+ * located from the nodal tractions, those of stick zones are not. stresses, place and tension may be NULL. Since 0.1.0. */
 int mfv_stress_under(mfv_case *handle, int body, size_t nodes, const double *arc, const double *width,
                      const double *pressure, const double *shear, const double *contact_edge, const double *stick_edge,
                      size_t count, const double *x, const double *y, double *stresses, double *place, double *tension);

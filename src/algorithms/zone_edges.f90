@@ -9,7 +9,7 @@
 !> larger by one (integrate the root; so do the closed forms of Spence): the straighter of the two tells. So the traction raised
 !> to the inverse power is nearly a straight line, which a parabola through a few nodes follows to its zero. The outermost node,
 !> which carries the largest error of the discretisation, is left out, and that of the others, which is known, is taken off: see
-!> `refined_distance`.
+!> mfv_edge_solutions.
 module mfv_zone_edges
    use, intrinsic :: ieee_arithmetic, only: ieee_quiet_nan, ieee_value
    use mfv_archive, only: archive_type
@@ -17,7 +17,7 @@ module mfv_zone_edges
    use mfv_compliance, only: block_wp, block_wt
    use mfv_contact_model, only: contact_model_type
    use mfv_contact_state, only: contact_state_type
-   use mfv_edge_solutions, only: find_edge_solutions, least_power, most_power
+   use mfv_edge_solutions, only: least_power, most_power, solved_distance
    use mfv_kinds, only: pi, wp
    use mfv_node_status, only: holds, in_contact, slip_sign, slips
    use mfv_surface_tractions, only: root_shift
@@ -461,7 +461,7 @@ contains
       if (slope > 0.0_wp) beta = min(max((by_shear(1, 2) - by_shear(1, 3))/slope, -1.0_wp), 1.0_wp)
    end function local_beta
 
-   !> Whether the equations about a node are those of refined_distance: tractions uniform on equal intervals, normal
+   !> Whether the equations about a node are those of mfv_edge_solutions: tractions uniform on equal intervals, normal
    !> displacements -ln(r) P at their middles. Matrices are judged by their entries.
    logical function has_known_error(model, node)
       type(contact_model_type), intent(in) :: model
@@ -483,61 +483,12 @@ contains
                         maxval(abs(model%width(node - about:node + about) - model%width(node))) <= near*model%width(node)
    end function has_known_error
 
-   !> See distance_to_zero; where the error of the discretisation is known (docs/theory.md) values and edge fit together: near the
-   !> edge, at which tractions uniform on equal intervals of a half-plane go to zero with the power m, the discrete equations have
-   !> two solutions g(j) and k(j), j = 0 at the outermost node. Scaled to go as u^m and u^(m-1), u = j + offset, g + 2 m r k is the
-   !> traction with its edge offset + 2 r intervals outwards from the outermost node. To the power 1/m it makes the second to fourth
-   !> value (with m < 1/2, where k is ragged, the third to fifth) with a parabola without linear term. Of several such edges it
-   !> is the one nearest to that of distance_to_zero.
+   !> See distance_to_zero; where the error of the discretisation is known the edge is that of its discrete solution.
    pure real(wp) function refined_distance(samples) result(distance)
       type(samples_type), intent(in) :: samples
-      integer, parameter :: steps = 22, halvings = 40
-      real(wp), parameter :: least = -0.6_wp, step = 0.1_wp
-      real(wp) :: start, left, right, middle, at_left, at_right, offset, g(4), k(4)
-      logical :: found
-      integer :: first, i, j
 
-      start = distance_to_zero(samples, .false.)
-      distance = start
-      if (.not. samples%is_regular) return
-      call find_edge_solutions(samples%power, offset, g, k)
-      first = merge(2, 1, samples%power < 0.5_wp)
-      found = .false.
-      at_right = misfit(least)
-      do i = 1, steps
-         left = least + (i - 1)*step
-         right = left + step
-         at_left = at_right
-         at_right = misfit(right)
-         if (at_left*at_right > 0.0_wp .or. .not. abs(at_left) > 0.0_wp) cycle
-         do j = 1, halvings
-            middle = 0.5_wp*(left + right)
-            if (at_left*misfit(middle) > 0.0_wp) then
-               left = middle
-            else
-               right = middle
-            end if
-         end do
-         if (.not. found .or. abs(middle - start) < abs(distance - start)) distance = middle
-         found = .true.
-      end do
-
-   contains
-
-      !> The determinant of the three values, of those that the discrete equations give them with the edge at `edge`, and of the
-      !> squares of their distances from it.
-      pure real(wp) function misfit(edge)
-         real(wp), intent(in) :: edge
-         real(wp) :: discrete(3), square(3)
-
-         associate (value => samples%value(first:first + 2), last => first + 2)
-            discrete = max(g(first:last) + samples%power*(edge - offset)*k(first:last), 0.0_wp)**(1.0_wp/samples%power)
-            square = (samples%inwards(first:last) + edge)**2
-            misfit = value(1)*(discrete(2)*square(3) - discrete(3)*square(2)) &
-                     - value(2)*(discrete(1)*square(3) - discrete(3)*square(1)) &
-                     + value(3)*(discrete(1)*square(2) - discrete(2)*square(1))
-         end associate
-      end function misfit
+      distance = distance_to_zero(samples, .false.)
+      if (samples%is_regular) distance = solved_distance(samples%inwards, samples%value, samples%power, distance)
    end function refined_distance
 
    !> Where nearly straight values, the outermost first, are zero, in intervals outwards from the outermost node. The second to

@@ -9,12 +9,65 @@ module mfv_edge_solutions
    use mfv_kinds, only: wp
    implicit none
    private
-   public :: find_edge_solutions, discrete_over_exact, least_power, most_power
+   public :: solved_distance, discrete_over_exact, least_power, most_power
 
    !> Powers for which the solutions are tabulated.
    real(wp), parameter :: least_power = 0.29_wp, most_power = 0.71_wp
 
 contains
+
+   !> How many intervals outwards from the outermost node an edge is at which tractions go to zero with a `power`. `values`: the
+   !> tractions at five nodes and more, the outermost first, to the inverse power; `inwards`: how many intervals inwards from it
+   !> they are. g + 2 m r k, to the inverse power, makes the second to fourth value (with powers below 1/2, where k is ragged, the
+   !> third to fifth) with a parabola without linear term. Of several such edges the one nearest to `guess`, of none that.
+   pure real(wp) function solved_distance(inwards, values, power, guess) result(distance)
+      real(wp), intent(in) :: inwards(0:), values(0:), power, guess
+      integer, parameter :: steps = 22, halvings = 40
+      real(wp), parameter :: least = -0.6_wp, step = 0.1_wp
+      real(wp) :: left, right, middle, at_left, at_right, offset, g(4), k(4)
+      logical :: found
+      integer :: first, i, j
+
+      call find_edge_solutions(power, offset, g, k)
+      first = merge(2, 1, power < 0.5_wp)
+      distance = guess
+      found = .false.
+      at_right = misfit(least)
+      do i = 1, steps
+         left = least + (i - 1)*step
+         right = left + step
+         at_left = at_right
+         at_right = misfit(right)
+         if (at_left*at_right > 0.0_wp .or. .not. abs(at_left) > 0.0_wp) cycle
+         do j = 1, halvings
+            middle = 0.5_wp*(left + right)
+            if (at_left*misfit(middle) > 0.0_wp) then
+               left = middle
+            else
+               right = middle
+            end if
+         end do
+         if (.not. found .or. abs(middle - guess) < abs(distance - guess)) distance = middle
+         found = .true.
+      end do
+
+   contains
+
+      !> The determinant of the three values, of those that the discrete equations give them with the edge at `edge`, and of the
+      !> squares of their distances from it.
+      pure real(wp) function misfit(edge)
+         real(wp), intent(in) :: edge
+         real(wp) :: discrete(3), square(3)
+
+         associate (value => values(first:first + 2), last => first + 2)
+            discrete = max(g(first:last) + power*(edge - offset)*k(first:last), 0.0_wp)**(1.0_wp/power)
+            square = (inwards(first:last) + edge)**2
+            misfit = value(1)*(discrete(2)*square(3) - discrete(3)*square(2)) &
+                     - value(2)*(discrete(1)*square(3) - discrete(3)*square(1)) &
+                     + value(3)*(discrete(1)*square(2) - discrete(2)*square(1))
+         end associate
+      end function misfit
+   end function solved_distance
 
    !> The offset and the two solutions for j = 1 to 4 for a power, between those that are tabulated: to 1e-5, k to 6e-4.
    !> tests/python/test_edge_solutions.py has the numbers.

@@ -7,7 +7,7 @@
 !> forces are those of the nodal values. The whole is projected onto linear elements that are graded towards the edges: of the
 !> elements only their sums with other functions matter for stresses, which a projection keeps.
 module mfv_surface_tractions
-   use mfv_edge_solutions, only: discrete_over_exact, least_power, most_power
+   use mfv_edge_solutions, only: discrete_over_exact, least_power, most_power, solved_distance
    use mfv_kinds, only: pi, wp
    implicit none
    private
@@ -63,6 +63,8 @@ module mfv_surface_tractions
       type(zone_type), allocatable :: stick(:)
       type(table_type) :: limit, shear_rest
       logical :: has_ratio = .true.
+      !> Whether the edges of the contact are not given but ends of the intervals of nodes, to be located.
+      logical :: counted = .false.
    contains
       procedure :: tractions
    end type patch_type
@@ -91,8 +93,9 @@ contains
          patch%pressure = pack(pressure, owner == i)
          patch%shear = pack(shear, owner == i)
          patch%contact = zone_type(edge=edges(:, i), rooted=.not. sharp(:, i))
+         patch%counted = i > size(zones%contact, 2)
          call fit_patch(patch, zones)
-         call add_elements(patch, min(longest, (edges(2, i) - edges(1, i))/zones%fewest_elements), elements)
+         call add_elements(patch, min(longest, (patch%contact%edge(2) - patch%contact%edge(1))/zones%fewest_elements), elements)
       end do
    end subroutine find_traction_elements
 
@@ -146,6 +149,7 @@ contains
          patch%shear_rest = patch%contact%rest
       end if
       call find_known(patch, zones%beta)
+      if (patch%counted) call locate_edges(patch)
       values = patch%pressure
       call free_of_error(patch, patch%contact, values)
       call fit_zone(patch, values, patch%contact)
@@ -156,6 +160,23 @@ contains
          call fit_zone(patch, values, patch%stick(i))
       end do
    end subroutine fit_patch
+
+   !> Edges of a contact between the nodes, where the error of the discretisation is known.
+   subroutine locate_edges(patch)
+      type(patch_type), intent(inout) :: patch
+      real(wp) :: values(size(patch%arc)), inwards(size(patch%arc))
+      integer :: nodes(size(patch%arc)), i, n, side
+
+      n = size(patch%arc)
+      do side = 1, 2
+         if (.not. (patch%contact%rooted(side) .and. patch%contact%known(side))) cycle
+         nodes = [(merge(i, n + 1 - i, side == 1), i=1, n)]
+         inwards = abs(patch%arc(nodes) - patch%arc(nodes(1)))/patch%width(nodes(1))
+         values = (patch%pressure(nodes)/maxval(patch%pressure))**(1.0_wp/patch%contact%power(side))
+         patch%contact%edge(side) = patch%arc(nodes(1)) + (2*side - 3)*patch%width(nodes(1)) &
+                                    *solved_distance(inwards, values, patch%contact%power(side), 0.5_wp)
+      end do
+   end subroutine locate_edges
 
    !> The edges at which the error of the discretisation is known: of contact zones where enough nodes slip, of stick zones without
    !> coupling (`beta` 0).
