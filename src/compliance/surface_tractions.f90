@@ -72,7 +72,7 @@ module mfv_surface_tractions
 contains
 
    !> The elements under `pressure` and `shear` (on the lower body, force/length^2) at the nodes `arc`, whose intervals have the
-   !> lengths `width`; shapes (nodes). `zones`: the edges; contact zones that it does not have end with the intervals of their
+   !> lengths `width`; shapes (nodes). `zones`: the edges; contact zones that it does not have are located from their
    !> nodes. `longest`: no element is longer.
    subroutine find_traction_elements(arc, width, pressure, shear, zones, longest, elements)
       real(wp), intent(in) :: arc(:), width(:), pressure(:), shear(:), longest
