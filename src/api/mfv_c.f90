@@ -882,39 +882,40 @@ contains
       type(c_ptr), value :: handle, place
       integer(c_int), value :: body, step
       integer(c_int) :: status
-      type(handle_type), pointer :: self
-      type(error_type), allocatable :: error
-      type(largest_type) :: largest
 
-      call c_f_pointer(handle, self)
-      status = MFV_COMPLETE
-      if (.not. c_associated(place)) then
-         status = refused(self, 'place is null')
-         return
-      end if
-      call self%contact%get_largest_von_mises(int(body), largest, error, int(step))
-      status = failed(self, error)
-      if (status == MFV_COMPLETE) call place_out(largest, place)
+      status = largest_stress(handle, body, step, place, tension=.false.)
    end function mfv_largest_von_mises
 
    function mfv_largest_tension(handle, body, step, place) result(status) bind(C, name='mfv_largest_tension_unguarded')
       type(c_ptr), value :: handle, place
       integer(c_int), value :: body, step
       integer(c_int) :: status
+
+      status = largest_stress(handle, body, step, place, tension=.true.)
+   end function mfv_largest_tension
+
+   !> The largest von Mises stress or `tension` of a body, with its place.
+   integer(c_int) function largest_stress(handle, body, step, place, tension) result(status)
+      type(c_ptr), intent(in) :: handle, place
+      integer(c_int), intent(in) :: body, step
+      logical, intent(in) :: tension
       type(handle_type), pointer :: self
       type(error_type), allocatable :: error
       type(largest_type) :: largest
 
       call c_f_pointer(handle, self)
-      status = MFV_COMPLETE
       if (.not. c_associated(place)) then
          status = refused(self, 'place is null')
          return
       end if
-      call self%contact%get_largest_tension(int(body), largest, error, int(step))
+      if (tension) then
+         call self%contact%get_largest_tension(int(body), largest, error, int(step))
+      else
+         call self%contact%get_largest_von_mises(int(body), largest, error, int(step))
+      end if
       status = failed(self, error)
       if (status == MFV_COMPLETE) call place_out(largest, place)
-   end function mfv_largest_tension
+   end function largest_stress
 
    !> A largest stress and its place through a pointer.
    subroutine place_out(largest, place)
