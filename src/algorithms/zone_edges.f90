@@ -241,8 +241,8 @@ contains
       edge = model%arc(outermost) + 0.5_wp*side*model%width(outermost)
       if (merge(patch%right_ends, patch%left_ends, side > 0)) return
       samples = sampled(model, state%fields%pressure, outermost, merge(patch%first, patch%last, side > 0))
-      if (model%compliance%elastic_block(block_wt)) &
-         samples%is_regular = samples%is_regular .and. slipping_run(state, outermost, -side) >= fewest_slipping
+      if (.not. model%compliance%elastic_block(block_wt) .or. slipping_run(state, outermost, -side) >= fewest_slipping) &
+         samples%is_regular = has_known_error(model, outermost, samples%number)
       associate (power => merge(patch%right_power, patch%left_power, side > 0))
          edge = model%arc(outermost) + side*model%width(outermost)*refined_distance(straightened(samples, power))
       end associate
@@ -311,7 +311,7 @@ contains
       end if
       power = 0.5_wp - side*lean(model, next, direction*model%kinetic_friction(next))
       samples = sampled(model, lack, last, other)
-      if (model%compliance%elastic_block(block_wt)) samples%is_regular = .false.
+      if (.not. model%compliance%elastic_block(block_wt)) samples%is_regular = has_known_error(model, last, samples%number)
       edge = model%arc(last) + side*model%width(last)*distance_of_lack(samples, power)
 
    contains
@@ -326,7 +326,7 @@ contains
    end function stick_edge
 
    !> The outermost values of a traction in a zone that goes from node `outermost` to node `other`; shape of the traction (nodes).
-   function sampled(model, traction, outermost, other) result(samples)
+   pure function sampled(model, traction, outermost, other) result(samples)
       type(contact_model_type), intent(in) :: model
       real(wp), intent(in) :: traction(:)
       integer, intent(in) :: outermost, other
@@ -336,7 +336,6 @@ contains
       side = merge(1, -1, other >= outermost)
       samples%zone = abs(other - outermost) + 1
       samples%number = min(samples%zone, most_samples)
-      if (samples%number > 4) samples%is_regular = has_known_error(model, outermost)
       associate (unit => model%width(outermost))
          do i = 0, samples%number - 1
             samples%value(i) = traction(outermost + side*i)
@@ -462,11 +461,11 @@ contains
    end function local_beta
 
    !> Whether the equations about a node are those of mfv_edge_solutions: tractions uniform on equal intervals, normal
-   !> displacements -ln(r) P at their middles. Matrices are judged by their entries.
-   logical function has_known_error(model, node)
+   !> displacements -ln(r) P at their middles. Matrices are judged by their entries. `samples`: values that there are.
+   logical function has_known_error(model, node, samples)
       type(contact_model_type), intent(in) :: model
-      integer, intent(in) :: node
-      integer, parameter :: about = 2
+      integer, intent(in) :: node, samples
+      integer, parameter :: about = 2, fewest = 5
       real(wp), parameter :: near = 5.0e-3_wp
       !> (C(0) - C(1))/(C(1) - C(2)), C(j) = (j - 1/2) ln|j - 1/2| - (j + 1/2) ln(j + 1/2).
       real(wp), parameter :: ratio = 1.5_wp*log(3.0_wp)/(2.5_wp*log(2.5_wp) - 3.0_wp*log(1.5_wp) - 0.5_wp*log(2.0_wp))
@@ -474,7 +473,7 @@ contains
       integer :: j
 
       has_known_error = .false.
-      if (node - about < 1 .or. node + about > model%nodes()) return
+      if (samples < fewest .or. node - about < 1 .or. node + about > model%nodes()) return
       call model%compliance%entries(block_wp, [node], [(node + j, j=-about, about)], entries)
       entries(1, :) = entries(1, :)/model%width(node - about:node + about)
       steps = [2.0_wp*entries(1, 0) - entries(1, -1) - entries(1, 1), &

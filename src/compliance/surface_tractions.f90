@@ -192,7 +192,7 @@ contains
                             patch%contact%power < most_power
       if (.not. patch%has_ratio) return
       if (abs(beta) > 0.0_wp) then
-         slips = [(.not. any(patch%stick%contains_place(patch%arc(i))), i=1, n)]
+         slips = outside_stick_zones(patch)
          patch%contact%known = patch%contact%known .and. &
                                [all(slips(:min(n, fewest_slipping))), all(slips(max(1, n - fewest_slipping + 1):))]
       else
@@ -303,6 +303,15 @@ contains
       end subroutine add_nodes_before
    end subroutine find_limit
 
+   !> Which nodes are in no stick zone.
+   pure function outside_stick_zones(patch) result(outside)
+      type(patch_type), intent(in) :: patch
+      logical :: outside(size(patch%arc))
+      integer :: i
+
+      outside = [(.not. any(patch%stick%contains_place(patch%arc(i))), i=1, size(outside))]
+   end function outside_stick_zones
+
    !> The nodes outside all stick zones, but for those within half an interval of an edge that have another such node behind them: an
    !> edge may be so far inside the last node that holds.
    pure function slipping_nodes(patch) result(slips)
@@ -310,7 +319,7 @@ contains
       logical :: slips(size(patch%arc))
       integer :: i, side, beside, behind
 
-      slips = [(.not. any(patch%stick%contains_place(patch%arc(i))), i=1, size(slips))]
+      slips = outside_stick_zones(patch)
       do i = 1, size(patch%stick)
          do side = 1, 2
             if (.not. patch%stick(i)%rooted(side)) cycle
