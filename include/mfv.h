@@ -69,6 +69,15 @@ int mfv_has_feature(const char *feature, int *there);
 /* Outcome of a status in words, and a clause that explains it. MFV_BAD_ARGUMENT for a code not in the list. Since 0.1.0. */
 int mfv_status_text(int status, char *outcome, size_t outcome_size, char *explanation, size_t explanation_size);
 
+/* Of a key of the namelist, such as "friction%mu": whether it takes whole numbers, its unit in terms of length and force ("" for
+ * none), and description; every out argument may be NULL. MFV_BAD_ARGUMENT for what is no key. Since 0.1.0. */
+int mfv_key_info(const char *key, int *is_integer, char *unit, size_t unit_size, char *description, size_t description_size);
+
+/* Name, unit in terms of length and force, and description of observable `index` (from 0) of those that a case can have as fields
+ * "observables/NAME". Each buffer may be NULL. MFV_BAD_ARGUMENT beyond the last. Since 0.1.0. */
+int mfv_observable_info(size_t index, char *name, size_t name_size, char *unit, size_t unit_size, char *description,
+                        size_t description_size);
+
 /* An empty scene. Since 0.1.0. */
 int mfv_scene_create(mfv_scene **scene);
 
@@ -80,7 +89,8 @@ int mfv_scene_from_text(const char *text, const char *name, mfv_scene **scene, c
  * with the number, from 1: "body(1)%shape" (below), "body(2)%radius" (above), "step(1)%normal_force". A key that is there
  * gets the new value. Kinds, ranges and combinations (a force and a displacement in one step) are checked by mfv_create, with a
  * message that names group, key, value and what is right; a call here fails for a null argument, a name that is none, and
- * a value that is not finite, which mfv_create tells too. Since 0.1.0. */
+ * a value that is not finite, which mfv_create tells too. "dundurs_beta" can be set like a key, to a number from -0.5 to 0.5: both
+ * bodies get materials with Dundurs' parameter beta and Poisson's ratio 0, and the same mutual compliance as before. Since 0.1.0. */
 int mfv_scene_set_text(mfv_scene *scene, const char *key, const char *value);
 int mfv_scene_set_real(mfv_scene *scene, const char *key, double value);
 int mfv_scene_set_reals(mfv_scene *scene, const char *key, const double *values, size_t count);
@@ -89,6 +99,10 @@ int mfv_scene_set_logical(mfv_scene *scene, const char *key, int value);
 
 /* Take a key out, as if it had never been given a value: tangential_force, say, before shift comes in. Since 0.1.0. */
 int mfv_scene_remove(mfv_scene *scene, const char *key);
+
+/* Take a key out and those that it is an alternative to: tangential_force, force_ratio and shift, say, whichever of them is named.
+ * Since 0.1.0. */
+int mfv_scene_make_room(mfv_scene *scene, const char *key);
 
 /* Data in memory in place of a file that a key names: where the scene says file='NAME' or mu_file='NAME', and data are there
  * for `file` = NAME, they are taken. Columns of a text file are datasets of that many rows and one column: "x" and "height" of
@@ -187,6 +201,9 @@ typedef int (*mfv_observer)(const mfv_progress *progress, void *user);
  * middle). No C++ exception and no longjmp may leave it: the handle would stay in use for ever. Since 0.1.0. */
 int mfv_observe(mfv_case *handle, mfv_observer observer, void *user);
 
+/* An observer to give to mfv_observe: it ends the run when the int at `user` is not 0, which another thread may set. Since 0.1.0. */
+int mfv_stop_when_set(const mfv_progress *progress, void *user);
+
 /* Number of fields of the case now, and the path of field `index` (from 0), such as "history/shift". Since 0.1.0. */
 int mfv_field_count(const mfv_case *handle, size_t *count);
 int mfv_field_path(const mfv_case *handle, size_t index, char *buffer, size_t size);
@@ -206,7 +223,9 @@ int mfv_field_info(const mfv_case *handle, const char *path, size_t *count, int 
 int mfv_attribute_name(const mfv_case *handle, size_t index, char *buffer, size_t size);
 int mfv_attribute(const mfv_case *handle, const char *name, char *buffer, size_t size, size_t *length);
 
-/* Copy out the values of a field; `count` must be its number of values. Since 0.1.0. */
+/* Copy out the values of a field; `count` must be its number of values. Besides the listed ones there are, where there are
+ * cycles, "moments/loading/pressure" and "moments/loading/shear", the tractions where the last cycles began; the same under
+ * "moments/reversal" at the far end of the last cycle and "moments/return" at its end. Since 0.1.0. */
 int mfv_copy_real(const mfv_case *handle, const char *path, double *values, size_t count);
 int mfv_copy_integer(const mfv_case *handle, const char *path, int32_t *values, size_t count);
 

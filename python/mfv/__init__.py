@@ -1,7 +1,7 @@
 """MFV: two-dimensional frictional elastic contact by the Method of First Violation.
 
 `Scene` with `Body`, `Mesh`, `Friction`, `Step`, `Solver` and `Output` says what is in contact and how it is loaded; `run` solves it, `Case`
-leads it step by step; `read` reads a result file, `read_table` the table of a sweep, `stress` computes stresses inside the bodies,
+leads it step by step; `study` solves many that differ in some values; `read` reads a result file, `stress` computes stresses inside the bodies,
 `plot` draws results, `animate` and `report` make films and web pages of them, `compare` and `comparison_figure` set two side by
 side, `load_history` has the states on the way, `template` cases to begin with, `reference` the closed forms. Reading and drawing
 need no shared library.
@@ -22,9 +22,10 @@ from .errors import LibraryNotFound, MfvError, NotAResult
 from .loads import Loads, Progress
 from .result import Group, Result, read
 from .scene import Body, Friction, Mesh, Output, Scene, Solver, Step
-from .table import Table, read_table
+from .studies import Axis, Study, study
 
 __all__ = [
+    "Axis",
     "Body",
     "Case",
     "EventKind",
@@ -43,17 +44,17 @@ __all__ = [
     "Solver",
     "State",
     "Step",
-    "Table",
+    "Study",
     "Trial",
     "errors",
     "has_feature",
     "library_version",
     "plot",
     "read",
-    "read_table",
     "reference",
     "run",
     "stress",
+    "study",
 ]
 
 _version_file = _Path(__file__).resolve().parents[2] / "VERSION"

@@ -41,7 +41,7 @@ if TYPE_CHECKING:
     from typing_extensions import Self
 
 #: HDF5, which writes the result files, is in general not safe to call from two threads at once.
-_writing = threading.Lock()
+writing = threading.Lock()
 
 #: Nodes from which, and friction laws with which, a single step may take so long that an interrupt from the keyboard has to end
 #: it; it is then observed, which costs about 1 microsecond an increment.
@@ -445,7 +445,7 @@ class Case:
 
     def write(self, path: str | os.PathLike[str] | None = None) -> None:
         """Write the result file to `path`, or where the &output group of the case says. Raises FileError."""
-        with _writing:
+        with writing:
             self._call("mfv_write", None if path is None else text_for(path))
 
     def _field(self, path: str) -> Field:

@@ -13,6 +13,9 @@ import functools
 class MfvError(Exception):
     """What this package raises: a message for a person, and the status of the library behind it, if any."""
 
+    #: Of a study's axis that cannot be: its number from 0, and which part of it.
+    where: tuple[int, str] | None = None
+
     def __init__(self, status: int | None, message: str) -> None:
         super().__init__(status, message)
         self.status = status
@@ -42,6 +45,12 @@ def failure(status: int, message: str) -> MfvError:
     """The exception of a failing status; an empty message is replaced by the explanation of the status."""
     kind = failures()[status]
     return kind(status, message or str(kind.__doc__))
+
+
+def input_error(message: str) -> MfvError:
+    """The InputError with a message."""
+    status = next(code for code, kind in failures().items() if kind.__name__ == "InputError")
+    return failure(status, message)
 
 
 def _exception(outcome: str, explanation: str) -> type[MfvError]:

@@ -14,7 +14,7 @@ module mfv_observables
    implicit none
    private
    public :: observable_count, observable_name, observable_unit, observable_meaning, observable_place, observables_of
-   public :: moment_count, moment_loading, moment_name, tractions_type, observed_tractions, traction_errors
+   public :: moment_count, moment_loading, moment_mark, moment_name, tractions_type, observed_tractions, traction_errors
 
    !> Number of observables.
    integer, parameter :: observable_count = 40
@@ -83,7 +83,7 @@ module mfv_observables
                               'where it is: x']
    !> Moments of the load history whose tractions are compared: where the cycles begin; the far end of the last cycle; its end.
    integer, parameter :: moment_loading = 1, moment_count = 3
-   integer, parameter :: moment_marks(moment_count) = [mark_loading, mark_reversal, mark_return]
+   integer, parameter :: moment_mark(moment_count) = [mark_loading, mark_reversal, mark_return]
    character(*), parameter :: moment_names(moment_count) = [character(8) :: 'loading', 'reversal', 'return']
 
    !> Tractions, force/length^2, on equal intervals, length, symmetric about the pole; shape (nodes), no nodes: not there. Those of
@@ -272,7 +272,7 @@ contains
       integer, intent(in) :: number
       type(tractions_type), intent(out) :: tractions
 
-      associate (mark => simulation%marks(moment_marks(number)))
+      associate (mark => simulation%marks(moment_mark(number)))
          tractions%interval = simulation%contact%model%interval()
          if (mark%step == 0 .or. (number /= moment_loading .and. mark%reversal == 0)) then
             allocate (tractions%pressure(0), tractions%shear(0))

@@ -29,6 +29,7 @@ GUARD_SCENE(mfv_scene_set_reals, (const char *key, const double *values, size_t 
 GUARD_SCENE(mfv_scene_set_integer, (const char *key, int value), (key, value))
 GUARD_SCENE(mfv_scene_set_logical, (const char *key, int value), (key, value))
 GUARD_SCENE(mfv_scene_remove, (const char *key), (key))
+GUARD_SCENE(mfv_scene_make_room, (const char *key), (key))
 GUARD_SCENE(mfv_scene_set_data, (const char *file, const char *dataset, size_t rows, size_t columns, const double *values),
             (file, dataset, rows, columns, values))
 GUARD(mfv_scene_text, const mfv_scene *, MFV_SORT_SCENE, MFV_READING, (char *buffer, size_t size, size_t *length),

@@ -3,6 +3,7 @@
 module mfv_c
    use, intrinsic :: ieee_arithmetic, only: ieee_is_finite, ieee_quiet_nan, ieee_value
    use, intrinsic :: iso_c_binding
+   use mfv_case_keys, only: case_catalogue
    use mfv_contact, only: contact_type, loads_type, new_contact, read_contact, read_contact_text
    use mfv_contact_state, only: contact_state_type
    use mfv_draft, only: draft_type, read_draft
@@ -10,7 +11,10 @@ module mfv_c
    use mfv_features, only: has_hdf5
    use mfv_interior, only: interior_type, stress_count
    use mfv_kept_state, only: kept_state_type
+   use mfv_key_path, only: read_key_name
+   use mfv_keys, only: catalogue_type, kind_integer
    use mfv_kinds, only: wp
+   use mfv_observables, only: observable_count, observable_meaning, observable_name, observable_unit
    use mfv_observer, only: observer_type
    use mfv_result_fields, only: field_type
    use mfv_scene, only: step_type
@@ -128,6 +132,49 @@ contains
       call integer_out(merge(1, 0, has_hdf5), there)
       status = MFV_COMPLETE
    end function mfv_has_feature
+
+   function mfv_key_info(key, is_integer, unit, unit_size, description, description_size) result(status) &
+      bind(C, name='mfv_key_info')
+      type(c_ptr), value :: key, is_integer, unit, description
+      integer(c_size_t), value :: unit_size, description_size
+      integer(c_int) :: status
+      type(catalogue_type) :: catalogue
+      character(:), allocatable :: group, name, why
+      integer :: number
+
+      status = MFV_BAD_ARGUMENT
+      call say('', unit, unit_size)
+      call say('', description, description_size)
+      if (.not. c_associated(key)) return
+      catalogue = case_catalogue()
+      call read_key_name(text_in(key), catalogue, group, number, name, why)
+      if (why /= '') return
+      associate (found => catalogue%keys(catalogue%place(group, name)))
+         if (c_associated(is_integer)) call integer_out(merge(1, 0, found%kind == kind_integer), is_integer)
+         call say(found%unit, unit, unit_size)
+         call say(found%meaning, description, description_size)
+      end associate
+      status = MFV_COMPLETE
+   end function mfv_key_info
+
+   function mfv_observable_info(index, name, name_size, unit, unit_size, description, description_size) result(status) &
+      bind(C, name='mfv_observable_info')
+      integer(c_size_t), value :: index, name_size, unit_size, description_size
+      type(c_ptr), value :: name, unit, description
+      integer(c_int) :: status
+      integer :: number
+
+      status = MFV_BAD_ARGUMENT
+      call say('', name, name_size)
+      call say('', unit, unit_size)
+      call say('', description, description_size)
+      if (index < 0 .or. index >= observable_count) return
+      number = int(index) + 1
+      call say(observable_name(number), name, name_size)
+      call say(observable_unit(number), unit, unit_size)
+      call say(observable_meaning(number), description, description_size)
+      status = MFV_COMPLETE
+   end function mfv_observable_info
 
    function mfv_scene_create(scene) result(status) bind(C, name='mfv_scene_create_unguarded')
       type(c_ptr), intent(out), optional :: scene
@@ -251,6 +298,18 @@ contains
       call self%draft%remove(text_in(key), error)
       status = merge(MFV_BAD_ARGUMENT, MFV_COMPLETE, allocated(error))
    end function mfv_scene_remove
+
+   function mfv_scene_make_room(scene, key) result(status) bind(C, name='mfv_scene_make_room_unguarded')
+      type(c_ptr), value :: scene, key
+      integer(c_int) :: status
+      type(scene_handle_type), pointer :: self
+      type(error_type), allocatable :: error
+
+      call find_scene(scene, self, status, key)
+      if (status /= MFV_COMPLETE) return
+      call self%draft%make_room(text_in(key), error)
+      status = merge(MFV_BAD_ARGUMENT, MFV_COMPLETE, allocated(error))
+   end function mfv_scene_make_room
 
    function mfv_scene_set_data(scene, file, dataset, rows, columns, values) result(status) &
       bind(C, name='mfv_scene_set_data_unguarded')
@@ -471,6 +530,18 @@ contains
       if (c_associated(observer)) call c_f_procpointer(observer, self%observer%observe)
       self%observer%user = user
    end function mfv_observe
+
+   !> An observer: `user` points to an integer that is not 0 when the run is to end.
+   function mfv_stop_when_set(progress, user) result(stop_wanted) bind(C, name='mfv_stop_when_set')
+      type(c_ptr), value :: progress, user
+      integer(c_int) :: stop_wanted
+      integer(c_int), pointer, volatile :: flag
+
+      stop_wanted = 0
+      if (.not. (c_associated(progress) .and. c_associated(user))) return
+      call c_f_pointer(user, flag)
+      stop_wanted = flag
+   end function mfv_stop_when_set
 
    !> See mfv_observer.
    subroutine notify(self, state, segment, segments, fraction, stop_wanted)

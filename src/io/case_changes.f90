@@ -6,7 +6,7 @@ module mfv_case_changes
    use mfv_strings, only: to_text
    implicit none
    private
-   public :: set_value, put_entry, remove_keys, set_dundurs_beta, write_number, stands_for
+   public :: put_entry, stands_for, remove_alternatives, remove_keys, set_dundurs_beta, set_value, write_number
 
    !> Keys of one group of which a case has one at most: a value for one takes the place of the others.
    character(*), parameter :: alternatives(5) = [character(40) :: 'tangential_force force_ratio shift', &
@@ -62,6 +62,19 @@ contains
       end do
       call append_entry(groups(place)%entries, entry)
    end subroutine put_entry
+
+   !> Take out the keys of the `number`-th group of a name whose place a key takes, itself among them.
+   subroutine remove_alternatives(groups, group, number, key)
+      type(group_type), intent(inout) :: groups(:)
+      character(*), intent(in) :: group, key
+      integer, intent(in) :: number
+      integer :: i
+
+      call remove_keys(groups, group, number, key)
+      do i = 1, size(alternatives)
+         if (index(' '//alternatives(i), ' '//key//' ') > 0) call remove_keys(groups, group, number, trim(alternatives(i)))
+      end do
+   end subroutine remove_alternatives
 
    !> Whether a key takes the place of another one in its group: it is the same, or an alternative to it.
    pure logical function stands_for(key, other)

@@ -3,7 +3,7 @@
 module mfv_draft
    use, intrinsic :: ieee_arithmetic, only: ieee_is_finite
    use mfv_case, only: case_type
-   use mfv_case_changes, only: put_entry, remove_keys, write_number
+   use mfv_case_changes, only: put_entry, remove_alternatives, remove_keys, set_dundurs_beta, write_number
    use mfv_case_data, only: case_data_type
    use mfv_case_keys, only: case_catalogue
    use mfv_case_reader, only: read_case_groups
@@ -13,13 +13,16 @@ module mfv_draft
    use mfv_kinds, only: wp
    use mfv_namelist, only: append_group, entry_type, group_type, groups_of_name, parse_namelists, write_namelists
    use mfv_status, only: MFV_INPUT_ERROR
-   use mfv_strings, only: quoted, string_type, to_text
+   use mfv_strings, only: lower_case, quoted, string_type, to_text
    use mfv_text_file, only: directory_of
    use mfv_utf8, only: find_fault_of_text
    implicit none
    private
    public :: draft_type, read_draft
 
+   !> Dundurs' parameter can be set as if it were a key; this is the size of the largest.
+   character(*), parameter :: dundurs_key = 'dundurs_beta'
+   real(wp), parameter :: largest_beta = 0.5_wp
    character(*), parameter :: line_ends = achar(10)//achar(13)
 
    !> A fault, and the key that was named: a value for that mends it.
@@ -39,14 +42,17 @@ module mfv_draft
    contains
       !> Give a key a value: `call draft%set('body(2)%radius', 0.25_wp)`. Keys: docs/namelist.md. Faults are told by make_case, the
       !> first of those that no later call for the same key has mended; and by `error` (MFV_INPUT_ERROR) where it is there.
+      !> 'dundurs_beta', a number, replaces the materials of both bodies, see set_dundurs_beta of mfv_case_changes.
       generic :: set => set_real, set_reals, set_integer, set_logical, set_text
       !> Data in memory in place of a file that a key names, see mfv_case_data: values of shape (rows) or (rows, columns).
       generic :: set_data => set_column, set_matrix
       procedure :: remove
+      procedure :: make_room
       procedure :: keep_fault
       procedure :: write_text
       procedure :: make_case
-      procedure, private :: set_real, set_reals, set_integer, set_logical, set_text, set_column, set_matrix, set_written, find_group
+      procedure, private :: set_real, set_reals, set_integer, set_logical, set_text, set_column, set_matrix, set_written, &
+                            set_materials, find_group
    end type draft_type
 
 contains
@@ -129,6 +135,21 @@ contains
       call tell(self, name, fault, error)
    end subroutine remove
 
+   !> Take a key out and those that it is an alternative to, such as tangential_force and force_ratio for shift, so that it can be
+   !> given a value. Fault and `error` as of set.
+   subroutine make_room(self, name, error)
+      class(draft_type), intent(inout) :: self
+      character(*), intent(in) :: name
+      type(error_type), allocatable, intent(out), optional :: error
+      type(error_type), allocatable :: fault
+      character(:), allocatable :: group, key
+      integer :: number
+
+      call self%find_group(name, group, number, key, fault)
+      if (.not. allocated(fault)) call remove_alternatives(self%groups, group, number, key)
+      call tell(self, name, fault, error)
+   end subroutine make_room
+
    !> Keep a fault, and tell it to a caller who wants to know. A call for the same key that goes well mends it.
    subroutine tell(self, name, fault, error)
       class(draft_type), intent(inout) :: self
@@ -182,13 +203,41 @@ contains
       type(error_type), allocatable, intent(out), optional :: error
       character(:), allocatable :: text
 
-      if (ieee_is_finite(value)) then
+      if (lower_case(name) == dundurs_key) then
+         call self%set_materials(value, error)
+      else if (ieee_is_finite(value)) then
          call write_number(value, text)
          call self%set_written(name, text, .false., '', error)
       else
          call self%set_written(name, '', .false., 'the value is not finite', error)
       end if
    end subroutine set_real
+
+   !> Give both bodies materials with Dundurs' parameter `beta`; the mutual compliance stays as it is. Fault and `error` as of set;
+   !> also where the scene so far is not a valid one.
+   subroutine set_materials(self, beta, error)
+      class(draft_type), intent(inout) :: self
+      real(wp), intent(in) :: beta
+      type(error_type), allocatable, intent(out), optional :: error
+      type(error_type), allocatable :: fault
+      type(case_type) :: case
+
+      if (.not. (ieee_is_finite(beta) .and. abs(beta) <= largest_beta)) then
+         call set_error(fault, MFV_INPUT_ERROR, dundurs_key//'='//to_text(beta)//': must be a number from -0.5 to 0.5')
+      else
+         call mend(self, dundurs_key)
+         call self%make_case(case, fault)
+         if (allocated(fault)) fault%message = quoted(dundurs_key)//': '//fault%message
+      end if
+      if (.not. allocated(fault)) then
+         if (case%scene%modulus() > 0.0_wp) then
+            call set_dundurs_beta(self%groups, beta, 1.0_wp/case%scene%modulus())
+         else
+            call set_error(fault, MFV_INPUT_ERROR, dundurs_key//" needs bodies with materials, not shape='matrix'")
+         end if
+      end if
+      call tell(self, dundurs_key, fault, error)
+   end subroutine set_materials
 
    subroutine set_reals(self, name, values, error)
       class(draft_type), intent(inout) :: self
@@ -224,7 +273,11 @@ contains
       integer, intent(in) :: value
       type(error_type), allocatable, intent(out), optional :: error
 
-      call self%set_written(name, to_text(value), .false., '', error)
+      if (lower_case(name) == dundurs_key) then
+         call self%set_materials(real(value, wp), error)
+      else
+         call self%set_written(name, to_text(value), .false., '', error)
+      end if
    end subroutine set_integer
 
    subroutine set_logical(self, name, value, error)

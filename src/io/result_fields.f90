@@ -14,9 +14,10 @@ module mfv_result_fields
    use mfv_cycle, only: cycle_type
    use mfv_kinds, only: wp
    use mfv_node_status, only: event_names, holds, in_contact, node_status_names
-   use mfv_observables, only: observable_count, observable_meaning, observable_name, observable_unit, observables_of
+   use mfv_observables, only: moment_count, moment_mark, moment_name, observable_count, observable_meaning, observable_name, &
+                              observable_unit, observables_of
    use mfv_scene, only: stepping_leap
-   use mfv_simulation, only: history_none, mark_cycle_start, mark_return, sensitivity_type, simulation_type
+   use mfv_simulation, only: history_none, mark_cycle_start, mark_loading, mark_return, sensitivity_type, simulation_type
    use mfv_state_interior, only: find_edges_at_nodes
    use mfv_status, only: status_outcome
    use mfv_strings, only: add_text, list_of_words, string_type, to_text
@@ -55,6 +56,8 @@ module mfv_result_fields
    character(*), parameter :: shift_meaning = 'shift of the upper body to the right'
    character(*), parameter :: moment_meaning = 'moment M of the upper on the lower body per unit thickness, counterclockwise'
    character(*), parameter :: rotation_meaning = 'rotation of the upper body, counterclockwise, in radians'
+   character(*), parameter :: pressure_meaning = 'compressive normal traction p'
+   character(*), parameter :: shear_meaning = 'shear traction tau on the lower body, positive to the right'
    character(*), parameter :: dissipation_meaning = 'energy dissipated so far per unit thickness'
    character(*), parameter :: contact_nodes_meaning = 'nodes in contact'
    character(*), parameter :: stick_nodes_meaning = 'stuck nodes'
@@ -99,14 +102,15 @@ contains
       if (number > 9999) path = 'steps/'//to_text(number)
    end function padded_step_group
 
-   !> The fields of one group; none for a group that does not exist.
+   !> The fields of one group; none for a group that does not exist. Not in result files, and so not in result_groups: the
+   !> tractions at the moments of a cycle, moments/loading and so on.
    subroutine group_fields(case, simulation, group, fields)
       type(case_type), intent(in) :: case
       type(simulation_type), intent(in) :: simulation
       character(*), intent(in) :: group
       type(field_type), allocatable, intent(out) :: fields(:)
       type(units_type) :: units
-      integer :: number, code
+      integer :: number, code, i
 
       call name_units(case%length_unit, case%force_unit, units)
       allocate (fields(0))
@@ -138,6 +142,9 @@ contains
       case ('history')
          if (simulation%keep_history /= history_none) call add_history(fields, simulation, units)
       case default
+         do i = 1, moment_count
+            if (group == 'moments/'//moment_name(i)) call add_moment(fields, simulation, moment_mark(i), units)
+         end do
          if (index(group, 'steps/') /= 1) return
          read (group(len('steps/') + 1:), '(i10)', iostat=code) number
          if (code /= 0) return
@@ -350,10 +357,8 @@ contains
 
       call add_displacements(fields, simulation, state, units)
       associate (model => simulation%contact%model)
-         call add_real(fields, 'pressure', state%fields%pressure, along_nodes, units%traction, &
-                       'compressive normal traction p')
-         call add_real(fields, 'shear', state%fields%shear, along_nodes, units%traction, &
-                       'shear traction tau on the lower body, positive to the right')
+         call add_real(fields, 'pressure', state%fields%pressure, along_nodes, units%traction, pressure_meaning)
+         call add_real(fields, 'shear', state%fields%shear, along_nodes, units%traction, shear_meaning)
          call add_real(fields, 'gap', visible_gap(simulation, model%gap(state%fields)), along_nodes, units%length, &
                        'gap between the bodies, infinite where one of them has no surface')
          call add_real(fields, 'slip', modelled(simulation, state%fields%slip()), along_nodes, units%length, &
@@ -440,6 +445,22 @@ contains
       call add_scalar_whole(fields, 'reversal', simulation%snapshots(number)%reversal, &
                             'number of the reversal in the step, 1 for a step without cycles')
    end subroutine add_step
+
+   !> The tractions at a moment of the last cycle; nothing where there is no such moment.
+   subroutine add_moment(fields, simulation, mark, units)
+      type(field_type), allocatable, intent(inout) :: fields(:)
+      type(simulation_type), intent(in) :: simulation
+      integer, intent(in) :: mark
+      type(units_type), intent(in) :: units
+      type(contact_state_type) :: state
+
+      associate (snapshot => simulation%marks(mark))
+         if (snapshot%step == 0 .or. (mark /= mark_loading .and. snapshot%reversal == 0)) return
+         state = simulation%padded(snapshot)
+      end associate
+      call add_real(fields, 'pressure', state%fields%pressure, along_nodes, units%traction, pressure_meaning)
+      call add_real(fields, 'shear', state%fields%shear, along_nodes, units%traction, shear_meaning)
+   end subroutine add_moment
 
    !> Loads, rigid motions and counts of a state.
    subroutine add_loads(fields, simulation, state, units)

@@ -81,6 +81,12 @@ static int nobody(const mfv_progress *progress, void *user) { return progress ==
 ROW(mfv_version) { return mfv_version(OR_NULL(0, b->buffer), ROOM); }
 ROW(mfv_has_feature) { return mfv_has_feature(OR_NULL(0, "hdf5"), OR_NULL(1, &b->number)); }
 ROW(mfv_status_text) { return mfv_status_text(MFV_COMPLETE, OR_NULL(0, b->buffer), ROOM, OR_NULL(1, b->other), ROOM); }
+ROW(mfv_key_info) {
+  return mfv_key_info(OR_NULL(0, "friction%mu"), OR_NULL(1, &b->number), OR_NULL(2, b->buffer), ROOM, OR_NULL(3, b->other), ROOM);
+}
+ROW(mfv_observable_info) {
+  return mfv_observable_info(0, OR_NULL(0, b->buffer), ROOM, OR_NULL(1, b->other), ROOM, OR_NULL(2, b->other), ROOM);
+}
 ROW(mfv_scene_create) {
   mfv_scene *new = NULL;
   (void)b;
@@ -100,6 +106,7 @@ ROW(mfv_scene_set_real) { return mfv_scene_set_real(OR_NULL(0, b->scene), OR_NUL
 ROW(mfv_scene_set_reals) { return mfv_scene_set_reals(OR_NULL(0, b->scene), OR_NULL(1, "friction%mu"), OR_NULL(2, b->x), 1); }
 ROW(mfv_scene_set_integer) { return mfv_scene_set_integer(OR_NULL(0, b->scene), OR_NULL(1, "mesh%nodes"), NODES); }
 ROW(mfv_scene_set_logical) { return mfv_scene_set_logical(OR_NULL(0, b->scene), OR_NULL(1, "step(1)%friction"), 0); }
+ROW(mfv_scene_make_room) { return mfv_scene_make_room(OR_NULL(0, b->scene), OR_NULL(1, "scene%title")); }
 ROW(mfv_scene_remove) { return mfv_scene_remove(OR_NULL(0, b->scene), OR_NULL(1, "scene%title")); }
 ROW(mfv_scene_set_data) {
   return mfv_scene_set_data(OR_NULL(0, b->scene), OR_NULL(1, "file"), OR_NULL(2, "x"), NODES, 1, OR_NULL(3, b->x));
@@ -165,6 +172,11 @@ ROW(mfv_state_free) {
   if (null == 1) new = NULL;
   return mfv_state_free(&new);
 }
+ROW(mfv_stop_when_set) {
+  mfv_progress progress = {.size = sizeof progress};
+  b->number = 0;
+  return mfv_stop_when_set(OR_NULL(0, &progress), OR_NULL(1, &b->number));
+}
 ROW(mfv_observe) { return mfv_observe(OR_NULL(0, b->handle), OR_NULL(1, nobody), OR_NULL(2, b)); }
 ROW(mfv_field_count) { return mfv_field_count(OR_NULL(0, b->handle), OR_NULL(1, &b->count)); }
 ROW(mfv_field_path) { return mfv_field_path(OR_NULL(0, b->handle), 0, OR_NULL(1, b->buffer), ROOM); }
@@ -208,6 +220,8 @@ static const row rows[] = {
     {"mfv_version", row_mfv_version, NO_HANDLE, 0, OK, 1, {A}},
     {"mfv_has_feature", row_mfv_has_feature, NO_HANDLE, 0, OK, 2, {A, A}},
     {"mfv_status_text", row_mfv_status_text, NO_HANDLE, 0, OK, 2, {A, A}},
+    {"mfv_key_info", row_mfv_key_info, NO_HANDLE, 0, OK, 4, {A, OK, OK, OK}},
+    {"mfv_observable_info", row_mfv_observable_info, NO_HANDLE, 0, OK, 3, {OK, OK, OK}},
     {"mfv_scene_create", row_mfv_scene_create, NO_HANDLE, 0, OK, 1, {A}},
     {"mfv_scene_from_text", row_mfv_scene_from_text, NO_HANDLE, 0, OK, 4, {A, OK, A, OK}},
     {"mfv_scene_set_text", row_mfv_scene_set_text, SCENE, 0, OK, 3, {H, A, A}},
@@ -215,6 +229,7 @@ static const row rows[] = {
     {"mfv_scene_set_reals", row_mfv_scene_set_reals, SCENE, 0, OK, 3, {H, A, A}},
     {"mfv_scene_set_integer", row_mfv_scene_set_integer, SCENE, 0, OK, 2, {H, A}},
     {"mfv_scene_set_logical", row_mfv_scene_set_logical, SCENE, 0, OK, 2, {H, A}},
+    {"mfv_scene_make_room", row_mfv_scene_make_room, SCENE, 0, OK, 2, {H, A}},
     {"mfv_scene_remove", row_mfv_scene_remove, SCENE, 0, OK, 2, {H, A}},
     {"mfv_scene_set_data", row_mfv_scene_set_data, SCENE, 0, OK, 4, {H, A, A, A}},
     {"mfv_scene_text", row_mfv_scene_text, SCENE, 0, OK, 3, {H, OK, OK}},
@@ -232,6 +247,7 @@ static const row rows[] = {
     {"mfv_save", row_mfv_save, CASE, 0, OK, 2, {H, A}},
     {"mfv_restore", row_mfv_restore, CASE, 0, OK, 2, {H, H}},
     {"mfv_state_free", row_mfv_state_free, STATE, 1, OK, 2, {OK, OK}},
+    {"mfv_stop_when_set", row_mfv_stop_when_set, NO_HANDLE, 0, OK, 2, {OK, OK}},
     {"mfv_observe", row_mfv_observe, CASE, 0, OK, 3, {H, OK, OK}},
     {"mfv_field_count", row_mfv_field_count, CASE, 0, OK, 2, {H, A}},
     {"mfv_field_path", row_mfv_field_path, CASE, 0, OK, 2, {H, A}},

@@ -10,12 +10,12 @@ import traceback
 from .. import __version__
 from .._packages import how_to_install
 from ..errors import MfvError
-from . import animate, compare, info, new, plot, report, table
+from . import animate, compare, info, new, plot, report, study
 
 UNUSABLE = 2  # exit code, as that of mfv_run for input that cannot be used
 INTERRUPTED = 130  # exit code after Ctrl-C, as that of mfv_run
 
-COMMANDS = (new, plot, info, compare, animate, report, table)
+COMMANDS = (new, plot, info, compare, animate, report, study)
 
 EXAMPLES = """\
 examples:
@@ -26,8 +26,8 @@ examples:
   python -m mfv compare goodman.h5 full.h5  two results side by side
   python -m mfv animate mindlin.h5          the load history as mindlin.gif
   python -m mfv report mindlin.h5           a web page of it, mindlin.html
-  python -m mfv table study.h5 --csv study.csv
-                                            the table of a sweep for a spreadsheet
+  python -m mfv study study.nml -o study.csv
+                                            solve many cases, into one table
 
 python -m mfv COMMAND --help tells more about each.
 """
@@ -62,7 +62,7 @@ def main(arguments: list[str] | None = None) -> int:
 def _parser() -> argparse.ArgumentParser:
     parser = argparse.ArgumentParser(
         prog="python -m mfv",
-        description="Begin a case, look at result files of mfv_run and tables of mfv_sweep.",
+        description="Begin a case, look at result files of mfv_run, solve many cases that differ in some values.",
         epilog=EXAMPLES,
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )

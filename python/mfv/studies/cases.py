@@ -1,0 +1,264 @@
+"""One case of a study, from its values to what is kept of it. This is what executors run, in this process or in another."""
+
+from __future__ import annotations
+
+import contextlib
+import ctypes
+import functools
+import hashlib
+import os
+from collections.abc import Iterator, Sequence
+from ctypes import byref, c_double, c_int, c_int32, c_size_t, c_void_p
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .. import errors
+from .._library import OBSERVER, library, library_version, statuses, text_buffer, text_for, text_of
+from ..case import writing
+from ..scene import _scene_handle, _set_data, _set_key, _text_of_scene, created
+from .axes import DUNDURS_BETA
+
+#: Whole numbers that are kept of each case, with what they are.
+COUNTS = {
+    "steps_done": "steps of the load history that were reached",
+    "events": "loads at which nodes changed their status",
+    "linear_solves": "linear solves",
+}
+
+#: Moments of the load history at which cases are compared, and the tractions that are.
+MOMENTS, TRACTIONS = ("loading", "reversal", "return"), ("pressure", "shear")
+
+#: Fields of the mesh that a comparison needs.
+OF_MESHES = ("mesh/x", "mesh/width", "mesh/interval")
+
+#: Keys that name files, with their groups.
+FILE_KEYS = ("body(1)%file", "body(2)%file", "friction%mu_file")
+
+_NAN = float("nan")
+
+
+@dataclass(frozen=True)
+class Base:
+    """What a case begins with: a namelist text, what messages call it, arrays in place of files, where the files are."""
+
+    text: str
+    name: str
+    data: tuple[tuple[str, str, Any], ...] = ()
+    folder: str = ""
+
+
+@dataclass(frozen=True)
+class Job:
+    """A case to be solved: its base, keys with their values, and what is wanted besides the observables."""
+
+    base: Base
+    settings: tuple[tuple[str, Any], ...]
+    fields: tuple[str, ...] = ()
+    compared: bool = False
+    result: str | None = None
+
+
+@dataclass
+class Solved:
+    """What is kept of a case: a status, its message, counts, numbers, and arrays by the path of their field.
+
+    `about`: what each field runs along (Along), its unit and description.
+    """
+
+    status: int
+    message: str
+    counts: dict[str, int] = field(default_factory=lambda: dict.fromkeys((*COUNTS, "nodes"), 0))
+    largest_residual: float = _NAN
+    observables: list[float] = field(default_factory=list)
+    arrays: dict[str, NDArray[Any]] = field(default_factory=dict)
+    about: dict[str, tuple[int, str, str]] = field(default_factory=dict)
+
+
+@functools.cache
+def observables() -> dict[str, tuple[str, str]]:
+    """Unit, in terms of length and force, and description of every observable, by name."""
+    found: dict[str, tuple[str, str]] = {}
+    name, unit, description = text_buffer(), text_buffer(), text_buffer()
+    arguments = (name, len(name), unit, len(unit), description, len(description))
+    while library().mfv_observable_info(len(found), *arguments) == 0:
+        found[text_of(name)] = text_of(unit), text_of(description)
+    return found
+
+
+def key_info(key: str) -> tuple[bool, str, str] | None:
+    """Whether a key takes whole numbers, its unit and description; None for what is no key."""
+    is_integer, unit, description = c_int(), text_buffer(), text_buffer()
+    status = library().mfv_key_info(text_for(key), byref(is_integer), unit, len(unit), description, len(description))
+    return (bool(is_integer.value), text_of(unit), text_of(description)) if status == 0 else None
+
+
+@contextlib.contextmanager
+def scene_handle(base: Base, settings: Sequence[tuple[str, Any]]) -> Iterator[c_void_p]:
+    """The library's scene of a base with keys set, while in use. What is wrong with them `mfv_create` tells. Raises InputError."""
+    with _scene_handle(base.text, base.name) as handle:
+        for file, dataset, values in base.data:
+            _set_data(handle, file, dataset, values)
+        for key, value in sorted(settings, key=lambda setting: setting[0].lower() == DUNDURS_BETA):  # last: it needs a whole scene
+            if key.lower() != DUNDURS_BETA:
+                library().mfv_scene_make_room(handle, text_for(key))
+            _set_key(handle, key, value)
+        yield handle
+
+
+def case_text(base: Base, settings: Sequence[tuple[str, Any]]) -> str:
+    """The case as a namelist text. Raises InputError."""
+    with scene_handle(base, settings) as handle:
+        return _text_of_scene(handle)
+
+
+def check(base: Base, settings: Sequence[tuple[str, Any]]) -> None:
+    """Raises InputError where the case is not a valid one."""
+    with scene_handle(base, settings) as handle, _reading(base, settings):
+        library().mfv_free(byref(created("mfv_create", handle)))
+
+
+def digest(job: Job, base_digest: str) -> str:
+    """A name for all that decides what is kept of a case: the base, the values, files that they name, the version."""
+    told = hashlib.sha256()
+    settings = [(key, _content(value) if key in FILE_KEYS else value) for key, value in job.settings]
+    kept = (job.fields, job.compared, job.result)
+    told.update(repr((library_version(), tuple(observables()), base_digest, settings, kept)).encode())
+    return told.hexdigest()
+
+
+def digest_of_base(base: Base, settings: Sequence[tuple[str, Any]]) -> str:
+    """A name for a base with its arrays and the settings that all its cases share. Raises InputError."""
+    told = hashlib.sha256(case_text(Base(base.text, base.name), ()).encode())
+    for file, dataset, values in base.data:
+        told.update(repr((file, dataset, np.shape(values))).encode() + np.ascontiguousarray(values, dtype=float).tobytes())
+    told.update(repr([(key, _content(value)) for key, value in settings]).encode())
+    return told.hexdigest()
+
+
+@functools.lru_cache(maxsize=1024)
+def _content_as_of(path: str, changed: int, size: int) -> str:
+    return hashlib.sha256(Path(path).read_bytes()).hexdigest()
+
+
+def _content(path: str) -> str:
+    """What a file has in it, which is what counts; its name where it is not there."""
+    try:
+        status = os.stat(path)
+        return _content_as_of(path, status.st_mtime_ns, status.st_size)
+    except OSError:
+        return path
+
+
+def solve(job: Job) -> Solved:
+    """Solve a case in a process that is there for this: BLAS gets one thread, for good, so that all processes give the same bits."""
+    _one_blas_thread()
+    solved = solve_unless(None, job)
+    assert solved is not None
+    return solved
+
+
+def solve_unless(stop: c_int | None, job: Job) -> Solved | None:
+    """Solve a case; None when `stop` has been set meanwhile. Raises FileError where its result cannot be written."""
+    handle = None
+    try:
+        with scene_handle(job.base, job.settings) as scene, _reading(job.base, job.settings):
+            handle = created("mfv_create", scene)
+        if stop is not None:
+            library().mfv_observe(handle, ctypes.cast(library().mfv_stop_when_set, OBSERVER), byref(stop))
+        status = library().mfv_run(handle)
+        if stop is not None and stop.value != 0:
+            return None
+        if job.result is not None:
+            _write(handle, job.result)
+        return _kept(handle, status, job)
+    except errors.InputError as error:
+        return Solved(_input_error(), error.message, observables=[_NAN] * len(observables()))
+    finally:
+        if handle is not None:
+            library().mfv_free(byref(handle))
+
+
+def _reading(base: Base, settings: Sequence[tuple[str, Any]]) -> contextlib.AbstractContextManager[Any]:
+    """What to hold while a case is created: HDF5, with which files of matrices are read, is not made for threads."""
+    has_matrix = "matrix" in base.text.lower() or any(str(value).lower() == "matrix" for _, value in settings)
+    return writing if has_matrix else contextlib.nullcontext()
+
+
+def _write(handle: c_void_p, path: str) -> None:
+    """Write the whole result of a case. Raises FileError."""
+    with writing:
+        status = library().mfv_write(handle, text_for(path))
+    if status != 0:
+        raise errors.failure(status, _message(handle))
+
+
+def _kept(handle: c_void_p, status: int, job: Job) -> Solved:
+    """What is kept of a case that has been run."""
+    counts = {name: _whole(handle, f"summary/{name}") for name in COUNTS}
+    count = c_size_t()
+    library().mfv_field_info(handle, b"mesh/x", byref(count), None, None, None, 0, None, 0)
+    counts["nodes"] = count.value
+    paths = list(job.fields)
+    if job.compared:
+        paths += [*OF_MESHES, *(f"moments/{moment}/{name}" for moment in MOMENTS for name in TRACTIONS)]
+    residual = _real(handle, b"summary/largest_residual")
+    solved = Solved(status, _message(handle), counts, residual, [_real(handle, path) for path in _observable_paths()])
+    for path in dict.fromkeys(paths):
+        _add_field(handle, path, solved)
+    return solved
+
+
+@functools.cache
+def _observable_paths() -> list[bytes]:
+    return [text_for(f"observables/{name}") for name in observables()]
+
+
+def _real(handle: c_void_p, path: bytes) -> float:
+    """A number; NaN where the case does not have it."""
+    value = c_double(_NAN)
+    return value.value if library().mfv_copy_real(handle, path, byref(value), 1) == 0 else _NAN
+
+
+def _whole(handle: c_void_p, path: str) -> int:
+    value = c_int32()
+    library().mfv_copy_integer(handle, text_for(path), byref(value), 1)
+    return value.value
+
+
+def _add_field(handle: c_void_p, path: str, solved: Solved) -> None:
+    """Keep the values of a field as real numbers, where the case has it."""
+    name, count, is_integer, along = text_for(path), c_size_t(), c_int(), c_int()
+    unit, description = text_buffer(), text_buffer()
+    about = byref(count), byref(is_integer), byref(along), unit, len(unit), description, len(description)
+    if library().mfv_field_info(handle, name, *about) != 0:
+        return
+    values: NDArray[Any] = np.empty(count.value, np.int32 if is_integer else float)
+    if is_integer:
+        library().mfv_copy_integer(handle, name, values.ctypes.data_as(ctypes.POINTER(c_int32)), values.size)
+    else:
+        library().mfv_copy_real(handle, name, values.ctypes.data_as(ctypes.POINTER(c_double)), values.size)
+    solved.arrays[path] = values.astype(float)
+    solved.about[path] = along.value, text_of(unit), text_of(description)
+
+
+def _message(handle: c_void_p) -> str:
+    buffer = text_buffer()
+    library().mfv_message(handle, buffer, len(buffer))
+    return text_of(buffer)
+
+
+@functools.cache
+def _input_error() -> int:
+    return next(code for code, outcome, _ in statuses() if outcome == "input error")
+
+
+@functools.cache
+def _one_blas_thread() -> None:
+    import threadpoolctl
+
+    library()  # threadpoolctl sees what has been loaded
+    threadpoolctl.threadpool_limits(1, user_api="blas")

@@ -1,0 +1,223 @@
+"""The dataset of a study: an array for each quantity along the axes, errors against a reference, files."""
+
+from __future__ import annotations
+
+import math
+import os
+import re
+from collections import Counter
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import xarray
+from numpy.typing import NDArray
+
+from .._library import Along, library_version, outcome_of
+from .axes import DUNDURS_BETA, Coordinate
+from .cases import COUNTS, MOMENTS, TRACTIONS, Solved, key_info, observables
+from .plan import Study, result_name
+
+if TYPE_CHECKING:
+    import pandas
+
+#: Outcome of a case that has not been solved, and its status.
+NOT_SOLVED, NO_STATUS = "not solved", -1
+
+#: Dimensions of fields by what they run along.
+DIMENSIONS = {
+    Along.NODES: "node",
+    Along.RECORDS: "record",
+    Along.COMPANIONS: "companion_node",
+    Along.CYCLES: "cycle",
+    Along.PATCHES: "patch",
+}
+
+#: What a dataset says it is, and its file.
+TITLE = "Study over cases of frictional contact"
+
+#: Suffixes of files that a study can be written to.
+SUFFIXES = (".nc", ".h5", ".csv")
+
+_NAN = float("nan")
+
+
+def dataset_of(study: Study, solved: Sequence[Solved | None]) -> xarray.Dataset:
+    """The dataset of a study from what is kept of its cases, in their order; None where a case has not been solved."""
+    units = study.units
+    table = xarray.Dataset(attrs=_attributes(study, solved, units))
+    for dimension in study.dimensions:
+        for coordinate in dimension.coordinates:
+            if coordinate.name != "row":
+                table = table.assign_coords({coordinate.name: (dimension.name, *_described(coordinate, units))})
+    if len(study.bases) == 1:
+        table = table.assign_coords(base=study.bases[0].name)
+    for name, values, unit, meaning in _columns(study, solved):
+        dimensions = [dimension.name for dimension in study.dimensions]
+        about = {"units": _labelled(unit, units), "long_name": meaning}
+        table[name] = (dimensions, np.array(values, dtype=_kind(values)).reshape(study.shape), about)
+    _add_fields(study, solved, table)
+    return table
+
+
+def frame_of(table: xarray.Dataset) -> pandas.DataFrame:
+    """The dataset as a data frame, one row a case, without fields; logical values as 0 and 1."""
+    dimensions = table["case"].dims
+    columns = [name for name in table.data_vars if table[name].dims == dimensions]
+    coordinates = [name for name in table.coords if set(table[name].dims) <= set(dimensions)]
+    frame = table[columns].to_dataframe().reset_index().sort_values("case", ignore_index=True)
+    frame = frame[["case", *sorted(coordinates, key=lambda name: name != "base"), *columns[1:]]]
+    return frame.astype({name: int for name in frame if frame[name].dtype == bool})
+
+
+def write(table: xarray.Dataset, path: str | os.PathLike[str]) -> None:
+    """Write a dataset: as NetCDF (.nc, .h5), or one row a case as comma-separated values (.csv). Raises OSError."""
+    from ..commands.files import written
+
+    with written(Path(path)) as part:
+        if part.suffix.lower() == ".csv":
+            part.write_text(frame_of(table).to_csv(index=False), encoding="utf-8")
+        else:  # HDF5 does not come back from a full disk: it is kept away from disks
+            part.write_bytes(bytes(table.to_netcdf(engine="h5netcdf")))
+
+
+def _columns(study: Study, solved: Sequence[Solved | None]) -> list[tuple[str, list[Any], str, str]]:
+    """Name, values, unit and meaning of every column."""
+    there = [one or Solved(NO_STATUS, "", observables=[_NAN] * len(observables())) for one in solved]
+    columns: list[tuple[str, list[Any], str, str]] = [
+        ("case", list(range(1, len(there) + 1)), "1", "number of the case"),
+        ("outcome", [outcome_of(one.status) if one.status >= 0 else NOT_SOLVED for one in there], "1", "how the case ended"),
+        ("status", [one.status for one in there], "1", "the same as a code, 0 for complete (mfv_status.def)"),
+        ("message", [one.message for one in there], "1", "the same in words"),
+    ]
+    for name, meaning in {**COUNTS, "nodes": "nodes of the mesh"}.items():
+        columns.append((name, [one.counts[name] for one in there], "1", meaning))
+    residuals = [one.largest_residual for one in there]
+    columns.append(("largest_residual", residuals, "1", "largest relative residual of the certificate"))
+    for place, (name, (unit, meaning)) in enumerate(observables().items()):
+        if study.observables is None or name in study.observables:
+            columns.append((name, [one.observables[place] for one in there], unit, meaning))
+    if study.reference is not None:
+        columns += _errors(study, there)
+    if study.results is not None:
+        names = [f"{study.results.name}/{result_name(number)}" for number in range(1, len(there) + 1)]
+        columns.append(("result_file", names, "1", "result file of the case"))
+    return columns
+
+
+def _kind(values: Sequence[Any]) -> Any:
+    return {str: object, int: np.int32}.get(type(values[0]), float)
+
+
+def _errors(study: Study, solved: Sequence[Solved]) -> list[tuple[str, list[Any], str, str]]:
+    """Differences of every case from its reference."""
+    pairs = [(one, solved[study.number_of_reference(number) - 1]) for number, one in enumerate(solved, start=1)]
+    columns: list[tuple[str, list[Any], str, str]] = []
+    for moment in MOMENTS:
+        for traction, words in zip(TRACTIONS, ("pressures", "shear tractions")):
+            meaning = f"L1 difference of the {words} from those of the reference, relative to them, at the moment {moment} (eq. 6.6)"
+            values = [_traction_error(one, reference, moment, traction) for one, reference in pairs]
+            columns.append((f"{traction}_error_{moment}", values, "1", meaning))
+    ratios = [_dissipation_ratio(one, reference) for one, reference in pairs]
+    columns.append(("dissipation_ratio", ratios, "1", "cycle_dissipation over that of the reference"))
+    return columns
+
+
+def _traction_error(one: Solved, reference: Solved, moment: str, traction: str) -> float:
+    """Sum of the sizes of the differences over that of the reference (eq. 6.6). NaN where there is no such moment, where the
+    reference has no such traction, or where, but for the beginning of the cycles, these are not the same number of cycles."""
+    path = f"moments/{moment}/{traction}"
+    if path not in one.arrays or path not in reference.arrays or not (moment == "loading" or _has_same_cycles(one, reference)):
+        return _NAN
+    here, there, weights = _side_by_side(one, reference, path)
+    total = float(np.sum(np.abs(there) * weights))
+    return float(np.sum(np.abs(here - there) * weights)) / total if total > 0.0 else _NAN
+
+
+def _side_by_side(one: Solved, reference: Solved, path: str) -> tuple[NDArray[Any], NDArray[Any], NDArray[Any]]:
+    """A traction of two cases at the same places, with the lengths that these stand for.
+
+    Meshes of one interval about one middle: at their nodes, none beyond the ends of the narrower one, as forces over the
+    interval. Others: at the nodes of both, linear between nodes, none beyond the ends.
+    """
+    sizes, intervals = zip(*((kept.arrays[path].size, float(kept.arrays["mesh/interval"][0])) for kept in (one, reference)))
+    if math.isclose(*intervals, rel_tol=1e-9) and (sizes[0] - sizes[1]) % 2 == 0:
+        forces = [kept.arrays[path] * kept.arrays["mesh/width"] for kept in (one, reference)]
+        here, there = (np.pad(force, (max(sizes) - force.size) // 2) for force in forces)
+        return here / intervals[0], there / intervals[1], np.ones(max(sizes))
+    x = np.union1d(one.arrays["mesh/x"], reference.arrays["mesh/x"])
+    here, there = (np.interp(x, kept.arrays["mesh/x"], kept.arrays[path], 0.0, 0.0) for kept in (one, reference))
+    return here, there, np.gradient(x)
+
+
+def _observable(solved: Solved, name: str) -> float:
+    return solved.observables[list(observables()).index(name)]
+
+
+def _has_same_cycles(one: Solved, other: Solved) -> bool:
+    """Whether two cases have the same number of whole cycles; not where one of them has none."""
+    here, there = _observable(one, "cycles"), _observable(other, "cycles")
+    return math.isfinite(here) and here == there
+
+
+def _dissipation_ratio(one: Solved, reference: Solved) -> float:
+    here, there = (_observable(solved, "cycle_dissipation") for solved in (one, reference))
+    is_told = _has_same_cycles(one, reference) and math.isfinite(here) and abs(there) > 0.0
+    return here / there if is_told else _NAN
+
+
+def _add_fields(study: Study, solved: Sequence[Solved | None], table: xarray.Dataset) -> None:
+    """The fields that were asked for, where any case has them: NaN beyond the values of a case. Along nodes, mesh_x tells where."""
+    for path in study._fields():
+        having = [(place, one) for place, one in enumerate(solved) if one is not None and path in one.arrays]
+        if not having:
+            continue
+        along, unit, meaning = having[0][1].about[path]
+        name, dimensions = path.replace("/", "_"), [dimension.name for dimension in study.dimensions]
+        about = {"units": unit, "long_name": meaning, "path": path}
+        if along == Along.NOTHING:
+            scalars = np.full(len(solved), np.nan)
+            for place, one in having:
+                scalars[place] = one.arrays[path][0]
+            table[name] = (dimensions, scalars.reshape(study.shape), about)
+            continue
+        longest = max(max(one.arrays[path].size for _, one in having), table.sizes.get(DIMENSIONS[Along(along)], 0))
+        values = np.full((len(solved), longest), np.nan)
+        for place, one in having:
+            values[place, : one.arrays[path].size] = one.arrays[path]
+        table[name] = ([*dimensions, DIMENSIONS[Along(along)]], values.reshape(*study.shape, longest), about)
+
+
+def _described(coordinate: Coordinate, units: dict[str, str]) -> tuple[Any, dict[str, str]]:
+    """The values of an axis as an array, and what they are."""
+    values = coordinate.values
+    array: Any = np.array(values, dtype=object if any(isinstance(value, str) for value in values) else None)
+    if coordinate.name == "base":
+        return array, {"long_name": "base case"}
+    if not coordinate.keys:
+        return array, {}
+    if coordinate.keys[0].lower() == DUNDURS_BETA:
+        return array, {"units": "1", "long_name": "Dundurs' parameter beta, positive where the lower body couples more"}
+    about = key_info(coordinate.keys[0])
+    assert about is not None
+    group, _, key = coordinate.keys[0].lower().partition("%")
+    return array, {"units": _labelled(about[1] or "1", units), "long_name": f"&{group.partition('(')[0]} {key}: {about[2]}"}
+
+
+def _labelled(unit: str, units: dict[str, str]) -> str:
+    """A unit in terms of length and force with the user's names of these."""
+    return re.sub(r"\b(length|force)\b", lambda found: units[found[0]], unit)
+
+
+def _attributes(study: Study, solved: Sequence[Solved | None], units: dict[str, str]) -> dict[str, Any]:
+    """What is said of the whole dataset."""
+    outcomes = Counter(outcome_of(one.status) for one in solved if one is not None)
+    attributes: dict[str, Any] = {"title": TITLE, "mfv_version": library_version()}
+    if study.input:
+        attributes["input"] = study.input
+    for number, base in enumerate(study.bases, start=1):
+        attributes |= {f"base_{number}": base.text, f"base_{number}_file": base.name}
+    attributes |= {"length_unit": units["length"], "force_unit": units["force"]}
+    attributes |= {"complete": int(None not in solved), "cases": len(solved), "cases_done": sum(outcomes.values())}
+    return attributes | {f"cases_{outcome.replace(' ', '_')}": count for outcome, count in sorted(outcomes.items())}

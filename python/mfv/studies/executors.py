@@ -1,0 +1,117 @@
+"""Executors by name, and the loop that hands cases to one of them."""
+
+from __future__ import annotations
+
+import contextlib
+import functools
+import multiprocessing
+import os
+import signal
+from collections.abc import Callable, Iterator, Mapping
+from concurrent.futures import Executor, ProcessPoolExecutor, ThreadPoolExecutor, as_completed
+from ctypes import c_int
+from typing import Any
+
+from .._library import library
+from .cases import Job, Solved, solve, solve_unless
+
+#: Names of executors; 'dask:ADDRESS' is a cluster that is running already.
+NAMES = ("threads", "processes", "mpi", "dask")
+
+
+def solve_all(jobs: Mapping[str, Job], executor: str | Executor, workers: int | None, keep: Callable[[str, Solved], None]) -> None:
+    """Solve cases by an executor, and tell `keep` of each under its name, here, as it comes in.
+
+    What goes wrong here or there is raised once what can be stopped has been; what was told of before has been told of.
+    """
+    with opened(executor, workers) as pool, contextlib.ExitStack() as stack:
+        stop = c_int(0)
+        function: Callable[[Job], Solved | None] = solve
+        if isinstance(pool, ThreadPoolExecutor):
+            function = functools.partial(solve_unless, stop)
+            stack.enter_context(_one_blas_thread_meanwhile())
+        futures = {pool.submit(function, job): key for key, job in jobs.items()}
+        try:
+            for future in as_completed(futures):
+                solved = future.result()
+                if solved is not None:
+                    keep(futures[future], solved)
+        except BaseException:
+            stop.value = 1
+            for future in futures:
+                future.cancel()
+            raise
+
+
+@contextlib.contextmanager
+def opened(executor: str | Executor, workers: int | None) -> Iterator[Executor]:
+    """An executor of a name, closed in the end, or one that the caller has, which stays open.
+
+    Raises ValueError for an unknown name, ModuleNotFoundError where its package is not there.
+    """
+    if isinstance(executor, Executor):
+        yield executor
+        return
+    name, _, address = executor.partition(":")
+    if name not in NAMES or (address and name != "dask"):
+        raise ValueError(f"there is no executor '{executor}'; there are {', '.join(NAMES)}, dask:ADDRESS")
+    if workers is not None and workers < 1:
+        raise ValueError(f"workers must be 1 or more, not {workers}")
+    with contextlib.ExitStack() as stack:
+        if name == "threads":
+            yield stack.enter_context(ThreadPoolExecutor(workers or processors()))
+        elif name == "processes":
+            yield stack.enter_context(_processes(workers or processors()))
+        elif name == "mpi":
+            from mpi4py.futures import MPIPoolExecutor
+
+            pool = MPIPoolExecutor(max_workers=workers)
+            stack.callback(pool.shutdown, cancel_futures=True)
+            yield pool
+        else:
+            yield stack.enter_context(_dask_client(stack, address, workers).get_executor())
+
+
+def processors() -> int:
+    """Processors that this process may use."""
+    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+
+
+@contextlib.contextmanager
+def _processes(workers: int) -> Iterator[Executor]:
+    """Processes that begin anew, and do not wait for what they are at when the study is given up."""
+    method = "forkserver" if "forkserver" in multiprocessing.get_all_start_methods() else "spawn"
+    others = multiprocessing.active_children()
+    context: Any = multiprocessing.get_context(method)
+    with ProcessPoolExecutor(workers, context, _leave_interrupts_to_the_study) as pool:
+        try:
+            yield pool
+        except BaseException:
+            pool.shutdown(wait=False, cancel_futures=True)
+            for process in multiprocessing.active_children():
+                if process not in others:
+                    process.terminate()
+            raise
+
+
+def _leave_interrupts_to_the_study() -> None:
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+
+
+def _dask_client(stack: contextlib.ExitStack, address: str, workers: int | None) -> Any:
+    """The client of a cluster with an address, or of one on this machine, closed with `stack`."""
+    from dask.distributed import Client, LocalCluster
+
+    cluster = address or stack.enter_context(
+        LocalCluster(n_workers=workers or processors(), threads_per_worker=1, dashboard_address=":0")
+    )
+    return stack.enter_context(Client(cluster))
+
+
+def _one_blas_thread_meanwhile() -> contextlib.AbstractContextManager[Any]:
+    """BLAS has one thread in this process: the threads of the study have the processors, and all studies the same bits."""
+    import threadpoolctl
+
+    library()  # threadpoolctl sees what has been loaded
+    limits: contextlib.AbstractContextManager[Any] = threadpoolctl.threadpool_limits(1, user_api="blas")
+    return limits

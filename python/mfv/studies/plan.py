@@ -1,0 +1,449 @@
+"""A study: its bases, its dimensions, and the cases that come out, numbered from 1."""
+
+from __future__ import annotations
+
+import contextlib
+import math
+import os
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from concurrent.futures import Executor
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Union
+
+import numpy as np
+
+from .. import errors
+from .._library import library, text_for
+from ..errors import input_error
+from ..inputs import groups
+from ..inputs import keys as keys_of_text
+from ..scene import _NAMES_OF_DATA, Scene, _scene_handle, _set_key, _text_of_scene, created
+from . import executors
+from .axes import DUNDURS_BETA, OF_MATERIALS, Coordinate, Dimension, as_written, dimensions_of, fault
+from .cases import FILE_KEYS, Base, Job, Solved, case_text, check, digest, digest_of_base, key_info
+from .store import Store
+
+if TYPE_CHECKING:
+    import xarray
+
+#: A scene, or the path of a namelist file.
+Given = Union[Scene, str, "os.PathLike[str]", Base]
+
+#: Names of the columns that every study has, and of dimensions of fields: not for axes.
+TAKEN = ("case", "base", "outcome", "status", "message", "steps_done", "events", "linear_solves", "nodes", "largest_residual",
+         "row", "node", "record", "cycle", "patch", "companion_node", "result_file")  # fmt: skip
+
+#: Of long rows of numbers this many are tried before the start, spread over them.
+TRIED = 200
+
+
+def study(
+    base: Given | Sequence[Given] | Callable[[dict[str, Any]], Scene],
+    axes: Any = None,
+    *,
+    observables: Iterable[str] | None = None,
+    fields: Iterable[str] = (),
+    reference: str | Mapping[str, Any] | None = None,
+    results: str | os.PathLike[str] | None = None,
+    executor: str | Executor = "threads",
+    workers: int | None = None,
+    store: str | os.PathLike[str] | None = None,
+    progress: bool = False,
+) -> xarray.Dataset:
+    """Solve many cases that differ in some values; see `Study` for what they are and `Study.run` for how they are solved."""
+    planned = Study(base, axes, observables=observables, fields=fields, reference=reference, results=results)
+    return planned.run(executor=executor, workers=workers, store=store, progress=progress)
+
+
+class Study:
+    """Cases that differ in some values: what is varied, and what is wanted of each case."""
+
+    def __init__(
+        self,
+        base: Given | Sequence[Given] | Callable[[dict[str, Any]], Scene],
+        axes: Any = None,
+        *,
+        observables: Iterable[str] | None = None,
+        fields: Iterable[str] = (),
+        reference: str | Mapping[str, Any] | None = None,
+        results: str | os.PathLike[str] | None = None,
+    ) -> None:
+        """`base`: a Scene or the path of a case; several of them, which are the first axis, 'base'; or a function that makes a
+        Scene of a point, a dict with the value of every axis.
+
+        `axes`: by name, the values of a key of the case ('friction%mu'), an Axis of keys that move together, or a mapping of
+        such, which are zipped along one dimension. All combinations are solved, the last axis fastest. Or a table of cases:
+        a pandas.DataFrame, or a list of mappings, with a column for each key. A key takes the place of those that it is an
+        alternative to (shift that of tangential_force). 'dundurs_beta' varies the materials of both bodies.
+
+        `observables`: names of those that the dataset is to have; all unless told. `fields`: paths of fields of each case, such
+        as 'state/pressure'. `reference`: 'full', or an axis with one of its values, {'mesh%nodes': 1001}: the tractions of
+        each case are compared with those of the case that is the same but for this. `results`: a folder for the result file
+        of every case. Raises InputError for keys, names and factors that cannot be; OSError for a base that cannot be read.
+        """
+        self.makes_scenes: Callable[[dict[str, Any]], Scene] | None = base if callable(base) else None
+        given = [] if callable(base) else [base] if isinstance(base, (Scene, str, os.PathLike, Base)) else list(base)
+        self.bases = [_base_of(one) for one in given]
+        self._shared = [whole_paths(one) for one in self.bases]
+        self._check_units()
+        is_made = isinstance(axes, list) and all(isinstance(axis, Dimension) for axis in axes)
+        self.dimensions = list(axes) if is_made else dimensions_of(axes, are_keys=self.makes_scenes is None)
+        if len(self.bases) > 1:
+            names = Coordinate("base", (), [one.name for one in self.bases])
+            self.dimensions.insert(0, Dimension("base", [names]))
+        if not self.dimensions:
+            self.dimensions = [Dimension("row", [Coordinate("row", (), [0])])]
+        self.observables = None if observables is None else list(observables)
+        self.fields = tuple(fields)
+        self.results = None if results is None else Path(results)
+        #: The text that the study was read from, and its file; where its table is to go, and whether it wants results, as it says.
+        self.input, self.input_file, self.file, self.keeps_results = "", "", "", False
+        self._check_names()
+        self._check_keys()
+        #: Dimension and place of what cases are compared with.
+        self.reference: tuple[int, int] | None = None
+        if reference is not None:
+            self.set_reference(reference)
+
+    def __len__(self) -> int:
+        return math.prod(self.shape)
+
+    @property
+    def shape(self) -> tuple[int, ...]:
+        """Number of values along each dimension."""
+        return tuple(len(dimension) for dimension in self.dimensions)
+
+    @property
+    def coordinates(self) -> list[Coordinate]:
+        """All axes."""
+        return [coordinate for dimension in self.dimensions for coordinate in dimension.coordinates]
+
+    @property
+    def units(self) -> dict[str, str]:
+        """The user's names of length and force. Raises InputError."""
+        return _units(self.job(1).base)
+
+    def point(self, number: int) -> dict[str, Any]:
+        """The values of the axes of case `number`, from 1, by their names. Raises ValueError."""
+        places = self._places(number)
+        return {
+            coordinate.name: coordinate.values[place]
+            for dimension, place in zip(self.dimensions, places)
+            for coordinate in dimension.coordinates
+            if coordinate.name != "row"
+        }
+
+    def describe(self, number: int) -> str:
+        """The values of case `number` in words: base='hole.nml', friction%mu=0.3."""
+        point = self.point(number)
+        if len(self.bases) == 1:
+            point = {"base": self.bases[0].name, **point}
+        return ", ".join(f"{name}={as_written(value)}" for name, value in point.items())
+
+    def text(self, number: int) -> str:
+        """Case `number` as a namelist text, for mfv_run. Raises ValueError, InputError."""
+        job = self.job(number)
+        return case_text(job.base, job.settings)
+
+    def job(self, number: int) -> Job:
+        """Case `number`, ready to be solved. Raises ValueError."""
+        places = self._places(number)
+        settings = [
+            setting
+            for dimension, place in zip(self.dimensions, places)
+            for coordinate in dimension.coordinates
+            for setting in coordinate.settings(place)
+        ]
+        if self.makes_scenes is not None:
+            base = _base_of(self.makes_scenes(self.point(number)))
+            shared = whole_paths(base)
+        else:
+            which = places[0] if len(self.bases) > 1 else 0
+            base, shared = self.bases[which], self._shared[which]
+        named = {key: _absolute(value, base) if key in FILE_KEYS else value for key, value in settings}
+        result = None if self.results is None else str(self.results.resolve() / result_name(number))
+        return Job(base, tuple({**shared, **named}.items()), self._fields(), self.reference is not None, result)
+
+    def check(self) -> None:
+        """Try every base, and every value with the first values of the others (of long rows some of them).
+
+        Raises InputError, which names case and values, where one cannot be used.
+        """
+        if self.makes_scenes is not None:
+            return
+        first = [0] * len(self.shape)
+        for along, length in enumerate(self.shape):
+            for place in _tried(length):
+                if along == 0 or place > 0:
+                    self._try([*first[:along], place, *first[along + 1 :]], along)
+
+    def run(
+        self,
+        *,
+        executor: str | Executor = "threads",
+        workers: int | None = None,
+        store: str | os.PathLike[str] | None = None,
+        progress: bool = False,
+    ) -> xarray.Dataset:
+        """Solve the cases, and return the dataset. What is wrong with keys and values is said before (see `check`).
+
+        `executor`: 'threads' of this process, 'processes', 'mpi' (mpi4py.futures), 'dask' (a cluster on this machine, or
+        'dask:ADDRESS'), or any concurrent.futures.Executor. `workers`: how many; as many as there are processors unless told.
+        `store`: an SQLite file in which solved cases are kept: what it has is not solved again, whatever ended the run before.
+        `progress`: show a bar on a terminal or in a notebook, by tqdm.
+        A case that cannot be begun, or that ends early, is in the dataset with its outcome and message.
+        Raises InputError, FileError, and what an executor raises; KeyboardInterrupt within an increment with threads.
+        """
+        self.check()
+        if self.results is not None:
+            self.results.mkdir(exist_ok=True)
+        return self._with_store(store, lambda kept: self._solve(kept, executor, workers, progress))
+
+    def so_far(self, store: str | os.PathLike[str]) -> xarray.Dataset:
+        """The dataset of the cases that a store has; the others have the outcome 'not solved'. Raises FileError."""
+        return self._with_store(store, lambda kept: self._solve(kept, None, None, False))
+
+    def _with_store(
+        self, store: str | os.PathLike[str] | None, solve: Callable[[Store | None], list[Solved | None]]
+    ) -> xarray.Dataset:
+        from .dataset import dataset_of  # here: it imports xarray
+
+        with contextlib.nullcontext() if store is None else Store(store) as kept:
+            return dataset_of(self, solve(kept))
+
+    def _solve(
+        self, kept: Store | None, executor: str | Executor | None, workers: int | None, progress: bool
+    ) -> list[Solved | None]:
+        """The cases in order, by an executor where they are not there; None solves nothing."""
+        from tqdm.auto import tqdm  # here: it looks whether this is a notebook
+
+        jobs = {}
+        keys = []
+        for key, job in self._named_jobs():
+            keys.append(key)
+            jobs[key] = job
+        there = {} if kept is None else kept.read(jobs.keys())
+        wanted = {key: job for key, job in jobs.items() if key not in there or _has_lost_its_file(job)}
+        if executor is not None and wanted:
+            with tqdm(total=len(jobs), initial=len(jobs) - len(wanted), unit="case", disable=None if progress else True) as bar:
+
+                def keep(key: str, solved: Solved) -> None:
+                    if kept is not None:
+                        kept.write(key, solved)
+                    there[key] = solved
+                    bar.update()
+
+                executors.solve_all(wanted, executor, workers, keep)
+        return [there.get(key) for key in keys]
+
+    def _named_jobs(self) -> Iterator[tuple[str, Job]]:
+        """The jobs of all cases with their names; cases that are the same have one."""
+        digests = [digest_of_base(base, list(shared.items())) for base, shared in zip(self.bases, self._shared)]
+        for number in range(1, len(self) + 1):
+            job = self.job(number)
+            if self.makes_scenes is not None:
+                of_base = digest_of_base(job.base, job.settings)
+            else:
+                of_base = digests[self._places(number)[0] if len(self.bases) > 1 else 0]
+            yield digest(job, of_base), job
+
+    def _places(self, number: int) -> tuple[int, ...]:
+        """Where case `number` is along each dimension. Raises ValueError."""
+        if not 1 <= number <= len(self):
+            raise ValueError(f"there is no case {number}; there are {len(self)}, numbered from 1")
+        return tuple(int(place) for place in np.unravel_index(number - 1, self.shape))
+
+    def _number(self, places: Sequence[int]) -> int:
+        return int(np.ravel_multi_index(tuple(places), self.shape)) + 1
+
+    def number_of_reference(self, number: int) -> int:
+        """The case that case `number` is compared with."""
+        assert self.reference is not None
+        along, place = self.reference
+        places = list(self._places(number))
+        places[along] = place
+        return self._number(places)
+
+    def _fields(self) -> tuple[str, ...]:
+        """The wanted fields, with the positions of nodes for those who want a field along them."""
+        return (*self.fields, "mesh/x") if self.fields and "mesh/x" not in self.fields else self.fields
+
+    def _try(self, places: list[int], along: int) -> None:
+        number = self._number(places)
+        job = self.job(number)
+        try:
+            check(job.base, job.settings)
+        except errors.InputError as error:
+            first = sum(len(dimension.coordinates) for dimension in self.dimensions[:along])
+            raise fault(f"case {number} ({self.describe(number)}): {error.message}", first, "values") from None
+
+    def _check_units(self) -> None:
+        """Raises InputError where bases name other units than the first."""
+        for base in self.bases[1:]:
+            if _units(base) != _units(self.bases[0]):
+                first = self.bases[0].name
+                raise input_error(
+                    f"{base.name} names other units than {first} (length_unit, force_unit); one study has one system of units"
+                )
+
+    def _check_names(self) -> None:
+        """Raises InputError for names that are taken, or come twice."""
+        from .cases import observables
+
+        seen: set[str] = set()
+        for place, coordinate in enumerate(self.coordinates):
+            name = coordinate.name
+            is_ours = name in ("base", "row") and not coordinate.keys
+            if not is_ours and (name in TAKEN or name in observables() or "_error_" in name or name == "dissipation_ratio"):
+                raise fault(f"every study has a column {name}; give another name", place, "name")
+            if name in seen:
+                raise fault(f"another axis has the name {name}; give another one", place, "name")
+            seen.add(name)
+        unknown = [name for name in self.observables or () if name not in observables()]
+        if unknown:
+            raise input_error(f"there is no observable {unknown[0]!r}; there are {', '.join(observables())}")
+
+    def _check_keys(self) -> None:
+        """Raises InputError for keys that are none, that no base has a group for, or that are varied already."""
+        counts = [_counts_of_groups(base) for base in self.bases]
+        seen: list[str] = []
+        for place, coordinate in enumerate(self.coordinates):
+            for key in coordinate.keys:
+                why = _fault_of_key(key) or self._missing_group(key, counts)
+                for other in seen:
+                    why = why or _fault_of_pair(other, key)
+                if why:
+                    raise fault(why, place, "key")
+                seen.append(key)
+
+    def _missing_group(self, key: str, counts: Sequence[dict[str, int]]) -> str:
+        """What is wrong with the number in a key; empty where nothing is."""
+        group, number = _numbered_group(key)
+        for base, count in zip(self.bases, counts):
+            there = count.get(group, 0)
+            if number is not None and not 1 <= number <= there:
+                return f"'{key}': there is no &{group} {number} in {base.name}, which has {there}"
+        return ""
+
+    def set_reference(self, reference: str | Mapping[str, Any]) -> None:
+        """What cases are compared with: see `Study`. Raises InputError."""
+        wanted = {"scene%coupling": reference} if isinstance(reference, str) else dict(reference)
+        if len(wanted) != 1:
+            raise input_error("reference: one axis with one of its values is wanted, such as {'scene%coupling': 'full'}")
+        ((name, value),) = wanted.items()
+        for along, dimension in enumerate(self.dimensions):
+            (first, *others) = dimension.coordinates
+            if not others and (first.name == name or first.keys == (name,)) and value in first.values:
+                self.reference = along, first.values.index(value)
+                return
+        raise input_error(
+            f"reference={as_written(value)}: needs an axis of '{name}' alone with {as_written(value)} among its values"
+        )
+
+
+def result_name(number: int) -> str:
+    """Name of the result file of a case."""
+    return f"{number:06d}.h5"
+
+
+def _base_of(given: Given) -> Base:
+    """What a case begins with. Raises OSError, InputError, TypeError."""
+    if isinstance(given, Base):
+        return given
+    if not isinstance(given, Scene):
+        if not isinstance(given, (str, os.PathLike)):
+            raise TypeError(f"a mfv.Scene, or the path of a case, is wanted, not {given!r}")
+        name = os.fspath(given)
+        return Base(os.fsdecode(Path(name).read_bytes()), name, folder=os.path.dirname(name))
+    data = []
+    for group, part in given._parts():
+        arrays = getattr(part, "data", None) or {}
+        file = os.fspath(part.keys().get("file" if group.startswith("body") else "mu_file", _NAMES_OF_DATA.get(group, "")))
+        data += [(file, name, np.ascontiguousarray(values, dtype=float)) for name, values in arrays.items()]
+    return Base(given.text(), given.name, tuple(data), os.path.dirname(given.name))
+
+
+def whole_paths(base: Base) -> dict[str, str]:
+    """The whole paths of the files that a base names, for workers to find from wherever they are. Raises InputError."""
+    with _scene_handle(base.text, base.name) as handle:
+        named = keys_of_text(_text_of_scene(handle))
+    in_memory = {file for file, _, _ in base.data}
+    return {
+        key: _absolute(named[key], base)
+        for key in FILE_KEYS
+        if isinstance(named.get(key), str) and named[key] and named[key] not in in_memory
+    }
+
+
+def _absolute(file: Any, base: Base) -> Any:
+    """The whole path of a file that a case names."""
+    return os.path.join(os.path.abspath(base.folder), file) if isinstance(file, str) and file else file
+
+
+def _has_lost_its_file(job: Job) -> bool:
+    """Whether the result file of a case that was solved is not there any more."""
+    return job.result is not None and not os.path.exists(job.result)
+
+
+def _tried(length: int) -> Iterable[int]:
+    """Places along a dimension that are tried."""
+    if length <= 5 * TRIED:
+        return range(length)
+    return sorted({round(place) for place in np.linspace(0, length - 1, TRIED + 2)})
+
+
+def _units(base: Base) -> dict[str, str]:
+    """The names of length and force in a base. Raises InputError."""
+    with _scene_handle(base.text, base.name) as handle:
+        keys = keys_of_text(_text_of_scene(handle))
+    return {unit: str(keys.get(f"scene%{unit}_unit", unit)) for unit in ("length", "force")}
+
+
+def _counts_of_groups(base: Base) -> dict[str, int]:
+    """How many groups of each name a base has. Raises InputError."""
+    with _scene_handle(base.text, base.name) as handle:
+        names = [name for name, _ in groups(_text_of_scene(handle))]
+    return {name: names.count(name) for name in names}
+
+
+def _numbered_group(key: str) -> tuple[str, int | None]:
+    """Group of a key in small letters, and its number where it has one."""
+    group, _, _ = key.lower().partition("%")
+    name, bracket, number = group.partition("(")
+    return name, int(number.rstrip(")")) if bracket else None
+
+
+def _fault_of_key(key: str) -> str:
+    """Why something is no key of a case, in the words of the library, or not for a study to set; empty where it is."""
+    if key.lower() == DUNDURS_BETA:
+        return ""
+    if key.lower() == "output%file":
+        return "'output%file': the study names its files itself"
+    if key_info(key) is None:
+        with _scene_handle("", "key") as handle:
+            _set_key(handle, key, 0)
+            try:
+                created("mfv_create", handle)
+            except errors.InputError as error:
+                told = error.message.removeprefix("key: ")
+                return told if "%" in key else f"{told} or '{DUNDURS_BETA}'"
+    return ""
+
+
+def _fault_of_pair(one: str, other: str) -> str:
+    """Why a study cannot vary two keys; empty where it can."""
+    for beta, key in ((one, other), (other, one)):
+        if beta.lower() == DUNDURS_BETA and key.partition("%")[2].lower() in OF_MATERIALS:
+            return f"'{key}' and '{DUNDURS_BETA}' cannot be varied in one study: {DUNDURS_BETA} decides the materials of both bodies"
+    return f"'{other}': is varied already" if one.lower() == other.lower() or _stands_for(one, other) else ""
+
+
+def _stands_for(one: str, other: str) -> bool:
+    """Whether one key takes the place of another, as the library sees it."""
+    if DUNDURS_BETA in (one.lower(), other.lower()) or one.partition("%")[0].lower() != other.partition("%")[0].lower():
+        return False
+    with _scene_handle("", "keys") as handle:
+        _set_key(handle, one, 0)
+        before = _text_of_scene(handle)
+        library().mfv_scene_make_room(handle, text_for(other))
+        return _text_of_scene(handle) != before

@@ -1,0 +1,126 @@
+"""Solved cases in an SQLite file, so that a study goes on where it was after any end."""
+
+from __future__ import annotations
+
+import io
+import json
+import math
+import os
+import sqlite3
+from collections.abc import Collection
+from types import TracebackType
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from .. import errors
+from .cases import Solved
+
+if TYPE_CHECKING:
+    from typing_extensions import Self
+
+#: "MFVS": what SQLite's application_id says of a file that this module has made.
+APPLICATION = 0x4D465653
+
+
+class Store:
+    """Solved cases by their names (mfv.studies.cases.digest), one row each: `key`, `solved` (JSON), `arrays` (npz).
+
+    The process that has it open is the only one that reads and writes it.
+    """
+
+    def __init__(self, path: str | os.PathLike[str]) -> None:
+        """Raises FileError where the file cannot be used, is another program's, or is in use."""
+        self.path = os.fspath(path)
+        try:
+            self._connection = sqlite3.connect(self.path, isolation_level=None, timeout=0.0)
+            self._open()
+        except sqlite3.Error as error:
+            raise self._failure(error) from None
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, traceback: TracebackType | None
+    ) -> None:
+        self._connection.close()
+
+    def read(self, keys: Collection[str]) -> dict[str, Solved]:
+        """Those of the cases with these names that are there. Raises FileError."""
+        try:
+            rows = self._connection.execute("SELECT key, solved, arrays FROM cases")
+            return {key: _solved(text, arrays) for key, text, arrays in rows if key in keys}
+        except (sqlite3.Error, ValueError, KeyError) as error:
+            raise self._failure(error) from None
+
+    def write(self, key: str, solved: Solved) -> None:
+        """Keep a case: it is there whatever becomes of this process. Raises FileError, on a full disk for one."""
+        try:
+            self._connection.execute("INSERT OR REPLACE INTO cases VALUES (?, ?, ?)", (key, _text(solved), _bytes(solved)))
+        except sqlite3.Error as error:
+            raise self._failure(error) from None
+
+    def clear(self) -> None:
+        """Forget all cases. Raises FileError."""
+        try:
+            self._connection.execute("DELETE FROM cases")
+        except sqlite3.Error as error:
+            raise self._failure(error) from None
+
+    def _open(self) -> None:
+        """One process alone, and a log that a kill leaves whole."""
+        execute = self._connection.execute
+        execute("PRAGMA locking_mode = EXCLUSIVE")
+        application = execute("PRAGMA application_id").fetchone()[0]
+        if application != APPLICATION and execute("SELECT count(*) FROM sqlite_master").fetchone()[0]:
+            raise sqlite3.DatabaseError("this is the file of another program, and is left as it is")
+        execute("PRAGMA journal_mode = WAL")
+        execute("PRAGMA synchronous = NORMAL")
+        execute("BEGIN IMMEDIATE")
+        execute(f"PRAGMA application_id = {APPLICATION}")
+        execute("CREATE TABLE IF NOT EXISTS cases (key TEXT PRIMARY KEY, solved TEXT NOT NULL, arrays BLOB) WITHOUT ROWID")
+        execute("COMMIT")
+
+    def _failure(self, error: Exception) -> errors.MfvError:
+        why = str(error)
+        if "locked" in why:
+            why = "another study is at work with it"
+        status = next(code for code, kind in errors.failures().items() if kind is errors.FileError)
+        return errors.failure(status, f"{self.path}: solved cases cannot be kept here: {why}")
+
+
+def _text(solved: Solved) -> str:
+    """What is kept but the arrays; null stands for NaN, which JSON does not have."""
+    kept = {name: value for name, value in vars(solved).items() if name != "arrays"}
+    kept["largest_residual"] = _finite(solved.largest_residual)
+    kept["observables"] = [_finite(value) for value in solved.observables]
+    return json.dumps(kept, allow_nan=True)
+
+
+def _finite(value: float) -> float | None:
+    return None if math.isnan(value) else value
+
+
+def _bytes(solved: Solved) -> bytes | None:
+    if not solved.arrays:
+        return None
+    memory = io.BytesIO()
+    np.savez(memory, **solved.arrays)  # type: ignore[arg-type]  # names are paths
+    return memory.getvalue()
+
+
+def _solved(text: str, arrays: bytes | None) -> Solved:
+    kept = json.loads(text)
+    kept["largest_residual"] = _number(kept["largest_residual"])
+    kept["observables"] = [_number(value) for value in kept["observables"]]
+    kept["about"] = {path: tuple(about) for path, about in kept["about"].items()}
+    solved = Solved(**kept)
+    if arrays is not None:
+        with np.load(io.BytesIO(arrays)) as loaded:
+            solved.arrays = dict(loaded)
+    return solved
+
+
+def _number(value: float | None) -> float:
+    return float("nan") if value is None else value
