@@ -1,9 +1,9 @@
 """Chapter 6 of the dissertation, computed again: Figures 6.1 to 6.5, what the text says about them, and what it does not.
 
-    python examples/decoupling/study.py [--output FOLDER] [--quick] [--program MFV_SWEEP] [--publish]
+    python examples/decoupling/study.py [--output FOLDER] [--quick] [--publish]
 
-Runs the sweeps beside this file with mfv_sweep (those that FOLDER has already are not run again) and writes report.html,
-numbers.csv and a CSV for every figure into FOLDER. Needs mfv_sweep, the shared library, numpy, h5py and matplotlib.
+Runs the studies beside this file (cases that FOLDER has already are not solved again) and writes report.html, numbers.csv and a
+CSV for every figure into FOLDER. Needs the package mfv with its extra `study`.
 """
 
 from __future__ import annotations
@@ -41,7 +41,6 @@ def arguments() -> argparse.Namespace:
     parser = argparse.ArgumentParser(description="chapter 6 of the dissertation, computed again")
     parser.add_argument("--output", type=Path, default=Path("decoupling"), help="folder of tables and report (decoupling)")
     parser.add_argument("--quick", action="store_true", help="few values on every axis, coarse meshes: half a minute")
-    parser.add_argument("--program", help="path of mfv_sweep (else MFV_SWEEP, build/release/bin, or the PATH)")
     parser.add_argument("--publish", action="store_true", help="renew the pictures and statements in examples/ and docs/ too")
     return parser.parse_args()
 
@@ -69,14 +68,11 @@ def main() -> None:
     options = arguments()
     folder = options.output.resolve()
     folder.mkdir(parents=True, exist_ok=True)
-    executable = sweeps.program(options.program)
     tables = {}
     for name in sweeps.NAMES:
-        tables[name] = sweeps.run(name, folder, executable, options.quick)
+        tables[name] = sweeps.run(name, folder, options.quick)
         print(f"{name}: {len(tables[name])} cases", flush=True)
-    results = {
-        str(row["coupling"]): mfv.read(folder / "cyclic.cases" / f"{row['case']:06d}.h5") for row in tables["cyclic"].rows
-    }
+    results = {str(row["coupling"]): mfv.read(folder / row["result_file"]) for row in tables["cyclic"].rows}
     with matplotlib.rc_context(STYLE):
         drawings = [*draw_chapter(tables, results), *draw_beyond(tables)]
         statements = all_statements(tables, results, options.quick)

@@ -1,18 +1,16 @@
-"""The sweeps of the study: how they are run with mfv_sweep, and their tables."""
+"""The parameter studies that chapter 6 consists of, and their tables."""
 
 from __future__ import annotations
 
-import os
 import re
-import shutil
-import subprocess
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-import mfv
+from mfv.studies.dataset import frame_of
+from mfv.studies.namelist import read_study
 
 HERE = Path(__file__).resolve().parent
 NAMES = (
@@ -37,7 +35,7 @@ FEW, OTHERWISE, LARGEST, COARSE = 4, {"small_force": 9, "laws": 1}, 195, 97
 
 
 class Table:
-    """Rows of a sweep's table: columns by name, rows by values."""
+    """Rows of a study's table: columns by name, rows by values."""
 
     def __init__(self, rows: np.ndarray) -> None:
         self.rows = rows
@@ -80,25 +78,17 @@ def mean_of(table: Table, column: str) -> float:
     return float(table[column].mean())
 
 
-def program(path: str | None) -> str:
-    """The program mfv_sweep: as told, from MFV_SWEEP, of the build of this repository, or of the system."""
-    built = HERE.parents[1] / "build" / "release" / "bin" / "mfv_sweep"
-    for candidate in (path, os.environ.get("MFV_SWEEP"), str(built), shutil.which("mfv_sweep")):
-        if candidate and Path(candidate).is_file():
-            return candidate
-    raise FileNotFoundError("mfv_sweep is not there: build it (cmake --build --preset release) or tell --program")
-
-
-def run(name: str, folder: Path, executable: str, quick: bool) -> Table:
-    """The table of a sweep, which is solved where `folder` does not have it yet. Raises RuntimeError where that fails."""
-    sweep = HERE / f"{name}.nml"
+def run(name: str, folder: Path, quick: bool) -> Table:
+    """The table of a study; cases that `folder` has already are not solved again. Raises RuntimeError where one ends early."""
+    text = HERE / f"{name}.nml"
     if quick:
-        sweep = folder / f"{name}.nml"
-        sweep.write_text(quick_text((HERE / f"{name}.nml").read_text(), OTHERWISE.get(name, FEW)))
-    done = subprocess.run([executable, str(sweep)], cwd=folder, capture_output=True, text=True, check=False)
-    if done.returncode != 0:
-        raise RuntimeError(f"mfv_sweep {sweep} ended with {done.returncode}:\n{done.stdout}{done.stderr}")
-    table = Table(np.asarray(mfv.read_table(folder / f"{name}.h5")))
+        text = folder / f"{name}.nml"
+        text.write_text(quick_text((HERE / f"{name}.nml").read_text(), OTHERWISE.get(name, FEW)))
+    study = read_study(text)
+    if study.keeps_results:
+        study.results = folder / f"{name}.cases"
+    solved = study.run(store=folder / f"{name}.sqlite", progress=True)
+    table = Table(frame_of(solved).to_records(index=False))
     early = table.rows[table["outcome"] != "complete"]
     if early.size:
         raise RuntimeError(f"{name}: {early.size} of {len(table)} cases ended early, the first with: {early['message'][0]}")
@@ -106,7 +96,7 @@ def run(name: str, folder: Path, executable: str, quick: bool) -> Table:
 
 
 def quick_text(text: str, few: int) -> str:
-    """A sweep with fewer values and coarser meshes, its cases named by their whole paths."""
+    """A study with fewer values and coarser meshes, its cases named by their whole paths."""
 
     def fewer(found: re.Match[str]) -> str:
         numbers = [number.strip() for number in found.group(2).split(",")]

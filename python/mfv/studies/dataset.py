@@ -43,8 +43,11 @@ SUFFIXES = (".nc", ".h5", ".csv")
 _NAN = float("nan")
 
 
-def dataset_of(study: Study, solved: Sequence[Solved | None]) -> xarray.Dataset:
-    """The dataset of a study from what is kept of its cases, in their order; None where a case has not been solved."""
+def dataset_of(study: Study, keys: Sequence[str], solved: Sequence[Solved | None]) -> xarray.Dataset:
+    """The dataset of a study from what is kept of its cases, in their order; None where a case has not been solved.
+
+    `keys`: their names, after which their result files are called.
+    """
     units = study.units
     table = xarray.Dataset(attrs=_attributes(study, solved, units))
     for dimension in study.dimensions:
@@ -53,7 +56,7 @@ def dataset_of(study: Study, solved: Sequence[Solved | None]) -> xarray.Dataset:
                 table = table.assign_coords({coordinate.name: (dimension.name, *_described(coordinate, units))})
     if len(study.bases) == 1:
         table = table.assign_coords(base=study.bases[0].name)
-    for name, values, unit, meaning in _columns(study, solved):
+    for name, values, unit, meaning in _columns(study, keys, solved):
         dimensions = [dimension.name for dimension in study.dimensions]
         about = {"units": _labelled(unit, units), "long_name": meaning}
         table[name] = (dimensions, np.array(values, dtype=_kind(values)).reshape(study.shape), about)
@@ -82,7 +85,7 @@ def write(table: xarray.Dataset, path: str | os.PathLike[str]) -> None:
             part.write_bytes(bytes(table.to_netcdf(engine="h5netcdf")))
 
 
-def _columns(study: Study, solved: Sequence[Solved | None]) -> list[tuple[str, list[Any], str, str]]:
+def _columns(study: Study, keys: Sequence[str], solved: Sequence[Solved | None]) -> list[tuple[str, list[Any], str, str]]:
     """Name, values, unit and meaning of every column."""
     there = [one or Solved(NO_STATUS, "", observables=[_NAN] * len(observables())) for one in solved]
     columns: list[tuple[str, list[Any], str, str]] = [
@@ -101,8 +104,8 @@ def _columns(study: Study, solved: Sequence[Solved | None]) -> list[tuple[str, l
     if study.reference is not None:
         columns += _errors(study, there)
     if study.results is not None:
-        names = [f"{study.results.name}/{result_name(number)}" for number in range(1, len(there) + 1)]
-        columns.append(("result_file", names, "1", "result file of the case"))
+        files = [f"{study.results.name}/{result_name(key)}" if one.counts["nodes"] else "" for key, one in zip(keys, there)]
+        columns.append(("result_file", files, "1", "result file of the case, beside the table"))
     return columns
 
 

@@ -7,6 +7,7 @@ import math
 import os
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from concurrent.futures import Executor
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Union
 
@@ -161,8 +162,7 @@ class Study:
             which = places[0] if len(self.bases) > 1 else 0
             base, shared = self.bases[which], self._shared[which]
         named = {key: _absolute(value, base) if key in FILE_KEYS else value for key, value in settings}
-        result = None if self.results is None else str(self.results.resolve() / result_name(number))
-        return Job(base, tuple({**shared, **named}.items()), self._fields(), self.reference is not None, result)
+        return Job(base, tuple({**shared, **named}.items()), self._fields(), self.reference is not None)
 
     def check(self) -> None:
         """Try every base, and every value with the first values of the others (of long rows some of them).
@@ -204,17 +204,17 @@ class Study:
         return self._with_store(store, lambda kept: self._solve(kept, None, None, False))
 
     def _with_store(
-        self, store: str | os.PathLike[str] | None, solve: Callable[[Store | None], list[Solved | None]]
+        self, store: str | os.PathLike[str] | None, solve: Callable[[Store | None], tuple[list[str], list[Solved | None]]]
     ) -> xarray.Dataset:
         from .dataset import dataset_of  # here: it imports xarray
 
         with contextlib.nullcontext() if store is None else Store(store) as kept:
-            return dataset_of(self, solve(kept))
+            return dataset_of(self, *solve(kept))
 
     def _solve(
         self, kept: Store | None, executor: str | Executor | None, workers: int | None, progress: bool
-    ) -> list[Solved | None]:
-        """The cases in order, by an executor where they are not there; None solves nothing."""
+    ) -> tuple[list[str], list[Solved | None]]:
+        """The cases in order with their names, by an executor where they are not there; None solves nothing."""
         from tqdm.auto import tqdm  # here: it looks whether this is a notebook
 
         jobs = {}
@@ -234,7 +234,7 @@ class Study:
                     bar.update()
 
                 executors.solve_all(wanted, executor, workers, keep)
-        return [there.get(key) for key in keys]
+        return keys, [there.get(key) for key in keys]
 
     def _named_jobs(self) -> Iterator[tuple[str, Job]]:
         """The jobs of all cases with their names; cases that are the same have one."""
@@ -245,7 +245,8 @@ class Study:
                 of_base = digest_of_base(job.base, job.settings)
             else:
                 of_base = digests[self._places(number)[0] if len(self.bases) > 1 else 0]
-            yield digest(job, of_base), job
+            key = digest(job, of_base)
+            yield key, job if self.results is None else replace(job, result=str(self.results.resolve() / result_name(key)))
 
     def _places(self, number: int) -> tuple[int, ...]:
         """Where case `number` is along each dimension. Raises ValueError."""
@@ -341,9 +342,9 @@ class Study:
         )
 
 
-def result_name(number: int) -> str:
-    """Name of the result file of a case."""
-    return f"{number:06d}.h5"
+def result_name(key: str) -> str:
+    """Name of the result file of a case: another case has another one, whatever its number."""
+    return f"{key[:16]}.h5"
 
 
 def _base_of(given: Given) -> Base:
