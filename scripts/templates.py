@@ -1,6 +1,6 @@
-"""Comments of the templates of `python -m mfv new`: the meaning of every key, from the catalogues of the programs.
+"""Comments of the templates of `python -m mfv new`: the meaning of every key, from the catalogues of mfv_run and of studies.
 
-    python scripts/templates.py build/release/bin
+    build/venv/bin/python scripts/templates.py build/release/bin
 
 writes them anew into python/mfv/templates. In a template a key stands on a line of its own, `key = value`, or `! key = value`
 where it is left out. What stands in comments above it is its meaning, put there by this program where the key comes for the
@@ -9,16 +9,15 @@ first time; a comment behind it on the line, and those between groups, are left 
 
 from __future__ import annotations
 
+import os
 import re
 import subprocess
 import sys
 import textwrap
 from pathlib import Path
 
-TEMPLATES = Path(__file__).resolve().parents[1] / "python" / "mfv" / "templates"
-
-#: Programs whose catalogues have the keys.
-PROGRAMS = ("mfv_run", "mfv_sweep")
+PYTHON = Path(__file__).resolve().parents[1] / "python"
+TEMPLATES = PYTHON / "mfv" / "templates"
 
 #: Width of a comment with its indentation.
 WIDTH = 100
@@ -30,17 +29,31 @@ GROUP = re.compile(r"^&(\w+)")
 KEY = re.compile(r"^ +(?:! )?(\w+) = ")
 
 
+def catalogues(run: Path) -> str:
+    """What mfv_run and `python -m mfv study` print with --keys: the keys of cases and of studies."""
+    printed = ""
+    for command in ([run], [sys.executable, "-m", "mfv", "study"]):
+        environment = {**os.environ, "PYTHONPATH": str(PYTHON)}
+        ended = subprocess.run([*command, "--keys"], env=environment, stdout=subprocess.PIPE, text=True, check=True)
+        printed += ended.stdout
+    return printed
+
+
 def meanings_of(printed: str) -> Meanings:
-    """Comments of the keys in what a program prints with --keys."""
+    """Comments of the keys in what a program prints with --keys: tables with or without a column for units."""
     found: Meanings = {}
-    group = ""
+    group, columns = "", [""]
     for line in printed.splitlines():
+        cells = [cell.strip().strip("`") for cell in line.removeprefix("|").removesuffix("|").split(" | ")]
         if line.startswith("### &"):
             group = line[5:].split()[0]
+        elif line.startswith("| key |"):
+            columns = cells
         elif line.startswith("| `"):
-            key, value, default, unit, meaning = (cell.strip().strip("`") for cell in line.strip("|").split(" | "))
-            notes = [value, *([f"in {unit}"] if unit else []), *([f"{default} by default"] if default != "-" else [])]
-            found[group, key] = f"{meaning.rstrip(' |')} ({', '.join(notes)})"
+            row = dict(zip(columns, cells))
+            unit, default = row.get("unit"), row["default"]
+            notes = [row["value"], *([f"in {unit}"] if unit else []), *([f"{default} by default"] if default != "-" else [])]
+            found[group, row["key"]] = f"{row['meaning']} ({', '.join(notes)})"
     return found
 
 
@@ -65,10 +78,7 @@ def commented(template: str, comments: Meanings) -> str:
 
 def main(programs: Path) -> None:
     """Write the comments of all templates anew."""
-    comments: Meanings = {}
-    for program in PROGRAMS:
-        printed = subprocess.run([programs / program, "--keys"], capture_output=True, text=True, check=True).stdout
-        comments.update(meanings_of(printed))
+    comments = meanings_of(catalogues(programs / "mfv_run"))
     for path in sorted(TEMPLATES.glob("*.nml")):
         path.write_text(commented(path.read_text(encoding="utf-8"), comments), encoding="utf-8")
 

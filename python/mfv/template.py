@@ -17,7 +17,7 @@ import h5py
 import numpy as np
 
 #: Files that a template needs beside itself.
-COMPANIONS = {"profile": ("profile.txt",), "matrix": ("compliance.h5",), "sweep": ("cylinder.nml",)}
+COMPANIONS = {"profile": ("profile.txt",), "matrix": ("compliance.h5",), "study": ("cylinder.nml",)}
 
 #: The half-plane of compliance.h5: shear modulus, Poisson's ratio, where its displacements are measured from, nodes on either side.
 SHEAR_MODULUS, POISSON_RATIO, DATUM, HALF_WIDTH, NODES = 1.0, 0.3, 0.25, 0.0127, 81
@@ -36,8 +36,8 @@ def text(name: str) -> str:
     return (_FOLDER / f"{name}.nml").read_text(encoding="utf-8")
 
 
-def is_sweep(name: str) -> bool:
-    """Whether a template is for mfv_sweep."""
+def is_study(name: str) -> bool:
+    """Whether a template is for `python -m mfv study`."""
     return re.search(r"^&sweep\b", text(name), flags=re.MULTILINE) is not None
 
 

@@ -14,6 +14,7 @@ from pathlib import Path
 import h5py
 import numpy as np
 import pytest
+import xarray
 from PIL import Image
 
 import mfv
@@ -21,6 +22,7 @@ from mfv import animate, comparison_figure, report, template
 from mfv.commands import main
 from mfv.compare import compare, relative_difference
 from mfv.load_history import kept_states, thinned, with_states_between
+from mfv.studies import namelist
 from mfv.views import curve_of
 
 sys.path.append(str(Path(__file__).resolve().parents[1] / "cli"))
@@ -179,6 +181,9 @@ def test_results_are_not_overwritten_by_what_is_drawn_of_them(
 ) -> None:
     solved(tmp_path / "a.h5")
     solved(tmp_path / "b.png")
+    study = str(tmp_path / "study.nml")
+    assert main(["new", "study", "-o", study]) == 0
+    capsys.readouterr()
     before = {path.name: path.read_bytes() for path in tmp_path.iterdir()}
     first, other = str(tmp_path / "a.h5"), str(tmp_path / "b.png")
     for arguments, complaint in (
@@ -195,6 +200,9 @@ def test_results_are_not_overwritten_by_what_is_drawn_of_them(
         (["compare", first, first, "--csv", first], f"{first}: the name of what"),
         (["animate", first, "--kept", "-o", first], f"{first}: the name of what"),
         (["new", "--force", "-o", first], f"{first}: the name of what"),
+        (["study", study, "-o", first], f"{first}: is HDF5"),
+        (["study", study, "-o", other], f"{other}: the name of what is written must end with .nc or .h5 or .csv"),
+        (["study", study, "--case", "25"], f"{study}: there is no case 25; there are 24"),
     ):
         assert main(arguments) == 2, arguments
         printed = capsys.readouterr()
@@ -376,10 +384,8 @@ def test_an_mp4_needs_ffmpeg_and_says_so(
 
 # --- new ---
 
-PROGRAMS = {
-    name: Path(os.environ.get(name.upper(), PROJECT / "build" / "release" / "bin" / name))
-    for name in ("mfv_run", "mfv_sweep")
-}
+MFV_RUN = Path(os.environ.get("MFV_RUN", PROJECT / "build" / "release" / "bin" / "mfv_run"))
+PROGRAMS = {"mfv_run": str(MFV_RUN), "python": sys.executable}
 
 
 @pytest.mark.parametrize("name", template.names())
@@ -389,12 +395,15 @@ def test_every_template_is_solved(name: str, tmp_path: Path, capsys: pytest.Capt
     printed = capsys.readouterr().out.splitlines()
     assert printed[0] == str(path) and printed[-1].endswith(str(path))
     assert sorted(printed[:-1]) == sorted(str(place) for place in tmp_path.iterdir())
-    program = printed[-1].split()[2]
-    ended = subprocess.run([PROGRAMS[program], path], cwd=tmp_path, capture_output=True, text=True, check=False)
+    program, *arguments = printed[-1].removeprefix("solve it: ").split()
+    environment = {**os.environ, "PYTHONPATH": str(Path(mfv.__file__).parents[1])}
+    command = [PROGRAMS[program], *arguments]
+    ended = subprocess.run(command, cwd=tmp_path, env=environment, capture_output=True, text=True, check=False)
     assert ended.returncode == 0, ended.stderr
-    if program == "mfv_sweep":
-        table = mfv.read_table(tmp_path / "case.h5")
-        assert table.size == 24 and set(table["outcome"]) == {"complete"}
+    if arguments[:3] == ["-m", "mfv", "study"]:
+        with xarray.open_dataset(tmp_path / "case.nc") as table:
+            assert table["outcome"].size == 24 and set(table["outcome"].values.flat) == {"complete"}
+            assert table["largest_residual"].max() < 1e-11
     else:
         result = mfv.read(tmp_path / "case.h5")
         assert result.outcome == "complete" and result.certificate.largest < 1e-11
@@ -406,11 +415,9 @@ def test_comments_of_templates_are_those_of_the_catalogue() -> None:
     specification = importlib.util.spec_from_file_location("templates", PROJECT / "scripts" / "templates.py")
     scripts = importlib.util.module_from_spec(specification)
     specification.loader.exec_module(scripts)
-    comments = {}
-    for program in PROGRAMS.values():
-        printed = subprocess.run([program, "--keys"], capture_output=True, text=True, check=True).stdout
-        comments.update(scripts.meanings_of(printed))
-    assert len(comments) > 50
+    comments = scripts.meanings_of(scripts.catalogues(MFV_RUN))
+    assert len(comments) > 50 and comments["mesh", "half_width"].endswith("in length)")
+    assert {key for group, key in comments if group == "vary"} == set(namelist.KEYS["vary"])
     for name in template.names():
         text = template.text(name)
         assert scripts.commented(text, comments) == text, f"{name}.nml: run scripts/templates.py"
@@ -434,7 +441,7 @@ def test_the_matrix_of_the_template_is_a_half_plane(tmp_path: Path) -> None:
 def test_the_matrix_template_does_not_write_over_its_input(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
     assert main(["new", "matrix"]) == 0
-    subprocess.run([PROGRAMS["mfv_run"], "matrix.nml"], check=True, capture_output=True)
+    subprocess.run([MFV_RUN, "matrix.nml"], check=True, capture_output=True)
     assert mfv.read("matrix.h5").outcome == "complete"
 
 
@@ -446,10 +453,10 @@ def test_nothing_is_overwritten_unless_told(tmp_path: Path, capsys: pytest.Captu
     assert (tmp_path / "compliance.h5").read_text() == "mine\n" and len(list(tmp_path.iterdir())) == 1
     assert main([*arguments, "--force"]) == 0
     assert (tmp_path / "compliance.h5").read_bytes().startswith(b"\x89HDF")
-    # What a sweep needs may be there already, the same.
-    for template_name in ("cylinder", "sweep"):
+    # What a study needs may be there already, the same.
+    for template_name in ("cylinder", "study"):
         assert main(["new", template_name, "-o", str(tmp_path / f"{template_name}.nml")]) == 0
-    assert main(["new", "sweep", "-o", str(tmp_path / "cylinder.nml")]) == 2
+    assert main(["new", "study", "-o", str(tmp_path / "cylinder.nml")]) == 2
     assert "give another" in capsys.readouterr().err
 
 
@@ -465,7 +472,7 @@ def test_new_lists_templates_and_names_what_it_does_not_have(
     assert [path.name for path in tmp_path.iterdir()] == ["cylinder.nml"]
 
 
-@pytest.mark.parametrize("command", ["new", "plot", "info", "compare", "animate", "report", "table"])
+@pytest.mark.parametrize("command", ["new", "plot", "info", "compare", "animate", "report", "study"])
 def test_every_command_teaches(command: str, capsys: pytest.CaptureFixture[str]) -> None:
     with pytest.raises(SystemExit) as caught:
         main([command, "--help"])

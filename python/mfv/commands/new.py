@@ -12,7 +12,7 @@ NAME, HELP = "new", "a commented case from a template"
 DESCRIPTION = """\
 Write a case to begin with, from a template: every key that matters, with its meaning as a comment, those that can be
 left out as comments with their values. Each can be solved as it is. Files that a template needs (a profile, a
-matrix, the case of a sweep) are written beside it. Nothing that is there already is overwritten without --force.
+matrix, the case of a study) are written beside it. Nothing that is there already is overwritten without --force.
 """
 
 EXAMPLES = """\
@@ -47,4 +47,4 @@ def run(options: argparse.Namespace) -> None:
     path = target(options.output, Path(f"{options.template}.nml"), (".nml",), [])
     for place in template.write(options.template, path, written, options.force):
         print(place)
-    print(f"solve it: {'mfv_sweep' if template.is_sweep(options.template) else 'mfv_run'} {path}")
+    print(f"solve it: {'python -m mfv study' if template.is_study(options.template) else 'mfv_run'} {path}")
