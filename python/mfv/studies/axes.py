@@ -106,7 +106,7 @@ def dimensions_of(axes: Any, *, are_keys: bool = True) -> list[Dimension]:
     if isinstance(axes, Mapping):
         return [_dimension(name, values, are_keys) for name, values in axes.items()]
     columns = _columns_of_table(axes)
-    return [Dimension("case", [_coordinate(name, values, are_keys) for name, values in columns.items()])]
+    return [Dimension("row", [_coordinate(name, values, are_keys) for name, values in columns.items()])]
 
 
 def _dimension(name: str, values: Any, are_keys: bool) -> Dimension:

@@ -78,11 +78,14 @@ def write(table: xarray.Dataset, path: str | os.PathLike[str]) -> None:
     """Write a dataset: as NetCDF (.nc, .h5), or one row a case as comma-separated values (.csv). Raises OSError."""
     from ..commands.files import written
 
-    with written(Path(path)) as part:
-        if part.suffix.lower() == ".csv":
-            part.write_text(frame_of(table).to_csv(index=False), encoding="utf-8")
-        else:  # HDF5 does not come back from a full disk: it is kept away from disks
-            part.write_bytes(bytes(table.to_netcdf(engine="h5netcdf")))
+    is_csv = Path(path).suffix.lower() == ".csv"
+    # HDF5 does not come back from a full disk: it is kept away from disks.
+    content = frame_of(table).to_csv(index=False).encode() if is_csv else bytes(table.to_netcdf(engine="h5netcdf"))
+    try:
+        with written(Path(path)) as part:
+            part.write_bytes(content)
+    except OSError as error:
+        raise OSError(error.errno, f"{os.fspath(path)}: cannot be written: {error.strerror}") from error
 
 
 def _columns(study: Study, keys: Sequence[str], solved: Sequence[Solved | None]) -> list[tuple[str, list[Any], str, str]]:

@@ -38,8 +38,9 @@ def solve_all(jobs: Mapping[str, Job], executor: str | Executor, workers: int | 
                     keep(futures[future], solved)
         except BaseException:
             stop.value = 1
-            for future in futures:
-                future.cancel()
+            if isinstance(executor, Executor) or not isinstance(pool, ProcessPoolExecutor):  # ours ends its processes
+                for future in futures:
+                    future.cancel()
             raise
 
 
@@ -69,7 +70,7 @@ def opened(executor: str | Executor, workers: int | None) -> Iterator[Executor]:
             stack.callback(pool.shutdown, cancel_futures=True)
             yield pool
         else:
-            yield stack.enter_context(_dask_client(stack, address, workers).get_executor())
+            yield _dask_client(stack, address, workers).get_executor()
 
 
 def processors() -> int:

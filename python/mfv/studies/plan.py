@@ -300,6 +300,9 @@ class Study:
             if name in seen:
                 raise fault(f"another axis has the name {name}; give another one", place, "name")
             seen.add(name)
+        for dimension in self.dimensions:
+            if len(dimension.coordinates) > 1 and dimension.name != "row" and dimension.name in (*TAKEN, *seen, *observables()):
+                raise input_error(f"{dimension.name}: this name is taken; give the zipped axes another one")
         unknown = [name for name in self.observables or () if name not in observables()]
         if unknown:
             raise input_error(f"there is no observable {unknown[0]!r}; there are {', '.join(observables())}")

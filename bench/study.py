@@ -1,0 +1,198 @@
+"""Measure studies: what a case costs beside being solved, by every executor, and that kill -9 costs nothing but the cases on
+their way. Prints Markdown tables. Takes about half an hour on a quiet machine with two processors.
+
+build/venv/bin/python bench/study.py [--program OLD/bin/mfv_sweep]
+
+Overhead of a case: workers x (wall time less that of the same study with 2 cases) / (cases - 2), less what a case takes when the
+same jobs are solved one after another in this process, without a study, in the same round. Every run keeps its cases in a store
+and writes its table. "In the library" is the part of a job that is mfv_create and mfv_run. Kills: a study is killed at
+random moments and begun again by the same command; a trigger in its store refuses a case that comes twice.
+"""
+
+from __future__ import annotations
+
+import argparse
+import functools
+import os
+import random
+import shutil
+import sqlite3
+import statistics
+import subprocess
+import sys
+import tempfile
+import time
+from collections.abc import Callable
+from ctypes import byref
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parents[1]
+os.environ.update(OPENBLAS_NUM_THREADS="1", OMPI_ALLOW_RUN_AS_ROOT="1", OMPI_ALLOW_RUN_AS_ROOT_CONFIRM="1")
+os.environ["PYTHONPATH"] = str(ROOT / "python")
+sys.path.insert(0, str(ROOT / "python"))
+
+import xarray
+
+from mfv._library import library
+from mfv.scene import created
+from mfv.studies.cases import Job, scene_handle, solve_unless
+from mfv.studies.dataset import write
+from mfv.studies.namelist import read_study
+from mfv.studies.store import Store
+
+BASE = """&scene coupling='full' /
+&body shape='half_plane', shear_modulus=1.0, poisson_ratio=0.3 /
+&body shape='disk', radius=0.25, rigid=.true. /
+&mesh nodes={nodes}, half_width=0.0125 /
+&friction law='coulomb', mu=0.7 /
+&step normal_force=1.0e-3, friction=.false. /
+&step force_ratio=0.5 /
+&step force_ratio=-0.5, cycles=2 /
+"""
+STUDY = """&sweep base='base.nml', reference='full' /
+&vary key='friction%mu', from=0.2, to=0.8, count={} /
+&vary key='step(2)%force_ratio', 'step(3)%force_ratio', factor=1, -1, from=0.1, to=0.9, count={}, name='force_ratio' /
+&vary key='scene%coupling', values='full', 'goodman' /
+"""
+COMMAND = (sys.executable, "-m", "mfv", "study")
+TRIGGER = """CREATE TRIGGER once BEFORE INSERT ON cases WHEN NEW.key IN (SELECT key FROM cases)
+BEGIN SELECT RAISE(ABORT, 'a case was solved twice'); END"""
+
+Solve = Callable[[Path], object]
+
+
+def main() -> None:
+    """Measure, print."""
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--program", type=Path, help="an mfv_sweep, which came before, to be measured too")
+    parser.add_argument("--cases", type=int, default=1000, help="a multiple of 40")
+    parser.add_argument("--nodes", type=int, nargs="+", default=[41, 221], help="sizes of a case: about 1 ms and 26 ms")
+    parser.add_argument("--rounds", type=int, default=3, help="how often all runs are repeated, in turn")
+    parser.add_argument("--kills", type=int, default=10)
+    options = parser.parse_args()
+    with tempfile.TemporaryDirectory() as name:
+        folder = Path(name)
+        (folder / "study.nml").write_text(STUDY.format(options.cases // 40, 20))
+        (folder / "two.nml").write_text(STUDY.format(1, 1))
+        for nodes in options.nodes:
+            (folder / "base.nml").write_text(BASE.format(nodes=nodes))
+            print(f"## {options.cases} cases with {nodes} nodes, {options.rounds} rounds, {os.cpu_count()} processors\n")
+            print_overheads(ways(options.program), folder, options.rounds)
+        print_kills(folder, options.kills, random.Random(1))
+
+
+def ways(program: Path | None) -> dict[str, tuple[int, Solve]]:
+    """Workers of every way to solve a study, and what solves the study with a text."""
+    found: dict[str, tuple[int, Solve]] = {}
+    for name, workers in (("threads", 1), ("threads", 2), ("processes", 2), ("dask", 2)):
+        found[f"{name}, {workers}"] = workers, functools.partial(solve_here, name, workers)
+    launcher = ("mpiexec", "-n", "3", "--oversubscribe", sys.executable, "-m", "mpi4py.futures")
+    found["mpi, 2"] = 2, functools.partial(call, (*launcher, *COMMAND[1:], "--executor", "mpi"))
+    for workers in (1, 2) if program else ():
+        found[f"mfv_sweep, {workers}"] = workers, functools.partial(call, (str(program), "--threads", str(workers)))
+    return found
+
+
+def solve_here(executor: str, workers: int, text: Path) -> None:
+    """Solve a study in this process, and write its table."""
+    table = read_study(text).run(executor=executor, workers=workers, store=text.with_suffix(".sqlite"))
+    write(table, text.with_suffix(".nc"))
+
+
+def call(command: tuple[str, ...], text: Path) -> None:
+    """Solve a study by a command; mfv_sweep with the library of its own installation."""
+    library_path = {"LD_LIBRARY_PATH": str(Path(command[0]).parents[1] / "lib")} if "mfv_sweep" in command[0] else {}
+    subprocess.run([*command, text.name], cwd=text.parent, env={**os.environ, **library_path}, check=True, capture_output=True)
+
+
+def seconds(solve: Solve, text: Path) -> float:
+    """Time of a study that finds nothing from before."""
+    for path in {*text.parent.glob(f"{text.stem}.*")} - {text}:
+        path.unlink()
+    started = time.perf_counter()
+    solve(text)
+    return time.perf_counter() - started
+
+
+def print_overheads(measured: dict[str, tuple[int, Solve]], folder: Path, rounds: int) -> None:
+    """Print start-up and overhead per case of every way; their tables must be the same."""
+    study = read_study(folder / "study.nml")
+    jobs = [study.job(number) for number in range(1, len(study) + 1)]
+    seconds(functools.partial(solve_here, "threads", 1), folder / "two.nml")  # for what is imported on first use
+    alone, inside, tables = [], [], {}
+    begun, beside = ({name: [] for name in measured} for _ in range(2))
+    for _ in range(rounds):
+        started = time.perf_counter()
+        for job in jobs:
+            solve_unless(None, job)
+        alone.append(1e3 * (time.perf_counter() - started) / len(jobs))
+        inside.append(1e3 * sum(map(in_library, jobs)) / len(jobs))
+        for name, (workers, solve) in measured.items():
+            begun[name].append(seconds(solve, folder / "two.nml"))
+            solving = seconds(solve, folder / "study.nml") - begun[name][-1]
+            beside[name].append(1e3 * workers * solving / (len(jobs) - 2) - alone[-1])
+            if "mfv_sweep" not in name:
+                tables[name] = xarray.load_dataset(folder / "study.nc")
+    print(f"One after another {told(alone)} ms a case (least, median), of which {told(inside)} in the library.\n")
+    print("| executor, workers | 2 cases, s: least, median | overhead a case, ms: least, median |\n| --- | --- | --- |")
+    for name in measured:
+        print(f"| {name} | {told(begun[name])} | {told(beside[name])} |")
+    are_same = all(table.identical(tables["threads, 1"]) for table in tables.values())
+    print(f"\nThe tables of all executors are {'identical' if are_same else 'DIFFERENT'}.\n")
+
+
+def in_library(job: Job) -> float:
+    """Time of the library for a case, to create and run it."""
+    with scene_handle(job.base, job.settings) as scene:
+        started = time.perf_counter()
+        case = created("mfv_create", scene)
+        library().mfv_run(case)
+        taken = time.perf_counter() - started
+        library().mfv_free(byref(case))
+    return taken
+
+
+def told(values: list[float]) -> str:
+    """The least value and the median."""
+    return f"{min(values):.2f}, {statistics.median(values):.2f}"
+
+
+def print_kills(folder: Path, count: int, chance: random.Random) -> None:
+    """Kill a study at random moments, go on, and compare the table in the end."""
+    text, store = folder / "study.nml", folder / "study.sqlite"
+    start_up, whole = (seconds(functools.partial(call, COMMAND), path) for path in (folder / "two.nml", text))
+    undisturbed = xarray.load_dataset(folder / "study.nc")
+    store.unlink()
+    Store(store).__exit__(None, None, None)
+    connection = sqlite3.connect(store)
+    connection.execute(TRIGGER)
+    connection.close()
+    before: set[str] = set()
+    print(f"## kill -9 of a study that takes {whole:.1f} s\n\n| kill | after, s | cases kept |\n| --- | --- | --- |")
+    for number in range(1, count + 1):
+        run = subprocess.Popen([*COMMAND, text.name], cwd=folder, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+        moment = chance.uniform(0.5 * start_up, start_up + 1.5 * (whole - start_up) / count)
+        time.sleep(moment)
+        run.kill()
+        end = "" if run.wait() < 0 else f" (it had ended with {run.returncode})"
+        after = names_in(store)
+        print(f"| {number} | {moment:.2f}{end} | {len(after)}{'' if before <= after else ', SOME WERE LOST'} |")
+        before = after
+    call(COMMAND, text)
+    is_same = xarray.load_dataset(folder / "study.nc").identical(undisturbed)
+    print(f"\nAfter a last run the table is {'identical with' if is_same else 'NOT'} that of an undisturbed one; no case came twice.")
+
+
+def names_in(store: Path) -> set[str]:
+    """Names of the cases in a store, read from a copy: what a kill has left the next run is to bring in order."""
+    with tempfile.TemporaryDirectory() as place:
+        for path in store.parent.glob(f"{store.name}*"):
+            shutil.copy(path, place)
+        connection = sqlite3.connect(Path(place) / store.name)
+        names = {name for (name,) in connection.execute("SELECT key FROM cases")}
+        connection.close()
+    return names
+
+
+if __name__ == "__main__":
+    main()
