@@ -1,17 +1,15 @@
-"""Measure studies: what a case costs beside being solved, by every executor, and that kill -9 costs nothing but the cases on
-their way. Prints Markdown tables. Takes about half an hour on a quiet machine with two processors.
+"""Measure studies: what a case costs beside being solved, by every executor, and that kill -9 loses nothing but the cases on
+their way. Prints Markdown tables. Takes about half an hour. build/venv/bin/python bench/study.py [--program OLD/bin/mfv_sweep]
 
-build/venv/bin/python bench/study.py [--program OLD/bin/mfv_sweep]
-
-Overhead of a case: workers x (wall time less that of the same study with 2 cases) / (cases - 2), less what a case takes when the
+Overhead of a case: workers x (wall time less that of the same study with 2 cases) / (cases - 2), less the time per case when the
 same jobs are solved one after another in this process, without a study, in the same round. Every run keeps its cases in a store
-and writes its table. "In the library" is the part of a job that is mfv_create and mfv_run. Kills: a study is killed at
-random moments and begun again by the same command; a trigger in its store refuses a case that comes twice.
+and writes its table. A study is killed at random moments; a trigger in its store refuses a case that comes twice.
 """
 
 from __future__ import annotations
 
 import argparse
+import contextlib
 import functools
 import os
 import random
@@ -23,7 +21,6 @@ import sys
 import tempfile
 import time
 from collections.abc import Callable
-from ctypes import byref
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[1]
@@ -33,12 +30,9 @@ sys.path.insert(0, str(ROOT / "python"))
 
 import xarray
 
-from mfv._library import library
-from mfv.scene import created
-from mfv.studies.cases import Job, scene_handle, solve_unless
+from mfv.studies.cases import solve_unless
 from mfv.studies.dataset import write
 from mfv.studies.namelist import read_study
-from mfv.studies.store import Store
 
 BASE = """&scene coupling='full' /
 &body shape='half_plane', shear_modulus=1.0, poisson_ratio=0.3 /
@@ -55,9 +49,7 @@ STUDY = """&sweep base='base.nml', reference='full' /
 &vary key='scene%coupling', values='full', 'goodman' /
 """
 COMMAND = (sys.executable, "-m", "mfv", "study")
-TRIGGER = """CREATE TRIGGER once BEFORE INSERT ON cases WHEN NEW.key IN (SELECT key FROM cases)
-BEGIN SELECT RAISE(ABORT, 'a case was solved twice'); END"""
-
+TWICE = "BEFORE INSERT ON cases WHEN NEW.key IN (SELECT key FROM cases) BEGIN SELECT RAISE(ABORT, 'solved twice'); END"
 Solve = Callable[[Path], object]
 
 
@@ -72,8 +64,8 @@ def main() -> None:
     options = parser.parse_args()
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
-        (folder / "study.nml").write_text(STUDY.format(options.cases // 40, 20))
-        (folder / "two.nml").write_text(STUDY.format(1, 1))
+        for stem, counts in (("study", (options.cases // 40, 20)), ("two", (1, 1))):
+            (folder / f"{stem}.nml").write_text(STUDY.format(*counts))
         for nodes in options.nodes:
             (folder / "base.nml").write_text(BASE.format(nodes=nodes))
             print(f"## {options.cases} cases with {nodes} nodes, {options.rounds} rounds, {os.cpu_count()} processors\n")
@@ -83,9 +75,8 @@ def main() -> None:
 
 def ways(program: Path | None) -> dict[str, tuple[int, Solve]]:
     """Workers of every way to solve a study, and what solves the study with a text."""
-    found: dict[str, tuple[int, Solve]] = {}
-    for name, workers in (("threads", 1), ("threads", 2), ("processes", 2), ("dask", 2)):
-        found[f"{name}, {workers}"] = workers, functools.partial(solve_here, name, workers)
+    here = (("threads", 1), ("threads", 2), ("processes", 2), ("dask", 2))
+    found = {f"{name}, {workers}": (workers, functools.partial(solve_here, name, workers)) for name, workers in here}
     launcher = ("mpiexec", "-n", "3", "--oversubscribe", sys.executable, "-m", "mpi4py.futures")
     found["mpi, 2"] = 2, functools.partial(call, (*launcher, *COMMAND[1:], "--executor", "mpi"))
     for workers in (1, 2) if program else ():
@@ -118,38 +109,25 @@ def print_overheads(measured: dict[str, tuple[int, Solve]], folder: Path, rounds
     """Print start-up and overhead per case of every way; their tables must be the same."""
     study = read_study(folder / "study.nml")
     jobs = [study.job(number) for number in range(1, len(study) + 1)]
-    seconds(functools.partial(solve_here, "threads", 1), folder / "two.nml")  # for what is imported on first use
-    alone, inside, tables = [], [], {}
-    begun, beside = ({name: [] for name in measured} for _ in range(2))
+    solve_here("threads", 1, folder / "two.nml")  # for what is imported on first use
+    alone, tables, begun, beside = [], {}, {name: [] for name in measured}, {name: [] for name in measured}
     for _ in range(rounds):
         started = time.perf_counter()
         for job in jobs:
             solve_unless(None, job)
         alone.append(1e3 * (time.perf_counter() - started) / len(jobs))
-        inside.append(1e3 * sum(map(in_library, jobs)) / len(jobs))
         for name, (workers, solve) in measured.items():
             begun[name].append(seconds(solve, folder / "two.nml"))
             solving = seconds(solve, folder / "study.nml") - begun[name][-1]
             beside[name].append(1e3 * workers * solving / (len(jobs) - 2) - alone[-1])
             if "mfv_sweep" not in name:
                 tables[name] = xarray.load_dataset(folder / "study.nc")
-    print(f"One after another {told(alone)} ms a case (least, median), of which {told(inside)} in the library.\n")
+    print(f"One after another {told(alone)} ms a case: least, median.\n")
     print("| executor, workers | 2 cases, s: least, median | overhead a case, ms: least, median |\n| --- | --- | --- |")
     for name in measured:
         print(f"| {name} | {told(begun[name])} | {told(beside[name])} |")
-    are_same = all(table.identical(tables["threads, 1"]) for table in tables.values())
-    print(f"\nThe tables of all executors are {'identical' if are_same else 'DIFFERENT'}.\n")
-
-
-def in_library(job: Job) -> float:
-    """Time of the library for a case, to create and run it."""
-    with scene_handle(job.base, job.settings) as scene:
-        started = time.perf_counter()
-        case = created("mfv_create", scene)
-        library().mfv_run(case)
-        taken = time.perf_counter() - started
-        library().mfv_free(byref(case))
-    return taken
+    others = [name for name, table in tables.items() if not table.identical(tables["threads, 1"])]
+    print(f"\nTables other than that of 'threads, 1': {', '.join(others) or 'none'}.\n")
 
 
 def told(values: list[float]) -> str:
@@ -162,12 +140,9 @@ def print_kills(folder: Path, count: int, chance: random.Random) -> None:
     text, store = folder / "study.nml", folder / "study.sqlite"
     start_up, whole = (seconds(functools.partial(call, COMMAND), path) for path in (folder / "two.nml", text))
     undisturbed = xarray.load_dataset(folder / "study.nc")
-    store.unlink()
-    Store(store).__exit__(None, None, None)
-    connection = sqlite3.connect(store)
-    connection.execute(TRIGGER)
-    connection.close()
-    before: set[str] = set()
+    with contextlib.closing(sqlite3.connect(store)) as connection:
+        connection.executescript(f"DELETE FROM cases; CREATE TRIGGER once {TWICE}")
+    kept: set[str] = set()
     print(f"## kill -9 of a study that takes {whole:.1f} s\n\n| kill | after, s | cases kept |\n| --- | --- | --- |")
     for number in range(1, count + 1):
         run = subprocess.Popen([*COMMAND, text.name], cwd=folder, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
@@ -175,12 +150,11 @@ def print_kills(folder: Path, count: int, chance: random.Random) -> None:
         time.sleep(moment)
         run.kill()
         end = "" if run.wait() < 0 else f" (it had ended with {run.returncode})"
-        after = names_in(store)
-        print(f"| {number} | {moment:.2f}{end} | {len(after)}{'' if before <= after else ', SOME WERE LOST'} |")
-        before = after
+        before, kept = kept, names_in(store)
+        print(f"| {number} | {moment:.2f}{end} | {len(kept)}{'' if before <= kept else ', SOME WERE LOST'} |")
     call(COMMAND, text)
-    is_same = xarray.load_dataset(folder / "study.nc").identical(undisturbed)
-    print(f"\nAfter a last run the table is {'identical with' if is_same else 'NOT'} that of an undisturbed one; no case came twice.")
+    xarray.testing.assert_identical(xarray.load_dataset(folder / "study.nc"), undisturbed)
+    print("\nA last run gave the table of the undisturbed run.")
 
 
 def names_in(store: Path) -> set[str]:
@@ -188,10 +162,8 @@ def names_in(store: Path) -> set[str]:
     with tempfile.TemporaryDirectory() as place:
         for path in store.parent.glob(f"{store.name}*"):
             shutil.copy(path, place)
-        connection = sqlite3.connect(Path(place) / store.name)
-        names = {name for (name,) in connection.execute("SELECT key FROM cases")}
-        connection.close()
-    return names
+        with contextlib.closing(sqlite3.connect(Path(place) / store.name)) as connection:
+            return {name for (name,) in connection.execute("SELECT key FROM cases")}
 
 
 if __name__ == "__main__":

@@ -4,7 +4,7 @@
 !>     OMP_NUM_THREADS=4 OPENBLAS_NUM_THREADS=1 openmp_study > study.csv
 !>
 !> Contacts know nothing of each other, so that the table has the same bytes for any number of threads. A case that ends early, as the ones
-!> beyond the friction limit do, is a row with its outcome. What thousands of cases take (axes of any keys, restarts, MPI) mfv_sweep has.
+!> beyond the friction limit do, is a row with its outcome. What thousands of cases take (axes of any keys, restarts, MPI) mfv.study of the Python package has.
 program openmp_study
    use mfv
    implicit none

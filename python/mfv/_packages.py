@@ -5,7 +5,7 @@ from __future__ import annotations
 import sys
 
 #: Packages that belong together, as the extras of pyproject.toml have them.
-TOGETHER = (("plotly", "jinja2"),)
+TOGETHER = (("plotly", "jinja2"), ("xarray", "h5netcdf", "threadpoolctl"), ("dask", "distributed"))
 
 
 def how_to_install(package: str) -> str:

@@ -1,33 +1,73 @@
-"""python -m mfv info: what is in a result, in words and numbers."""
+"""python -m mfv info: what is in a result, or in the table of a study, in words and numbers."""
 
 from __future__ import annotations
 
 import argparse
 from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
 
 from ..result import Group, Result, kept, read
+from ..studies.plan import is_table
 
-NAME, HELP = "info", "print what is in a result"
+if TYPE_CHECKING:
+    import xarray
+
+NAME, HELP = "info", "print what is in a result or in the table of a study"
 
 DESCRIPTION = """\
 Print what is in a result, in words and numbers: how the run ended, its settings, loads and counts at the end, what is
-read off the load history, the certificate, error bars and the sources of closed forms where there are any.
+read off the load history, the certificate, error bars and the sources of closed forms where there are any. Of the table of
+a study: the columns with their values, units and meanings.
 """
 
 EXAMPLES = """\
 examples:
   python -m mfv info mindlin.h5             what is in it
+  python -m mfv info study.nc               the columns of the table
 """
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """What the command takes."""
-    parser.add_argument("file", type=Path, metavar="RESULT.h5", help="result file")
+    parser.add_argument("file", type=Path, metavar="RESULT.h5", help="result file, or table of a study (.nc)")
 
 
 def run(options: argparse.Namespace) -> None:
     """Print. Raises OSError, NotAResult."""
-    print(description(read(options.file)))
+    if is_table(options.file):
+        import xarray  # here: results are read without it
+
+        with xarray.open_dataset(options.file, engine="h5netcdf") as table:
+            print(columns_of(table))
+    else:
+        print(description(read(options.file)))
+
+
+def columns_of(table: xarray.Dataset) -> str:
+    """The axes and columns of a study's table, one a line: values, unit, meaning."""
+    named = [*(table[name] for name in table.coords), *table.data_vars.values()]
+    lines = []
+    for one in named:
+        unit = one.attrs.get("units", "1")
+        lines.append(
+            f"  {one.name!s:28}{_values(one.values):34}{'' if unit == '1' else unit:16}{one.attrs.get('long_name', '')}"
+        )
+    sizes = " x ".join(f"{size} {name}" for name, size in table["case"].sizes.items())
+    return "\n".join([f"{table['case'].size} cases: {sizes}", *(line.rstrip() for line in lines)])
+
+
+def _values(values: np.ndarray) -> str:
+    """What an array holds: a few texts, or from where to where its numbers go."""
+    if values.dtype.kind not in "biuf":
+        different = sorted(set(map(str, values.flat)))
+        return different[0][:32] if len(different) == 1 else f"{len(different)} different"
+    finite = values[np.isfinite(values)]
+    if finite.size == 0:
+        return "none"
+    missing = values.size - finite.size
+    return f"{finite.min():.6g} to {finite.max():.6g}" + (f", {missing} none" if missing else "")
 
 
 def description(result: Result) -> str:

@@ -6,13 +6,11 @@ import argparse
 import signal
 import sys
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
-
-import h5py
+from typing import TYPE_CHECKING
 
 from ..studies.executors import NAMES
 from ..studies.namelist import check_study, keys_in_markdown, read_study
-from ..studies.plan import Study
+from ..studies.plan import SUFFIXES, Study, is_table
 from .files import target
 from .whole_numbers import at_least
 
@@ -51,17 +49,28 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Describe the options."""
     parser.add_argument("file", type=Path, metavar="STUDY.nml", nargs="?", help="text of the study")
     parser.add_argument(
-        "-o", "--output", type=Path, metavar="FILE", help="table to write: .nc or .h5 (NetCDF), .csv (default: STUDY.nc)"
+        "-o",
+        "--output",
+        type=Path,
+        metavar="FILE",
+        help="table to write: .nc or .h5 (NetCDF), .csv (default: STUDY.nc)",
     )
     parser.add_argument(
-        "--executor", default="threads", metavar="NAME", help=f"{', '.join(NAMES)}, or dask:ADDRESS of a cluster (threads)"
+        "--executor",
+        default="threads",
+        metavar="NAME",
+        help=f"{', '.join(NAMES)}, or dask:ADDRESS of a cluster (threads)",
     )
     parser.add_argument("--workers", type=at_least(1), metavar="N", help="cases at a time (as many as processors)")
     parser.add_argument("--again", action="store_true", help="solve all cases, those that are there already as well")
-    parser.add_argument("--so-far", action="store_true", help="solve nothing: write the table of the cases that are there")
+    parser.add_argument(
+        "--so-far", action="store_true", help="solve nothing: write the table of the cases that are there"
+    )
     parser.add_argument("--list", action="store_true", help="say which cases there are; nothing is solved or written")
     parser.add_argument("--case", type=at_least(1), metavar="N", help="print case N, from 1, as a case for mfv_run")
-    parser.add_argument("--keys", action="store_true", help="print every group and key of a study, as tables in Markdown")
+    parser.add_argument(
+        "--keys", action="store_true", help="print every group and key of a study, as tables in Markdown"
+    )
 
 
 def run(options: argparse.Namespace) -> int | None:
@@ -113,15 +122,10 @@ def _solve(study: Study, output: Path, options: argparse.Namespace) -> int | Non
 
 def _output(study: Study, options: argparse.Namespace) -> Path:
     """Where the table goes. Raises OSError, ValueError where it cannot, or where there is something that is no study."""
-    from ..studies.dataset import SUFFIXES, TITLE
-
     usual = Path(study.file) if study.file else Path(options.file.stem + ".nc")
     path: Path = usual if options.output is None else options.output
-    if path.suffix.lower() in SUFFIXES[:-1] and path.is_file() and h5py.is_hdf5(path):
-        with h5py.File(path) as file:
-            title: Any = file.attrs.get("title", "")
-        if title == TITLE:
-            return path
+    if path.suffix.lower() in SUFFIXES[:-1] and is_table(path):
+        return path
     return target(options.output, usual, SUFFIXES, [options.file])
 
 

@@ -40,7 +40,9 @@ def fault(message: str, axis: int, part: str) -> MfvError:
 class Coordinate:
     """A named list of values along a dimension, and the keys that take them."""
 
-    def __init__(self, name: str, keys: Sequence[str], values: Iterable[Any], factors: Sequence[float] | None = None) -> None:
+    def __init__(
+        self, name: str, keys: Sequence[str], values: Iterable[Any], factors: Sequence[float] | None = None
+    ) -> None:
         """Raises InputError."""
         self.name = name
         self.keys = tuple(keys)
@@ -83,7 +85,9 @@ class Dimension:
         for other in self.coordinates[1:]:
             if len(other.values) != len(self):
                 first = self.coordinates[0]
-                raise input_error(f"{other.name} has {len(other.values)} values, {first.name} has {len(self)}: they are paired")
+                raise input_error(
+                    f"{other.name} has {len(other.values)} values, {first.name} has {len(self)}: they are paired"
+                )
 
     def __len__(self) -> int:
         return len(self.coordinates[0].values)

@@ -102,7 +102,9 @@ def scene_handle(base: Base, settings: Sequence[tuple[str, Any]]) -> Iterator[c_
     with _scene_handle(base.text, base.name) as handle:
         for file, dataset, values in base.data:
             _set_data(handle, file, dataset, values)
-        for key, value in sorted(settings, key=lambda setting: setting[0].lower() == DUNDURS_BETA):  # last: it needs a whole scene
+        for key, value in sorted(
+            settings, key=lambda setting: setting[0].lower() == DUNDURS_BETA
+        ):  # last: it needs a whole scene
             if key.lower() != DUNDURS_BETA:
                 library().mfv_scene_make_room(handle, text_for(key))
             _set_key(handle, key, value)
@@ -125,7 +127,9 @@ def digest(job: Job, base_digest: str) -> str:
     """A name for all that decides what is kept of a case: the base, the values, files that they name, the version."""
     told = hashlib.sha256()
     settings = [(key, _content(value) if key in FILE_KEYS else value) for key, value in job.settings]
-    told.update(repr((library_version(), tuple(observables()), base_digest, settings, job.fields, job.compared)).encode())
+    told.update(
+        repr((library_version(), tuple(observables()), base_digest, settings, job.fields, job.compared)).encode()
+    )
     return told.hexdigest()
 
 
@@ -133,7 +137,9 @@ def digest_of_base(base: Base, settings: Sequence[tuple[str, Any]]) -> str:
     """A name for a base with its arrays and the settings that all its cases share. Raises InputError."""
     told = hashlib.sha256(case_text(Base(base.text, base.name), ()).encode())
     for file, dataset, values in base.data:
-        told.update(repr((file, dataset, np.shape(values))).encode() + np.ascontiguousarray(values, dtype=float).tobytes())
+        told.update(
+            repr((file, dataset, np.shape(values))).encode() + np.ascontiguousarray(values, dtype=float).tobytes()
+        )
     told.update(repr([(key, _content(value)) for key, value in settings]).encode())
     return told.hexdigest()
 

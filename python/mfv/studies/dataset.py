@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from .._library import Along, library_version, outcome_of
 from .axes import DUNDURS_BETA, Coordinate
 from .cases import COUNTS, MOMENTS, TRACTIONS, Solved, key_info, observables
-from .plan import Study, result_name
+from .plan import TITLE, Study, result_name
 
 if TYPE_CHECKING:
     import pandas
@@ -33,12 +33,6 @@ DIMENSIONS = {
     Along.CYCLES: "cycle",
     Along.PATCHES: "patch",
 }
-
-#: What a dataset says it is, and its file.
-TITLE = "Study over cases of frictional contact"
-
-#: Suffixes of files that a study can be written to.
-SUFFIXES = (".nc", ".h5", ".csv")
 
 _NAN = float("nan")
 
@@ -69,7 +63,7 @@ def frame_of(table: xarray.Dataset) -> pandas.DataFrame:
     dimensions = table["case"].dims
     columns = [name for name in table.data_vars if table[name].dims == dimensions]
     coordinates = [name for name in table.coords if set(table[name].dims) <= set(dimensions)]
-    frame = table[columns].to_dataframe().reset_index().sort_values("case", ignore_index=True)
+    frame: pandas.DataFrame = table[columns].to_dataframe().reset_index().sort_values("case", ignore_index=True)
     frame = frame[["case", *sorted(coordinates, key=lambda name: name != "base"), *columns[1:]]]
     return frame.astype({name: int for name in frame if frame[name].dtype == bool})
 
@@ -88,12 +82,19 @@ def write(table: xarray.Dataset, path: str | os.PathLike[str]) -> None:
         raise OSError(error.errno, f"{os.fspath(path)}: cannot be written: {error.strerror}") from error
 
 
-def _columns(study: Study, keys: Sequence[str], solved: Sequence[Solved | None]) -> list[tuple[str, list[Any], str, str]]:
+def _columns(
+    study: Study, keys: Sequence[str], solved: Sequence[Solved | None]
+) -> list[tuple[str, list[Any], str, str]]:
     """Name, values, unit and meaning of every column."""
     there = [one or Solved(NO_STATUS, "", observables=[_NAN] * len(observables())) for one in solved]
     columns: list[tuple[str, list[Any], str, str]] = [
         ("case", list(range(1, len(there) + 1)), "1", "number of the case"),
-        ("outcome", [outcome_of(one.status) if one.status >= 0 else NOT_SOLVED for one in there], "1", "how the case ended"),
+        (
+            "outcome",
+            [outcome_of(one.status) if one.status >= 0 else NOT_SOLVED for one in there],
+            "1",
+            "how the case ended",
+        ),
         ("status", [one.status for one in there], "1", "the same as a code, 0 for complete (mfv_status.def)"),
         ("message", [one.message for one in there], "1", "the same in words"),
     ]
@@ -107,7 +108,9 @@ def _columns(study: Study, keys: Sequence[str], solved: Sequence[Solved | None])
     if study.reference is not None:
         columns += _errors(study, there)
     if study.results is not None:
-        files = [f"{study.results.name}/{result_name(key)}" if one.counts["nodes"] else "" for key, one in zip(keys, there)]
+        files = [
+            f"{study.results.name}/{result_name(key)}" if one.counts["nodes"] else "" for key, one in zip(keys, there)
+        ]
         columns.append(("result_file", files, "1", "result file of the case, beside the table"))
     return columns
 
@@ -134,7 +137,11 @@ def _traction_error(one: Solved, reference: Solved, moment: str, traction: str) 
     """Sum of the sizes of the differences over that of the reference (eq. 6.6). NaN where there is no such moment, where the
     reference has no such traction, or where, but for the beginning of the cycles, these are not the same number of cycles."""
     path = f"moments/{moment}/{traction}"
-    if path not in one.arrays or path not in reference.arrays or not (moment == "loading" or _has_same_cycles(one, reference)):
+    if (
+        path not in one.arrays
+        or path not in reference.arrays
+        or not (moment == "loading" or _has_same_cycles(one, reference))
+    ):
         return _NAN
     here, there, weights = _side_by_side(one, reference, path)
     total = float(np.sum(np.abs(there) * weights))
@@ -147,7 +154,9 @@ def _side_by_side(one: Solved, reference: Solved, path: str) -> tuple[NDArray[An
     Meshes of one interval about one middle: at their nodes, none beyond the ends of the narrower one, as forces over the
     interval. Others: at the nodes of both, linear between nodes, none beyond the ends.
     """
-    sizes, intervals = zip(*((kept.arrays[path].size, float(kept.arrays["mesh/interval"][0])) for kept in (one, reference)))
+    sizes, intervals = zip(
+        *((kept.arrays[path].size, float(kept.arrays["mesh/interval"][0])) for kept in (one, reference))
+    )
     if math.isclose(*intervals, rel_tol=1e-9) and (sizes[0] - sizes[1]) % 2 == 0:
         forces = [kept.arrays[path] * kept.arrays["mesh/width"] for kept in (one, reference)]
         here, there = (np.pad(force, (max(sizes) - force.size) // 2) for force in forces)
@@ -208,7 +217,10 @@ def _described(coordinate: Coordinate, units: dict[str, str]) -> tuple[Any, dict
     about = key_info(coordinate.keys[0])
     assert about is not None
     group, _, key = coordinate.keys[0].lower().partition("%")
-    return array, {"units": _labelled(about[1] or "1", units), "long_name": f"&{group.partition('(')[0]} {key}: {about[2]}"}
+    return array, {
+        "units": _labelled(about[1] or "1", units),
+        "long_name": f"&{group.partition('(')[0]} {key}: {about[2]}",
+    }
 
 
 def _labelled(unit: str, units: dict[str, str]) -> str:

@@ -19,7 +19,9 @@ from .cases import Job, Solved, solve, solve_unless
 NAMES = ("threads", "processes", "mpi", "dask")
 
 
-def solve_all(jobs: Mapping[str, Job], executor: str | Executor, workers: int | None, keep: Callable[[str, Solved], None]) -> None:
+def solve_all(
+    jobs: Mapping[str, Job], executor: str | Executor, workers: int | None, keep: Callable[[str, Solved], None]
+) -> None:
     """Solve cases by an executor, and tell `keep` of each under its name, here, as it comes in.
 
     What goes wrong here or there is raised once what can be stopped has been; what was told of before has been told of.

@@ -17,7 +17,7 @@ from ..inputs import groups
 from ..scene import _scene_handle, _text_of_scene
 from .axes import DUNDURS_BETA, Coordinate, Dimension, as_written
 from .cases import Base, check, key_info
-from .plan import Study, whole_paths
+from .plan import Study, text_of_file, whole_paths
 
 #: Values that one axis can have, and cases that a study can have.
 MOST_VALUES, MOST_CASES = 100_000, 10_000_000
@@ -66,12 +66,17 @@ KEYS: dict[str, dict[str, Key]] = {
     },
 }  # fmt: skip
 
-_KINDS = {"text": "a text between quotes", "number": "a number", "whole": "a whole number", "any": "what the varied key takes"}
+_KINDS = {
+    "text": "a text between quotes",
+    "number": "a number",
+    "whole": "a whole number",
+    "any": "what the varied key takes",
+}
 
 
 def read_study(path: str | os.PathLike[str]) -> Study:
     """The study in a namelist file. Raises OSError; InputError, which names file, line, group, key and value."""
-    return _Reader(os.fspath(path), os.fsdecode(Path(path).read_bytes())).study()
+    return _Reader(os.fspath(path), text_of_file(path)).study()
 
 
 def check_study(study: Study) -> None:
@@ -157,7 +162,9 @@ class _Reader:
             self._complain(self.groups[self._names().index("sweep")], "base", error.message)
         if part == "values":
             group = varied[axis]
-            self._fail(group.lines.get("values") or group.lines.get("from") or group.line, f"&vary {axis + 1}: {error.message}")
+            self._fail(
+                group.lines.get("values") or group.lines.get("from") or group.line, f"&vary {axis + 1}: {error.message}"
+            )
         self._complain(varied[axis], part, error.message, axis + 1)
 
     def _names(self) -> list[str]:
@@ -182,7 +189,9 @@ class _Reader:
                 self._fail(group.line, f"&{group.name}: unknown group{_suggestion(group.name, KEYS, '&')}")
             for key in group.lines:
                 if key not in KEYS[group.name]:
-                    self._fail(group.lines[key], f"&{group.name} {key}: unknown key{_suggestion(key, KEYS[group.name])}")
+                    self._fail(
+                        group.lines[key], f"&{group.name} {key}: unknown key{_suggestion(key, KEYS[group.name])}"
+                    )
             if group.twice:
                 self._fail(group.lines[group.twice[0]], f"&{group.name} {group.twice[0]}: comes twice")
             number = self._varied().index(group) + 1 if group.name == "vary" else 0
@@ -200,7 +209,7 @@ class _Reader:
         try:
             if not name:
                 raise input_error("the name of a file is empty")
-            base = Base(os.fsdecode(path.read_bytes()), name, folder=str(path.parent))
+            base = Base(text_of_file(path), name, folder=str(path.parent))
             check(base, list(whole_paths(base).items()))
             return base
         except OSError as error:
@@ -223,7 +232,9 @@ class _Reader:
             values = self._row(number, group, keys)
         else:
             missing = next(key for key in ("from", "to", "count") if key not in group.values)
-            self._fail(group.line, f"&vary {number} ({name}): needs values=..., or from, to and count; {missing} is missing")
+            self._fail(
+                group.line, f"&vary {number} ({name}): needs values=..., or from, to and count; {missing} is missing"
+            )
         try:
             return Coordinate(name, keys, values, group.values.get("factor"))
         except errors.InputError as error:
@@ -327,7 +338,8 @@ def _placed(text: str, parsed: Sequence[tuple[str, dict[str, Any]]]) -> list[_Gr
             if key[1].lower() in group.lines:
                 group.twice.append(key[1].lower())
             group.lines[key[1].lower()] = masked.count("\n", 0, match.start(2) + key.start()) + 1
-        values = left.pop(next(place for place, one in enumerate(left) if one[0] == name))[1]
+        place = next((place for place, one in enumerate(left) if one[0] == name), None)
+        values = left.pop(place)[1] if place is not None else {}
         group.values = {key: value if isinstance(value, list) else [value] for key, value in values.items()}
         found.append(group)
     return found

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import errno
 import math
 import os
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
@@ -11,6 +12,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Union
 
+import h5py
 import numpy as np
 
 from .. import errors
@@ -33,6 +35,12 @@ Given = Union[Scene, str, "os.PathLike[str]", Base]
 #: Names of the columns that every study has, and of dimensions of fields: not for axes.
 TAKEN = ("case", "base", "outcome", "status", "message", "steps_done", "events", "linear_solves", "nodes", "largest_residual",
          "row", "node", "record", "cycle", "patch", "companion_node", "result_file")  # fmt: skip
+
+#: What the table of a study says it is.
+TITLE = "Study over cases of frictional contact"
+
+#: Suffixes of files that it can be written to: NetCDF, and comma-separated values.
+SUFFIXES = (".nc", ".h5", ".csv")
 
 #: Of long rows of numbers this many are tried before the start, spread over them.
 TRIED = 200
@@ -204,7 +212,9 @@ class Study:
         return self._with_store(store, lambda kept: self._solve(kept, None, None, False))
 
     def _with_store(
-        self, store: str | os.PathLike[str] | None, solve: Callable[[Store | None], tuple[list[str], list[Solved | None]]]
+        self,
+        store: str | os.PathLike[str] | None,
+        solve: Callable[[Store | None], tuple[list[str], list[Solved | None]]],
     ) -> xarray.Dataset:
         from .dataset import dataset_of  # here: it imports xarray
 
@@ -225,7 +235,9 @@ class Study:
         there = {} if kept is None else kept.read(jobs.keys())
         wanted = {key: job for key, job in jobs.items() if key not in there or _has_lost_its_file(job)}
         if executor is not None and wanted:
-            with tqdm(total=len(jobs), initial=len(jobs) - len(wanted), unit="case", disable=None if progress else True) as bar:
+            with tqdm(
+                total=len(jobs), initial=len(jobs) - len(wanted), unit="case", disable=None if progress else True
+            ) as bar:
 
                 def keep(key: str, solved: Solved) -> None:
                     if kept is not None:
@@ -246,7 +258,10 @@ class Study:
             else:
                 of_base = digests[self._places(number)[0] if len(self.bases) > 1 else 0]
             key = digest(job, of_base)
-            yield key, job if self.results is None else replace(job, result=str(self.results.resolve() / result_name(key)))
+            yield (
+                key,
+                job if self.results is None else replace(job, result=str(self.results.resolve() / result_name(key))),
+            )
 
     def _places(self, number: int) -> tuple[int, ...]:
         """Where case `number` is along each dimension. Raises ValueError."""
@@ -295,13 +310,19 @@ class Study:
         for place, coordinate in enumerate(self.coordinates):
             name = coordinate.name
             is_ours = name in ("base", "row") and not coordinate.keys
-            if not is_ours and (name in TAKEN or name in observables() or "_error_" in name or name == "dissipation_ratio"):
+            if not is_ours and (
+                name in TAKEN or name in observables() or "_error_" in name or name == "dissipation_ratio"
+            ):
                 raise fault(f"every study has a column {name}; give another name", place, "name")
             if name in seen:
                 raise fault(f"another axis has the name {name}; give another one", place, "name")
             seen.add(name)
         for dimension in self.dimensions:
-            if len(dimension.coordinates) > 1 and dimension.name != "row" and dimension.name in (*TAKEN, *seen, *observables()):
+            if (
+                len(dimension.coordinates) > 1
+                and dimension.name != "row"
+                and dimension.name in (*TAKEN, *seen, *observables())
+            ):
                 raise input_error(f"{dimension.name}: this name is taken; give the zipped axes another one")
         unknown = [name for name in self.observables or () if name not in observables()]
         if unknown:
@@ -333,7 +354,9 @@ class Study:
         """What cases are compared with: see `Study`. Raises InputError."""
         wanted = {"scene%coupling": reference} if isinstance(reference, str) else dict(reference)
         if len(wanted) != 1:
-            raise input_error("reference: one axis with one of its values is wanted, such as {'scene%coupling': 'full'}")
+            raise input_error(
+                "reference: one axis with one of its values is wanted, such as {'scene%coupling': 'full'}"
+            )
         ((name, value),) = wanted.items()
         for along, dimension in enumerate(self.dimensions):
             (first, *others) = dimension.coordinates
@@ -350,6 +373,21 @@ def result_name(key: str) -> str:
     return f"{key[:16]}.h5"
 
 
+def is_table(path: Path) -> bool:
+    """Whether a file is the table of a study, as NetCDF."""
+    if not path.is_file() or not h5py.is_hdf5(path):
+        return False
+    with h5py.File(path) as file:
+        return bool(file.attrs.get("title", "") == TITLE)
+
+
+def text_of_file(path: str | os.PathLike[str]) -> str:
+    """The text of a regular file; what is no UTF-8 is for the library to refuse. Raises OSError."""
+    if os.path.exists(path) and not os.path.isfile(path):  # a pipe may keep one waiting, a device may have no end
+        raise OSError(errno.EINVAL, f"{os.fspath(path)}: is no file of text")
+    return os.fsdecode(Path(path).read_bytes())
+
+
 def _base_of(given: Given) -> Base:
     """What a case begins with. Raises OSError, InputError, TypeError."""
     if isinstance(given, Base):
@@ -358,11 +396,13 @@ def _base_of(given: Given) -> Base:
         if not isinstance(given, (str, os.PathLike)):
             raise TypeError(f"a mfv.Scene, or the path of a case, is wanted, not {given!r}")
         name = os.fspath(given)
-        return Base(os.fsdecode(Path(name).read_bytes()), name, folder=os.path.dirname(name))
+        return Base(text_of_file(name), name, folder=os.path.dirname(name))
     data = []
     for group, part in given._parts():
         arrays = getattr(part, "data", None) or {}
-        file = os.fspath(part.keys().get("file" if group.startswith("body") else "mu_file", _NAMES_OF_DATA.get(group, "")))
+        file = os.fspath(
+            part.keys().get("file" if group.startswith("body") else "mu_file", _NAMES_OF_DATA.get(group, ""))
+        )
         data += [(file, name, np.ascontiguousarray(values, dtype=float)) for name, values in arrays.items()]
     return Base(given.text(), given.name, tuple(data), os.path.dirname(given.name))
 

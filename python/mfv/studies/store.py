@@ -57,7 +57,9 @@ class Store:
     def write(self, key: str, solved: Solved) -> None:
         """Keep a case: it is there whatever becomes of this process. Raises FileError, on a full disk for one."""
         try:
-            self._connection.execute("INSERT OR REPLACE INTO cases VALUES (?, ?, ?)", (key, _text(solved), _bytes(solved)))
+            self._connection.execute(
+                "INSERT OR REPLACE INTO cases VALUES (?, ?, ?)", (key, _text(solved), _bytes(solved))
+            )
         except sqlite3.Error as error:
             raise self._failure(error) from None
 
@@ -79,7 +81,9 @@ class Store:
         execute("PRAGMA synchronous = NORMAL")
         execute("BEGIN IMMEDIATE")
         execute(f"PRAGMA application_id = {APPLICATION}")
-        execute("CREATE TABLE IF NOT EXISTS cases (key TEXT PRIMARY KEY, solved TEXT NOT NULL, arrays BLOB) WITHOUT ROWID")
+        execute(
+            "CREATE TABLE IF NOT EXISTS cases (key TEXT PRIMARY KEY, solved TEXT NOT NULL, arrays BLOB) WITHOUT ROWID"
+        )
         execute("COMMIT")
 
     def _failure(self, error: Exception) -> errors.MfvError:
