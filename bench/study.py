@@ -1,9 +1,9 @@
-"""Measure studies: what a case costs beside being solved, by every executor, and that kill -9 loses nothing but the cases on
-their way. Prints Markdown tables. Takes about half an hour. build/venv/bin/python bench/study.py [--program OLD/bin/mfv_sweep]
+"""Measure studies: what a case costs beside being solved, by every executor, and that kill -9 loses nothing but the cases
+on their way. Prints Markdown tables. Half an hour. build/venv/bin/python bench/study.py [--program OLD/bin/mfv_sweep]
 
-Overhead of a case: workers x (wall time less that of the same study with 2 cases) / (cases - 2), less the time per case when the
-same jobs are solved one after another in this process, without a study, in the same round. Every run keeps its cases in a store
-and writes its table. A study is killed at random moments; a trigger in its store refuses a case that comes twice.
+Overhead of a case: workers x (wall time less that of the same study with 2 cases) / (cases - 2), less the time per case when
+the same jobs are solved one after another in this process, without a study, in the same round. Every run keeps its cases in a
+store and writes its table. A study is killed at random moments; a trigger in its store refuses a case that comes twice.
 """
 
 from __future__ import annotations
@@ -93,7 +93,8 @@ def solve_here(executor: str, workers: int, text: Path) -> None:
 def call(command: tuple[str, ...], text: Path) -> None:
     """Solve a study by a command; mfv_sweep with the library of its own installation."""
     library_path = {"LD_LIBRARY_PATH": str(Path(command[0]).parents[1] / "lib")} if "mfv_sweep" in command[0] else {}
-    subprocess.run([*command, text.name], cwd=text.parent, env={**os.environ, **library_path}, check=True, capture_output=True)
+    environment = {**os.environ, **library_path}
+    subprocess.run([*command, text.name], cwd=text.parent, env=environment, check=True, stdout=subprocess.DEVNULL)
 
 
 def seconds(solve: Solve, text: Path) -> float:
@@ -107,8 +108,7 @@ def seconds(solve: Solve, text: Path) -> float:
 
 def print_overheads(measured: dict[str, tuple[int, Solve]], folder: Path, rounds: int) -> None:
     """Print start-up and overhead per case of every way; their tables must be the same."""
-    study = read_study(folder / "study.nml")
-    jobs = [study.job(number) for number in range(1, len(study) + 1)]
+    jobs = [study.job(number) for study in [read_study(folder / "study.nml")] for number in range(1, len(study) + 1)]
     solve_here("threads", 1, folder / "two.nml")  # for what is imported on first use
     alone, tables, begun, beside = [], {}, {name: [] for name in measured}, {name: [] for name in measured}
     for _ in range(rounds):
@@ -138,16 +138,15 @@ def told(values: list[float]) -> str:
 def print_kills(folder: Path, count: int, chance: random.Random) -> None:
     """Kill a study at random moments, go on, and compare the table in the end."""
     text, store = folder / "study.nml", folder / "study.sqlite"
-    start_up, whole = (seconds(functools.partial(call, COMMAND), path) for path in (folder / "two.nml", text))
+    start, whole = (seconds(functools.partial(call, COMMAND), path) for path in (folder / "two.nml", text))
     undisturbed = xarray.load_dataset(folder / "study.nc")
     with contextlib.closing(sqlite3.connect(store)) as connection:
         connection.executescript(f"DELETE FROM cases; CREATE TRIGGER once {TWICE}")
     kept: set[str] = set()
     print(f"## kill -9 of a study that takes {whole:.1f} s\n\n| kill | after, s | cases kept |\n| --- | --- | --- |")
     for number in range(1, count + 1):
-        run = subprocess.Popen([*COMMAND, text.name], cwd=folder, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
-        moment = chance.uniform(0.5 * start_up, start_up + 1.5 * (whole - start_up) / count)
-        time.sleep(moment)
+        run = subprocess.Popen([*COMMAND, text.name], cwd=folder, stdout=subprocess.DEVNULL)
+        time.sleep(moment := chance.uniform(0.5 * start, start + 1.5 * (whole - start) / count))
         run.kill()
         end = "" if run.wait() < 0 else f" (it had ended with {run.returncode})"
         before, kept = kept, names_in(store)

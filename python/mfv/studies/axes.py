@@ -11,12 +11,6 @@ import numpy as np
 
 from ..errors import MfvError, input_error
 
-#: Stands for the materials of both bodies; see mfv_scene_set_real in the header.
-DUNDURS_BETA = "dundurs_beta"
-
-#: Keys of the materials that dundurs_beta replaces.
-OF_MATERIALS = ("shear_modulus", "youngs_modulus", "poisson_ratio", "rigid")
-
 
 @dataclass(frozen=True)
 class Axis:

@@ -20,7 +20,9 @@ from .. import errors
 from .._library import OBSERVER, library, library_version, statuses, text_buffer, text_for, text_of
 from ..case import writing
 from ..scene import _scene_handle, _set_data, _set_key, _text_of_scene, created
-from .axes import DUNDURS_BETA
+
+#: Stands for the materials of both bodies; see mfv_scene_set_real in the header.
+DUNDURS_BETA = "dundurs_beta"
 
 #: Whole numbers that are kept of each case, with what they are.
 COUNTS = {

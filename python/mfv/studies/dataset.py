@@ -15,8 +15,8 @@ import xarray
 from numpy.typing import NDArray
 
 from .._library import Along, library_version, outcome_of
-from .axes import DUNDURS_BETA, Coordinate
-from .cases import COUNTS, MOMENTS, TRACTIONS, Solved, key_info, observables
+from .axes import Coordinate
+from .cases import COUNTS, DUNDURS_BETA, MOMENTS, TRACTIONS, Solved, key_info, observables
 from .plan import TITLE, Study, result_name
 
 if TYPE_CHECKING:
@@ -65,7 +65,8 @@ def frame_of(table: xarray.Dataset) -> pandas.DataFrame:
     coordinates = [name for name in table.coords if set(table[name].dims) <= set(dimensions)]
     frame: pandas.DataFrame = table[columns].to_dataframe().reset_index().sort_values("case", ignore_index=True)
     frame = frame[["case", *sorted(coordinates, key=lambda name: name != "base"), *columns[1:]]]
-    return frame.astype({name: int for name in frame if frame[name].dtype == bool})
+    table_of_cases: pandas.DataFrame = frame.astype({name: int for name in frame if frame[name].dtype == bool})
+    return table_of_cases
 
 
 def write(table: xarray.Dataset, path: str | os.PathLike[str]) -> None:

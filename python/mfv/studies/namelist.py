@@ -15,9 +15,10 @@ from .. import errors
 from ..errors import input_error
 from ..inputs import groups
 from ..scene import _scene_handle, _text_of_scene
-from .axes import DUNDURS_BETA, Coordinate, Dimension, as_written
-from .cases import Base, check, key_info
-from .plan import Study, text_of_file, whole_paths
+from .axes import Coordinate, Dimension, as_written
+from .bases import text_of_file, whole_paths
+from .cases import DUNDURS_BETA, Base, check, key_info
+from .plan import Study
 
 #: Values that one axis can have, and cases that a study can have.
 MOST_VALUES, MOST_CASES = 100_000, 10_000_000

@@ -3,34 +3,29 @@
 from __future__ import annotations
 
 import contextlib
-import errno
 import math
 import os
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from concurrent.futures import Executor
 from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Union
+from typing import TYPE_CHECKING, Any
 
 import h5py
 import numpy as np
 
 from .. import errors
-from .._library import library, text_for
 from ..errors import input_error
-from ..inputs import groups
-from ..inputs import keys as keys_of_text
-from ..scene import _NAMES_OF_DATA, Scene, _scene_handle, _set_key, _text_of_scene, created
+from ..scene import Scene
 from . import executors
-from .axes import DUNDURS_BETA, OF_MATERIALS, Coordinate, Dimension, as_written, dimensions_of, fault
-from .cases import FILE_KEYS, Base, Job, Solved, case_text, check, digest, digest_of_base, key_info
+from .axes import Coordinate, Dimension, as_written, dimensions_of, fault
+from .bases import Given, absolute, base_of, counts_of_groups, units_of, whole_paths
+from .cases import FILE_KEYS, Base, Job, Solved, case_text, check, digest, digest_of_base
+from .keys import fault_of_key, fault_of_pair, numbered_group
 from .store import Store
 
 if TYPE_CHECKING:
     import xarray
-
-#: A scene, or the path of a namelist file.
-Given = Union[Scene, str, "os.PathLike[str]", Base]
 
 #: Names of the columns that every study has, and of dimensions of fields: not for axes.
 TAKEN = ("case", "base", "outcome", "status", "message", "steps_done", "events", "linear_solves", "nodes", "largest_residual",
@@ -92,7 +87,7 @@ class Study:
         """
         self.makes_scenes: Callable[[dict[str, Any]], Scene] | None = base if callable(base) else None
         given = [] if callable(base) else [base] if isinstance(base, (Scene, str, os.PathLike, Base)) else list(base)
-        self.bases = [_base_of(one) for one in given]
+        self.bases = [base_of(one) for one in given]
         self._shared = [whole_paths(one) for one in self.bases]
         self._check_units()
         is_made = isinstance(axes, list) and all(isinstance(axis, Dimension) for axis in axes)
@@ -130,7 +125,7 @@ class Study:
     @property
     def units(self) -> dict[str, str]:
         """The user's names of length and force. Raises InputError."""
-        return _units(self.job(1).base)
+        return units_of(self.job(1).base)
 
     def point(self, number: int) -> dict[str, Any]:
         """The values of the axes of case `number`, from 1, by their names. Raises ValueError."""
@@ -164,12 +159,12 @@ class Study:
             for setting in coordinate.settings(place)
         ]
         if self.makes_scenes is not None:
-            base = _base_of(self.makes_scenes(self.point(number)))
+            base = base_of(self.makes_scenes(self.point(number)))
             shared = whole_paths(base)
         else:
             which = places[0] if len(self.bases) > 1 else 0
             base, shared = self.bases[which], self._shared[which]
-        named = {key: _absolute(value, base) if key in FILE_KEYS else value for key, value in settings}
+        named = {key: absolute(value, base) if key in FILE_KEYS else value for key, value in settings}
         return Job(base, tuple({**shared, **named}.items()), self._fields(), self.reference is not None)
 
     def check(self) -> None:
@@ -296,7 +291,7 @@ class Study:
     def _check_units(self) -> None:
         """Raises InputError where bases name other units than the first."""
         for base in self.bases[1:]:
-            if _units(base) != _units(self.bases[0]):
+            if units_of(base) != units_of(self.bases[0]):
                 first = self.bases[0].name
                 raise input_error(
                     f"{base.name} names other units than {first} (length_unit, force_unit); one study has one system of units"
@@ -330,20 +325,20 @@ class Study:
 
     def _check_keys(self) -> None:
         """Raises InputError for keys that are none, that no base has a group for, or that are varied already."""
-        counts = [_counts_of_groups(base) for base in self.bases]
+        counts = [counts_of_groups(base) for base in self.bases]
         seen: list[str] = []
         for place, coordinate in enumerate(self.coordinates):
             for key in coordinate.keys:
-                why = _fault_of_key(key) or self._missing_group(key, counts)
+                why = fault_of_key(key) or self._missing_group(key, counts)
                 for other in seen:
-                    why = why or _fault_of_pair(other, key)
+                    why = why or fault_of_pair(other, key)
                 if why:
                     raise fault(why, place, "key")
                 seen.append(key)
 
     def _missing_group(self, key: str, counts: Sequence[dict[str, int]]) -> str:
         """What is wrong with the number in a key; empty where nothing is."""
-        group, number = _numbered_group(key)
+        group, number = numbered_group(key)
         for base, count in zip(self.bases, counts):
             there = count.get(group, 0)
             if number is not None and not 1 <= number <= there:
@@ -381,49 +376,6 @@ def is_table(path: Path) -> bool:
         return bool(file.attrs.get("title", "") == TITLE)
 
 
-def text_of_file(path: str | os.PathLike[str]) -> str:
-    """The text of a regular file; what is no UTF-8 is for the library to refuse. Raises OSError."""
-    if os.path.exists(path) and not os.path.isfile(path):  # a pipe may keep one waiting, a device may have no end
-        raise OSError(errno.EINVAL, f"{os.fspath(path)}: is no file of text")
-    return os.fsdecode(Path(path).read_bytes())
-
-
-def _base_of(given: Given) -> Base:
-    """What a case begins with. Raises OSError, InputError, TypeError."""
-    if isinstance(given, Base):
-        return given
-    if not isinstance(given, Scene):
-        if not isinstance(given, (str, os.PathLike)):
-            raise TypeError(f"a mfv.Scene, or the path of a case, is wanted, not {given!r}")
-        name = os.fspath(given)
-        return Base(text_of_file(name), name, folder=os.path.dirname(name))
-    data = []
-    for group, part in given._parts():
-        arrays = getattr(part, "data", None) or {}
-        file = os.fspath(
-            part.keys().get("file" if group.startswith("body") else "mu_file", _NAMES_OF_DATA.get(group, ""))
-        )
-        data += [(file, name, np.ascontiguousarray(values, dtype=float)) for name, values in arrays.items()]
-    return Base(given.text(), given.name, tuple(data), os.path.dirname(given.name))
-
-
-def whole_paths(base: Base) -> dict[str, str]:
-    """The whole paths of the files that a base names, for workers to find from wherever they are. Raises InputError."""
-    with _scene_handle(base.text, base.name) as handle:
-        named = keys_of_text(_text_of_scene(handle))
-    in_memory = {file for file, _, _ in base.data}
-    return {
-        key: _absolute(named[key], base)
-        for key in FILE_KEYS
-        if isinstance(named.get(key), str) and named[key] and named[key] not in in_memory
-    }
-
-
-def _absolute(file: Any, base: Base) -> Any:
-    """The whole path of a file that a case names."""
-    return os.path.join(os.path.abspath(base.folder), file) if isinstance(file, str) and file else file
-
-
 def _has_lost_its_file(job: Job) -> bool:
     """Whether the result file of a case that was solved is not there any more."""
     return job.result is not None and not os.path.exists(job.result)
@@ -434,60 +386,3 @@ def _tried(length: int) -> Iterable[int]:
     if length <= 5 * TRIED:
         return range(length)
     return sorted({round(place) for place in np.linspace(0, length - 1, TRIED + 2)})
-
-
-def _units(base: Base) -> dict[str, str]:
-    """The names of length and force in a base. Raises InputError."""
-    with _scene_handle(base.text, base.name) as handle:
-        keys = keys_of_text(_text_of_scene(handle))
-    return {unit: str(keys.get(f"scene%{unit}_unit", unit)) for unit in ("length", "force")}
-
-
-def _counts_of_groups(base: Base) -> dict[str, int]:
-    """How many groups of each name a base has. Raises InputError."""
-    with _scene_handle(base.text, base.name) as handle:
-        names = [name for name, _ in groups(_text_of_scene(handle))]
-    return {name: names.count(name) for name in names}
-
-
-def _numbered_group(key: str) -> tuple[str, int | None]:
-    """Group of a key in small letters, and its number where it has one."""
-    group, _, _ = key.lower().partition("%")
-    name, bracket, number = group.partition("(")
-    return name, int(number.rstrip(")")) if bracket else None
-
-
-def _fault_of_key(key: str) -> str:
-    """Why something is no key of a case, in the words of the library, or not for a study to set; empty where it is."""
-    if key.lower() == DUNDURS_BETA:
-        return ""
-    if key.lower() == "output%file":
-        return "'output%file': the study names its files itself"
-    if key_info(key) is None:
-        with _scene_handle("", "key") as handle:
-            _set_key(handle, key, 0)
-            try:
-                created("mfv_create", handle)
-            except errors.InputError as error:
-                told = error.message.removeprefix("key: ")
-                return told if "%" in key else f"{told} or '{DUNDURS_BETA}'"
-    return ""
-
-
-def _fault_of_pair(one: str, other: str) -> str:
-    """Why a study cannot vary two keys; empty where it can."""
-    for beta, key in ((one, other), (other, one)):
-        if beta.lower() == DUNDURS_BETA and key.partition("%")[2].lower() in OF_MATERIALS:
-            return f"'{key}' and '{DUNDURS_BETA}' cannot be varied in one study: {DUNDURS_BETA} decides the materials of both bodies"
-    return f"'{other}': is varied already" if one.lower() == other.lower() or _stands_for(one, other) else ""
-
-
-def _stands_for(one: str, other: str) -> bool:
-    """Whether one key takes the place of another, as the library sees it."""
-    if DUNDURS_BETA in (one.lower(), other.lower()) or one.partition("%")[0].lower() != other.partition("%")[0].lower():
-        return False
-    with _scene_handle("", "keys") as handle:
-        _set_key(handle, one, 0)
-        before = _text_of_scene(handle)
-        library().mfv_scene_make_room(handle, text_for(other))
-        return _text_of_scene(handle) != before

@@ -1,0 +1,75 @@
+"""What the cases of a study begin with: scenes and files of namelists, the files that these name, their units."""
+
+from __future__ import annotations
+
+import errno
+import os
+from pathlib import Path
+from typing import Any, Union
+
+import numpy as np
+
+from ..inputs import groups
+from ..inputs import keys as keys_of_text
+from ..scene import _NAMES_OF_DATA, Scene, _scene_handle, _text_of_scene
+from .cases import FILE_KEYS, Base
+
+#: A scene, or the path of a namelist file.
+Given = Union[Scene, str, "os.PathLike[str]", Base]
+
+
+def text_of_file(path: str | os.PathLike[str]) -> str:
+    """The text of a regular file; what is no UTF-8 is for the library to refuse. Raises OSError."""
+    if os.path.exists(path) and not os.path.isfile(path):  # a pipe may keep one waiting, a device may have no end
+        raise OSError(errno.EINVAL, f"{os.fspath(path)}: is no file of text")
+    return os.fsdecode(Path(path).read_bytes())
+
+
+def base_of(given: Given) -> Base:
+    """What a case begins with. Raises OSError, InputError, TypeError."""
+    if isinstance(given, Base):
+        return given
+    if not isinstance(given, Scene):
+        if not isinstance(given, (str, os.PathLike)):
+            raise TypeError(f"a mfv.Scene, or the path of a case, is wanted, not {given!r}")
+        name = os.fspath(given)
+        return Base(text_of_file(name), name, folder=os.path.dirname(name))
+    data = []
+    for group, part in given._parts():
+        arrays = getattr(part, "data", None) or {}
+        file = os.fspath(
+            part.keys().get("file" if group.startswith("body") else "mu_file", _NAMES_OF_DATA.get(group, ""))
+        )
+        data += [(file, name, np.ascontiguousarray(values, dtype=float)) for name, values in arrays.items()]
+    return Base(given.text(), given.name, tuple(data), os.path.dirname(given.name))
+
+
+def whole_paths(base: Base) -> dict[str, str]:
+    """The whole paths of the files that a base names, for workers to find from wherever they are. Raises InputError."""
+    with _scene_handle(base.text, base.name) as handle:
+        named = keys_of_text(_text_of_scene(handle))
+    in_memory = {file for file, _, _ in base.data}
+    return {
+        key: absolute(named[key], base)
+        for key in FILE_KEYS
+        if isinstance(named.get(key), str) and named[key] and named[key] not in in_memory
+    }
+
+
+def absolute(file: Any, base: Base) -> Any:
+    """The whole path of a file that a case names."""
+    return os.path.join(os.path.abspath(base.folder), file) if isinstance(file, str) and file else file
+
+
+def units_of(base: Base) -> dict[str, str]:
+    """The names of length and force in a base. Raises InputError."""
+    with _scene_handle(base.text, base.name) as handle:
+        keys = keys_of_text(_text_of_scene(handle))
+    return {unit: str(keys.get(f"scene%{unit}_unit", unit)) for unit in ("length", "force")}
+
+
+def counts_of_groups(base: Base) -> dict[str, int]:
+    """How many groups of each name a base has. Raises InputError."""
+    with _scene_handle(base.text, base.name) as handle:
+        names = [name for name, _ in groups(_text_of_scene(handle))]
+    return {name: names.count(name) for name in names}
