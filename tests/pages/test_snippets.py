@@ -1,7 +1,7 @@
 """What the pages print: every case runs as printed, every command too, and what a page shows of their output is what they give.
 
 A page is read from top to bottom in one folder, which has the examples. A namelist block with bodies becomes case.nml (a block with
-`&sweep` sweep.nml) and is run; a block without bodies is put into the last case of the page, its steps behind those of the case.
+`&sweep` study.nml) and is run; a block without bodies is put into the last case of the page, its steps behind those of the case.
 Indented lines that begin with a program are given to a shell; other indented lines are output of what ran since the output before.
 """
 
@@ -56,7 +56,7 @@ class Reader:
                 self.indented(line[4:], place)
 
     def run_case(self, text: str, place: str) -> None:
-        name = "sweep.nml" if text.startswith("&sweep") else "case.nml"
+        name = "study.nml" if text.startswith("&sweep") else "case.nml"
         if name == "case.nml":
             text = self.case = text if "&body" in text else merged(self.case, text)
         (self.folder / name).write_text(text)

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import os
-import subprocess
 from pathlib import Path
 from typing import Any
 
@@ -22,15 +20,3 @@ def cylinder(*steps: mfv.Step, **keys: Any) -> mfv.Scene:
     given: dict[str, Any] = {"mesh": MESH, "friction": mfv.Friction.coulomb(0.7), "coupling": "goodman", **keys}
     return mfv.Scene(HALF_PLANE, DISK, steps=steps, **given)
 
-
-def sweep_table(directory: Path) -> Path:
-    """A small sweep in a directory: sweep.h5 of two coefficients of friction and two couplings."""
-    (directory / "base.nml").write_text((PROJECT / "examples" / "mindlin.nml").read_text())
-    (directory / "sweep.nml").write_text(
-        "&sweep base='base.nml', reference='full' /\n"
-        "&vary key='friction%mu', values=0.5, 0.7 /\n"
-        "&vary key='scene%coupling', values='full', 'none' /\n"
-    )
-    program = os.environ.get("MFV_SWEEP", str(PROJECT / "build/release/bin/mfv_sweep"))
-    subprocess.run([program, "sweep.nml"], cwd=directory, check=True, capture_output=True, timeout=60)
-    return directory / "sweep.h5"

@@ -6,17 +6,18 @@ import re
 from pathlib import Path
 
 import pytest
+import xarray
 from matplotlib import pyplot
 
 import mfv
-from scenes import PROJECT, sweep_table
+from scenes import PROJECT
 
-PAGES = ("docs/python-api.md", "README.md", "python/README.md")
+PAGES = ("docs/python-api.md", "docs/studies.md", "README.md", "python/README.md")
 
 
 @pytest.fixture
 def directory(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    """Where the examples are run: with the project's examples, a case and the table of a sweep."""
+    """Where the examples are run: with the project's examples, and a case."""
     monkeypatch.chdir(tmp_path)
     (tmp_path / "examples").symlink_to(PROJECT / "examples")
     (tmp_path / "case.nml").write_text((PROJECT / "examples" / "mindlin.nml").read_text())
@@ -36,11 +37,9 @@ def blocks(page: str) -> list[tuple[int, str]]:
 def test_the_examples_of_a_page_run(page: str, directory: Path) -> None:
     found = blocks(page)
     assert found
-    if any("sweep.h5" in code for _, code in found):
-        sweep_table(directory)
     names: dict[str, object] = {}
     for line, code in found:
         # Blank lines before it: a traceback then has the line of the page.
         exec(compile("\n" * (line - 1) + code, str(PROJECT / page), "exec"), names)  # noqa: S102 - our own page
     pyplot.close("all")
-    assert any(isinstance(value, mfv.Result) for value in names.values())
+    assert any(isinstance(value, (mfv.Result, xarray.Dataset)) for value in names.values())

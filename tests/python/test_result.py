@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import copy
-import html
 import inspect
 import os
 import pickle
@@ -22,7 +21,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 import mfv
-from scenes import PRESS, cylinder, sweep_table
+from scenes import PRESS, cylinder
 
 TO_AND_FRO = (
     mfv.Step(normal_force=5.0e-4),
@@ -176,23 +175,6 @@ def test_nothing_is_drawn_where_nothing_is_loaded() -> None:
     with cylinder().contact() as case:
         assert "<svg" not in case.result()._repr_html_()
         assert "<table" in case.result()._repr_html_()
-
-
-def test_a_table_becomes_a_data_frame_and_shows_its_columns(tmp_path: Path) -> None:
-    table = mfv.read_table(sweep_table(tmp_path))
-    frame = table.to_pandas()
-    assert list(frame.columns) == list(table.columns) and len(frame) == 4
-    assert list(frame["scene%coupling"]) == ["full", "none"] * 2
-    np.testing.assert_array_equal(frame["stick_ratio"], table["stick_ratio"])
-    assert frame.attrs["units"]["shift"] == "length"
-    for other in (pickle.loads(pickle.dumps(table)), copy.deepcopy(table)):
-        assert isinstance(other, mfv.Table) and other.describe() == table.describe()
-        assert other.attributes == table.attributes and other.tobytes() == table.tobytes()
-    assert f"{table['stick_ratio'].max():.3f}" == f"{max(table['stick_ratio'].tolist()):.3f}"
-    assert isinstance(table["stick_ratio"].mean(), float) and not isinstance(table["stick_ratio"], mfv.Table)
-    shown = table[:2]._repr_html_()
-    for word in ("2 cases", "scene%coupling", "stick_ratio", table.long_names["shift"]):
-        assert html.escape(word) in shown
 
 
 # --- panels ---

@@ -2,7 +2,6 @@
 
 import contextlib
 import csv
-import os
 import random
 import re
 import resource
@@ -10,7 +9,6 @@ import signal
 import sqlite3
 import subprocess
 import time
-from pathlib import Path
 
 import h5py
 import numpy as np
