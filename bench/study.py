@@ -80,7 +80,7 @@ def ways(program: Path | None) -> dict[str, tuple[int, Solve]]:
     launcher = ("mpiexec", "-n", "3", "--oversubscribe", sys.executable, "-m", "mpi4py.futures")
     found["mpi, 2"] = 2, functools.partial(call, (*launcher, *COMMAND[1:], "--executor", "mpi"))
     for workers in (1, 2) if program else ():
-        found[f"mfv_sweep, {workers}"] = workers, functools.partial(call, (str(program), "--threads", str(workers)))
+        found[f"mfv_sweep, {workers}"] = workers, functools.partial(call, (str(program.resolve()), "--threads", str(workers)))
     return found
 
 

@@ -22,7 +22,10 @@ def text_of_file(path: str | os.PathLike[str]) -> str:
     """The text of a regular file; what is no UTF-8 is for the library to refuse. Raises OSError."""
     if os.path.exists(path) and not os.path.isfile(path):  # a pipe may keep one waiting, a device may have no end
         raise OSError(errno.EINVAL, f"{os.fspath(path)}: is no file of text")
-    return os.fsdecode(Path(path).read_bytes())
+    content = Path(path).read_bytes()
+    if b"\0" in content:
+        raise OSError(errno.EINVAL, f"{os.fspath(path)}: is no text, but has a null character in it")
+    return os.fsdecode(content)
 
 
 def base_of(given: Given) -> Base:
