@@ -33,7 +33,7 @@ SHOWN = (*PICTURES, *LANGUAGES, ".csv", ".md", ".txt")
 # Pages of the side bar by heading, as they are staged; pages that are not there yet are left out.
 CONTENTS = {
     "Start": ["docs/install", "docs/guide", "gallery/index", "docs/choosing"],
-    "Reference": ["docs/namelist", "docs/sweep", "docs/file-format", "programs"],
+    "Reference": ["docs/namelist", "docs/studies", "docs/clusters", "docs/file-format", "programs"],
     "Interfaces": ["docs/python-api", "python/index", "docs/c-api", "c", "docs/fortran-api", "fortran/index"],
     "Background": ["docs/theory", "docs/verification", "docs/trust", "docs/performance",
                    "The decoupling study <examples/decoupling/README>"],
