@@ -95,7 +95,7 @@ program mfv_run
       '', &
       'See also:', &
       '  mfv_case(5) has every key of a case, as mfv_run --keys. docs/guide.md goes from a question to a', &
-      '  picture; examples/*.nml are cases to begin with. mfv_stress(1), mfv_sweep(1), mfv_conventional(1).' &
+      '  picture; examples/*.nml are cases to begin with. mfv_stress(1), mfv_conventional(1).' &
       ]
    character(:), allocatable :: option, text
 

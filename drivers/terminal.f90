@@ -11,8 +11,7 @@ module mfv_terminal
    use mfv_strings, only: to_text
    implicit none
    private
-   public :: get_argument, terminal_observer_type, catch_interrupts, is_interrupted, request_interrupt, is_terminal, end_program, &
-             fail
+   public :: get_argument, terminal_observer_type, catch_interrupts, is_interrupted, end_program, fail
 
    !> Shows progress on a terminal, and ends the run after Ctrl-C, or has it paused then.
    type, extends(observer_type) :: terminal_observer_type
@@ -136,11 +135,6 @@ contains
    logical function is_interrupted()
       is_interrupted = interrupted
    end function is_interrupted
-
-   !> Ask the program to end, as Ctrl-C does.
-   subroutine request_interrupt()
-      interrupted = .true.
-   end subroutine request_interrupt
 
    subroutine handle_signal(number) bind(C)
       integer(c_int), value :: number

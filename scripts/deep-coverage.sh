@@ -1,7 +1,7 @@
 #!/bin/sh
 # Which lines of src/ and drivers/ the tests run, by folder; those that they do not run are listed before.
 . "$(dirname "$0")/common.sh"
-packages="$packages openmpi-bin libopenmpi-dev g++ pkgconf mandoc groff-base chromium"
+packages="$packages g++ pkgconf mandoc groff-base chromium"
 install_missing
 python_environment coverage
 build coverage

@@ -1,10 +1,9 @@
 #!/bin/sh
-# What is right in a case or a sweep is taken (tests/cli/test_bad_input.py): with the right values that take seconds each, too.
+# What is right in a case is taken (tests/cli/test_bad_input.py): with the right values that take seconds each, too.
 . "$(dirname "$0")/common.sh"
 install_missing
 python_environment test
 build release
 cd "$root"
 MFV_DEEP=1 OPENBLAS_NUM_THREADS=1 MPLBACKEND=Agg PYTHONPATH=python MFV_LIBRARY=$root/build/release/lib/libmfv.so \
-  MFV_RUN=$root/build/release/bin/mfv_run MFV_SWEEP=$root/build/release/bin/mfv_sweep \
-  "$venv/bin/python" -m pytest -q -p no:cacheprovider tests/cli/test_bad_input.py -k what_is_right
+  MFV_RUN=$root/build/release/bin/mfv_run "$venv/bin/python" -m pytest -q -p no:cacheprovider tests/cli/test_bad_input.py -k what_is_right

@@ -1,7 +1,7 @@
 #!/bin/sh
 # Memcheck over the tests of the interfaces: no error, nothing lost. (Two of them are in the suite of the debug preset.)
 . "$(dirname "$0")/common.sh"
-packages="$packages valgrind openmpi-bin libopenmpi-dev"
+packages="$packages valgrind"
 install_missing
 tests='test_c_api test_embedding test_threads test_kept_state test_tangent'
 # shellcheck disable=SC2086

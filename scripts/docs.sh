@@ -3,7 +3,7 @@
 # gallery, checks every link. Safe to repeat. Needs no network to be read.
 . "$(dirname "$0")/common.sh"
 install_missing
-build release --target mfv_run mfv_stress mfv_sweep mfv_conventional
+build release --target mfv_run mfv_stress mfv_conventional
 site=$root/build/docs
 venv=$site/venv
 if [ ! "$venv/done" -nt "$root/pyproject.toml" ]; then

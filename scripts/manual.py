@@ -2,10 +2,10 @@
 
     python3 scripts/manual.py build/release/bin docs/man
 
-Written are mfv_run.1, mfv_stress.1, mfv_sweep.1 and mfv_conventional.1 from --help, mfv_case.5 and mfv_sweep.5 from --keys
-and the beginnings of docs/namelist.md and docs/sweep.md. A help text consists of its usage, paragraphs, and headings that
-end in a colon. Below a heading, lines of a term, two blanks or more and an explanation are a list, and others are words;
-examples, and indented lines above the first heading, stay as they are.
+Written are mfv_run.1, mfv_stress.1 and mfv_conventional.1 from --help, mfv_case.5 from mfv_run --keys and the beginning of
+docs/namelist.md. A help text consists of its usage, paragraphs, and headings that end in a colon. Below a heading, lines of a
+term, two blanks or more and an explanation are a list, and others are words; examples, and indented lines above the first
+heading, stay as they are.
 """
 import argparse
 import re
@@ -18,13 +18,11 @@ ROOT = Path(__file__).resolve().parents[1]
 PROGRAMS = {
     "mfv_run": "solve one case of frictional contact of elastic bodies",
     "mfv_stress": "stresses inside the bodies of a contact that has been solved",
-    "mfv_sweep": "solve many cases of contact that differ in some values",
     "mfv_conventional": "solve one case of contact by load steps, for comparison",
 }
 # Page, program whose keys it has, document whose beginning it takes, what it is about.
 TEXTS = {
     "mfv_case": ("mfv_run", "docs/namelist.md", "text of a case of frictional contact, with every key"),
-    "mfv_sweep": ("mfv_sweep", "docs/sweep.md", "text of a sweep over cases of contact, with every key"),
 }
 # Day of the pages: the one on which programs or keys changed last.
 DAY = "2026-11-22"

@@ -1,8 +1,7 @@
 #!/bin/sh
 # Installs what is missing, builds MFV and runs every test. Safe to repeat. Arguments: presets (release unless told).
 . "$(dirname "$0")/common.sh"
-# The debug preset is built with MPI, so that mfv_sweep is tested with it too; the others without. Users' programs are built in C++
-# and by pkg-config too.
+# The studies of the Python package are tested with MPI too. Users' programs are built in C++ and by pkg-config too.
 packages="$packages openmpi-bin libopenmpi-dev g++ pkgconf"
 # The manual pages are looked at by both programs that show such pages.
 packages="$packages mandoc groff-base"

@@ -41,7 +41,7 @@ class Entry:
 def write_gallery(root: Path, programs: Path, folder: Path, show: object = print) -> dict[Path, str]:
     """Write gallery/index.md and a page for every example below `folder`, the source of the site, in a folder for each sort.
 
-    root: the repository; programs: folder of mfv_run and mfv_sweep; show: told of every case that is solved.
+    root: the repository; programs: folder of mfv_run; show: told of every case that is solved.
     Returns the page of each example file, both relative: files to the repository, pages to the source.
     """
     gallery = folder / "gallery"
@@ -76,26 +76,22 @@ def write_gallery(root: Path, programs: Path, folder: Path, show: object = print
 def _solved(root: Path, programs: Path, pages: Path, show: object) -> list[Entry]:
     entries = []
     for source in sorted((root / "examples").glob("*.nml")):
-        show(f"  {source.name}")
         text = source.read_text()
-        is_sweep = "&sweep" in text.lower()
-        program = "mfv_sweep" if is_sweep else "mfv_run"
-        run = subprocess.run([programs / program, source], cwd=pages, check=False, capture_output=True, text=True)
+        if "&sweep" in text.lower():  # no case: a study of several
+            continue
+        show(f"  {source.name}")
+        run = subprocess.run([programs / "mfv_run", source], cwd=pages, check=False, capture_output=True, text=True)
         if run.returncode != 0:
-            raise RuntimeError(f"{source}: {program} ended with exit code {run.returncode}: {run.stderr}")
-        result = re.search(r"^(?:result|table) +(\S+\.h5)", run.stdout, re.MULTILINE)[1]
+            raise RuntimeError(f"{source}: mfv_run ended with exit code {run.returncode}: {run.stderr}")
+        result = re.search(r"^result +(\S+\.h5)", run.stdout, re.MULTILINE)[1]
         picture = f"{source.stem}.png"
-        if is_sweep:
-            _save(_table_figure(pages / result), pages / picture)
-            _thumbnail(pages / picture)
-        else:
-            solved = mfv.read(pages / result)
-            _save(mfv.plot.figure(solved), pages / picture)
-            _save(_small_figure(solved), _place_of_thumbnail(pages / picture))
+        solved = mfv.read(pages / result)
+        _save(mfv.plot.figure(solved), pages / picture)
+        _save(_small_figure(solved), _place_of_thumbnail(pages / picture))
         (pages / result).unlink()
-        command = f"python -m mfv table {result}" if is_sweep else f"python -m mfv plot {result} -o {picture}"
+        commands = f"mfv_run {source.name}\npython -m mfv plot {result} -o {picture}"
         title, sentence = _words(text, source.stem)
-        entries.append(Entry(source, title, sentence, f"{program} {source.name}\n{command}", picture, run.stdout))
+        entries.append(Entry(source, title, sentence, commands, picture, run.stdout))
     return entries
 
 
@@ -110,25 +106,6 @@ def _small_figure(result: mfv.Result) -> Figure:
     draw = mfv.plot.shear if "shear" in result.state and result.state.shear.any() else mfv.plot.pressure
     draw(result, axes)
     axes.set_title("")
-    return figure
-
-
-def _table_figure(path: Path) -> Figure:
-    """Dissipation of a cycle in a table over its last varied number, a curve for each combination of the others."""
-    table = mfv.read_table(path)
-    names = list(table.dtype.names)
-    varied = [name for name in names[2:names.index("outcome")] if len(set(table[name])) > 1]
-    across = [name for name in varied if table[name].dtype.kind == "f"][-1]
-    others = [name for name in varied if name != across]
-    figure, axes = plt.subplots(figsize=(7, 5), layout="constrained")
-    for values in sorted({tuple(row[name] for name in others) for row in table}):
-        rows = [row for row in table if tuple(row[name] for name in others) == values]
-        label = ", ".join(f"{name.split('%')[-1]} {value}" for name, value in zip(others, values))
-        axes.plot([row[across] for row in rows], [row["cycle_dissipation"] for row in rows], "o-", markersize=3, label=label)
-    axes.set_xlabel(across)
-    axes.set_ylabel("cycle_dissipation")
-    axes.set_yscale("log")
-    axes.legend(fontsize="x-small")
     return figure
 
 

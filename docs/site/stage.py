@@ -24,7 +24,7 @@ from python_reference import write_python_reference
 
 from mfv.commands import COMMANDS
 
-PROGRAMS = ("mfv_run", "mfv_stress", "mfv_sweep", "mfv_conventional")
+PROGRAMS = ("mfv_run", "mfv_stress", "mfv_conventional")
 PICTURES = (".png", ".gif", ".svg", ".jpg")
 LANGUAGES = {".nml": "fortran", ".f90": "fortran", ".F90": "fortran", ".py": "python", ".h": "c", ".def": "c", ".c": "c"}
 LANGUAGES |= {".sh": "sh", ".cff": "yaml", ".toml": "toml"}
@@ -33,7 +33,7 @@ SHOWN = (*PICTURES, *LANGUAGES, ".csv", ".md", ".txt")
 # Pages of the side bar by heading, as they are staged; pages that are not there yet are left out.
 CONTENTS = {
     "Start": ["docs/install", "docs/guide", "gallery/index", "docs/choosing"],
-    "Reference": ["docs/namelist", "docs/sweep", "docs/file-format", "programs"],
+    "Reference": ["docs/namelist", "docs/studies", "docs/clusters", "docs/file-format", "programs"],
     "Interfaces": ["docs/python-api", "python/index", "docs/c-api", "c", "docs/fortran-api", "fortran/index"],
     "Background": ["docs/theory", "docs/verification", "docs/trust", "docs/performance",
                    "The decoupling study <examples/decoupling/README>"],
@@ -62,8 +62,8 @@ def main() -> int:
 
 def write_programs(programs: Path, page: Path) -> None:
     """The page of the programs' --help."""
-    lines = ["# Programs", "", "What `--help` says. The manual pages, `man mfv_run` and so on, have the same, and every key in"]
-    lines += ["`man 5 mfv_case` and `man 5 mfv_sweep`. Options, files and quantities are completed by bash, zsh and fish.", ""]
+    lines = ["# Programs", "", "What `--help` says. The manual pages, `man mfv_run` and so on, have the same, and every key of a"]
+    lines += ["case in `man 5 mfv_case`. Options, files and quantities are completed by bash, zsh and fish.", ""]
     commands = {program: [programs / program] for program in PROGRAMS}
     commands |= {f"python -m mfv {each.NAME}": [sys.executable, "-m", "mfv", each.NAME] for each in COMMANDS}
     surroundings = os.environ | {"PYTHONPATH": str(ROOT / "python"), "COLUMNS": "100"}

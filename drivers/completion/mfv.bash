@@ -1,4 +1,4 @@
-# Completion of mfv_run, mfv_stress, mfv_sweep and mfv_conventional for bash:
+# Completion of mfv_run, mfv_stress and mfv_conventional for bash:
 # options, what they take, and files, as --help has them.
 
 # Files with the extension $1, and folders, that begin with $2.
@@ -58,4 +58,4 @@ _mfv() {
   esac
 }
 
-complete -F _mfv mfv_run mfv_stress mfv_sweep mfv_conventional
+complete -F _mfv mfv_run mfv_stress mfv_conventional

@@ -1,4 +1,4 @@
-# Completion of mfv_run, mfv_stress, mfv_sweep and mfv_conventional for fish:
+# Completion of mfv_run, mfv_stress and mfv_conventional for fish:
 # options, what they take, and files, as --help has them.
 
 # What --help of the program on the command line says about each option: option, argument and meaning, between tabs.
@@ -38,7 +38,7 @@ function __mfv_arguments
     end
 end
 
-for program in mfv_run mfv_stress mfv_sweep mfv_conventional
+for program in mfv_run mfv_stress mfv_conventional
     complete -c $program -f -a '(__mfv_arguments)'
     complete -c $program -f -n 'string match -q -- "-*" (commandline -ct)' \
         -a '(__mfv_options | string replace -r "\t[^\t]*\t" "\t")'

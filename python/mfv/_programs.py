@@ -22,11 +22,6 @@ def mfv_stress() -> None:
     _become("mfv_stress")
 
 
-def mfv_sweep() -> None:
-    """Become mfv_sweep: solve the cases of a sweep."""
-    _become("mfv_sweep")
-
-
 def _become(name: str) -> None:
     """Replace this process by the program `name` of the package, with the arguments of this one."""
     program = Path(__file__).resolve().parent / "bin" / name

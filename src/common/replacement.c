@@ -182,18 +182,18 @@ void mfv_identify_file(const char *path, int64_t identity[5]) {
 }
 
 /* Have the disk take what has been written to an open file. A file system that cannot is no failure. */
-int mfv_sync(int descriptor) {
+static int sync_file(int descriptor) {
   if (fsync(descriptor) == 0 || errno == EINVAL || errno == ENOTSUP || errno == ENOSYS) return 0;
   return errno;
 }
 
 /* Have the disk take the entries of the folder of `path`. A folder that may be written and not read is no failure. */
-int mfv_sync_folder(const char *path) {
+static int sync_folder(const char *path) {
   char *folder = folder_of(path);
   int code, descriptor = folder == NULL ? -1 : open(folder, O_RDONLY | O_DIRECTORY | O_CLOEXEC);
   free(folder);
   if (descriptor < 0) return 0;
-  code = mfv_sync(descriptor);
+  code = sync_file(descriptor);
   close(descriptor);
   return code;
 }
@@ -204,7 +204,7 @@ int mfv_sync_folder(const char *path) {
    it has where only the last step, the folder, failed. */
 int mfv_finish_replacement(int descriptor, const char *part, const char *target, const int64_t *expected, int *is_in_place) {
   int64_t found[5];
-  int code = mfv_sync(descriptor);
+  int code = sync_file(descriptor);
   if (close(descriptor) != 0 && code == 0) code = errno;
   if (code == 0 && expected != NULL) {
     mfv_identify_file(target, found);
@@ -212,7 +212,7 @@ int mfv_finish_replacement(int descriptor, const char *part, const char *target,
   }
   if (code == 0 && rename(part, target) != 0) code = errno;
   *is_in_place = code == 0;
-  if (code == 0) return mfv_sync_folder(target);
+  if (code == 0) return sync_folder(target);
   unlink(part);
   return code;
 }

@@ -20,7 +20,7 @@ module mfv_safe_file
    implicit none
    private
    public :: replacement_type, begin_replacement, write_replacement, finish_replacement, drop_replacement, &
-             identify_file, identity_length, write_all, describe_code
+             identify_file, identity_length, write_all, delete_path
 
    !> Numbers by which a file is known.
    integer, parameter :: identity_length = 5
@@ -78,6 +78,12 @@ module mfv_safe_file
          character(kind=c_char), intent(out) :: text(*)
          integer(c_size_t), value :: length
       end subroutine c_describe
+
+      function c_remove(path) bind(C, name='remove') result(code)
+         import :: c_char, c_int
+         character(kind=c_char), intent(in) :: path(*)
+         integer(c_int) :: code
+      end function c_remove
 
       subroutine c_free(memory) bind(C, name='free')
          import :: c_ptr
@@ -168,6 +174,14 @@ contains
       if (replacement%descriptor >= 0) call c_drop(replacement%descriptor, replacement%part//c_null_char)
       replacement%descriptor = -1
    end subroutine drop_replacement
+
+   !> Delete a file, if it is there.
+   subroutine delete_path(path)
+      character(*), intent(in) :: path
+      integer :: code
+
+      code = c_remove(path//c_null_char)
+   end subroutine delete_path
 
    !> Error MFV_FILE_ERROR: `what`, and the words of the system for its error `code`.
    subroutine explain(what, code, error)

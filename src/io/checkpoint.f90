@@ -11,8 +11,7 @@ module mfv_checkpoint
    use mfv_checksum, only: add_text_to_checksum, add_to_checksum, checksum_of
    use mfv_error, only: error_type, set_error
    use mfv_kinds, only: wp
-   use mfv_locked_file, only: delete_path
-   use mfv_safe_file, only: begin_replacement, finish_replacement, replacement_type, write_replacement
+   use mfv_safe_file, only: begin_replacement, delete_path, finish_replacement, replacement_type, write_replacement
    use mfv_simulation, only: simulation_type
    use mfv_status, only: MFV_FILE_ERROR, MFV_INPUT_ERROR
    use mfv_strings, only: to_text

@@ -12,7 +12,7 @@ module mfv_hdf5_reader
    use mfv_text_file, only: check_is_file
    implicit none
    private
-   public :: open_to_read, close_read, has, read_vector, read_matrix, read_text_attribute, read_whole_attribute
+   public :: open_to_read, close_read, has, read_vector, read_matrix, read_text_attribute
 
    interface
       subroutine c_free(memory) bind(C, name='free')
@@ -102,33 +102,6 @@ contains
       if (.not. allocated(text)) call set_error(error, MFV_INPUT_ERROR, 'attribute '//name//' is no text of MFV')
       call h5aclose_f(attribute, ignored)
    end subroutine read_text_attribute
-
-   !> A whole number that is an attribute of the file. Error MFV_INPUT_ERROR.
-   subroutine read_whole_attribute(file, name, value, error)
-      integer(hid_t), intent(in) :: file
-      character(*), intent(in) :: name
-      integer, intent(out) :: value
-      type(error_type), allocatable, intent(out) :: error
-      integer(hid_t) :: attribute, type
-      integer :: class, code, ignored
-
-      value = 0
-      call open_attribute(file, name, attribute, error)
-      if (allocated(error)) return
-      class = -1
-      call h5aget_type_f(attribute, type, code)
-      if (code == 0) then
-         call h5tget_class_f(type, class, code)
-         call h5tclose_f(type, ignored)
-      end if
-      if (code == 0 .and. class == H5T_INTEGER_F) then
-         call h5aread_f(attribute, H5T_NATIVE_INTEGER, value, [1_hsize_t], code)
-      else
-         code = -1
-      end if
-      if (code /= 0) call set_error(error, MFV_INPUT_ERROR, 'attribute '//name//' is no whole number')
-      call h5aclose_f(attribute, ignored)
-   end subroutine read_whole_attribute
 
    !> Open an attribute of the file that has one value, as a caller with room for one needs it. Error MFV_INPUT_ERROR.
    subroutine open_attribute(file, name, attribute, error)

@@ -11,17 +11,11 @@ module mfv_hdf5_writer
    use mfv_result_fields, only: along_nothing, field_type
    use mfv_safe_file
    use mfv_status, only: MFV_FILE_ERROR, MFV_INPUT_ERROR
-   use mfv_strings, only: string_type, to_text
+   use mfv_strings, only: to_text
    implicit none
    private
-   public :: writer_type, file_kind_type, check_writable, create_file, copy_and_open, finish_file, create_group, write_dataset, &
-             write_values, write_text, write_texts, write_whole, write_hdf5_version, note
-
-   !> A kind of files: its name, and an attribute of the root that every file of the kind has, and no other.
-   type :: file_kind_type
-      character(20) :: name = ''
-      character(20) :: attribute = ''
-   end type file_kind_type
+   public :: writer_type, check_writable, create_file, copy_and_open, finish_file, create_group, write_dataset, write_values, &
+             write_text, write_hdf5_version, note
 
    !> An open file.
    type :: writer_type
@@ -33,28 +27,28 @@ module mfv_hdf5_writer
       integer(int64), allocatable, private :: expected(:)
    end type writer_type
 
+   !> Every result has this attribute of the root, and no other file.
+   character(*), parameter :: mark_of_result = 'outcome'
    !> Bytes by which a file in memory grows.
    integer(size_t), parameter :: growth = 1048576
 
 contains
 
-   !> Whether a file could be written to `path`: error MFV_INPUT_ERROR where not, found out before a long run. Of what is
-   !> there only a file of the same kind is replaced; the case itself, a matrix that it names, or data of others are not.
-   subroutine check_writable(path, kind, error)
+   !> Whether a result could be written to `path`: error MFV_INPUT_ERROR where not, found out before a long run. Of what is
+   !> there only a result is replaced; the case itself, a matrix that it names, or data of others are not.
+   subroutine check_writable(path, error)
       character(*), intent(in) :: path
-      type(file_kind_type), intent(in) :: kind
       type(error_type), allocatable, intent(out) :: error
       type(replacement_type) :: replacement
 
-      call begin_checked(path, kind, replacement, error)
+      call begin_checked(path, replacement, error)
       call drop_replacement(replacement)
       if (allocated(error)) error%status = MFV_INPUT_ERROR
    end subroutine check_writable
 
    !> Begin a file that is to become `path`. Error MFV_FILE_ERROR; see check_writable.
-   subroutine begin_checked(path, kind, replacement, error)
+   subroutine begin_checked(path, replacement, error)
       character(*), intent(in) :: path
-      type(file_kind_type), intent(in) :: kind
       type(replacement_type), intent(out) :: replacement
       type(error_type), allocatable, intent(out) :: error
       logical :: is_there
@@ -62,18 +56,17 @@ contains
       call begin_replacement(path, replacement, error)
       if (allocated(error)) return
       inquire (file=path, exist=is_there)
-      if (is_there) call check_kind(path, kind, error)
+      if (is_there) call check_is_result(path, error)
       if (allocated(error)) call drop_replacement(replacement)
    end subroutine begin_checked
 
    !> Whether the file that is there may be replaced. Error MFV_FILE_ERROR.
-   subroutine check_kind(path, kind, error)
+   subroutine check_is_result(path, error)
       character(*), intent(in) :: path
-      type(file_kind_type), intent(in) :: kind
       type(error_type), allocatable, intent(out) :: error
       character(*), parameter :: so = '; it is not replaced: name another file, or move this one away'
       integer(hid_t) :: file
-      logical :: is_hdf5, is_of_kind
+      logical :: is_hdf5, is_result
       integer :: code
 
       call start_hdf5()
@@ -88,22 +81,21 @@ contains
                         'open to write'//so)
          return
       end if
-      call h5aexists_f(file, trim(kind%attribute), is_of_kind, code)
-      if (code /= 0 .or. .not. is_of_kind) call set_error(error, MFV_FILE_ERROR, path//' is there and is no '//trim(kind%name)// &
-                                                          ' (no attribute '//trim(kind%attribute)//')'//so)
+      call h5aexists_f(file, mark_of_result, is_result, code)
+      if (code /= 0 .or. .not. is_result) call set_error(error, MFV_FILE_ERROR, path//' is there and is no result of MFV '// &
+                                                         '(no attribute '//mark_of_result//')'//so)
       call h5fclose_f(file, code)
-   end subroutine check_kind
+   end subroutine check_is_result
 
    !> Begin the file that is to become `path`, empty. Error MFV_FILE_ERROR; see check_writable for what is not replaced.
-   subroutine create_file(path, kind, writer, error)
+   subroutine create_file(path, writer, error)
       character(*), intent(in) :: path
-      type(file_kind_type), intent(in) :: kind
       type(writer_type), intent(out) :: writer
       type(error_type), allocatable, intent(out) :: error
       integer(hid_t) :: access
       integer :: code
 
-      call begin_checked(path, kind, writer%replacement, error)
+      call begin_checked(path, writer%replacement, error)
       if (allocated(error)) return
       call start_hdf5()
       call in_memory(access, writer)
@@ -312,50 +304,13 @@ contains
       integer(hid_t), intent(in) :: object
       character(*), intent(in) :: name, text
       character(len=:, kind=c_char), allocatable, target :: terminated
-      type(c_ptr) :: pointers(1)
-      integer(hid_t) :: space
+      type(c_ptr), target :: pointers(1)
+      integer(hid_t) :: text_type, space, attribute
       integer :: code
 
       terminated = text//c_null_char
       pointers = c_loc(terminated)
       call h5screate_f(H5S_SCALAR_F, space, code)
-      call write_terminated(writer, object, name, space, pointers)
-   end subroutine write_text
-
-   !> An attribute of several texts, as write_text has one.
-   subroutine write_texts(writer, object, name, texts)
-      type(writer_type), intent(inout) :: writer
-      integer(hid_t), intent(in) :: object
-      character(*), intent(in) :: name
-      type(string_type), intent(in) :: texts(:)
-      character(kind=c_char), allocatable, target :: letters(:)
-      type(c_ptr) :: pointers(size(texts))
-      integer(hid_t) :: space
-      integer :: code, i, j, at
-
-      allocate (letters(sum([(len(texts(i)%text) + 1, i=1, size(texts))])))
-      at = 0
-      do i = 1, size(texts)
-         pointers(i) = c_loc(letters(at + 1))
-         do j = 1, len(texts(i)%text)
-            letters(at + j) = texts(i)%text(j:j)
-         end do
-         at = at + len(texts(i)%text) + 1
-         letters(at) = c_null_char
-      end do
-      call h5screate_simple_f(1, [size(texts, kind=hsize_t)], space, code)
-      call write_terminated(writer, object, name, space, pointers)
-   end subroutine write_texts
-
-   !> An attribute of null-terminated texts at the addresses `pointers`, of the extent of `space`, which is closed.
-   subroutine write_terminated(writer, object, name, space, pointers)
-      type(writer_type), intent(inout) :: writer
-      integer(hid_t), intent(in) :: object, space
-      character(*), intent(in) :: name
-      type(c_ptr), intent(in), target :: pointers(:)
-      integer(hid_t) :: text_type, attribute
-      integer :: code
-
       call h5tcopy_f(H5T_STRING, text_type, code)
       call h5tset_cset_f(text_type, H5T_CSET_UTF8_F, code)
       call h5acreate_f(object, name, text_type, space, attribute, code)
@@ -367,7 +322,7 @@ contains
       end if
       call h5sclose_f(space, code)
       call h5tclose_f(text_type, code)
-   end subroutine write_terminated
+   end subroutine write_text
 
    !> The version of HDF5 that writes, as an attribute of the file.
    subroutine write_hdf5_version(writer)
@@ -377,26 +332,6 @@ contains
       call h5get_libversion_f(major, minor, release, code)
       call write_text(writer, writer%file, 'hdf5_version', to_text(major)//'.'//to_text(minor)//'.'//to_text(release))
    end subroutine write_hdf5_version
-
-   !> An attribute that is a whole number.
-   subroutine write_whole(writer, object, name, value)
-      type(writer_type), intent(inout) :: writer
-      integer(hid_t), intent(in) :: object
-      character(*), intent(in) :: name
-      integer, intent(in) :: value
-      integer(hid_t) :: space, attribute
-      integer :: code
-
-      call h5screate_f(H5S_SCALAR_F, space, code)
-      call h5acreate_f(object, name, H5T_STD_I32LE, space, attribute, code)
-      call note(writer, code)
-      if (code == 0) then
-         call h5awrite_f(attribute, H5T_NATIVE_INTEGER, value, [1_hsize_t], code)
-         call note(writer, code)
-         call h5aclose_f(attribute, code)
-      end if
-      call h5sclose_f(space, code)
-   end subroutine write_whole
 
    subroutine note(writer, code)
       type(writer_type), intent(inout) :: writer

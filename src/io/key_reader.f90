@@ -12,8 +12,7 @@ module mfv_key_reader
    use mfv_text_file, only: path_beside
    implicit none
    private
-   public :: reader_type, check_groups, check_entries, find_fault, read_number, logical_code, count_groups, line_of, find_file, &
-             merge_text, suggest, fail
+   public :: reader_type, check_groups, check_entries, count_groups, line_of, find_file, merge_text, suggest, fail
 
    !> Places of the groups of one name.
    type :: places_type
@@ -161,7 +160,7 @@ contains
       right = size(entry%values) == 1 .or. (key%is_list .and. size(entry%values) > 1)
       do i = 1, size(entry%values)
          if (.not. right) exit
-         right = (entry%is_quoted(i) .eqv. (key%kind == kind_text .or. key%kind == kind_choice)) .or. key%kind == kind_any
+         right = entry%is_quoted(i) .eqv. (key%kind == kind_text .or. key%kind == kind_choice)
          if (.not. right) exit
          select case (key%kind)
          case (kind_choice)

@@ -5,12 +5,11 @@ module mfv_keys
    use mfv_strings, only: add_text, list_of_words, quoted, string_type, to_text
    implicit none
    private
-   public :: key_type, catalogue_type, kind_real, kind_integer, kind_logical, kind_text, kind_choice, kind_any, add_key, &
+   public :: key_type, catalogue_type, kind_real, kind_integer, kind_logical, kind_text, kind_choice, &
              add_text_key, add_logical_key, add_choice_key, add_integer_key, add_real_key, add_positive_key, &
              list_keys_as_markdown, describe_allowed, is_reasonable, largest_size, reasonable_sizes
 
-   integer, parameter :: kind_real = 1, kind_integer = 2, kind_logical = 3, kind_text = 4, kind_choice = 5, &
-                         kind_any = 6
+   integer, parameter :: kind_real = 1, kind_integer = 2, kind_logical = 3, kind_text = 4, kind_choice = 5
 
    !> Sizes of reals that are taken, whatever the unit; beyond them squares and products overflow, or vanish.
    real(wp), parameter :: smallest_size = 1.0e-100_wp, largest_size = 1.0e100_wp
@@ -138,11 +137,8 @@ contains
          text = '.true. or .false.'
       case (kind_text)
          text = 'a text between quotes'
-         if (key%is_list) text = 'one or more texts between quotes'
       case (kind_integer)
          text = 'a whole number from '//to_text(nint(key%lower))//' to '//to_text(nint(key%upper))
-      case (kind_any)
-         text = 'what the varied key takes'
       case default
          text = 'a number'
          call add_range(key, text)

@@ -7,7 +7,7 @@ module mfv_result_file
    use mfv_case, only: case_type
    use mfv_error, only: error_type
    use mfv_hdf5_reader, only: close_read, open_to_read, read_text_attribute
-   use mfv_hdf5_writer, check_place => check_writable
+   use mfv_hdf5_writer
    use mfv_result_fields
    use mfv_simulation, only: simulation_type
    use mfv_status, only: MFV_INTERRUPTED, status_outcome
@@ -16,18 +16,7 @@ module mfv_result_file
    private
    public :: check_writable, is_whole_result, write_result
 
-   type(file_kind_type), parameter :: result_kind = file_kind_type('result of MFV', 'outcome')
-
 contains
-
-   !> Whether the result of a case could be written to `path`: error MFV_INPUT_ERROR where not, found out before a long run.
-   !> What is there and is no result, the case itself or a matrix that it names, is not replaced.
-   subroutine check_writable(path, error)
-      character(*), intent(in) :: path
-      type(error_type), allocatable, intent(out) :: error
-
-      call check_place(path, result_kind, error)
-   end subroutine check_writable
 
    !> Whether there is the result of a run that was not interrupted.
    logical function is_whole_result(path)
@@ -58,7 +47,7 @@ contains
       type(error_type), allocatable, intent(out) :: error
       type(writer_type) :: writer
 
-      call create_file(path, result_kind, writer, error)
+      call create_file(path, writer, error)
       if (allocated(error)) return
       if (writer%code == 0) then
          call write_attributes(writer, case, simulation, warnings)

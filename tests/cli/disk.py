@@ -8,7 +8,7 @@ from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
 BUILD = Path(os.environ.get("MFV_RUN", ROOT / "build/release/bin/mfv_run")).parent
-RUN, STRESS, CONVENTIONAL, SWEEP = (str(BUILD / name) for name in ("mfv_run", "mfv_stress", "mfv_conventional", "mfv_sweep"))
+RUN, STRESS, CONVENTIONAL = (str(BUILD / name) for name in ("mfv_run", "mfv_stress", "mfv_conventional"))
 
 CASE = """&body shape='half_plane', shear_modulus=1.0, poisson_ratio=0.3 /
 &body shape='disk', radius=0.25, rigid=.true. /
@@ -17,9 +17,6 @@ CASE = """&body shape='half_plane', shear_modulus=1.0, poisson_ratio=0.3 /
 &step normal_force=1.0e-3, friction=.false. /
 &step tangential_force=2.0e-4 /
 &output file='case.h5' /
-"""
-STUDY = """&sweep base='case.nml', states='all' /
-&vary key='step(2)%tangential_force', values=1.0e-4, 2.0e-4 /
 """
 
 
@@ -33,7 +30,7 @@ def build_shim(folder):
 
 def run(command, folder, **options):
     """A program in a folder, with its output; `options`: of subprocess.run."""
-    environment = {**os.environ, "OPENBLAS_NUM_THREADS": "1", "OMP_NUM_THREADS": "1", "PYTHONPATH": str(ROOT / "python")}
+    environment = {**os.environ, "OPENBLAS_NUM_THREADS": "1", "PYTHONPATH": str(ROOT / "python")}
     options["env"] = {**environment, **options.get("env", {})}
     return subprocess.run(list(map(str, command)), cwd=folder, capture_output=True, text=True, timeout=300, **options)
 
@@ -52,20 +49,8 @@ def run_on_disk(shim, command, folder, at=0, number=0, stays=False):
     return done, [line.split(" ") for line in log.read_text().splitlines()] if log.exists() else []
 
 
-def start_until(shim, command, folder, at):
-    """Start a program that stops itself before call `at` (see run_on_disk), and wait until it has; whatever the machine's speed, it
-    is then at the same place. It goes on, or takes a signal, by SIGCONT (`go_on_with`)."""
-    settings = {"LD_PRELOAD": str(shim), "MFV_FAULT_FOLDER": str(Path(folder).resolve()), "MFV_FAULT_AT": str(at), "MFV_FAULT_ERRNO": "-1",
-                "OPENBLAS_NUM_THREADS": "1", "OMP_NUM_THREADS": "1"}
-    process = subprocess.Popen(list(map(str, command)), cwd=folder, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
-                               env={**os.environ, **settings}, start_new_session=True)
-    ended = os.waitid(os.P_PID, process.pid, os.WSTOPPED | os.WEXITED | os.WNOWAIT)
-    assert ended.si_code == os.CLD_STOPPED, process.communicate()
-    return process
-
-
 def go_on_with(process, number):
-    """Send a signal to a process that start_until has stopped, and let it go on; what it printed and said."""
+    """Send a signal to a process that has been stopped, and let it go on; what it printed and said."""
     process.send_signal(number)
     process.send_signal(signal.SIGCONT)
     return process.communicate(timeout=300)

@@ -4,8 +4,7 @@
    MFV_FAULT_FOLDER   only calls on files in this folder count
    MFV_FAULT_LOG      file for one line a call: "write /folder/name", "rename /folder/name /folder/other"; not in the folder
    MFV_FAULT_AT       number of the call that fails, from 1; none where it is not there
-   MFV_FAULT_ERRNO    with this errno; 0: the process is killed in place of the call (SIGKILL); -1: it is stopped before the
-                      call (SIGSTOP), which succeeds when it continues
+   MFV_FAULT_ERRNO    with this errno; 0: the process is killed in place of the call (SIGKILL)
    MFV_FAULT_STAYS    set: every later call that needs space on the disk fails too
 
    Calls that count: making a file (open), write, fsync, ftruncate, close of a file that was made or opened to be written,
@@ -91,10 +90,6 @@ static int fails(const char *kind, const char *name, const char *other, int need
   pthread_mutex_unlock(&mutex);
   errno = before;
   if (!is_it) return 0;
-  if (number < 0) {
-    kill(getpid(), SIGSTOP);
-    return 0;
-  }
   if (number == 0) kill(getpid(), SIGKILL);
   errno = (int)number;
   return 1;
@@ -172,33 +167,6 @@ int close(int descriptor) {
   if (!failed) return code;
   errno = number;
   return -1;
-}
-
-/* Streams of C: a flush is their write. */
-FILE *fopen(const char *path, const char *mode) {
-  FILE *(*next)(const char *, const char *) = (FILE * (*)(const char *, const char *)) dlsym(RTLD_NEXT, "fopen");
-  char whole[PATH_MAX];
-  FILE *stream;
-  const int inside = in_folder(path, whole) && mode[0] != 'r';
-  if (inside && fails("open", whole, "", 1)) return NULL;
-  stream = next(path, mode);
-  if (stream != NULL && inside && fileno(stream) < MOST_DESCRIPTORS) {
-    strcpy(names[fileno(stream)], whole);
-    writes[fileno(stream)] = 1;
-  }
-  return stream;
-}
-
-int fflush(FILE *stream) {
-  int (*next)(FILE *) = (int (*)(FILE *))dlsym(RTLD_NEXT, "fflush");
-  if (stream != NULL && tracked(fileno(stream)) && fails("write", names[fileno(stream)], "", 1)) return EOF;
-  return next(stream);
-}
-
-int fclose(FILE *stream) {
-  int (*next)(FILE *) = (int (*)(FILE *))dlsym(RTLD_NEXT, "fclose");
-  if (tracked(fileno(stream))) names[fileno(stream)][0] = '\0';
-  return next(stream);
 }
 
 int remove(const char *path) {

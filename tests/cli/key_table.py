@@ -1,4 +1,4 @@
-"""Every key of a case and of a sweep, one row each: the scene in which it makes sense, what it takes, and what is said where it is
+"""Every key of a case, one row each: the scene in which it makes sense, what it takes, and what is said where it is
 missing. tests/cli/test_bad_input.py makes the faults of it; it fails where `--keys` names a key that has no row here."""
 
 from __future__ import annotations
@@ -52,14 +52,6 @@ SCENES: dict[str, Groups] = {
     "rolling": scene(ELASTIC_DISK, RIGID_PLANE, MESH, COULOMB, PRESS, {"moment": "1e-6"}),
 }
 
-#: Sweeps of base.nml, which is the scene "cylinder".
-BASE = {"base": "'base.nml'"}
-SWEEPS: dict[str, Groups] = {
-    "values": [("sweep", BASE), ("vary", {"key": "'step(2)%tangential_force'", "values": "1e-4, 2e-4", "factor": "1"})],
-    "row": [("sweep", BASE), ("vary", {"key": "'step(2)%tangential_force'", "from": "1e-4", "to": "2e-4", "count": "4", "name": "'Q'"})],
-    "reference": [("sweep", BASE | {"reference": "'full'"}), ("vary", {"key": "'scene%coupling'", "values": "'full', 'none'"})],
-}
-
 
 @dataclass(frozen=True)
 class Row:
@@ -69,7 +61,7 @@ class Row:
     #: The scene, and a value of the key that is right in it, as it is written.
     scene: str
     value: str
-    #: real, whole, text, choice, logical or any.
+    #: real, whole, text, choice or logical.
     kind: str
     #: Range of a number; `above`: whether its lower end itself is refused.
     lower: float = -math.inf
@@ -108,8 +100,7 @@ class Row:
         if self.kind == "choice":
             *most, last = [f"'{choice}'" for choice in self.choices]
             return f"{', '.join(most)} or {last}"
-        texts = "one or more texts between quotes" if self.is_list else "a text between quotes"
-        return {"text": texts, "logical": ".true. or .false.", "any": "what the varied key takes"}[self.kind]
+        return {"text": "a text between quotes", "logical": ".true. or .false."}[self.kind]
 
 
 def number(value: float) -> str:
@@ -250,27 +241,4 @@ CASE: dict[tuple[str, str], Row] = {
     ("output", "error_estimate"): logical("output", "cylinder", ".false."),
     ("output", "sensitivity"): logical("output", "cylinder", ".false."),
     ("output", "checkpoint_minutes"): real("output", "cylinder", "10", "minutes", lower=0.0, upper=1e6),
-}
-
-TOO_SMALL = "a number other than 0 must be of a size from 1e-100 to 1e100"
-NO_ROW = "needs values=..., or from, to and count"
-
-#: Every key of a sweep: (group, key) and its row.
-SWEEP: dict[tuple[str, str], Row] = {
-    ("sweep", "base"): text("sweep", "values", "'base.nml'", is_list=True, refused={"''": "the name of a file is empty"},
-                            needed=": base is missing; it must be one or more texts between quotes"),
-    ("sweep", "file"): text("sweep", "values", "'table.h5'"),
-    ("sweep", "combine"): choice("sweep", "values", "'all'", "all paired"),
-    ("sweep", "states"): choice("sweep", "values", "'none'", "none all"),
-    ("sweep", "reference"): choice("sweep", "reference", "'full'", "none full"),
-    ("vary", "key"): text("vary(1)", "values", "'step(2)%tangential_force'", is_list=True,
-                          needed=": key is missing; it must be one or more texts between quotes",
-                          refused={"''": "must be 'group%key', 'group(number)%key' or 'dundurs_beta'"}),
-    ("vary", "factor"): real("vary(1)", "values", "1", is_list=True, refused=dict.fromkeys(("1e-100", "-1e-100"), TOO_SMALL)),
-    ("vary", "values"): Row("vary(1)", "values", "1e-4, 2e-4", "any", is_list=True, needed=NO_ROW),
-    ("vary", "from"): real("vary(1)", "row", "1e-4", needed=NO_ROW),
-    ("vary", "to"): real("vary(1)", "row", "2e-4", needed=NO_ROW),
-    ("vary", "count"): whole("vary(1)", "row", "4", 1, 100000, needed=NO_ROW, dear=("100000",)),
-    ("vary", "spacing"): choice("vary(1)", "row", "'linear'", "linear log"),
-    ("vary", "name"): text("vary(1)", "row", "'Q'", refused={"''": "must not be empty, nor begin with a blank"}),
 }

@@ -1,4 +1,4 @@
-"""Texts and files that are broken as such, and paths that lead to no file at all: in place of a case, a sweep, a profile, a matrix,
+"""Texts and files that are broken as such, and paths that lead to no file at all: in place of a case, a profile, a matrix,
 coefficients, points, a result; and wrong arguments of the programs. A message with file and line and exit code 2; never a hang."""
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ import pytest
 
 ROOT = Path(__file__).resolve().parents[2]
 RUN = Path(os.environ.get("MFV_RUN", ROOT / "build/release/bin/mfv_run"))
-SWEEP, STRESS, CONVENTIONAL = (RUN.with_name(name) for name in ("mfv_sweep", "mfv_stress", "mfv_conventional"))
+STRESS, CONVENTIONAL = (RUN.with_name(name) for name in ("mfv_stress", "mfv_conventional"))
 INPUT_ERROR = 2
 
 ELASTIC = b"&body shape='half_plane', shear_modulus=1.0, poisson_ratio=0.3 /\n"
@@ -165,7 +165,6 @@ def test_paths_that_lead_to_no_file(folder: Path, path: str) -> None:
     says = NO_FILES[path]
     refused(run(RUN, "--check", path, cwd=folder), says)
     refused(run(CONVENTIONAL, path, cwd=folder), says)
-    refused(run(SWEEP, "--check", path, cwd=folder), says) if path else None
     upper = f"&body shape='profile', file='{path}', rigid=.true. /\n".encode()
     (folder / "profile.nml").write_bytes(ELASTIC + upper + MESH + PRESS)
     refused(run(RUN, "--check", "profile.nml", cwd=folder), f"profile.nml:2: &body 2 file='{path}': ", says)
@@ -173,8 +172,6 @@ def test_paths_that_lead_to_no_file(folder: Path, path: str) -> None:
     refused(run(RUN, "--check", "matrix.nml", cwd=folder), f"matrix.nml:1: &body 1 file='{path}': ", says)
     (folder / "mu.nml").write_bytes(BODIES + f"&friction law='coulomb', mu_file='{path}' /\n".encode() + PRESS)
     refused(run(RUN, "--check", "mu.nml", cwd=folder), f"mu.nml:4: &friction mu_file='{path}': ", says)
-    (folder / "sweep.nml").write_text(f"&sweep base='{path}' /\n&vary key='mesh%nodes', values=9, 11 /\n")
-    refused(run(SWEEP, "--check", "sweep.nml", cwd=folder), f"sweep.nml:1: &sweep base='{path}': ", says)
     if path:
         refused(run(STRESS, path, cwd=folder), says)
     points = run(STRESS, "result.h5", "--at", path, cwd=folder)
@@ -322,7 +319,7 @@ def test_what_does_not_go_together(tmp_path: Path, text: bytes, message: str) ->
 
 
 def test_matrices_have_no_other_meshes(tmp_path: Path) -> None:
-    """Neither an estimate of the error nor advice on the mesh; and no materials to vary."""
+    """Neither an estimate of the error nor advice on the mesh."""
     with h5py.File(tmp_path / "matrix.h5", "w") as file:
         file["x"] = X
         file["compliance"] = np.eye(N) + 0.1
@@ -330,8 +327,6 @@ def test_matrices_have_no_other_meshes(tmp_path: Path) -> None:
     refused(run(RUN, "--estimate", "case.nml", cwd=tmp_path), "case.nml: --estimate: a body with shape='matrix' has no coarser mesh")
     refused(run(RUN, "--advise", "error=1e-2", "case.nml", cwd=tmp_path),
             "case.nml: no advice: a body with shape='matrix' has its own nodes")
-    (tmp_path / "sweep.nml").write_text("&sweep base='case.nml' /\n&vary key='dundurs_beta', values=0.1, 0.2 /\n")
-    refused(run(SWEEP, "sweep.nml", cwd=tmp_path), "dundurs_beta needs bodies with materials, not shape='matrix'")
 
 
 def test_results_that_are_none(tmp_path: Path) -> None:
@@ -366,14 +361,6 @@ ARGUMENTS = [
     (CONVENTIONAL, (), "one case file is wanted"),
     (CONVENTIONAL, ("case.nml", "case.nml"), "one case file is wanted"),
     (CONVENTIONAL, ("--check",), "unknown option '--check'"),
-    *((SWEEP, (option, wrong, "sweep.nml"), f"{option} '{wrong}': must be a whole number above 0")
-      for option in ("--threads", "--case") for wrong in ("", "0", "-1", "1.5", "1e3", "NaN", "x", "99999999999999999999")),
-    *((SWEEP, ("--part", wrong, "sweep.nml"), f"--part '{wrong}': must be I/N with I from 1 to N")
-      for wrong in ("", "1", "/", "1/", "/2", "0/2", "3/2", "1/2/3", "-1/2", "1/99999999999999999999", "x/y")),
-    (SWEEP, (), "a sweep file is missing"),
-    (SWEEP, ("--threads",), "--threads '': must be a whole number above 0"),
-    (SWEEP, ("",), "a sweep file is missing"),
-    (SWEEP, ("sweep.nml", "sweep.nml"), "too many arguments: 'sweep.nml'"),
     (STRESS, ("",), "a result file is missing"),
     (STRESS, ("result.h5", "result.h5"), "too many arguments: 'result.h5'"),
     *((STRESS, ("result.h5", "--step", wrong), f"--step needs a whole number from 1 to 100000, not '{wrong}'")

@@ -8,7 +8,7 @@ import os
 import re
 import subprocess
 from pathlib import Path
-from typing import Callable, Iterator
+from typing import Iterator
 
 import h5py
 import numpy as np
@@ -17,13 +17,12 @@ import pytest
 from mfv import Case
 from mfv.errors import InputError
 
-from key_table import CASE, SCENES, SWEEP, SWEEPS, Groups, Row, number
+from key_table import CASE, SCENES, Groups, Row, number
 
 ROOT = Path(__file__).resolve().parents[2]
 RUN = os.environ.get("MFV_RUN", str(ROOT / "build/release/bin/mfv_run"))
-SWEEP_PROGRAM = os.environ.get("MFV_SWEEP", str(ROOT / "build/release/bin/mfv_sweep"))
 INPUT_ERROR = 2
-ROWS = [("case", *key, row) for key, row in CASE.items()] + [("sweep", *key, row) for key, row in SWEEP.items()]
+ROWS = [(*key, row) for key, row in CASE.items()]
 
 #: Written values that are no number, whatever the range.
 NO_NUMBERS = ["x", "'1'", ".true.", "''", "", "NaN", "nan", "Inf", "-Inf", "Infinity", "1e400", "-1e400", "1.7976931348623159e308",
@@ -43,7 +42,6 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Path]:
     folder = tmp_path_factory.mktemp("bad_input")
     (folder / "profile.txt").write_text("-1 1\n0 0\n1 1\n")
     (folder / "mu.txt").write_text("-1 0.7\n1 0.7\n")
-    (folder / "base.nml").write_text(written(SCENES["cylinder"]))
     before = Path.cwd()
     os.chdir(folder)
     yield folder
@@ -70,27 +68,13 @@ def line_of_group(groups: Groups, row: Row) -> int:
     return found[row.number - 1]
 
 
-def complaint_about_case(text: str) -> str:
+def complaint(text: str) -> str:
     """What the library says of a case; empty: it takes it."""
     try:
         with Case.from_text(text, "case.nml"):
             return ""
     except InputError as error:
         return str(error)
-
-
-def complaint_about_sweep(text: str) -> str:
-    """What mfv_sweep says of a sweep, whose text is then in case.nml; empty: it takes it."""
-    Path("case.nml").write_text(text)
-    run = subprocess.run([SWEEP_PROGRAM, "--check", "case.nml"], capture_output=True, text=True, timeout=300)
-    assert (run.returncode, run.stderr == "") in ((0, True), (INPUT_ERROR, False)), (text, run)
-    return run.stderr.rstrip("\n")
-
-
-COMPLAINTS: dict[str, tuple[Callable[[str], str], dict[str, Groups]]] = {
-    "case": (complaint_about_case, SCENES),
-    "sweep": (complaint_about_sweep, SWEEPS),
-}
 
 
 def wrong_values(row: Row) -> Iterator[str]:
@@ -112,8 +96,6 @@ def wrong_values(row: Row) -> Iterator[str]:
         yield from NO_LOGICALS
     if row.kind == "choice":
         yield from (*NO_TEXTS, "''", f"'{row.choices[0]}x'", f"'{' '.join(row.choices)}'", row.choices[0])
-    if row.kind == "any":
-        yield ""
     if not row.is_list:
         yield from (f"{row.value}, {row.value}", f"{row.value} {row.value}", f"2*{row.value}")
 
@@ -150,24 +132,22 @@ def shown(value: str) -> str:
 
 
 def test_every_key_has_a_row_and_every_row_a_key() -> None:
-    for program, rows in ((RUN, CASE), (SWEEP_PROGRAM, SWEEP)):
-        printed = subprocess.run([program, "--keys"], capture_output=True, text=True, check=True).stdout
-        keys: dict[tuple[str, str], tuple[str, str]] = {}
-        group = ""
-        for line in printed.splitlines():
-            if line.startswith("### &"):
-                group = line[5:].split()[0]
-            elif line.startswith("| `"):
-                name, takes, _, unit, _ = (cell.strip() for cell in line.strip("|").split(" | ", 4))
-                keys[group, name.strip("`")] = takes, unit
-        assert keys.keys() == rows.keys(), keys.keys() ^ rows.keys()
-        assert keys == {key: (row.right, row.unit) for key, row in rows.items()}
+    printed = subprocess.run([RUN, "--keys"], capture_output=True, text=True, check=True).stdout
+    keys: dict[tuple[str, str], tuple[str, str]] = {}
+    group = ""
+    for line in printed.splitlines():
+        if line.startswith("### &"):
+            group = line[5:].split()[0]
+        elif line.startswith("| `"):
+            name, takes, _, unit, _ = (cell.strip() for cell in line.strip("|").split(" | ", 4))
+            keys[group, name.strip("`")] = takes, unit
+    assert keys.keys() == CASE.keys(), keys.keys() ^ CASE.keys()
+    assert keys == {key: (row.right, row.unit) for key, row in CASE.items()}
 
 
-@pytest.mark.parametrize(("program", "group", "key", "row"), ROWS, ids=[f"{group}-{key}" for _, group, key, _ in ROWS])
-def test_every_fault_of_a_key_is_told(folder: Path, program: str, group: str, key: str, row: Row) -> None:
-    complaint, scenes = COMPLAINTS[program]
-    groups = scenes[row.scene]
+@pytest.mark.parametrize(("group", "key", "row"), ROWS, ids=[f"{group}-{key}" for group, key, _ in ROWS])
+def test_every_fault_of_a_key_is_told(folder: Path, group: str, key: str, row: Row) -> None:
+    groups = SCENES[row.scene]
     line = line_of_group(groups, row)
 
     def refused(entry: str | None, expected: str, at: int = line + 1) -> None:
@@ -175,8 +155,7 @@ def test_every_fault_of_a_key_is_told(folder: Path, program: str, group: str, ke
         assert re.match(rf"case\.nml:{at}: &{group}\b", message), (entry, message)
         assert expected in message and "\n" not in message and len(message) < 1000, (entry, message)
 
-    # A sweep is a process for every fault; its numbers are read as those of a case are.
-    for value in list(wrong_values(row))[:: 3 if program == "sweep" else 1]:
+    for value in wrong_values(row):
         unit = f" ({row.unit})" if row.unit else ""
         refused(f"{key}={value}", f"&{group} {key}={shown(value)}: must be {row.right}{unit}")
     refused(f"{key}={row.value}, {key}={row.value}", "the key is there twice")
@@ -197,10 +176,9 @@ def test_every_fault_of_a_key_is_told(folder: Path, program: str, group: str, ke
         refused(None, row.needed, line)
 
 
-@pytest.mark.parametrize(("program", "group", "key", "row"), ROWS, ids=[f"{group}-{key}" for _, group, key, _ in ROWS])
-def test_what_is_right_is_taken(folder: Path, program: str, group: str, key: str, row: Row) -> None:
-    complaint, scenes = COMPLAINTS[program]
-    groups = scenes[row.scene]
+@pytest.mark.parametrize(("group", "key", "row"), ROWS, ids=[f"{group}-{key}" for group, key, _ in ROWS])
+def test_what_is_right_is_taken(folder: Path, group: str, key: str, row: Row) -> None:
+    groups = SCENES[row.scene]
     for value in right_values(row):
         if value in row.dear and not os.environ.get("MFV_DEEP"):
             continue

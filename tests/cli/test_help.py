@@ -10,16 +10,15 @@ import pytest
 
 ROOT = Path(__file__).resolve().parents[2]
 BIN = Path(os.environ.get("MFV_RUN", ROOT / "build/release/bin/mfv_run")).parent
-PROGRAMS = ("mfv_run", "mfv_stress", "mfv_sweep", "mfv_conventional")
+PROGRAMS = ("mfv_run", "mfv_stress", "mfv_conventional")
 PAGES = sorted((ROOT / "docs/man").glob("*.[15]"))
 BASH = ROOT / "drivers/completion/mfv.bash"
-AS_ROOT = {"OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1", "OPENBLAS_NUM_THREADS": "1"}
 COMPLETE, INPUT = 0, 2
 
 
 def run(program, *arguments, cwd=ROOT):
     return subprocess.run([BIN / program, *arguments], cwd=cwd, capture_output=True, text=True, timeout=300,
-                          env=os.environ | AS_ROOT)
+                          env=os.environ | {"OPENBLAS_NUM_THREADS": "1"})
 
 
 def help_of(program):
@@ -52,7 +51,7 @@ def test_options_that_help_explains_are_known(program):
 
 
 @pytest.mark.parametrize("program, option, nearest", [
-    ("mfv_run", "--chekc", "--check"), ("mfv_stress", "--bodi", "--body"), ("mfv_sweep", "--thread", "--threads"),
+    ("mfv_run", "--chekc", "--check"), ("mfv_stress", "--bodi", "--body"),
     ("mfv_conventional", "--verson", "--version"), ("mfv_run", "--frobnicate", None),
 ])
 def test_unknown_options_propose_the_nearest(program, option, nearest):
@@ -69,14 +68,6 @@ def test_the_case_in_the_help_is_one(tmp_path):
     assert done.returncode == COMPLETE and "complete: step 2 was reached" in done.stdout and "stick ratio" in done.stdout
 
 
-def test_the_sweep_in_the_help_is_one(tmp_path):
-    shutil.copy(ROOT / "examples/mindlin.nml", tmp_path)
-    text = re.search(r"^  &sweep.*?\n\n", help_of("mfv_sweep"), re.MULTILINE | re.DOTALL)
-    (tmp_path / "study.nml").write_text(text[0])
-    done = run("mfv_sweep", "--check", "study.nml", cwd=tmp_path)
-    assert done.returncode == COMPLETE and "90 cases" in done.stdout, done.stderr
-
-
 def test_manual_pages_are_those_of_the_programs(tmp_path):
     subprocess.run([sys.executable, ROOT / "scripts/manual.py", BIN, tmp_path], check=True)
     assert {page.name for page in PAGES} == {page.name for page in tmp_path.iterdir()}
@@ -90,7 +81,7 @@ def test_manual_pages_have_every_key_and_option(page):
     if page.suffix == ".1":
         expected = options_of(page.stem)
     else:
-        keys = run({"mfv_case": "mfv_run", "mfv_sweep": "mfv_sweep"}[page.stem], "--keys").stdout
+        keys = run("mfv_run", "--keys").stdout
         expected = re.findall(r"^\| `(\w+)`", keys, re.MULTILINE)
         assert len(expected) > 10
     for name in expected:
@@ -125,7 +116,7 @@ def completions(line, cwd):
 
 @pytest.fixture
 def folder(tmp_path):
-    for name in ("case.nml", "sweep.nml", "with blank.nml", "case.h5", "other.h5", "points.txt"):
+    for name in ("case.nml", "second.nml", "with blank.nml", "case.h5", "other.h5", "points.txt"):
         (tmp_path / name).touch()
     (tmp_path / "cases").mkdir()
     return tmp_path
@@ -137,12 +128,9 @@ def test_every_option_is_completed(program, folder):
 
 
 @pytest.mark.parametrize("line, expected", [
-    ("mfv_run ", {"case.nml", "sweep.nml", "with blank.nml", "cases"}),
+    ("mfv_run ", {"case.nml", "second.nml", "with blank.nml", "cases"}),
     ("mfv_run --check cas", {"case.nml", "cases"}),
-    ("mfv_conventional s", {"sweep.nml"}),
-    ("mfv_sweep --again ", {"case.nml", "sweep.nml", "with blank.nml", "cases"}),
-    ("mfv_sweep --threads ", set()),
-    ("mfv_sweep --threads 4 s", {"sweep.nml"}),
+    ("mfv_conventional s", {"second.nml"}),
     ("mfv_stress ", {"case.h5", "other.h5", "cases"}),
     ("mfv_stress o", {"other.h5"}),
     ("mfv_stress case.h5 --bo", {"--body"}),
@@ -152,7 +140,7 @@ def test_every_option_is_completed(program, folder):
     ("mfv_stress --points 11 ", set()),
     ("mfv_stress --points 11 11 o", {"other.h5"}),
     ("mfv_stress case.h5 --at ", {"points.txt", "cases"}),
-    ("mfv_run --advise ", {"error=", "of=", "case.nml", "sweep.nml", "with blank.nml", "cases"}),
+    ("mfv_run --advise ", {"error=", "of=", "case.nml", "second.nml", "with blank.nml", "cases"}),
     ("mfv_run --advise of=s", {"shear", "stick_ratio"}),
     ("mfv_run --advise of=shear,s", {"shear,stick_ratio"}),
 ])

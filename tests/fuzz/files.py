@@ -1,4 +1,4 @@
-"""Files to fuzz with: HDF5 files that are whole but not what is wanted, damaged HDF5 files, journals.
+"""Files to fuzz with: HDF5 files that are whole but not what is wanted, damaged HDF5 files.
 
 `random`: as in texts.py.
 """
@@ -14,8 +14,6 @@ import numpy as np
 from texts import changed_bytes
 
 NODES = 5
-#: First line of a journal, as mfv_sweep_journal writes it.
-JOURNAL_HEADER = 20 + 16 + 1
 BINARY = [b"\0", b"\xff" * 4, b"\0" * 8, b"\xff" * 8, struct.pack("<q", 1 << 40), struct.pack("<i", 1 << 30), b"OHDR", b"TREE", b"\x89HDF\r\n\x1a\n"]
 
 
@@ -104,7 +102,7 @@ def _put_odd(random: Any, file: h5py.File, name: str, values: np.ndarray) -> Non
 
 
 def odd_attributes(random: Any, data: bytes) -> bytes:
-    """A result or table with attributes, datasets and groups taken out, or others in their place."""
+    """A result with attributes, datasets and groups taken out, or others in their place."""
     memory = io.BytesIO(data)
     with h5py.File(memory, "r+") as file:
         for _ in range(random.randint(1, 3)):
@@ -145,31 +143,3 @@ def damaged(random: Any, data: bytes) -> bytes:
         else:
             changed[at] = random.choice((0, 1, 2, 4, 8, 0x10, 0x7F, 0x80, 0xFE, 0xFF))
     return bytes(changed)
-
-
-def odd_journal(random: Any, journal: bytes) -> bytes:
-    """A journal with bytes changed; or with records that contradict themselves under a right checksum."""
-    if random.randint(0, 2):
-        return changed_bytes(random, journal, BINARY, first=random.choice((0, JOURNAL_HEADER)))
-    records, at = [], JOURNAL_HEADER
-    while at + 4 <= len(journal):
-        (length,) = struct.unpack_from("<i", journal, at)
-        records.append(bytearray(journal[at + 4 : at + 4 + length]))
-        at += 4 + length + 8
-    record = random.choice(records)
-    if random.randint(0, 1):
-        struct.pack_into("<i", record, 4 * random.randrange(8), random.choice((-1, 0, 1, 2, 6, 1000, 2**30, 2**31 - 1, -(2**31))))
-    else:
-        record[:] = changed_bytes(random, bytes(record), BINARY)
-    return journal[:JOURNAL_HEADER] + b"".join(_framed(bytes(record)) for record in records)
-
-
-def _framed(record: bytes) -> bytes:
-    """A record with its length and the checksum CRC-64 of both, as mfv_sweep_journal has it."""
-    data = struct.pack("<i", len(record)) + record
-    rest = 0xFFFFFFFFFFFFFFFF
-    for byte in data:
-        rest ^= byte
-        for _ in range(8):
-            rest = (rest >> 1) ^ (0xC96C5795D7870F42 if rest & 1 else 0)
-    return data + struct.pack("<Q", rest ^ 0xFFFFFFFFFFFFFFFF)

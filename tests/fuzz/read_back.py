@@ -1,4 +1,4 @@
-"""Results and tables read back by the Python package: the commands "read PATH" and "read_table PATH", answered as by fuzz_target."""
+"""Results read back by the Python package: the command "read PATH", answered as by fuzz_target."""
 
 import sys
 import time
@@ -6,17 +6,16 @@ import traceback
 
 import mfv
 
-READERS = {"read": mfv.read, "read_table": mfv.read_table}
-#: What the package says that its readers raise.
+#: What the package says that mfv.read raises.
 PROMISED = (OSError, mfv.NotAResult)
 
 print("fuzz_target", flush=True)
 for line in sys.stdin:
-    target, path = line.split(maxsplit=1)
+    path = line.removeprefix("read ").strip()
     started = time.monotonic()
     status, message = 0, ""
     try:
-        READERS[target](path.strip())
+        mfv.read(path)
     except PROMISED as error:
         status, message = 1, str(error).splitlines()[0] if str(error) else ""
     except BaseException as error:  # what must not be raised, of whatever kind

@@ -82,39 +82,28 @@ class Fuzzer:
 
     def _targets(self) -> dict[str, Target]:
         """All of them, with what they begin from in the folder."""
-        run, sweep = (self.options.build / "bin" / name for name in ("mfv_run", "mfv_sweep"))
-        keys, sweep_keys = (texts.key_table(_output([program, "--keys"], self.folder)) for program in (run, sweep))
+        run = self.options.build / "bin/mfv_run"
+        keys = texts.key_table(_output([run, "--keys"], self.folder))
         (self.folder / "base.nml").write_text(texts.SMALL)
         for name in ("columns.txt", "three_bumps.txt", "profile.txt"):
             (self.folder / name).write_text(texts.COLUMNS[0])
         (self.folder / "matrix.h5").write_bytes(files.matrix_bytes())
-        (self.folder / "sweep.nml").write_text(texts.SWEEP.replace("count=3", "count=2"))
         _output([run, "base.nml"], self.folder)
-        _output([sweep, "--threads", "1", "sweep.nml"], self.folder)
-        self.child.do("write_journal", self.folder / "valid.journal")
-        result, table, journal = ((self.folder / name).read_bytes() for name in ("base.h5", "sweep.h5", "valid.journal"))
+        result = (self.folder / "base.h5").read_bytes()
         matrices = [files.matrix_bytes(), files.matrix_bytes(libver="latest")]
         lines = [token.encode() for token in texts.TOKENS + list(texts.VALUES)]
 
         def stress(random: Any) -> bytes:
             return files.odd_attributes(random, result) if random.randint(0, 1) else files.damaged(random, result)
 
-        def of_table(random: Any) -> bytes:
-            return files.odd_attributes(random, table) if random.randint(0, 1) else files.damaged(random, table)
-
         return {
             "case": Target("case", "nml", 0.30, lambda random: texts.changed_text(random, texts.cases(), keys)),
             "case_bytes": Target("case", "nml", 0.22, lambda random: texts.changed_whole(random, texts.cases())),
-            "sweep": Target("sweep", "nml", 0.08, lambda random: texts.changed_text(random, texts.sweeps(), sweep_keys)),
-            "sweep_bytes": Target("sweep", "nml", 0.04, lambda random: texts.changed_whole(random, texts.sweeps())),
             "columns": Target("columns", "txt", 0.05, lambda random: texts.changed_bytes(random, random.choice(texts.COLUMNS).encode(), lines)),
             "matrix": Target("matrix", "h5", 0.10, lambda random: files.odd_hdf5(random, files.right_matrix())),
             "matrix_bytes": Target("matrix", "h5", 0.08, lambda random: files.damaged(random, random.choice(matrices))),
             "stress": Target("stress", "h5", 0.03, stress),
-            "table": Target("table", "h5", 0.03, of_table),
-            "journal": Target("journal", "journal", 0.05, lambda random: files.odd_journal(random, journal)),
             "read": Target("read", "h5", 0.01, stress, in_python=True),
-            "read_table": Target("read_table", "h5", 0.01, of_table, in_python=True),
         }
 
     def try_case(self, name: str, data: bytes, looks_for_leaks: bool = False) -> Answer:

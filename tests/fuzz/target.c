@@ -11,12 +11,8 @@
 #include <time.h>
 
 /* fuzz_readers.f90 */
-int fuzz_sweep(const char *path, char *message, size_t size);
 int fuzz_matrix(const char *path, char *message, size_t size);
 int fuzz_stress(const char *path, char *message, size_t size);
-int fuzz_journal(const char *path, char *message, size_t size);
-int fuzz_write_journal(const char *path, char *message, size_t size);
-int fuzz_table(const char *path, char *message, size_t size);
 int fuzz_columns(const char *path, char *message, size_t size);
 
 int fuzz_open_objects(void);
@@ -107,9 +103,7 @@ static void run(const char *target, const char *path, outcome *answer) {
   static const struct {
     const char *name;
     int (*read)(const char *, char *, size_t);
-  } readers[] = {{"sweep", fuzz_sweep}, {"matrix", fuzz_matrix}, {"stress", fuzz_stress}, {"journal", fuzz_journal},
-                 {"write_journal", fuzz_write_journal},
-                 {"table", fuzz_table}, {"columns", fuzz_columns}};
+  } readers[] = {{"matrix", fuzz_matrix}, {"stress", fuzz_stress}, {"columns", fuzz_columns}};
   static int open_objects = 0;
   size_t i;
   answer->residual = -1.0;

@@ -16,7 +16,7 @@ import mfv
 from mfv import _library
 
 EXAMPLES = Path(__file__).resolve().parents[2] / "examples"
-PROGRAMS = ("mfv_run", "mfv_conventional", "mfv_stress", "mfv_sweep")
+PROGRAMS = ("mfv_run", "mfv_conventional", "mfv_stress")
 #: What every Linux has that a wheel may be installed on (the policies of manylinux).
 BASE = re.compile(r"(linux-vdso|ld-linux\S*|lib(c|m|mvec|dl|pthread|rt|resolv|util|gcc_s|stdc\+\+|z))\.so")
 SITE = Path(mfv.__file__).resolve().parents[1]
