@@ -1,20 +1,18 @@
 !> What a joint-damping engineer reads off a load history with cycles: dissipation a cycle, stiffness after a reversal, stick
-!> ratios on loading and reversal, shift of the contact patch, and by how much tractions differ from those of another run; as they
-!> are, and dimensionless as in dissertation section 5.2 and eq. 6.5.
+!> ratios on loading and reversal, shift of the contact patch; as they are, and dimensionless as in dissertation section 5.2 and eq. 6.5.
 module mfv_observables
    use, intrinsic :: ieee_arithmetic, only: ieee_quiet_nan, ieee_value
    use mfv_contact_state, only: contact_state_type
    use mfv_cycle, only: cycle_type
    use mfv_interior, only: interior_type
    use mfv_kinds, only: pi, wp
-   use mfv_simulation, only: mark_loading, mark_return, mark_reversal, simulation_type
+   use mfv_simulation, only: mark_loading, simulation_type
    use mfv_state_interior, only: state_interior
    use mfv_stress_search, only: largest_tension, largest_type
    use mfv_zone_edges, only: find_zone_edges, zone_edges_type
    implicit none
    private
    public :: observable_count, observable_name, observable_unit, observable_meaning, observable_place, observables_of
-   public :: moment_count, moment_loading, moment_mark, moment_name, tractions_type, observed_tractions, traction_errors
 
    !> Number of observables.
    integer, parameter :: observable_count = 40
@@ -81,17 +79,6 @@ module mfv_observables
                               'where it is: x', &
                               'largest tension along the surface of the upper body at the end', &
                               'where it is: x']
-   !> Moments of the load history whose tractions are compared: where the cycles begin; the far end of the last cycle; its end.
-   integer, parameter :: moment_loading = 1, moment_count = 3
-   integer, parameter :: moment_mark(moment_count) = [mark_loading, mark_reversal, mark_return]
-   character(*), parameter :: moment_names(moment_count) = [character(8) :: 'loading', 'reversal', 'return']
-
-   !> Tractions, force/length^2, on equal intervals, length, symmetric about the pole; shape (nodes), no nodes: not there. Those of
-   !> nodes with other widths are multiplied by width over (mean) interval, so that sums over nodes are integrals.
-   type :: tractions_type
-      real(wp) :: interval = 0.0_wp
-      real(wp), allocatable :: pressure(:), shear(:)
-   end type tractions_type
 
 contains
 
@@ -127,14 +114,6 @@ contains
          if (names(place) == name) return
       end do
    end function observable_place
-
-   !> Name of moment `number`.
-   pure function moment_name(number) result(name)
-      integer, intent(in) :: number
-      character(len=len_trim(moment_names(number))) :: name
-
-      name = moment_names(number)
-   end function moment_name
 
    !> All observables of a simulation as far as it has come, each in its unit; NaN where there is none.
    subroutine observables_of(simulation, values)
@@ -265,72 +244,5 @@ contains
 
       values(observable_place(name)) = value
    end subroutine put
-
-   !> The tractions of a simulation at moment `number`; without nodes where there was no such moment.
-   subroutine observed_tractions(simulation, number, tractions)
-      type(simulation_type), intent(in) :: simulation
-      integer, intent(in) :: number
-      type(tractions_type), intent(out) :: tractions
-
-      associate (mark => simulation%marks(moment_mark(number)))
-         tractions%interval = simulation%contact%model%interval()
-         if (mark%step == 0 .or. (number /= moment_loading .and. mark%reversal == 0)) then
-            allocate (tractions%pressure(0), tractions%shear(0))
-         else
-            associate (model => simulation%contact%model, n => size(mark%state%fields%pressure))
-               ! The mesh may have grown since; then all widths are the same.
-               tractions%pressure = mark%state%fields%pressure*model%width(:n)/model%interval()
-               tractions%shear = mark%state%fields%shear*model%width(:n)/model%interval()
-            end associate
-         end if
-      end associate
-   end subroutine observed_tractions
-
-   !> L1 differences of tractions from those of a reference, relative to the reference (eq. 6.6): of the pressures and of the
-   !> shear tractions. NaN where there are no nodes, where the intervals differ or the nodes lie elsewhere, or where the reference
-   !> has no such traction; the narrower mesh has none beyond its ends.
-   subroutine traction_errors(tractions, reference, pressure_error, shear_error)
-      type(tractions_type), intent(in) :: tractions, reference
-      real(wp), intent(out) :: pressure_error, shear_error
-      real(wp), parameter :: equal = 1.0e-9_wp
-      integer :: n, m
-
-      pressure_error = ieee_value(1.0_wp, ieee_quiet_nan)
-      shear_error = pressure_error
-      n = size(tractions%pressure)
-      m = size(reference%pressure)
-      if (min(n, m) == 0 .or. mod(n - m, 2) /= 0) return
-      if (abs(tractions%interval - reference%interval) > equal*reference%interval) return
-      call find_error(tractions%pressure, reference%pressure, pressure_error)
-      call find_error(tractions%shear, reference%shear, shear_error)
-   end subroutine traction_errors
-
-   !> Sum of the sizes of the differences of one traction over that of the reference; both about the same middle. Untouched where
-   !> the reference is zero.
-   subroutine find_error(traction, reference, error)
-      real(wp), intent(in) :: traction(:), reference(:)
-      real(wp), intent(inout) :: error
-      real(wp) :: difference, total
-      integer :: i, here, there, wider, n, m
-
-      n = size(traction)
-      m = size(reference)
-      wider = max(n, m)
-      total = sum(abs(reference))
-      if (.not. total > 0.0_wp) return
-      difference = 0.0_wp
-      do i = 1, wider
-         here = i - (wider - n)/2
-         there = i - (wider - m)/2
-         if (here < 1 .or. here > n) then
-            difference = difference + abs(reference(there))
-         else if (there < 1 .or. there > m) then
-            difference = difference + abs(traction(here))
-         else
-            difference = difference + abs(traction(here) - reference(there))
-         end if
-      end do
-      error = difference/total
-   end subroutine find_error
 
 end module mfv_observables

@@ -39,6 +39,8 @@ module mfv_draft
       character(:), allocatable :: source, directory
       !> What was wrong with calls that could not be kept.
       type(fault_type), allocatable :: faults(:)
+      !> The keys that there are, once one has been named.
+      type(catalogue_type), allocatable :: catalogue
    contains
       !> Give a key a value: `call draft%set('body(2)%radius', 0.25_wp)`. Keys: docs/namelist.md. Faults are told by make_case, the
       !> first of those that no later call for the same key has mended; and by `error` (MFV_INPUT_ERROR) where it is there.
@@ -76,14 +78,13 @@ contains
       character(:), allocatable, intent(out) :: group, key
       integer, intent(out) :: number
       type(error_type), allocatable, intent(out) :: error
-      type(catalogue_type) :: catalogue
       type(group_type) :: new
       character(:), allocatable :: why
       integer :: there
 
       if (.not. allocated(self%groups)) allocate (self%groups(0))
-      catalogue = case_catalogue()
-      call read_key_name(name, catalogue, group, number, key, why)
+      if (.not. allocated(self%catalogue)) self%catalogue = case_catalogue()
+      call read_key_name(name, self%catalogue, group, number, key, why)
       there = groups_of_name(self%groups, group)
       if (why == '' .and. (number < 1 .or. number > max(2, there + 1))) &
          why = quoted(name)//': there are '//to_text(there)//' of &'//group//' so far; the next one is '//group//'('// &

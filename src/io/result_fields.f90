@@ -14,10 +14,10 @@ module mfv_result_fields
    use mfv_cycle, only: cycle_type
    use mfv_kinds, only: wp
    use mfv_node_status, only: event_names, holds, in_contact, node_status_names
-   use mfv_observables, only: moment_count, moment_mark, moment_name, observable_count, observable_meaning, observable_name, &
-                              observable_unit, observables_of
+   use mfv_observables, only: observable_count, observable_meaning, observable_name, observable_unit, observables_of
    use mfv_scene, only: stepping_leap
-   use mfv_simulation, only: history_none, mark_cycle_start, mark_loading, mark_return, sensitivity_type, simulation_type
+   use mfv_simulation, only: history_none, mark_cycle_start, mark_loading, mark_return, mark_reversal, &
+                             sensitivity_type, simulation_type
    use mfv_state_interior, only: find_edges_at_nodes
    use mfv_status, only: status_outcome
    use mfv_strings, only: add_text, list_of_words, string_type, to_text
@@ -49,6 +49,9 @@ module mfv_result_fields
       character(:), allocatable :: length, force, traction, energy
    end type units_type
 
+   !> Moments whose tractions can be asked for: where the cycles begin; the far end of the last cycle; its end.
+   character(*), parameter :: moment_names(3) = [character(8) :: 'loading', 'reversal', 'return']
+   integer, parameter :: moment_marks(3) = [mark_loading, mark_reversal, mark_return]
    !> Meanings that several groups share.
    character(*), parameter :: normal_force_meaning = 'normal force P per unit thickness'
    character(*), parameter :: tangential_force_meaning = 'tangential force Q per unit thickness'
@@ -142,8 +145,8 @@ contains
       case ('history')
          if (simulation%keep_history /= history_none) call add_history(fields, simulation, units)
       case default
-         do i = 1, moment_count
-            if (group == 'moments/'//moment_name(i)) call add_moment(fields, simulation, moment_mark(i), units)
+         do i = 1, size(moment_names)
+            if (group == 'moments/'//moment_names(i)) call add_moment(fields, simulation, moment_marks(i), units)
          end do
          if (index(group, 'steps/') /= 1) return
          read (group(len('steps/') + 1:), '(i10)', iostat=code) number

@@ -27,7 +27,7 @@ GROUPS = {
     "output": mfv.Output,
 }
 KINDS = {"a text": "str", ".true.": "bool", "a whole number": "int", "a number": "float"}
-EXAMPLES = sorted(path for path in (PROJECT / "examples").glob("*.nml") if path.name != "sweep.nml")
+EXAMPLES = sorted(path for path in (PROJECT / "examples").glob("*.nml") if "&sweep" not in path.read_text())
 
 
 def keys_of_the_library() -> dict[str, dict[str, str]]:

@@ -144,6 +144,23 @@ def test_no_comparison_of_other_cycles(cycles):
     assert dataset._dissipation_ratio(kept([1], cycle_dissipation=3.0), other) == 3.0
 
 
+def test_moments_that_are_there(study):
+    """Loading where cycles were begun, reversal and return where one is whole."""
+    folder, _ = study
+    wanted = [f"moments/{moment}/{traction}" for moment in MOMENTS for traction in TRACTIONS]
+    shear = mfv.Axis(["step(3)%tangential_force"], [-2.8e-4, -8e-4])
+    table = mfv.study(folder / "base.nml", {"shear": shear}, fields=[*wanted, "steps/0002/shear", "state/shear"])
+    whole, begun = (table.isel(shear=place) for place in (0, 1))
+    assert begun["outcome"] == "gross sliding"
+    np.testing.assert_array_equal(whole["moments_loading_shear"], whole["steps_0002_shear"])
+    np.testing.assert_array_equal(whole["moments_return_shear"], whole["state_shear"])
+    np.testing.assert_allclose(whole["moments_reversal_shear"], -whole["moments_loading_shear"], atol=1e-9 * np.abs(whole["state_shear"]).max().item())
+    assert np.isfinite(begun["moments_loading_pressure"]).all() and np.isnan(begun["moments_return_pressure"]).all()
+    pressed = mfv.Scene.from_file(folder / "base.nml")
+    pressed.steps = pressed.steps[:2]
+    assert not any(name.startswith("moments_") for name in mfv.study(pressed, fields=wanted).data_vars)
+
+
 def test_fields_and_observables_on_request(study):
     folder, whole = study
     axes = {"mesh%nodes": [11, 21], "friction%mu": [0.5, 0.7]}

@@ -4,9 +4,11 @@ from __future__ import annotations
 
 import contextlib
 import functools
+import logging
 import multiprocessing
 import os
 import signal
+import threading
 from collections.abc import Callable, Iterator, Mapping
 from concurrent.futures import Executor, ProcessPoolExecutor, ThreadPoolExecutor, as_completed
 from ctypes import c_int
@@ -86,7 +88,7 @@ def _processes(workers: int) -> Iterator[Executor]:
     method = "forkserver" if "forkserver" in multiprocessing.get_all_start_methods() else "spawn"
     others = multiprocessing.active_children()
     context: Any = multiprocessing.get_context(method)
-    with ProcessPoolExecutor(workers, context, _leave_interrupts_to_the_study) as pool:
+    with ProcessPoolExecutor(workers, context, _belong_to_the_study) as pool:
         try:
             yield pool
         except BaseException:
@@ -97,8 +99,17 @@ def _processes(workers: int) -> Iterator[Executor]:
             raise
 
 
-def _leave_interrupts_to_the_study() -> None:
+def _belong_to_the_study() -> None:
+    """Leave interrupts to the study, and end with it, whatever ends it."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)
+    threading.Thread(target=_end_with_the_study, daemon=True).start()
+
+
+def _end_with_the_study() -> None:
+    study = multiprocessing.parent_process()
+    if study is not None:
+        study.join()
+        os._exit(1)
 
 
 def _dask_client(stack: contextlib.ExitStack, address: str, workers: int | None) -> Any:
@@ -106,7 +117,9 @@ def _dask_client(stack: contextlib.ExitStack, address: str, workers: int | None)
     from dask.distributed import Client, LocalCluster
 
     cluster = address or stack.enter_context(
-        LocalCluster(n_workers=workers or processors(), threads_per_worker=1, dashboard_address=":0")
+        LocalCluster(
+            n_workers=workers or processors(), threads_per_worker=1, dashboard_address=":0", silence_logs=logging.CRITICAL
+        )
     )
     return stack.enter_context(Client(cluster))
 

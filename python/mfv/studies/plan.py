@@ -102,6 +102,7 @@ class Study:
         self.results = None if results is None else Path(results)
         #: The text that the study was read from, and its file; where its table is to go, and whether it wants results, as it says.
         self.input, self.input_file, self.file, self.keeps_results = "", "", "", False
+        self._is_checked = False
         self._check_names()
         self._check_keys()
         #: Dimension and place of what cases are compared with.
@@ -172,13 +173,14 @@ class Study:
 
         Raises InputError, which names case and values, where one cannot be used.
         """
-        if self.makes_scenes is not None:
+        if self.makes_scenes is not None or self._is_checked:
             return
         first = [0] * len(self.shape)
         for along, length in enumerate(self.shape):
             for place in _tried(length):
                 if along == 0 or place > 0:
                     self._try([*first[:along], place, *first[along + 1 :]], along)
+        self._is_checked = True
 
     def run(
         self,

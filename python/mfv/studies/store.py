@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import io
 import json
 import math
 import os
@@ -24,7 +23,8 @@ APPLICATION = 0x4D465653
 
 
 class Store:
-    """Solved cases by their names (mfv.studies.cases.digest), one row each: `key`, `solved` (JSON), `arrays` (npz).
+    """Solved cases by their names (mfv.studies.cases.digest), one row each: `key`, `solved` (JSON), `arrays` (the real numbers of
+    all fields one after another, least byte first; `sizes` in `solved` tells how many each has).
 
     The process that has it open is the only one that reads and writes it.
     """
@@ -99,7 +99,8 @@ def _text(solved: Solved) -> str:
     kept = {name: value for name, value in vars(solved).items() if name != "arrays"}
     kept["largest_residual"] = _finite(solved.largest_residual)
     kept["observables"] = [_finite(value) for value in solved.observables]
-    return json.dumps(kept, allow_nan=True)
+    kept["sizes"] = {path: values.size for path, values in solved.arrays.items()}
+    return json.dumps(kept)
 
 
 def _finite(value: float) -> float | None:
@@ -109,9 +110,7 @@ def _finite(value: float) -> float | None:
 def _bytes(solved: Solved) -> bytes | None:
     if not solved.arrays:
         return None
-    memory = io.BytesIO()
-    np.savez(memory, **solved.arrays)  # type: ignore[arg-type]  # names are paths
-    return memory.getvalue()
+    return np.concatenate(list(solved.arrays.values())).astype("<f8").tobytes()
 
 
 def _solved(text: str, arrays: bytes | None) -> Solved:
@@ -119,10 +118,11 @@ def _solved(text: str, arrays: bytes | None) -> Solved:
     kept["largest_residual"] = _number(kept["largest_residual"])
     kept["observables"] = [_number(value) for value in kept["observables"]]
     kept["about"] = {path: tuple(about) for path, about in kept["about"].items()}
+    sizes = kept.pop("sizes")
     solved = Solved(**kept)
     if arrays is not None:
-        with np.load(io.BytesIO(arrays)) as loaded:
-            solved.arrays = dict(loaded)
+        parts = np.split(np.frombuffer(arrays, "<f8").astype(float), np.cumsum(list(sizes.values()))[:-1])
+        solved.arrays = dict(zip(sizes, parts))
     return solved
 
 
