@@ -34,8 +34,9 @@ COUNTS = {
 #: Moments of the load history at which cases are compared, and the tractions that are.
 MOMENTS, TRACTIONS = ("loading", "reversal", "return"), ("pressure", "shear")
 
-#: Fields of the mesh that a comparison needs.
+#: Fields that a comparison needs, those of the mesh first.
 OF_MESHES = ("mesh/x", "mesh/width", "mesh/interval")
+COMPARED = (*OF_MESHES, *(f"moments/{moment}/{traction}" for moment in MOMENTS for traction in TRACTIONS))
 
 #: Keys that name files, with their groups.
 FILE_KEYS = ("body(1)%file", "body(2)%file", "friction%mu_file")
@@ -205,16 +206,14 @@ def _write(handle: c_void_p, path: str) -> None:
 
 def _kept(handle: c_void_p, status: int, job: Job) -> Solved:
     """What is kept of a case that has been run."""
+    # The library keeps the group that was looked at last: what is of one group comes together.
     counts = {name: _whole(handle, f"summary/{name}") for name in COUNTS}
+    solved = Solved(status, _message(handle), counts, _real(handle, b"summary/largest_residual"))
+    solved.observables = [_real(handle, path) for path in _observable_paths()]
     count = c_size_t()
     library().mfv_field_info(handle, b"mesh/x", byref(count), None, None, None, 0, None, 0)
     counts["nodes"] = count.value
-    paths = list(job.fields)
-    if job.compared:
-        paths += [*OF_MESHES, *(f"moments/{moment}/{name}" for moment in MOMENTS for name in TRACTIONS)]
-    residual = _real(handle, b"summary/largest_residual")
-    solved = Solved(status, _message(handle), counts, residual, [_real(handle, path) for path in _observable_paths()])
-    for path in dict.fromkeys(paths):
+    for path in dict.fromkeys([*(COMPARED if job.compared else ()), *job.fields]):
         _add_field(handle, path, solved)
     return solved
 

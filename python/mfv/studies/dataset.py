@@ -43,19 +43,24 @@ def dataset_of(study: Study, keys: Sequence[str], solved: Sequence[Solved | None
     `keys`: their names, after which their result files are called.
     """
     units = study.units
-    table = xarray.Dataset(attrs=_attributes(study, solved, units))
-    for dimension in study.dimensions:
-        for coordinate in dimension.coordinates:
-            if coordinate.name != "row":
-                table = table.assign_coords({coordinate.name: (dimension.name, *_described(coordinate, units))})
+    dimensions = [dimension.name for dimension in study.dimensions]
+    coordinates: dict[str, Any] = {
+        coordinate.name: (dimension.name, *_described(coordinate, units))
+        for dimension in study.dimensions
+        for coordinate in dimension.coordinates
+        if coordinate.name != "row"
+    }
     if len(study.bases) == 1:
-        table = table.assign_coords(base=study.bases[0].name)
-    for name, values, unit, meaning in _columns(study, keys, solved):
-        dimensions = [dimension.name for dimension in study.dimensions]
-        about = {"units": _labelled(unit, units), "long_name": meaning}
-        table[name] = (dimensions, np.array(values, dtype=_kind(values)).reshape(study.shape), about)
-    _add_fields(study, solved, table)
-    return table
+        coordinates["base"] = study.bases[0].name
+    columns = {
+        name: (
+            dimensions,
+            np.array(values, dtype=_kind(values)).reshape(study.shape),
+            {"units": _labelled(unit, units), "long_name": meaning},
+        )
+        for name, values, unit, meaning in _columns(study, keys, solved)
+    }
+    return xarray.Dataset(columns | _fields(study, solved), coordinates, _attributes(study, solved, units))
 
 
 def frame_of(table: xarray.Dataset) -> pandas.DataFrame:
@@ -160,11 +165,16 @@ def _side_by_side(one: Solved, reference: Solved, path: str) -> tuple[NDArray[An
     )
     if math.isclose(*intervals, rel_tol=1e-9) and (sizes[0] - sizes[1]) % 2 == 0:
         forces = [kept.arrays[path] * kept.arrays["mesh/width"] for kept in (one, reference)]
-        here, there = (np.pad(force, (max(sizes) - force.size) // 2) for force in forces)
+        here, there = (_widened(force, max(sizes)) for force in forces)
         return here / intervals[0], there / intervals[1], np.ones(max(sizes))
     x = np.union1d(one.arrays["mesh/x"], reference.arrays["mesh/x"])
     here, there = (np.interp(x, kept.arrays["mesh/x"], kept.arrays[path], 0.0, 0.0) for kept in (one, reference))
     return here, there, np.gradient(x)
+
+
+def _widened(values: NDArray[Any], size: int) -> NDArray[Any]:
+    """Values with zeros on either side."""
+    return values if values.size == size else np.pad(values, (size - values.size) // 2)
 
 
 def _observable(solved: Solved, name: str) -> float:
@@ -183,26 +193,29 @@ def _dissipation_ratio(one: Solved, reference: Solved) -> float:
     return here / there if is_told else _NAN
 
 
-def _add_fields(study: Study, solved: Sequence[Solved | None], table: xarray.Dataset) -> None:
+def _fields(study: Study, solved: Sequence[Solved | None]) -> dict[str, Any]:
     """The fields that were asked for, where any case has them: NaN beyond the values of a case. Along nodes, mesh_x tells where."""
-    for path in study._fields():
+    fields: dict[str, Any] = {}
+    dimensions = [dimension.name for dimension in study.dimensions]
+    longest: dict[int, int] = {}
+    for one in (one for one in solved if one is not None):
+        for path in set(study.wanted_fields) & one.arrays.keys():
+            along = one.about[path][0]
+            longest[along] = max(one.arrays[path].size, longest.get(along, 0))
+    for path in study.wanted_fields:
         having = [(place, one) for place, one in enumerate(solved) if one is not None and path in one.arrays]
         if not having:
             continue
         along, unit, meaning = having[0][1].about[path]
-        name, dimensions = path.replace("/", "_"), [dimension.name for dimension in study.dimensions]
-        about = {"units": unit, "long_name": meaning, "path": path}
-        if along == Along.NOTHING:
-            scalars = np.full(len(solved), np.nan)
-            for place, one in having:
-                scalars[place] = one.arrays[path][0]
-            table[name] = (dimensions, scalars.reshape(study.shape), about)
-            continue
-        longest = max(max(one.arrays[path].size for _, one in having), table.sizes.get(DIMENSIONS[Along(along)], 0))
-        values = np.full((len(solved), longest), np.nan)
+        values = np.full((len(solved), longest[along]), np.nan)
         for place, one in having:
             values[place, : one.arrays[path].size] = one.arrays[path]
-        table[name] = ([*dimensions, DIMENSIONS[Along(along)]], values.reshape(*study.shape, longest), about)
+        about = {"units": unit, "long_name": meaning, "path": path}
+        shape, names = (study.shape, dimensions)
+        if along != Along.NOTHING:
+            shape, names = ((*shape, longest[along]), [*dimensions, DIMENSIONS[Along(along)]])
+        fields[path.replace("/", "_")] = (names, values.reshape(shape), about)
+    return fields
 
 
 def _described(coordinate: Coordinate, units: dict[str, str]) -> tuple[Any, dict[str, str]]:

@@ -118,7 +118,10 @@ def _dask_client(stack: contextlib.ExitStack, address: str, workers: int | None)
 
     cluster = address or stack.enter_context(
         LocalCluster(
-            n_workers=workers or processors(), threads_per_worker=1, dashboard_address=":0", silence_logs=logging.CRITICAL
+            n_workers=workers or processors(),
+            threads_per_worker=1,
+            dashboard_address=":0",
+            silence_logs=logging.CRITICAL,
         )
     )
     return stack.enter_context(Client(cluster))

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import functools
 import math
 import os
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
@@ -98,7 +99,8 @@ class Study:
         if not self.dimensions:
             self.dimensions = [Dimension("row", [Coordinate("row", (), [0])])]
         self.observables = None if observables is None else list(observables)
-        self.fields = tuple(fields)
+        #: Paths of the wanted fields, with the positions of nodes for those who want a field along them.
+        self.wanted_fields = tuple(dict.fromkeys([*fields, "mesh/x"])) if fields else ()
         self.results = None if results is None else Path(results)
         #: The text that the study was read from, and its file; where its table is to go, and whether it wants results, as it says.
         self.input, self.input_file, self.file, self.keeps_results = "", "", "", False
@@ -123,7 +125,7 @@ class Study:
         """All axes."""
         return [coordinate for dimension in self.dimensions for coordinate in dimension.coordinates]
 
-    @property
+    @functools.cached_property
     def units(self) -> dict[str, str]:
         """The user's names of length and force. Raises InputError."""
         return units_of(self.job(1).base)
@@ -166,7 +168,7 @@ class Study:
             which = places[0] if len(self.bases) > 1 else 0
             base, shared = self.bases[which], self._shared[which]
         named = {key: absolute(value, base) if key in FILE_KEYS else value for key, value in settings}
-        return Job(base, tuple({**shared, **named}.items()), self._fields(), self.reference is not None)
+        return Job(base, tuple({**shared, **named}.items()), self.wanted_fields, self.reference is not None)
 
     def check(self) -> None:
         """Try every base, and every value with the first values of the others (of long rows some of them).
@@ -276,10 +278,6 @@ class Study:
         places = list(self._places(number))
         places[along] = place
         return self._number(places)
-
-    def _fields(self) -> tuple[str, ...]:
-        """The wanted fields, with the positions of nodes for those who want a field along them."""
-        return (*self.fields, "mesh/x") if self.fields and "mesh/x" not in self.fields else self.fields
 
     def _try(self, places: list[int], along: int) -> None:
         number = self._number(places)
