@@ -9,6 +9,7 @@ import signal
 import sqlite3
 import subprocess
 import time
+from pathlib import Path
 
 import h5py
 import numpy as np
@@ -18,7 +19,7 @@ from small import BASE, CASES, COMPLETE, INPUT, INTERRUPTED, MFV_RUN, ROOT, STUD
 
 import mfv
 from mfv.commands import main
-from mfv.studies.namelist import KEYS, read_study
+from mfv.studies.namelist import KEYS, check_study, read_study
 
 
 def start(*arguments, cwd):
@@ -138,6 +139,46 @@ def test_bad_input_is_named(change, line, words, tmp_path, capsys, monkeypatch):
     printed, said = capsys.readouterr()
     assert re.match(rf"mfv: study\.nml:{line}: ", said) and words in said and printed == "", said
     assert sorted(path.name for path in tmp_path.iterdir()) == ["base.nml", "study.nml"]
+
+
+#: What is put into texts of studies, or in place of a word.
+PIECES = ("'", '"', "/", "&", "=", ",", "%", "(", "!", "\n", "\x00", "\xe9", "1e400", "-1", "0", "nan", ".true.", "'full'", "3*0.5", "&vary", "&sweep",
+          "key", "values", "from", "count", "'mesh%nodes'", "'dundurs_beta'", "name='a/b'", "99999999999", "combine='paired'", "5*", "1.5e300",
+          "'step(2)%shift'", "'step(99999999999)%shift'", "'step()%shift'", "'body(1)%file'", "factor=1e300", "base='base.nml', 'base.nml'")  # fmt: skip
+
+
+def damaged(text, chance):
+    """A text with something put in, taken out, put in place of a word, or twice."""
+    for _ in range(chance.randint(1, 4)):
+        place = chance.randrange(len(text) + 1)
+        word = chance.choice(list(re.finditer(r"'[^']*'|[\w.%-]+|$", text)))
+        end = min(len(text), place + chance.randint(1, 20))
+        text = chance.choice((
+            text[:place] + chance.choice(PIECES) + text[place:],
+            text[:place] + text[end:],
+            text[: word.start()] + chance.choice(PIECES) + text[word.end() :],
+            text[:end] + text[place:],
+        ))  # fmt: skip
+    return text
+
+
+def test_damaged_texts_are_taken_or_refused_with_a_message(tmp_path, monkeypatch):
+    write(tmp_path)
+    monkeypatch.chdir(tmp_path)
+    chance, refused = random.Random(2026), 0
+    for _ in range(200):
+        Path("study.nml").write_bytes(damaged(STUDY, chance).encode())
+        try:
+            study = read_study("study.nml")
+            if len(study) < 200:
+                check_study(study)
+        except (mfv.errors.InputError, OSError) as error:
+            assert "study.nml" in str(error)
+            refused += 1
+    assert 100 < refused < 200
+    for path in ("/dev/null", str(tmp_path), "no.nml"):
+        with pytest.raises((mfv.errors.InputError, OSError)):
+            read_study(path)
 
 
 def test_values_that_the_case_refuses_are_named(tmp_path):
