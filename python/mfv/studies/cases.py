@@ -213,7 +213,9 @@ def _kept(handle: c_void_p, status: int, job: Job) -> Solved:
     count = c_size_t()
     library().mfv_field_info(handle, b"mesh/x", byref(count), None, None, None, 0, None, 0)
     counts["nodes"] = count.value
-    for path in dict.fromkeys([*(COMPARED if job.compared else ()), *job.fields]):
+    for path in COMPARED if job.compared else ():
+        _add_values(handle, path, 1 if path == "mesh/interval" else count.value, solved)
+    for path in job.fields:
         _add_field(handle, path, solved)
     return solved
 
@@ -235,6 +237,13 @@ def _whole(handle: c_void_p, path: str) -> int:
     return value.value
 
 
+def _add_values(handle: c_void_p, path: str, count: int, solved: Solved) -> None:
+    """Keep the values of a field of real numbers, where the case has so many."""
+    values = np.empty(count)
+    if library().mfv_copy_real(handle, text_for(path), values.ctypes.data_as(ctypes.POINTER(c_double)), count) == 0:
+        solved.arrays[path] = values
+
+
 def _add_field(handle: c_void_p, path: str, solved: Solved) -> None:
     """Keep the values of a field as real numbers, where the case has it."""
     name, count, is_integer, along = text_for(path), c_size_t(), c_int(), c_int()
@@ -242,12 +251,12 @@ def _add_field(handle: c_void_p, path: str, solved: Solved) -> None:
     about = byref(count), byref(is_integer), byref(along), unit, len(unit), description, len(description)
     if library().mfv_field_info(handle, name, *about) != 0:
         return
-    values: NDArray[Any] = np.empty(count.value, np.int32 if is_integer else float)
     if is_integer:
-        library().mfv_copy_integer(handle, name, values.ctypes.data_as(ctypes.POINTER(c_int32)), values.size)
+        whole = np.empty(count.value, np.int32)
+        library().mfv_copy_integer(handle, name, whole.ctypes.data_as(ctypes.POINTER(c_int32)), whole.size)
+        solved.arrays[path] = whole.astype(float)
     else:
-        library().mfv_copy_real(handle, name, values.ctypes.data_as(ctypes.POINTER(c_double)), values.size)
-    solved.arrays[path] = values.astype(float)
+        _add_values(handle, path, count.value, solved)
     solved.about[path] = along.value, text_of(unit), text_of(description)
 
 

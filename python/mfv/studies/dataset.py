@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 import math
 import os
 import re
@@ -149,27 +150,26 @@ def _traction_error(one: Solved, reference: Solved, moment: str, traction: str) 
         or not (moment == "loading" or _has_same_cycles(one, reference))
     ):
         return _NAN
-    here, there, weights = _side_by_side(one, reference, path)
-    total = float(np.sum(np.abs(there) * weights))
-    return float(np.sum(np.abs(here - there) * weights)) / total if total > 0.0 else _NAN
+    here, there = _side_by_side(one, reference, path)
+    total = float(np.abs(there).sum())
+    return float(np.abs(here - there).sum()) / total if total > 0.0 else _NAN
 
 
-def _side_by_side(one: Solved, reference: Solved, path: str) -> tuple[NDArray[Any], NDArray[Any], NDArray[Any]]:
-    """A traction of two cases at the same places, with the lengths that these stand for.
+def _side_by_side(one: Solved, reference: Solved, path: str) -> tuple[NDArray[Any], NDArray[Any]]:
+    """The forces of a traction in two cases on the same pieces of surface.
 
-    Meshes of one interval about one middle: at their nodes, none beyond the ends of the narrower one, as forces over the
-    interval. Others: at the nodes of both, linear between nodes, none beyond the ends.
+    Meshes of one interval about one middle: on the intervals of their nodes, none beyond the ends of the narrower mesh. Others:
+    around the nodes of both, with tractions linear between nodes, none beyond the ends.
     """
-    sizes, intervals = zip(
-        *((kept.arrays[path].size, float(kept.arrays["mesh/interval"][0])) for kept in (one, reference))
-    )
-    if math.isclose(*intervals, rel_tol=1e-9) and (sizes[0] - sizes[1]) % 2 == 0:
-        forces = [kept.arrays[path] * kept.arrays["mesh/width"] for kept in (one, reference)]
-        here, there = (_widened(force, max(sizes)) for force in forces)
-        return here / intervals[0], there / intervals[1], np.ones(max(sizes))
+    here, there = one.arrays[path], reference.arrays[path]
+    interval, other = one.arrays["mesh/interval"][0], reference.arrays["mesh/interval"][0]
+    if abs(interval - other) <= 1e-9 * other and (here.size - there.size) % 2 == 0:
+        size = max(here.size, there.size)
+        return _widened(here * one.arrays["mesh/width"], size), _widened(there * reference.arrays["mesh/width"], size)
     x = np.union1d(one.arrays["mesh/x"], reference.arrays["mesh/x"])
+    width = np.gradient(x)
     here, there = (np.interp(x, kept.arrays["mesh/x"], kept.arrays[path], 0.0, 0.0) for kept in (one, reference))
-    return here, there, np.gradient(x)
+    return here * width, there * width
 
 
 def _widened(values: NDArray[Any], size: int) -> NDArray[Any]:
@@ -177,18 +177,19 @@ def _widened(values: NDArray[Any], size: int) -> NDArray[Any]:
     return values if values.size == size else np.pad(values, (size - values.size) // 2)
 
 
-def _observable(solved: Solved, name: str) -> float:
-    return solved.observables[list(observables()).index(name)]
+@functools.cache
+def _place(observable: str) -> int:
+    return list(observables()).index(observable)
 
 
 def _has_same_cycles(one: Solved, other: Solved) -> bool:
     """Whether two cases have the same number of whole cycles; not where one of them has none."""
-    here, there = _observable(one, "cycles"), _observable(other, "cycles")
+    here, there = (solved.observables[_place("cycles")] for solved in (one, other))
     return math.isfinite(here) and here == there
 
 
 def _dissipation_ratio(one: Solved, reference: Solved) -> float:
-    here, there = (_observable(solved, "cycle_dissipation") for solved in (one, reference))
+    here, there = (solved.observables[_place("cycle_dissipation")] for solved in (one, reference))
     is_told = _has_same_cycles(one, reference) and math.isfinite(here) and abs(there) > 0.0
     return here / there if is_told else _NAN
 
@@ -199,8 +200,7 @@ def _fields(study: Study, solved: Sequence[Solved | None]) -> dict[str, Any]:
     dimensions = [dimension.name for dimension in study.dimensions]
     longest: dict[int, int] = {}
     for one in (one for one in solved if one is not None):
-        for path in set(study.wanted_fields) & one.arrays.keys():
-            along = one.about[path][0]
+        for path, (along, _, _) in one.about.items():
             longest[along] = max(one.arrays[path].size, longest.get(along, 0))
     for path in study.wanted_fields:
         having = [(place, one) for place, one in enumerate(solved) if one is not None and path in one.arrays]
