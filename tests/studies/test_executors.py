@@ -92,11 +92,11 @@ def test_a_dask_worker_is_killed(tmp_path):
     assert killed and table.identical(undisturbed)
 
 
-def die(job):
+def die(jobs):
     """What a worker that runs out of memory does."""
-    if dict(job.settings)["friction%mu"] == 0.7:
+    if dict(jobs[0].settings)["friction%mu"] == 0.7:
         os.kill(os.getpid(), signal.SIGKILL)
-    return solve(job)
+    return solve(jobs)
 
 
 def test_a_worker_process_is_killed(study, tmp_path, monkeypatch):

@@ -7,6 +7,7 @@ import ctypes
 import functools
 import hashlib
 import os
+import time
 from collections.abc import Iterator, Sequence
 from ctypes import byref, c_double, c_int, c_int32, c_size_t, c_void_p
 from dataclasses import dataclass, field
@@ -161,12 +162,24 @@ def _content(path: str) -> str:
         return path
 
 
-def solve(job: Job) -> Solved:
-    """Solve a case in a process that is there for this: BLAS gets one thread, for good, so that all processes give the same bits."""
+def solve(jobs: Sequence[Job]) -> tuple[float, list[Solved | None]]:
+    """Solve cases in a process that is there for this, as `solve_here` does.
+
+    BLAS gets one thread, for good, so that all processes give the same bits.
+    """
     _one_blas_thread()
-    solved = solve_unless(None, job)
-    assert solved is not None
-    return solved
+    observables()  # the library is there before the time is taken
+    return solve_here(None, jobs)
+
+
+def solve_here(stop: c_int | None, jobs: Sequence[Job]) -> tuple[float, list[Solved | None]]:
+    """Solve cases in this process; the seconds that it took, and None for cases for which `stop` was set before they were done.
+
+    Raises FileError where the result of a case cannot be written.
+    """
+    began = time.perf_counter()
+    solved = [solve_unless(stop, job) for job in jobs]
+    return time.perf_counter() - began, solved
 
 
 def solve_unless(stop: c_int | None, job: Job) -> Solved | None:

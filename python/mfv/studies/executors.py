@@ -9,16 +9,20 @@ import multiprocessing
 import os
 import signal
 import threading
-from collections.abc import Callable, Iterator, Mapping
-from concurrent.futures import Executor, ProcessPoolExecutor, ThreadPoolExecutor, as_completed
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from concurrent.futures import Executor, Future, ProcessPoolExecutor, ThreadPoolExecutor, as_completed
+from concurrent.futures import TimeoutError as FuturesTimeout
 from ctypes import c_int
 from typing import Any
 
 from .._library import library
-from .cases import Job, Solved, solve, solve_unless
+from .cases import Job, Solved, solve, solve_here
 
 #: Names of executors; 'dask:ADDRESS' is a cluster that is running already.
 NAMES = ("threads", "processes", "mpi", "dask")
+
+#: How long the first case is waited for, and how long a task of several cases may last [seconds]; how many tasks there are at least.
+LONGEST_WAIT, LONGEST_TASK, LEAST_TASKS = 1.0, 0.25, 64
 
 
 def solve_all(
@@ -30,22 +34,38 @@ def solve_all(
     """
     with opened(executor, workers) as pool, contextlib.ExitStack() as stack:
         stop = c_int(0)
-        function: Callable[[Job], Solved | None] = solve
+        function: Callable[[Sequence[Job]], tuple[float, list[Solved | None]]] = solve
         if isinstance(pool, ThreadPoolExecutor):
-            function = functools.partial(solve_unless, stop)
+            function = functools.partial(solve_here, stop)
             stack.enter_context(_one_blas_thread_meanwhile())
-        futures = {pool.submit(function, job): key for key, job in jobs.items()}
+        tasks: dict[Future[Any], list[str]] = {}
         try:
-            for future in as_completed(futures):
-                solved = future.result()
-                if solved is not None:
-                    keep(futures[future], solved)
+            for names in _cut(list(jobs), tasks, isinstance(pool, ThreadPoolExecutor)):
+                tasks[pool.submit(function, [jobs[name] for name in names])] = names
+            for task in as_completed(tasks):
+                for name, solved in zip(tasks[task], task.result()[1]):
+                    if solved is not None:
+                        keep(name, solved)
         except BaseException:
             stop.value = 1
             if isinstance(executor, Executor) or not isinstance(pool, ProcessPoolExecutor):  # ours ends its processes
-                for future in futures:
-                    future.cancel()
+                for task in tasks:
+                    task.cancel()
             raise
+
+
+def _cut(names: list[str], tasks: Mapping[Future[Any], Any], one_by_one: bool) -> Iterator[list[str]]:
+    """The names of cases task by task. What an executor does with a task may take as long as a short case: the first case tells how
+    long they are, and tasks last up to a quarter of a second. There are 64 tasks or more, for all workers to have some."""
+    size = 1
+    if names and not one_by_one:
+        yield names[:1]
+        names = names[1:]
+        with contextlib.suppress(TimeoutError, FuturesTimeout):
+            seconds, _ = next(iter(tasks)).result(timeout=LONGEST_WAIT)
+            size = max(1, min(int(LONGEST_TASK / max(seconds, 1e-6)), len(names) // LEAST_TASKS))
+    for at in range(0, len(names), size):
+        yield names[at : at + size]
 
 
 @contextlib.contextmanager
