@@ -7,12 +7,12 @@ from typing import Any
 
 import f90nml
 
-#: Groups that may come more than once; their keys are named group(number)%key, as in a sweep.
+#: Groups that may come more than once; their keys are named group(number)%key, as in a study.
 REPEATED = ("body", "step", "vary")
 
 
 def keys(text: str) -> dict[str, Any]:
-    """Values of a namelist text by the names that sweeps have for them, such as 'scene%coupling' and 'step(2)%cycles':
+    """Values of a namelist text by the names that studies have for them, such as 'scene%coupling' and 'step(2)%cycles':
     numbers, texts, logicals, or lists of them. Raises ValueError for a text that is no namelist."""
     found: dict[str, Any] = {}
     numbers: Counter[str] = Counter()

@@ -6,7 +6,7 @@ module mfv_case_changes
    use mfv_strings, only: to_text
    implicit none
    private
-   public :: put_entry, stands_for, remove_alternatives, remove_keys, set_dundurs_beta, set_value, write_number
+   public :: put_entry, remove_alternatives, remove_keys, set_dundurs_beta, write_number
 
    !> Keys of one group of which a case has one at most: a value for one takes the place of the others.
    character(*), parameter :: alternatives(5) = [character(40) :: 'tangential_force force_ratio shift', &
@@ -15,8 +15,8 @@ module mfv_case_changes
 
 contains
 
-   !> Put a value, as it would be written, into a key of the `number`-th group of a name, in place of what is there for it or
-   !> for a key that it stands for; key and group are added where they are not there.
+   !> Put a value, as it would be written, into a key of the `number`-th group of a name; key and group are added where they are
+   !> not there.
    subroutine set_value(groups, group, number, key, value, is_quoted)
       type(group_type), allocatable, intent(inout) :: groups(:)
       character(*), intent(in) :: group, key, value
@@ -31,20 +31,15 @@ contains
       call put_entry(groups, group, number, entry)
    end subroutine set_value
 
-   !> The same with a whole entry, whose line becomes that of what it takes the place of. `only_itself`: it takes the place of its own
-   !> key alone.
-   subroutine put_entry(groups, group, number, entry, only_itself)
+   !> The same with a whole entry, whose line becomes that of what it takes the place of.
+   subroutine put_entry(groups, group, number, entry)
       type(group_type), allocatable, intent(inout) :: groups(:)
       character(*), intent(in) :: group
       integer, intent(in) :: number
       type(entry_type), intent(inout) :: entry
-      logical, intent(in), optional :: only_itself
-      logical :: strict
       type(group_type) :: new
       integer :: place, i
 
-      strict = .false.
-      if (present(only_itself)) strict = only_itself
       place = place_of_group(groups, group, number)
       if (place == 0) then
          new%name = group
@@ -54,8 +49,7 @@ contains
       end if
       entry%line = groups(place)%line
       do i = 1, size(groups(place)%entries)
-         if (.not. stands_for(entry%key, groups(place)%entries(i)%key)) cycle
-         if (strict .and. entry%key /= groups(place)%entries(i)%key) cycle
+         if (groups(place)%entries(i)%key /= entry%key) cycle
          entry%line = groups(place)%entries(i)%line
          groups(place)%entries(i) = entry
          return
@@ -75,18 +69,6 @@ contains
          if (index(' '//alternatives(i), ' '//key//' ') > 0) call remove_keys(groups, group, number, trim(alternatives(i)))
       end do
    end subroutine remove_alternatives
-
-   !> Whether a key takes the place of another one in its group: it is the same, or an alternative to it.
-   pure logical function stands_for(key, other)
-      character(*), intent(in) :: key, other
-      integer :: i
-
-      stands_for = key == other
-      do i = 1, size(alternatives)
-         stands_for = stands_for .or. (index(' '//alternatives(i), ' '//key//' ') > 0 .and. &
-                                       index(' '//alternatives(i), ' '//other//' ') > 0)
-      end do
-   end function stands_for
 
    !> Give both bodies materials with Dundurs' parameter `beta`, from -1/2 to 1/2, positive where the lower body couples more,
    !> and the mutual compliance A, length^2/force, the sum of (kappa + 1)/(4 G): Poisson's ratio 0, that is kappa = 3 in plane

@@ -21,7 +21,7 @@ module mfv_draft
    public :: draft_type, read_draft
 
    !> Dundurs' parameter can be set as if it were a key; this is the size of the largest.
-   character(*), parameter :: dundurs_key = 'dundurs_beta'
+   character(*), parameter :: dundurs_key = 'dundurs_beta', dundurs_values = 'must be a number from -0.5 to 0.5'
    real(wp), parameter :: largest_beta = 0.5_wp
    character(*), parameter :: line_ends = achar(10)//achar(13)
 
@@ -85,6 +85,7 @@ contains
       if (.not. allocated(self%groups)) allocate (self%groups(0))
       if (.not. allocated(self%catalogue)) self%catalogue = case_catalogue()
       call read_key_name(name, self%catalogue, group, number, key, why)
+      if (lower_case(name) == dundurs_key) why = quoted(name)//': '//dundurs_values
       there = groups_of_name(self%groups, group)
       if (why == '' .and. (number < 1 .or. number > max(2, there + 1))) &
          why = quoted(name)//': there are '//to_text(there)//' of &'//group//' so far; the next one is '//group//'('// &
@@ -117,7 +118,7 @@ contains
          allocate (entry%values(1))
          entry%values(1)%text = value
          entry%is_quoted = [is_quoted]
-         call put_entry(self%groups, group, number, entry, only_itself=.true.)
+         call put_entry(self%groups, group, number, entry)
       end if
       call tell(self, name, fault, error)
    end subroutine set_written
@@ -224,7 +225,7 @@ contains
       type(case_type) :: case
 
       if (.not. (ieee_is_finite(beta) .and. abs(beta) <= largest_beta)) then
-         call set_error(fault, MFV_INPUT_ERROR, dundurs_key//'='//to_text(beta)//': must be a number from -0.5 to 0.5')
+         call set_error(fault, MFV_INPUT_ERROR, dundurs_key//'='//to_text(beta)//': '//dundurs_values)
       else
          call mend(self, dundurs_key)
          call self%make_case(case, fault)
@@ -263,7 +264,7 @@ contains
          do i = 1, size(values)
             call write_number(values(i), entry%values(i)%text)
          end do
-         call put_entry(self%groups, group, number, entry, only_itself=.true.)
+         call put_entry(self%groups, group, number, entry)
       end if
       call tell(self, name, fault, error)
    end subroutine set_reals

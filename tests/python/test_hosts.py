@@ -68,7 +68,8 @@ def test_the_tangent_saves_evaluations_and_leads_to_the_same_forces(host: Module
     joints = [host.Series(host.contact(0.5), host.contact(0.7), with_tangent) for with_tangent in (True, False)]
     forces = [[joint.shift_top(top) for top in tops] for joint in joints]
     np.testing.assert_allclose(forces[0], forces[1], rtol=1e-6)
-    assert joints[0].evaluations <= 5 * len(tops) < 7 * len(tops) < joints[1].evaluations
+    # Round-off decides some: 36 to 42 have been seen, by processor and number of BLAS threads, and 70 without the tangent.
+    assert joints[0].evaluations <= 6 * len(tops) < 7 * len(tops) < joints[1].evaluations
 
 
 def test_an_equilibrium_that_is_not_there_leaves_the_joint_as_it_was(host: ModuleType) -> None:

@@ -15,6 +15,7 @@ from small import AXES, environment, long_study, run, write
 
 import mfv
 from mfv.studies.cases import solve
+from mfv.studies.executors import _one_blas_thread_meanwhile
 from mfv.studies.namelist import read_study
 
 
@@ -121,7 +122,9 @@ def test_blas_is_left_as_it_was(study):
 
     with threadpoolctl.threadpool_limits(2, user_api="blas"):
         before = threads()
-        mfv.study(study[0] / "base.nml", {"friction%mu": [0.5]})
+        with _one_blas_thread_meanwhile():  # another study, in another thread
+            mfv.study(study[0] / "base.nml", {"friction%mu": [0.5]})
+            assert set(threads()) == {1}
         assert threads() == before
 
 
@@ -131,6 +134,8 @@ def test_names_of_executors(study, tmp_path):
         mfv.study(folder / "base.nml", AXES, executor="thread")
     with pytest.raises(ValueError, match="workers must be 1 or more, not 0"):
         mfv.study(folder / "base.nml", AXES, workers=0)
+    with InOneProcess() as pool, pytest.raises(ValueError, match="has its own number of workers"):
+        mfv.study(folder / "base.nml", AXES, executor=pool, workers=2)
     write(tmp_path)
     done = run("study.nml", "--executor", "treads", cwd=tmp_path)
     assert done.returncode == 2 and "there is no executor 'treads'" in done.stderr

@@ -211,6 +211,72 @@ def test_a_function_makes_scenes(study):
     assert made.attrs["length_unit"] == "mm" and list(made["grip"]) == [5e-4, 7e-4]
 
 
+def test_a_function_with_keys_and_other_units(study):
+    folder, _ = study
+    base = mfv.Scene.from_file(folder / "base.nml")
+    axes = {"nodes_wanted": mfv.Axis("mesh%nodes", [11, 21]), "kind": [(1, 2), [3]]}
+    made = mfv.study(lambda point: base, axes)
+    assert made["nodes"].values.tolist() == [[11, 11], [21, 21]] and list(made["kind"]) == [1, 2]
+
+    def scene(point):
+        base.length_unit = point["unit"]
+        return base
+
+    with pytest.raises(mfv.errors.InputError, match="case 2 \\(unit='m'\\): the scene names other units than that of case 1"):
+        mfv.study(scene, {"unit": ["mm", "m"]})
+
+
+def test_values_that_are_lists_paths_and_arrays(study, tmp_path):
+    folder, _ = study
+    grip = np.full(21, 0.7)
+    weak = np.where(np.abs(np.arange(21) - 10) > 5, 0.7 - 1e-9, 0.7)
+    planned = mfv.Study(folder / "base.nml", {"friction%mu": [grip, weak, list(0.5 * grip)]})
+    table = planned.run()
+    assert list(table["friction%mu"]) == [1, 2, 3] and len(set(flat(table, "cycle_dissipation"))) == 3
+    dataset.write(table, tmp_path / "lists.nc")
+    (tmp_path / "base.nml").write_text(BASE.format(nodes=21, cycles=1).replace("mu=0.7", "mu_file='mu.txt'"))
+    axes, found = {"Friction%MU_file": [tmp_path / "mu.txt"], "mesh%nodes": np.array([21])}, []
+    for edge in (0.7, 0.6):
+        (tmp_path / "mu.txt").write_text(f"-1 {edge}\n1 0.7\n")
+        found.append(mfv.study(tmp_path / "base.nml", axes, store=tmp_path / "s.sqlite")["cycle_dissipation"].item())
+    assert found[0] != found[1]
+    with pytest.raises(mfv.errors.InputError, match="is varied already"):
+        mfv.Study(folder / "base.nml", {"body(2)%radius": [0.2], "Body(02)%Radius": [0.3]})
+
+
+def test_what_is_no_study(study):
+    folder, _ = study
+    base = folder / "base.nml"
+    for axes, kind, words in (
+        ({3: [1]}, TypeError, "a key of the case is wanted, such as 'friction%mu', not 3"),
+        ({"a": mfv.Axis([], [1])}, mfv.errors.InputError, "there are no keys"),
+        ({"a": mfv.Axis("friction%mu", "full")}, TypeError, "a: a list of values"),
+        ({"a": mfv.Axis("friction%mu", [0.3], 2)}, TypeError, "a: a list of values"),
+        ({"a": mfv.Axis([3], [0.3])}, TypeError, "a key of the case is wanted"),
+        ({"a": mfv.Axis("friction%mu", [[0.3]], [2])}, mfv.errors.InputError, "is no number"),
+        ({"p": {}}, mfv.errors.InputError, "p: there are no axes"),
+        ({"a/b": {"friction%mu": [0.5]}}, mfv.errors.InputError, "a name must be a text"),
+        ({"case": {"friction%mu": [0.5]}}, mfv.errors.InputError, "case: this name is taken"),
+        (pandas.DataFrame(), mfv.errors.InputError, "must have rows"),
+        ([], TypeError, "a table of cases"),
+        ({"dundurs_beta": ["a"]}, mfv.errors.InputError, "must be a number from -0.5 to 0.5"),
+    ):
+        with pytest.raises(kind, match=words):
+            mfv.study(base, axes)
+    for wrong in ({"executor": None}, {"executor": 4}, {"reference": ["full"]}):
+        with pytest.raises((TypeError, mfv.errors.InputError)):
+            mfv.study(base, {"scene%coupling": ["full"]}, **wrong)
+    with pytest.raises(mfv.errors.InputError, match="there is no base case"):
+        mfv.study([])
+    with pytest.raises(mfv.errors.InputError, match="two bases have the name"):
+        mfv.study([base, base])
+    with pytest.raises(mfv.errors.InputError, match="every study has a column state_pressure"):
+        mfv.study(base, {"state_pressure": mfv.Axis("friction%mu", [0.5])}, fields="state/pressure")
+    with pytest.warns(UserWarning, match="no case has the field 'state/presure'"):
+        mfv.study(base, fields="state/presure")
+    assert "shift" in mfv.study(base, observables="shift")
+
+
 def test_several_bases(study, tmp_path):
     folder, _ = study
     (tmp_path / "other.nml").write_text(BASE.format(nodes=15, cycles=1))
@@ -252,7 +318,7 @@ def test_dundurs_beta_keeps_the_mutual_compliance(study):
     ({"friction%mu": [0.3, -0.7]}, "case 2 \\(base=.*, friction%mu=-0.7\\): .*base.nml:6: &friction mu=-0.7: must be a number at least 0"),
     ({"scene%coupling": ["gudman"]}, "must be 'full', 'goodman' or 'none'"),
     ({"shift": mfv.Axis("friction%mu", [0.3])}, "every study has a column shift; give another name"),
-    ({"a/b": mfv.Axis("friction%mu", [0.3])}, "a name must not be empty, begin or end with a blank, or have a /"),
+    ({"a/b": mfv.Axis("friction%mu", [0.3])}, "a name must be a text that is not empty, does not begin or end with a blank, and has no /"),
     ({"a": mfv.Axis("friction%mu", [0.3], [1, -1])}, "must have one value a key, 1, not 2"),
     ({"a": mfv.Axis("scene%coupling", ["full"], [2])}, "'full' is no number, and cannot be multiplied by 2"),
     ({"a": mfv.Axis("friction%mu", [1e300], [1e300])}, "1e\\+300 times 1e\\+300 is too large for a number"),
@@ -299,7 +365,7 @@ def test_whole_results(study, tmp_path):
     folder, _ = study
     table = mfv.study(folder / "base.nml", AXES, results=tmp_path / "results", workers=3)
     names = flat(table, "result_file")
-    assert len(set(names)) == CASES == len(list((tmp_path / "results").iterdir()))
+    assert len(set(names)) == CASES == len(list((tmp_path / "results").iterdir())) and names[0].startswith(str(tmp_path))
     alone = mfv.run(text=mfv.Study(folder / "base.nml", AXES).text(14))
     with h5py.File(tmp_path / names[13]) as result:
         np.testing.assert_array_equal(result["state/pressure"], alone.state.pressure)

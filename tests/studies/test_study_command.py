@@ -275,8 +275,11 @@ def test_interrupted(executor, number, tmp_path):
     assert said.splitlines() == ["mfv: solved cases are kept in study.sqlite; the same command goes on", "mfv: interrupted"], said
     there = cases_kept(tmp_path)
     assert 0 < there < cases and not (tmp_path / "study.nc").exists()
-    done = run("study.nml", "--so-far", "-o", "part.nc", cwd=tmp_path)
-    assert done.returncode == INPUT or "not solved" in done.stdout  # part.sqlite is another one
+    for options, words in ((["--so-far", "-o", "part.nc"], "part.sqlite"), (["--so-far", "--again"], "not allowed"),
+                           (["--again", "--executor", "none"], "there is no executor 'none'")):
+        done = run("study.nml", *options, cwd=tmp_path)
+        assert done.returncode == INPUT and words in done.stderr, done.stderr
+    assert cases_kept(tmp_path) == there
     done = run("study.nml", "--so-far", cwd=tmp_path)
     assert done.stdout == f"study.nc: {cases} cases: {there} complete, {cases - there} not solved\n"
     table = read(tmp_path / "study.nc")

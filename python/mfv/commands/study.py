@@ -62,8 +62,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         help=f"{', '.join(NAMES)}, or dask:ADDRESS of a cluster (threads)",
     )
     parser.add_argument("--workers", type=at_least(1), metavar="N", help="cases at a time (as many as processors)")
-    parser.add_argument("--again", action="store_true", help="solve all cases, those that are there already as well")
-    parser.add_argument(
+    either = parser.add_mutually_exclusive_group()
+    either.add_argument("--again", action="store_true", help="solve all cases, those that are there already as well")
+    either.add_argument(
         "--so-far", action="store_true", help="solve nothing: write the table of the cases that are there"
     )
     parser.add_argument("--list", action="store_true", help="say which cases there are; nothing is solved or written")
@@ -96,21 +97,19 @@ def run(options: argparse.Namespace) -> int | None:
 
 
 def _solve(study: Study, output: Path, options: argparse.Namespace) -> int | None:
-    from ..studies.dataset import write  # here: they import xarray
-    from ..studies.store import Store
+    from ..studies.dataset import write  # here: it imports xarray
 
     kept = output.with_suffix(".sqlite")
     if study.keeps_results:
-        study.results = output.with_suffix(".cases")
-    if options.again:
-        with Store(kept) as store:
-            store.clear()
+        study.results, study.results_from = output.with_suffix(".cases"), output.parent
     if options.so_far:
         table = study.so_far(kept)
     else:
         try:
             with _terminated_like_interrupted():
-                table = study.run(executor=options.executor, workers=options.workers, store=kept, progress=True)
+                table = study.run(
+                    executor=options.executor, workers=options.workers, store=kept, again=options.again, progress=True
+                )
         except KeyboardInterrupt:
             print(f"mfv: solved cases are kept in {kept}; the same command goes on", file=sys.stderr)
             raise

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import math
+import os
+import re
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
-
-import numpy as np
 
 from ..errors import MfvError, input_error
 
@@ -39,15 +39,14 @@ class Coordinate:
     ) -> None:
         """Raises InputError."""
         self.name = name
-        self.keys = tuple(keys)
-        self.values = [value.item() if isinstance(value, np.generic) else value for value in values]
+        self.keys = tuple(_in_one_form(key) for key in keys)
+        self.values = [_plain(value) for value in values]
         self.factors = (1,) * len(self.keys) if factors is None else tuple(factors)
         if len(self.factors) != len(self.keys):
             raise fault(f"{name}: must have one value a key, {len(self.keys)}, not {len(self.factors)}", 0, "factor")
         if not self.values:
             raise fault(f"{name}: there are no values", 0, "values")
-        if not name or name != name.strip() or "/" in name:
-            raise fault(f"{name!r}: a name must not be empty, begin or end with a blank, or have a /", 0, "name")
+        check_name(name)
         for factor in self.factors:
             if factor != 1:
                 self._check_products(factor)
@@ -57,13 +56,9 @@ class Coordinate:
         value = self.values[place]
         return [(key, value if factor == 1 else value * factor) for key, factor in zip(self.keys, self.factors)]
 
-    def shown(self, place: int) -> str:
-        """The value at a place as one would write it."""
-        return as_written(self.values[place])
-
     def _check_products(self, factor: float) -> None:
         for value in self.values:
-            if isinstance(value, (str, bool)):
+            if isinstance(value, bool) or not isinstance(value, (int, float)):
                 raise fault(f"{as_written(value)} is no number, and cannot be multiplied by {factor:g}", 0, "factor")
             if not math.isfinite(float(value) * factor):
                 raise fault(f"{as_written(value)} times {factor:g} is too large for a number", 0, "factor")
@@ -73,9 +68,12 @@ class Dimension:
     """A dimension of the study: one axis, or several that move together along it."""
 
     def __init__(self, name: str, coordinates: Sequence[Coordinate]) -> None:
-        """Raises InputError where the axes do not have the same number of values."""
+        """Raises InputError where there are no axes, or where they do not have the same number of values."""
+        check_name(name)
         self.name = name
         self.coordinates = list(coordinates)
+        if not self.coordinates:
+            raise input_error(f"{name}: there are no axes")
         for other in self.coordinates[1:]:
             if len(other.values) != len(self):
                 first = self.coordinates[0]
@@ -87,11 +85,37 @@ class Dimension:
         return len(self.coordinates[0].values)
 
 
+def check_name(name: Any) -> None:
+    """Raises InputError for what cannot be the name of an axis or a dimension in a dataset and its file."""
+    if not isinstance(name, str) or not name or name != name.strip() or "/" in name:
+        raise fault(
+            f"{name!r}: a name must be a text that is not empty, does not begin or end with a blank, and has no /",
+            0,
+            "name",
+        )
+
+
 def as_written(value: Any) -> str:
     """A value as a namelist has it."""
     if isinstance(value, bool):
         return ".true." if value else ".false."
+    if isinstance(value, list):
+        return ", ".join(map(as_written, value[:3])) + (", ..." if len(value) > 3 else "")
     return f"'{value}'" if isinstance(value, str) else repr(value)
+
+
+def _in_one_form(key: Any) -> str:
+    """A key in small letters, its number without zeros before it, so that keys that are the same are equal. Raises TypeError."""
+    if not isinstance(key, str):
+        raise TypeError(f"a key of the case is wanted, such as 'friction%mu', not {key!r}")
+    return re.sub(r"\(0+(?=\d)", "(", key.lower())
+
+
+def _plain(value: Any) -> Any:
+    """A value without the types of numpy, pandas and pathlib."""
+    if isinstance(value, os.PathLike):
+        return os.fspath(value)
+    return value.tolist() if hasattr(value, "tolist") else value
 
 
 def dimensions_of(axes: Any, *, are_keys: bool = True) -> list[Dimension]:
@@ -114,19 +138,29 @@ def _dimension(name: str, values: Any, are_keys: bool) -> Dimension:
 
 
 def _coordinate(name: str, values: Any, are_keys: bool) -> Coordinate:
-    if isinstance(values, Axis):
-        keys = [values.keys] if isinstance(values.keys, str) else values.keys
-        return Coordinate(name, keys, values.values, values.factors)
-    if isinstance(values, str) or not isinstance(values, Iterable):
+    if not isinstance(values, Axis):
+        return Coordinate(name, [name] if are_keys else [], _listed(name, values))
+    keys = [values.keys] if isinstance(values.keys, str) else list(values.keys)
+    if not keys:
+        raise fault(f"{name}: there are no keys", 0, "key")
+    factors = None if values.factors is None else _listed(name, values.factors)
+    return Coordinate(name, keys, _listed(name, values.values), factors)
+
+
+def _listed(name: str, values: Any) -> list[Any]:
+    """Values as a list. Raises TypeError for a single one."""
+    if isinstance(values, (str, Mapping)) or not isinstance(values, Iterable):
         raise TypeError(f"{name}: a list of values or a mfv.Axis is wanted, not {values!r}")
-    return Coordinate(name, [name] if are_keys else [], values)
+    return list(values)
 
 
 def _columns_of_table(table: Any) -> dict[str, list[Any]]:
     """The columns of a table of cases: a pandas.DataFrame, or a list with a mapping for each case. Raises TypeError."""
     if hasattr(table, "columns"):
+        if len(set(table.columns)) < len(table.columns) or len(table) == 0:
+            raise input_error("a table of cases must have rows, and columns with names of their own")
         return {str(name): list(table[name]) for name in table.columns}
-    rows = list(table)
+    rows = _listed("a table of cases", table)
     if not rows or not all(isinstance(row, Mapping) and row.keys() == rows[0].keys() for row in rows):
         raise TypeError("a table of cases is a pandas.DataFrame, or a list of mappings, one a case, with the same keys")
     return {str(name): [row[name] for row in rows] for name in rows[0]}

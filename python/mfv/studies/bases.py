@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import errno
 import os
+import re
 from pathlib import Path
 from typing import Any, Union
 
@@ -67,8 +68,9 @@ def absolute(file: Any, base: Base) -> Any:
 def units_of(base: Base) -> dict[str, str]:
     """The names of length and force in a base. Raises InputError."""
     with _scene_handle(base.text, base.name) as handle:
-        keys = keys_of_text(_text_of_scene(handle))
-    return {unit: str(keys.get(f"scene%{unit}_unit", unit)) for unit in ("length", "force")}
+        text = _text_of_scene(handle)
+    named = dict(re.findall(r"\b(length|force)_unit='([^']*)'", text))
+    return {unit: named.get(unit, unit) for unit in ("length", "force")}
 
 
 def counts_of_groups(base: Base) -> dict[str, int]:

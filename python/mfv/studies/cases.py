@@ -129,12 +129,8 @@ def check(base: Base, settings: Sequence[tuple[str, Any]]) -> None:
 
 def digest(job: Job, base_digest: str) -> str:
     """A name for all that decides what is kept of a case: the base, the values, files that they name, the version."""
-    told = hashlib.sha256()
-    settings = [(key, _content(value) if key in FILE_KEYS else value) for key, value in job.settings]
-    told.update(
-        repr((library_version(), tuple(observables()), base_digest, settings, job.fields, job.compared)).encode()
-    )
-    return told.hexdigest()
+    kept = (library_version(), tuple(observables()), base_digest, _contents(job.settings), job.fields, job.compared)
+    return hashlib.sha256(repr(kept).encode()).hexdigest()
 
 
 def digest_of_base(base: Base, settings: Sequence[tuple[str, Any]]) -> str:
@@ -144,8 +140,13 @@ def digest_of_base(base: Base, settings: Sequence[tuple[str, Any]]) -> str:
         told.update(
             repr((file, dataset, np.shape(values))).encode() + np.ascontiguousarray(values, dtype=float).tobytes()
         )
-    told.update(repr([(key, _content(value)) for key, value in settings]).encode())
+    told.update(repr(_contents(settings)).encode())
     return told.hexdigest()
+
+
+def _contents(settings: Sequence[tuple[str, Any]]) -> list[tuple[str, Any]]:
+    """Keys with their values, and with what is in the files that these name."""
+    return [(key, _content(value) if key in FILE_KEYS and isinstance(value, str) else value) for key, value in settings]
 
 
 @functools.lru_cache(maxsize=1024)

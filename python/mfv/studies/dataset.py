@@ -6,6 +6,7 @@ import functools
 import math
 import os
 import re
+import warnings
 from collections import Counter
 from collections.abc import Sequence
 from pathlib import Path
@@ -16,7 +17,7 @@ import xarray
 from numpy.typing import NDArray
 
 from .._library import Along, library_version, outcome_of
-from .axes import Coordinate
+from .axes import Coordinate, as_written
 from .cases import COUNTS, DUNDURS_BETA, MOMENTS, TRACTIONS, Solved, key_info, observables
 from .plan import TITLE, Study, result_name
 
@@ -115,10 +116,9 @@ def _columns(
     if study.reference is not None:
         columns += _errors(study, there)
     if study.results is not None:
-        files = [
-            f"{study.results.name}/{result_name(key)}" if one.counts["nodes"] else "" for key, one in zip(keys, there)
-        ]
-        columns.append(("result_file", files, "1", "result file of the case, beside the table"))
+        folder = os.path.relpath(study.results, study.results_from) if study.results_from else os.fspath(study.results)
+        files = [os.path.join(folder, result_name(key)) if one.counts["nodes"] else "" for key, one in zip(keys, there)]
+        columns.append(("result_file", files, "1", "result file of the case"))
     return columns
 
 
@@ -205,6 +205,7 @@ def _fields(study: Study, solved: Sequence[Solved | None]) -> dict[str, Any]:
     for path in study.wanted_fields:
         having = [(place, one) for place, one in enumerate(solved) if one is not None and path in one.arrays]
         if not having:
+            warnings.warn(f"no case has the field '{path}'", stacklevel=2)
             continue
         along, unit, meaning = having[0][1].about[path]
         values = np.full((len(solved), longest[along]), np.nan)
@@ -220,8 +221,7 @@ def _fields(study: Study, solved: Sequence[Solved | None]) -> dict[str, Any]:
 
 def _described(coordinate: Coordinate, units: dict[str, str]) -> tuple[Any, dict[str, str]]:
     """The values of an axis as an array, and what they are."""
-    values = coordinate.values
-    array: Any = np.array(values, dtype=object if any(isinstance(value, str) for value in values) else None)
+    array = _as_array(coordinate.values)
     if coordinate.name == "base":
         return array, {"long_name": "base case"}
     if not coordinate.keys:
@@ -235,6 +235,15 @@ def _described(coordinate: Coordinate, units: dict[str, str]) -> tuple[Any, dict
         "units": _labelled(about[1] or "1", units),
         "long_name": f"&{group.partition('(')[0]} {key}: {about[2]}",
     }
+
+
+def _as_array(values: Sequence[Any]) -> NDArray[Any]:
+    """The values of an axis as an array: numbers, texts, or, of what is neither, such as lists, numbers from 1."""
+    if all(isinstance(value, (bool, int, float)) for value in values):
+        return np.array(values)
+    if all(isinstance(value, (str, bool, int, float)) for value in values):
+        return np.array([value if isinstance(value, str) else as_written(value) for value in values], dtype=object)
+    return np.arange(1, len(values) + 1)
 
 
 def _labelled(unit: str, units: dict[str, str]) -> str:

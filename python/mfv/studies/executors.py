@@ -68,20 +68,35 @@ def _cut(names: list[str], tasks: Mapping[Future[Any], Any], one_by_one: bool) -
         yield names[at : at + size]
 
 
+def check(executor: Any, workers: int | None) -> None:
+    """Raises TypeError for what is no executor, ValueError for an unknown name, or a number of workers that cannot be."""
+    if isinstance(executor, Executor):
+        if workers is not None:
+            raise ValueError("an Executor of your own has its own number of workers: leave workers= out")
+        return
+    if not isinstance(executor, str):
+        raise TypeError(f"an executor is a concurrent.futures.Executor or the name of one, not {executor!r}")
+    name, _, address = executor.partition(":")
+    if name not in NAMES or (address and name != "dask"):
+        raise ValueError(f"there is no executor '{executor}'; there are {', '.join(NAMES)}, dask:ADDRESS")
+    if workers is not None and (workers < 1 or address):
+        raise ValueError(
+            "a running cluster has its own number of workers"
+            if address
+            else f"workers must be 1 or more, not {workers}"
+        )
+
+
 @contextlib.contextmanager
 def opened(executor: str | Executor, workers: int | None) -> Iterator[Executor]:
     """An executor of a name, closed in the end, or one that the caller has, which stays open.
 
-    Raises ValueError for an unknown name, ModuleNotFoundError where its package is not there.
+    Raises ModuleNotFoundError where the package of the name is not there.
     """
     if isinstance(executor, Executor):
         yield executor
         return
     name, _, address = executor.partition(":")
-    if name not in NAMES or (address and name != "dask"):
-        raise ValueError(f"there is no executor '{executor}'; there are {', '.join(NAMES)}, dask:ADDRESS")
-    if workers is not None and workers < 1:
-        raise ValueError(f"workers must be 1 or more, not {workers}")
     with contextlib.ExitStack() as stack:
         if name == "threads":
             yield stack.enter_context(ThreadPoolExecutor(workers or processors()))
@@ -106,16 +121,15 @@ def processors() -> int:
 def _processes(workers: int) -> Iterator[Executor]:
     """Processes that begin anew, and do not wait for what they are at when the study is given up."""
     method = "forkserver" if "forkserver" in multiprocessing.get_all_start_methods() else "spawn"
-    others = multiprocessing.active_children()
     context: Any = multiprocessing.get_context(method)
     with ProcessPoolExecutor(workers, context, _belong_to_the_study) as pool:
         try:
             yield pool
         except BaseException:
+            ours = list((getattr(pool, "_processes", None) or {}).values())
             pool.shutdown(wait=False, cancel_futures=True)
-            for process in multiprocessing.active_children():
-                if process not in others:
-                    process.terminate()
+            for process in ours:
+                process.terminate()
             raise
 
 
@@ -147,10 +161,23 @@ def _dask_client(stack: contextlib.ExitStack, address: str, workers: int | None)
     return stack.enter_context(Client(cluster))
 
 
-def _one_blas_thread_meanwhile() -> contextlib.AbstractContextManager[Any]:
+#: Studies that are at work in threads of this process, and the limit of BLAS's threads that they share; BLAS is the process's.
+_at_work: list[Any] = []
+_changing = threading.Lock()
+
+
+@contextlib.contextmanager
+def _one_blas_thread_meanwhile() -> Iterator[None]:
     """BLAS has one thread in this process: the threads of the study have the processors, and all studies the same bits."""
     import threadpoolctl
 
     library()  # threadpoolctl sees what has been loaded
-    limits: contextlib.AbstractContextManager[Any] = threadpoolctl.threadpool_limits(1, user_api="blas")
-    return limits
+    with _changing:
+        _at_work.append(_at_work[0] if _at_work else threadpoolctl.threadpool_limits(1, user_api="blas"))
+    try:
+        yield
+    finally:
+        with _changing:
+            limit = _at_work.pop()
+            if not _at_work:
+                limit.restore_original_limits()

@@ -143,7 +143,7 @@ class _Reader:
         is_paired = sweep.values.get("combine") == ["paired"]
         dimensions = self._dimensions(sweep, axes, is_paired)
         try:
-            study = Study(bases, dimensions)
+            study = Study(bases, dimensions or None)
         except errors.InputError as error:
             self.pass_on(error, several_bases=len(bases) > 1)
         study.input, study.input_file = self.text, self.source
@@ -283,7 +283,7 @@ class _Reader:
             why = "needs combine='all': among pairs there is no case that is the same otherwise"
             self._complain(sweep, "reference", why)
         name, _, value = written.rpartition("=") if "=" in written else ("scene%coupling", "", written)
-        axis = next((axis for axis in study.coordinates if name in (axis.name, *axis.keys[:1])), None)
+        axis = next((axis for axis in study.coordinates if name == axis.name or name.lower() in axis.keys[:1]), None)
         values = [] if axis is None else [one for one in axis.values if str(one) == value or _is_number(value, one)]
         try:
             study.set_reference({axis.name if axis else name: values[0] if values else value})
@@ -306,6 +306,8 @@ def _fault_of_values(key: Key, values: Sequence[Any]) -> str:
         return "must be one value"
     if any(value is None or isinstance(value, complex) for value in values):
         return "must have values between all commas"
+    if not all(_is_finite(value) for value in values):
+        return "must be finite"
     words = key.kind.split()
     kinds: dict[str, Any] = {"text": str, "number": (int, float), "whole": int, "any": object}
     is_right = all(
@@ -314,7 +316,7 @@ def _fault_of_values(key: Key, values: Sequence[Any]) -> str:
         else value in words
         for value in values
     )
-    return "" if is_right and all(_is_finite(value) for value in values) else f"must be {_wanted(key)}"
+    return "" if is_right else f"must be {_wanted(key)}"
 
 
 def _is_finite(value: Any) -> bool:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import errno
 import functools
 import math
 import os
@@ -46,18 +47,19 @@ def study(
     base: Given | Sequence[Given] | Callable[[dict[str, Any]], Scene],
     axes: Any = None,
     *,
-    observables: Iterable[str] | None = None,
-    fields: Iterable[str] = (),
+    observables: str | Iterable[str] | None = None,
+    fields: str | Iterable[str] = (),
     reference: str | Mapping[str, Any] | None = None,
     results: str | os.PathLike[str] | None = None,
     executor: str | Executor = "threads",
     workers: int | None = None,
     store: str | os.PathLike[str] | None = None,
+    again: bool = False,
     progress: bool = False,
 ) -> xarray.Dataset:
     """Solve many cases that differ in some values; see `Study` for what they are and `Study.run` for how they are solved."""
     planned = Study(base, axes, observables=observables, fields=fields, reference=reference, results=results)
-    return planned.run(executor=executor, workers=workers, store=store, progress=progress)
+    return planned.run(executor=executor, workers=workers, store=store, again=again, progress=progress)
 
 
 class Study:
@@ -68,8 +70,8 @@ class Study:
         base: Given | Sequence[Given] | Callable[[dict[str, Any]], Scene],
         axes: Any = None,
         *,
-        observables: Iterable[str] | None = None,
-        fields: Iterable[str] = (),
+        observables: str | Iterable[str] | None = None,
+        fields: str | Iterable[str] = (),
         reference: str | Mapping[str, Any] | None = None,
         results: str | os.PathLike[str] | None = None,
     ) -> None:
@@ -88,20 +90,24 @@ class Study:
         """
         self.makes_scenes: Callable[[dict[str, Any]], Scene] | None = base if callable(base) else None
         given = [] if callable(base) else [base] if isinstance(base, (Scene, str, os.PathLike, Base)) else list(base)
+        if self.makes_scenes is None and not given:
+            raise input_error("there is no base case")
         self.bases = [base_of(one) for one in given]
         self._shared = [whole_paths(one) for one in self.bases]
-        self._check_units()
-        is_made = isinstance(axes, list) and all(isinstance(axis, Dimension) for axis in axes)
+        self._check_bases()
+        is_made = isinstance(axes, list) and bool(axes) and all(isinstance(axis, Dimension) for axis in axes)
         self.dimensions = list(axes) if is_made else dimensions_of(axes, are_keys=self.makes_scenes is None)
         if len(self.bases) > 1:
             names = Coordinate("base", (), [one.name for one in self.bases])
             self.dimensions.insert(0, Dimension("base", [names]))
         if not self.dimensions:
             self.dimensions = [Dimension("row", [Coordinate("row", (), [0])])]
-        self.observables = None if observables is None else list(observables)
+        self.observables = None if observables is None else _names(observables)
         #: Paths of the wanted fields, with the positions of nodes for those who want a field along them.
-        self.wanted_fields = tuple(dict.fromkeys([*fields, "mesh/x"])) if fields else ()
+        self.wanted_fields = tuple(dict.fromkeys([*_names(fields), "mesh/x"])) if fields else ()
+        #: Folder of result files, and the one that the dataset tells their paths from (the working directory unless told).
         self.results = None if results is None else Path(results)
+        self.results_from: Path | None = None
         #: The text that the study was read from, and its file; where its table is to go, and whether it wants results, as it says.
         self.input, self.input_file, self.file, self.keeps_results = "", "", "", False
         self._is_checked = False
@@ -190,6 +196,7 @@ class Study:
         executor: str | Executor = "threads",
         workers: int | None = None,
         store: str | os.PathLike[str] | None = None,
+        again: bool = False,
         progress: bool = False,
     ) -> xarray.Dataset:
         """Solve the cases, and return the dataset. What is wrong with keys and values is said before (see `check`).
@@ -197,18 +204,29 @@ class Study:
         `executor`: 'threads' of this process, 'processes', 'mpi' (mpi4py.futures), 'dask' (a cluster on this machine, or
         'dask:ADDRESS'), or any concurrent.futures.Executor. `workers`: how many; as many as there are processors unless told.
         `store`: an SQLite file in which solved cases are kept: what it has is not solved again, whatever ended the run before.
-        `progress`: show a bar on a terminal or in a notebook, by tqdm.
+        `again`: forget what the store has first. `progress`: show a bar on a terminal or in a notebook, by tqdm.
         A case that cannot be begun, or that ends early, is in the dataset with its outcome and message.
         Raises InputError, FileError, and what an executor raises; KeyboardInterrupt within an increment with threads.
         """
+        executors.check(executor, workers)
         self.check()
         if self.results is not None:
-            self.results.mkdir(exist_ok=True)
-        return self._with_store(store, lambda kept: self._solve(kept, executor, workers, progress))
+            self.results.mkdir(parents=True, exist_ok=True)
+
+        def solve(kept: Store | None) -> tuple[list[str], list[Solved | None]]:
+            if kept is not None and again:
+                kept.clear()
+            return self._solve(
+                kept, lambda wanted, keep: executors.solve_all(wanted, executor, workers, keep), progress
+            )
+
+        return self._with_store(store, solve)
 
     def so_far(self, store: str | os.PathLike[str]) -> xarray.Dataset:
-        """The dataset of the cases that a store has; the others have the outcome 'not solved'. Raises FileError."""
-        return self._with_store(store, lambda kept: self._solve(kept, None, None, False))
+        """The dataset of the cases that a store has; the others have the outcome 'not solved'. Raises FileError, OSError."""
+        if not os.path.isfile(store):
+            raise FileNotFoundError(errno.ENOENT, "there is no file of solved cases", os.fspath(store))
+        return self._with_store(store, lambda kept: self._solve(kept, lambda wanted, keep: None, False))
 
     def _with_store(
         self,
@@ -221,9 +239,12 @@ class Study:
             return dataset_of(self, *solve(kept))
 
     def _solve(
-        self, kept: Store | None, executor: str | Executor | None, workers: int | None, progress: bool
+        self,
+        kept: Store | None,
+        solve: Callable[[dict[str, Job], Callable[[str, Solved], None]], None],
+        progress: bool,
     ) -> tuple[list[str], list[Solved | None]]:
-        """The cases in order with their names, by an executor where they are not there; None solves nothing."""
+        """The cases in order with their names; `solve` solves those that are not there."""
         from tqdm.auto import tqdm  # here: it looks whether this is a notebook
 
         jobs = {}
@@ -233,7 +254,7 @@ class Study:
             jobs[key] = job
         there = {} if kept is None else kept.read(jobs.keys())
         wanted = {key: job for key, job in jobs.items() if key not in there or _has_lost_its_file(job)}
-        if executor is not None and wanted:
+        if wanted:
             with tqdm(
                 total=len(jobs), initial=len(jobs) - len(wanted), unit="case", disable=None if progress else True
             ) as bar:
@@ -244,7 +265,7 @@ class Study:
                     there[key] = solved
                     bar.update()
 
-                executors.solve_all(wanted, executor, workers, keep)
+                solve(wanted, keep)
         return keys, [there.get(key) for key in keys]
 
     def _named_jobs(self) -> Iterator[tuple[str, Job]]:
@@ -254,6 +275,7 @@ class Study:
             job = self.job(number)
             if self.makes_scenes is not None:
                 of_base = digest_of_base(job.base, job.settings)
+                self._check_made(number, job.base)
             else:
                 of_base = digests[self._places(number)[0] if len(self.bases) > 1 else 0]
             key = digest(job, of_base)
@@ -288,8 +310,21 @@ class Study:
             first = sum(len(dimension.coordinates) for dimension in self.dimensions[:along])
             raise fault(f"case {number} ({self.describe(number)}): {error.message}", first, "values") from None
 
-    def _check_units(self) -> None:
-        """Raises InputError where bases name other units than the first."""
+    def _check_made(self, number: int, base: Base) -> None:
+        """Raises InputError where a scene that was made has other units than the first."""
+        if number == 1:
+            self.units = units_of(base)
+        elif units_of(base) != self.units:
+            raise input_error(
+                f"case {number} ({self.describe(number)}): the scene names other units than that of case 1"
+            )
+
+    def _check_bases(self) -> None:
+        """Raises InputError where bases have one name, or name other units than the first."""
+        names = [base.name for base in self.bases]
+        twice = next((name for name in names if names.count(name) > 1), None)
+        if twice is not None:
+            raise input_error(f"two bases have the name {twice}; give them names of their own (Scene(..., name=...))")
         for base in self.bases[1:]:
             if units_of(base) != units_of(self.bases[0]):
                 first = self.bases[0].name
@@ -302,22 +337,18 @@ class Study:
         from .cases import observables
 
         seen: set[str] = set()
+        taken = {*TAKEN, *observables(), *(path.replace("/", "_") for path in self.wanted_fields)}
         for place, coordinate in enumerate(self.coordinates):
             name = coordinate.name
             is_ours = name in ("base", "row") and not coordinate.keys
-            if not is_ours and (
-                name in TAKEN or name in observables() or "_error_" in name or name == "dissipation_ratio"
-            ):
+            if not is_ours and (name in taken or "_error_" in name or name == "dissipation_ratio"):
                 raise fault(f"every study has a column {name}; give another name", place, "name")
             if name in seen:
                 raise fault(f"another axis has the name {name}; give another one", place, "name")
             seen.add(name)
         for dimension in self.dimensions:
-            if (
-                len(dimension.coordinates) > 1
-                and dimension.name != "row"
-                and dimension.name in (*TAKEN, *seen, *observables())
-            ):
+            is_alone = [dimension.name] == [coordinate.name for coordinate in dimension.coordinates]
+            if not is_alone and dimension.name != "row" and dimension.name in taken | seen:
                 raise input_error(f"{dimension.name}: this name is taken; give the zipped axes another one")
         unknown = [name for name in self.observables or () if name not in observables()]
         if unknown:
@@ -347,20 +378,25 @@ class Study:
 
     def set_reference(self, reference: str | Mapping[str, Any]) -> None:
         """What cases are compared with: see `Study`. Raises InputError."""
-        wanted = {"scene%coupling": reference} if isinstance(reference, str) else dict(reference)
-        if len(wanted) != 1:
+        wanted = {"scene%coupling": reference} if isinstance(reference, str) else reference
+        if not isinstance(wanted, Mapping) or len(wanted) != 1:
             raise input_error(
                 "reference: one axis with one of its values is wanted, such as {'scene%coupling': 'full'}"
             )
         ((name, value),) = wanted.items()
         for along, dimension in enumerate(self.dimensions):
             (first, *others) = dimension.coordinates
-            if not others and (first.name == name or first.keys == (name,)) and value in first.values:
+            if not others and (first.name == name or first.keys == (name.lower(),)) and value in first.values:
                 self.reference = along, first.values.index(value)
                 return
         raise input_error(
             f"reference={as_written(value)}: needs an axis of '{name}' alone with {as_written(value)} among its values"
         )
+
+
+def _names(names: str | Iterable[str]) -> list[str]:
+    """One name or several as a list."""
+    return [names] if isinstance(names, str) else list(names)
 
 
 def result_name(key: str) -> str:
