@@ -1,5 +1,5 @@
 """Measure studies: what a case costs beside being solved, by every executor, and that kill -9 loses nothing but the cases
-on their way. Prints Markdown tables. Half an hour. build/venv/bin/python bench/study.py [--program OLD/bin/mfv_sweep]
+on their way. Prints Markdown tables. A quarter of an hour. build/venv/bin/python bench/study.py
 
 Overhead of a case: workers x (wall time less that of the same study with 2 cases) / (cases - 2), less the time per case when
 the same jobs are solved one after another in this process, without a study, in the same round. Every run keeps its cases in a
@@ -56,7 +56,6 @@ Solve = Callable[[Path], object]
 def main() -> None:
     """Measure, print."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--program", type=Path, help="an mfv_sweep, which came before, to be measured too")
     parser.add_argument("--cases", type=int, default=1000, help="a multiple of 40")
     parser.add_argument("--nodes", type=int, nargs="+", default=[41, 221], help="sizes of a case: about 1 ms and 26 ms")
     parser.add_argument("--rounds", type=int, default=3, help="how often all runs are repeated, in turn")
@@ -69,18 +68,16 @@ def main() -> None:
         for nodes in options.nodes:
             (folder / "base.nml").write_text(BASE.format(nodes=nodes))
             print(f"## {options.cases} cases with {nodes} nodes, {options.rounds} rounds, {os.cpu_count()} processors\n")
-            print_overheads(ways(options.program), folder, options.rounds)
+            print_overheads(ways(), folder, options.rounds)
         print_kills(folder, options.kills, random.Random(1))
 
 
-def ways(program: Path | None) -> dict[str, tuple[int, Solve]]:
+def ways() -> dict[str, tuple[int, Solve]]:
     """Workers of every way to solve a study, and what solves the study with a text."""
     here = (("threads", 1), ("threads", 2), ("processes", 2), ("dask", 2))
     found = {f"{name}, {workers}": (workers, functools.partial(solve_here, name, workers)) for name, workers in here}
     launcher = ("mpiexec", "-n", "3", "--oversubscribe", sys.executable, "-m", "mpi4py.futures")
     found["mpi, 2"] = 2, functools.partial(call, (*launcher, *COMMAND[1:], "--executor", "mpi"))
-    for workers in (1, 2) if program else ():
-        found[f"mfv_sweep, {workers}"] = workers, functools.partial(call, (str(program.resolve()), "--threads", str(workers)))
     return found
 
 
@@ -91,10 +88,8 @@ def solve_here(executor: str, workers: int, text: Path) -> None:
 
 
 def call(command: tuple[str, ...], text: Path) -> None:
-    """Solve a study by a command; mfv_sweep with the library of its own installation."""
-    library_path = {"LD_LIBRARY_PATH": str(Path(command[0]).parents[1] / "lib")} if "mfv_sweep" in command[0] else {}
-    environment = {**os.environ, **library_path}
-    subprocess.run([*command, text.name], cwd=text.parent, env=environment, check=True, stdout=subprocess.DEVNULL)
+    """Solve a study by a command."""
+    subprocess.run([*command, text.name], cwd=text.parent, check=True, stdout=subprocess.DEVNULL)
 
 
 def seconds(solve: Solve, text: Path) -> float:
@@ -120,8 +115,7 @@ def print_overheads(measured: dict[str, tuple[int, Solve]], folder: Path, rounds
             begun[name].append(seconds(solve, folder / "two.nml"))
             solving = seconds(solve, folder / "study.nml") - begun[name][-1]
             beside[name].append(1e3 * workers * solving / (len(jobs) - 2) - alone[-1])
-            if "mfv_sweep" not in name:
-                tables[name] = xarray.load_dataset(folder / "study.nc")
+            tables[name] = xarray.load_dataset(folder / "study.nc")
     print(f"One after another {told(alone)} ms a case: least, median.\n")
     print("| executor, workers | 2 cases, s: least, median | overhead a case, ms: least, median |\n| --- | --- | --- |")
     for name in measured:
