@@ -105,7 +105,9 @@ def test_a_run_that_is_stopped_again_and_again(tmp_path, name):
         if code > 0:
             assert code == INTERRUPTED and "case.checkpoint keeps where the run is" in errors, errors
             with h5py.File(tmp_path / "case.h5") as result:
-                assert result.attrs["outcome"] == "interrupted"
+                outcome = result.attrs["outcome"]
+            # Whole where an earlier run was killed between its result and the end of its checkpoint: a part does not replace it.
+            assert outcome == "interrupted" or datasets(tmp_path / "case.h5") == expected
         else:
             assert code == -how, errors
         seconds *= 1.2  # to begin with it may be stopped before its first checkpoint

@@ -7,7 +7,6 @@ import signal
 import subprocess
 import sys
 import threading
-import time
 
 import pytest
 import xarray
@@ -75,19 +74,21 @@ def test_a_dask_worker_is_killed(tmp_path):
     distributed = pytest.importorskip("distributed")
     long_study(tmp_path)
     undisturbed = read_study(tmp_path / "study.nml").run()
-    killed = []
+    killed, is_done = [], threading.Event()
     with distributed.LocalCluster(n_workers=2, threads_per_worker=1, dashboard_address=":0") as cluster:
         client = distributed.Client(cluster)
 
         def kill_when_at_work():
             while not client.processing() or not all(client.processing().values()):
-                time.sleep(0.01)
+                if is_done.wait(0.01):
+                    return
             killed.append(next(iter(cluster.workers.values())).pid)
             os.kill(killed[0], signal.SIGKILL)
 
         killer = threading.Thread(target=kill_when_at_work)
         killer.start()
         table = read_study(tmp_path / "study.nml").run(executor=client.get_executor())
+        is_done.set()
         killer.join()
         client.close()
     assert killed and table.identical(undisturbed)

@@ -20,6 +20,7 @@ from small import BASE, CASES, COMPLETE, INPUT, INTERRUPTED, MFV_RUN, ROOT, STUD
 import mfv
 from mfv.commands import main
 from mfv.studies.namelist import KEYS, check_study, read_study
+from mfv.studies.store import Store
 
 
 def start(*arguments, cwd):
@@ -300,12 +301,9 @@ def test_a_long_case_is_interrupted_within_an_increment(tmp_path):
 
 
 def test_two_at_once(tmp_path):
-    long_study(tmp_path)
-    process = start("study.nml", cwd=tmp_path)
-    assert wait_for_growth(tmp_path, 4096, process)
-    done = run("study.nml", cwd=tmp_path)
-    process.kill()
-    process.communicate()
+    write(tmp_path)
+    with Store(tmp_path / "study.sqlite"):
+        done = run("study.nml", cwd=tmp_path)
     assert done.returncode == INPUT and "study.sqlite: solved cases cannot be kept here: another study is at work with it" in done.stderr
 
 
