@@ -97,8 +97,7 @@ def _check_directory(output: str | os.PathLike[str]) -> None:
     """Raises FileError where there is no directory for a result."""
     directory = os.path.dirname(os.path.abspath(output))
     if not os.path.isdir(directory):
-        status = next(code for code, kind in errors.failures().items() if kind is errors.FileError)
-        raise errors.failure(status, f"{os.fspath(output)}: cannot be written: there is no directory {directory}")
+        raise errors.file_error(f"{os.fspath(output)}: cannot be written: there is no directory {directory}")
 
 
 class State:

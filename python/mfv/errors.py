@@ -49,8 +49,17 @@ def failure(status: int, message: str) -> MfvError:
 
 def input_error(message: str) -> MfvError:
     """The InputError with a message."""
-    status = next(code for code, kind in failures().items() if kind.__name__ == "InputError")
-    return failure(status, message)
+    return _named("InputError", message)
+
+
+def file_error(message: str) -> MfvError:
+    """The FileError with a message."""
+    return _named("FileError", message)
+
+
+def _named(name: str, message: str) -> MfvError:
+    """The exception of a name, with the status that it stands for."""
+    return failure(next(status for status, kind in failures().items() if kind.__name__ == name), message)
 
 
 def _exception(outcome: str, explanation: str) -> type[MfvError]:

@@ -8,7 +8,7 @@ from typing import Any
 import f90nml
 
 #: Groups that may come more than once; their keys are named group(number)%key, as in a study.
-REPEATED = ("body", "step", "vary")
+REPEATED = ("body", "step")
 
 
 def keys(text: str) -> dict[str, Any]:

@@ -290,26 +290,29 @@ contains
    function mfv_scene_remove(scene, key) result(status) bind(C, name='mfv_scene_remove_unguarded')
       type(c_ptr), value :: scene, key
       integer(c_int) :: status
-      type(scene_handle_type), pointer :: self
-      type(error_type), allocatable :: error
 
-      call find_scene(scene, self, status, key)
-      if (status /= MFV_COMPLETE) return
-      call self%draft%remove(text_in(key), error)
-      status = merge(MFV_BAD_ARGUMENT, MFV_COMPLETE, allocated(error))
+      status = removed(scene, key, alternatives=.false.)
    end function mfv_scene_remove
 
    function mfv_scene_make_room(scene, key) result(status) bind(C, name='mfv_scene_make_room_unguarded')
       type(c_ptr), value :: scene, key
       integer(c_int) :: status
+
+      status = removed(scene, key, alternatives=.true.)
+   end function mfv_scene_make_room
+
+   !> Take a key of a scene out, with or without its alternatives.
+   integer(c_int) function removed(scene, key, alternatives) result(status)
+      type(c_ptr), intent(in) :: scene, key
+      logical, intent(in) :: alternatives
       type(scene_handle_type), pointer :: self
       type(error_type), allocatable :: error
 
       call find_scene(scene, self, status, key)
       if (status /= MFV_COMPLETE) return
-      call self%draft%make_room(text_in(key), error)
+      call self%draft%remove(text_in(key), error, alternatives)
       status = merge(MFV_BAD_ARGUMENT, MFV_COMPLETE, allocated(error))
-   end function mfv_scene_make_room
+   end function removed
 
    function mfv_scene_set_data(scene, file, dataset, rows, columns, values) result(status) &
       bind(C, name='mfv_scene_set_data_unguarded')

@@ -49,7 +49,6 @@ module mfv_draft
       !> Data in memory in place of a file that a key names, see mfv_case_data: values of shape (rows) or (rows, columns).
       generic :: set_data => set_column, set_matrix
       procedure :: remove
-      procedure :: make_room
       procedure :: keep_fault
       procedure :: write_text
       procedure :: make_case
@@ -123,34 +122,31 @@ contains
       call tell(self, name, fault, error)
    end subroutine set_written
 
-   !> Take a key out, as if it had never been given a value; no harm where it has none. Fault and `error` as of set.
-   subroutine remove(self, name, error)
+   !> Take a key out, as if it had never been given a value; no harm where it has none. `alternatives`: take out, too, those that it
+   !> is an alternative to, such as tangential_force and force_ratio for shift, so that it can be given a value. Fault and `error`
+   !> as of set.
+   subroutine remove(self, name, error, alternatives)
       class(draft_type), intent(inout) :: self
       character(*), intent(in) :: name
       type(error_type), allocatable, intent(out), optional :: error
+      logical, intent(in), optional :: alternatives
       type(error_type), allocatable :: fault
       character(:), allocatable :: group, key
       integer :: number
+      logical :: is_alone
 
+      is_alone = .true.
+      if (present(alternatives)) is_alone = .not. alternatives
       call self%find_group(name, group, number, key, fault)
-      if (.not. allocated(fault)) call remove_keys(self%groups, group, number, key)
+      if (.not. allocated(fault)) then
+         if (is_alone) then
+            call remove_keys(self%groups, group, number, key)
+         else
+            call remove_alternatives(self%groups, group, number, key)
+         end if
+      end if
       call tell(self, name, fault, error)
    end subroutine remove
-
-   !> Take a key out and those that it is an alternative to, such as tangential_force and force_ratio for shift, so that it can be
-   !> given a value. Fault and `error` as of set.
-   subroutine make_room(self, name, error)
-      class(draft_type), intent(inout) :: self
-      character(*), intent(in) :: name
-      type(error_type), allocatable, intent(out), optional :: error
-      type(error_type), allocatable :: fault
-      character(:), allocatable :: group, key
-      integer :: number
-
-      call self%find_group(name, group, number, key, fault)
-      if (.not. allocated(fault)) call remove_alternatives(self%groups, group, number, key)
-      call tell(self, name, fault, error)
-   end subroutine make_room
 
    !> Keep a fault, and tell it to a caller who wants to know. A call for the same key that goes well mends it.
    subroutine tell(self, name, fault, error)

@@ -12,7 +12,7 @@ from pathlib import Path
 
 import pytest
 
-from mfv.commands.files import written
+from mfv._files import written
 
 
 @pytest.fixture

@@ -5,8 +5,8 @@ from __future__ import annotations
 import argparse
 from pathlib import Path
 
+from .._files import target, written
 from ..result import read
-from .files import target, written
 from .whole_numbers import at_least
 
 NAME, HELP = "animate", "the load history as a GIF or an MP4"

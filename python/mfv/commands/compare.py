@@ -7,8 +7,8 @@ import sys
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from .._files import PICTURES, TABLES, target, written
 from ..result import read
-from .files import PICTURES, TABLES, target, written
 
 if TYPE_CHECKING:
     from ..compare import Comparison

@@ -5,7 +5,7 @@ from __future__ import annotations
 import argparse
 from pathlib import Path
 
-from .files import target, written
+from .._files import target, written
 
 NAME, HELP = "new", "a commented case from a template"
 

@@ -5,8 +5,8 @@ from __future__ import annotations
 import argparse
 from pathlib import Path
 
+from .._files import PICTURES, target, written
 from ..result import read
-from .files import PICTURES, target, written
 
 NAME, HELP = "plot", "draw a result"
 

@@ -8,10 +8,10 @@ import sys
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from .._files import target
 from ..studies.executors import NAMES
 from ..studies.namelist import check_study, keys_in_markdown, read_study
 from ..studies.plan import SUFFIXES, Study, is_table
-from .files import target
 from .whole_numbers import at_least
 
 if TYPE_CHECKING:

@@ -12,8 +12,8 @@ import numpy as np
 
 from ..inputs import groups
 from ..inputs import keys as keys_of_text
-from ..scene import _NAMES_OF_DATA, Scene, _scene_handle, _text_of_scene
-from .cases import FILE_KEYS, Base
+from ..scene import _NAMES_OF_DATA, Scene
+from .cases import FILE_KEYS, Base, base_text
 
 #: A scene, or the path of a namelist file.
 Given = Union[Scene, str, "os.PathLike[str]", Base]
@@ -50,8 +50,10 @@ def base_of(given: Given) -> Base:
 
 def whole_paths(base: Base) -> dict[str, str]:
     """The whole paths of the files that a base names, for workers to find from wherever they are. Raises InputError."""
-    with _scene_handle(base.text, base.name) as handle:
-        named = keys_of_text(_text_of_scene(handle))
+    text = base_text(base)
+    if "file" not in text:  # reading the keys takes longer than a small case: functions make a base for every case
+        return {}
+    named = keys_of_text(text)
     in_memory = {file for file, _, _ in base.data}
     return {
         key: absolute(named[key], base)
@@ -67,14 +69,11 @@ def absolute(file: Any, base: Base) -> Any:
 
 def units_of(base: Base) -> dict[str, str]:
     """The names of length and force in a base. Raises InputError."""
-    with _scene_handle(base.text, base.name) as handle:
-        text = _text_of_scene(handle)
-    named = dict(re.findall(r"\b(length|force)_unit='([^']*)'", text))
+    named = dict(re.findall(r"\b(length|force)_unit='([^']*)'", base_text(base)))
     return {unit: named.get(unit, unit) for unit in ("length", "force")}
 
 
 def counts_of_groups(base: Base) -> dict[str, int]:
     """How many groups of each name a base has. Raises InputError."""
-    with _scene_handle(base.text, base.name) as handle:
-        names = [name for name, _ in groups(_text_of_scene(handle))]
+    names = [name for name, _ in groups(base_text(base))]
     return {name: names.count(name) for name in names}

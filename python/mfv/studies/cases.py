@@ -18,7 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .. import errors
-from .._library import OBSERVER, library, library_version, statuses, text_buffer, text_for, text_of
+from .._library import OBSERVER, library, library_version, text_buffer, text_for, text_of
 from ..case import writing
 from ..scene import _scene_handle, _set_data, _set_key, _text_of_scene, created
 
@@ -106,13 +106,18 @@ def scene_handle(base: Base, settings: Sequence[tuple[str, Any]]) -> Iterator[c_
     with _scene_handle(base.text, base.name) as handle:
         for file, dataset, values in base.data:
             _set_data(handle, file, dataset, values)
-        for key, value in sorted(
-            settings, key=lambda setting: setting[0].lower() == DUNDURS_BETA
-        ):  # last: it needs a whole scene
-            if key.lower() != DUNDURS_BETA:
+        # Dundurs' parameter comes last: it needs a whole scene.
+        for key, value in sorted(settings, key=lambda setting: setting[0] == DUNDURS_BETA):
+            if key != DUNDURS_BETA:
                 library().mfv_scene_make_room(handle, text_for(key))
             _set_key(handle, key, value)
         yield handle
+
+
+def base_text(base: Base) -> str:
+    """The text of a base as the library writes it: without comments, however it was written. Raises InputError."""
+    with _scene_handle(base.text, base.name) as handle:
+        return _text_of_scene(handle)
 
 
 def case_text(base: Base, settings: Sequence[tuple[str, Any]]) -> str:
@@ -135,7 +140,7 @@ def digest(job: Job, base_digest: str) -> str:
 
 def digest_of_base(base: Base, settings: Sequence[tuple[str, Any]]) -> str:
     """A name for a base with its arrays and the settings that all its cases share. Raises InputError."""
-    told = hashlib.sha256(case_text(Base(base.text, base.name), ()).encode())
+    told = hashlib.sha256(base_text(base).encode())
     for file, dataset, values in base.data:
         told.update(
             repr((file, dataset, np.shape(values))).encode() + np.ascontiguousarray(values, dtype=float).tobytes()
@@ -198,7 +203,8 @@ def solve_unless(stop: c_int | None, job: Job) -> Solved | None:
             _write(handle, job.result)
         return _kept(handle, status, job)
     except errors.InputError as error:
-        return Solved(_input_error(), error.message, observables=[_NAN] * len(observables()))
+        assert error.status is not None
+        return Solved(error.status, error.message, observables=[_NAN] * len(observables()))
     finally:
         if handle is not None:
             library().mfv_free(byref(handle))
@@ -278,11 +284,6 @@ def _message(handle: c_void_p) -> str:
     buffer = text_buffer()
     library().mfv_message(handle, buffer, len(buffer))
     return text_of(buffer)
-
-
-@functools.cache
-def _input_error() -> int:
-    return next(code for code, outcome, _ in statuses() if outcome == "input error")
 
 
 @functools.cache

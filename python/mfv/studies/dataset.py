@@ -16,6 +16,7 @@ import numpy as np
 import xarray
 from numpy.typing import NDArray
 
+from .._files import written
 from .._library import Along, library_version, outcome_of
 from .axes import Coordinate, as_written
 from .cases import COUNTS, DUNDURS_BETA, MOMENTS, TRACTIONS, Solved, key_info, observables
@@ -78,8 +79,6 @@ def frame_of(table: xarray.Dataset) -> pandas.DataFrame:
 
 def write(table: xarray.Dataset, path: str | os.PathLike[str]) -> None:
     """Write a dataset: as NetCDF (.nc, .h5), or one row a case as comma-separated values (.csv). Raises OSError."""
-    from ..commands.files import written
-
     is_csv = Path(path).suffix.lower() == ".csv"
     # HDF5 does not come back from a full disk: it is kept away from disks.
     content = frame_of(table).to_csv(index=False).encode() if is_csv else bytes(table.to_netcdf(engine="h5netcdf"))
@@ -226,11 +225,11 @@ def _described(coordinate: Coordinate, units: dict[str, str]) -> tuple[Any, dict
         return array, {"long_name": "base case"}
     if not coordinate.keys:
         return array, {}
-    if coordinate.keys[0].lower() == DUNDURS_BETA:
+    if coordinate.keys[0] == DUNDURS_BETA:
         return array, {"units": "1", "long_name": "Dundurs' parameter beta, positive where the lower body couples more"}
     about = key_info(coordinate.keys[0])
     assert about is not None
-    group, _, key = coordinate.keys[0].lower().partition("%")
+    group, _, key = coordinate.keys[0].partition("%")
     return array, {
         "units": _labelled(about[1] or "1", units),
         "long_name": f"&{group.partition('(')[0]} {key}: {about[2]}",

@@ -1,4 +1,4 @@
-"""Keys that a study can vary: what is wrong with one, or with two of them."""
+"""Keys that a study can vary, in small letters: what is wrong with one, or with two of them."""
 
 from __future__ import annotations
 
@@ -13,9 +13,9 @@ OF_MATERIALS = ("shear_modulus", "youngs_modulus", "poisson_ratio", "rigid")
 
 def fault_of_key(key: str) -> str:
     """Why something is no key of a case, in the words of the library, or not for a study to set; empty where it is."""
-    if key.lower() == DUNDURS_BETA:
+    if key == DUNDURS_BETA:
         return ""
-    if key.lower() == "output%file":
+    if key == "output%file":
         return "'output%file': the study names its files itself"
     if key_info(key) is None:
         with _scene_handle("", "key") as handle:
@@ -31,14 +31,14 @@ def fault_of_key(key: str) -> str:
 def fault_of_pair(one: str, other: str) -> str:
     """Why a study cannot vary two keys; empty where it can."""
     for beta, key in ((one, other), (other, one)):
-        if beta.lower() == DUNDURS_BETA and key.partition("%")[2].lower() in OF_MATERIALS:
+        if beta == DUNDURS_BETA and key.partition("%")[2] in OF_MATERIALS:
             return f"'{key}' and '{DUNDURS_BETA}' cannot be varied in one study: {DUNDURS_BETA} decides the materials of both bodies"
-    return f"'{other}': is varied already" if one.lower() == other.lower() or _stands_for(one, other) else ""
+    return f"'{other}': is varied already" if one == other or _stands_for(one, other) else ""
 
 
 def _stands_for(one: str, other: str) -> bool:
     """Whether one key takes the place of another, as the library sees it."""
-    if DUNDURS_BETA in (one.lower(), other.lower()) or one.partition("%")[0].lower() != other.partition("%")[0].lower():
+    if DUNDURS_BETA in (one, other) or one.partition("%")[0] != other.partition("%")[0]:
         return False
     with _scene_handle("", "keys") as handle:
         _set_key(handle, one, 0)
@@ -48,7 +48,7 @@ def _stands_for(one: str, other: str) -> bool:
 
 
 def numbered_group(key: str) -> tuple[str, int | None]:
-    """Group of a key in small letters, and its number where it has one."""
-    group, _, _ = key.lower().partition("%")
+    """Group of a key, and its number where it has one."""
+    group, _, _ = key.partition("%")
     name, bracket, number = group.partition("(")
     return name, int(number.rstrip(")")) if bracket else None

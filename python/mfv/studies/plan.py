@@ -22,7 +22,7 @@ from ..scene import Scene
 from . import executors
 from .axes import Coordinate, Dimension, as_written, dimensions_of, fault
 from .bases import Given, absolute, base_of, counts_of_groups, units_of, whole_paths
-from .cases import FILE_KEYS, Base, Job, Solved, case_text, check, digest, digest_of_base
+from .cases import FILE_KEYS, Base, Job, Solved, case_text, check, digest, digest_of_base, observables
 from .keys import fault_of_key, fault_of_pair, numbered_group
 from .store import Store
 
@@ -83,7 +83,7 @@ class Study:
         a pandas.DataFrame, or a list of mappings, with a column for each key. A key takes the place of those that it is an
         alternative to (shift that of tangential_force). 'dundurs_beta' varies the materials of both bodies.
 
-        `observables`: names of those that the dataset is to have; all unless told. `fields`: paths of fields of each case, such
+        `observables`: names of those that the dataset is to have; by default all. `fields`: paths of fields of each case, such
         as 'state/pressure'. `reference`: 'full', or an axis with one of its values, {'mesh%nodes': 1001}: the tractions of
         each case are compared with those of the case that is the same but for this. `results`: a folder for the result file
         of every case. Raises InputError for keys, names and factors that cannot be; OSError for a base that cannot be read.
@@ -105,7 +105,7 @@ class Study:
         self.observables = None if observables is None else _names(observables)
         #: Paths of the wanted fields, with the positions of nodes for those who want a field along them.
         self.wanted_fields = tuple(dict.fromkeys([*_names(fields), "mesh/x"])) if fields else ()
-        #: Folder of result files, and the one that the dataset tells their paths from (the working directory unless told).
+        #: Folder of result files, and the folder that their paths in the dataset are relative to (None: they are as given).
         self.results = None if results is None else Path(results)
         self.results_from: Path | None = None
         #: The text that the study was read from, and its file; where its table is to go, and whether it wants results, as it says.
@@ -202,7 +202,7 @@ class Study:
         """Solve the cases, and return the dataset. What is wrong with keys and values is said before (see `check`).
 
         `executor`: 'threads' of this process, 'processes', 'mpi' (mpi4py.futures), 'dask' (a cluster on this machine, or
-        'dask:ADDRESS'), or any concurrent.futures.Executor. `workers`: how many; as many as there are processors unless told.
+        'dask:ADDRESS'), or any concurrent.futures.Executor. `workers`: how many; by default the number of processors.
         `store`: an SQLite file in which solved cases are kept: what it has is not solved again, whatever ended the run before.
         `again`: forget what the store has first. `progress`: show a bar on a terminal or in a notebook, by tqdm.
         A case that cannot be begun, or that ends early, is in the dataset with its outcome and message.
@@ -334,8 +334,6 @@ class Study:
 
     def _check_names(self) -> None:
         """Raises InputError for names that are taken, or come twice."""
-        from .cases import observables
-
         seen: set[str] = set()
         taken = {*TAKEN, *observables(), *(path.replace("/", "_") for path in self.wanted_fields)}
         for place, coordinate in enumerate(self.coordinates):

@@ -90,8 +90,7 @@ class Store:
         why = str(error)
         if "locked" in why:
             why = "another study is at work with it"
-        status = next(code for code, kind in errors.failures().items() if kind is errors.FileError)
-        return errors.failure(status, f"{self.path}: solved cases cannot be kept here: {why}")
+        return errors.file_error(f"{self.path}: solved cases cannot be kept here: {why}")
 
 
 def _text(solved: Solved) -> str:

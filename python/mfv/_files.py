@@ -1,4 +1,4 @@
-"""Files that commands write."""
+"""Files that commands and studies write."""
 
 from __future__ import annotations
 
