@@ -100,6 +100,29 @@ def test_reference_is_a_finer_mesh(tmp_path):
     assert 0.2 < errors[0] / by_form < 5
 
 
+def test_errors_do_not_depend_on_sides_and_units(tmp_path):
+    """Random forces to the other side, and random units: the same differences from full coupling at every moment."""
+    chance = np.random.default_rng(17)
+    columns = ["dissipation_ratio", *(f"{traction}_error_{moment}" for moment in MOMENTS for traction in TRACTIONS)]
+    for case in range(4):
+        ratio, length, force = chance.uniform(0.2, 0.9), 10 ** chance.uniform(-3, 3), 10 ** chance.uniform(-3, 3)
+        axes = {"scene%coupling": ["full", "goodman", "none"]}
+        tables = []
+        for side, unit, load in ((1, 1, 1), (-1, 1, 1), (1, length, force)):
+            base = mfv.Scene.from_text(BASE.format(nodes=41, cycles=1), str(tmp_path / f"scene{case}"))
+            base.lower.shear_modulus, base.lower.poisson_ratio = load / unit**2, 0.1
+            base.upper.radius, base.mesh.half_width = 0.25 * unit, 0.01225 * unit
+            base.steps[0].normal_force = 6e-4 * load / unit
+            for step, sign in zip(base.steps[1:], (side, -side)):
+                step.tangential_force, step.force_ratio = None, sign * ratio
+            tables.append(mfv.study(base, axes, reference="full"))
+        assert {outcome for table in tables for outcome in flat(table, "outcome")} == {"complete"}, flat(tables[0], "message")
+        for name in columns:
+            assert np.isfinite(tables[0][name]).all(), name
+            for other in tables[1:]:
+                np.testing.assert_allclose(other[name], tables[0][name], rtol=1e-7, atol=1e-9, err_msg=name)
+
+
 def kept(pressure, interval=1.0, cycles=2.0, middle=0.0, cycle_dissipation=1.0):
     """A solved case with tractions on equal intervals."""
     pressure = np.array(pressure, dtype=float)
