@@ -214,7 +214,7 @@ Reduced against fft on the same short history, {EVENTS["fft"]} nodes or so begin
 
 def _most(structure: str) -> int:
     """Where the library has its crossover."""
-    found = re.search(rf"most_{structure} = (\d+)", (ROOT / "src/algorithms/solver_costs.f90").read_text())
+    found = re.search(rf"most_{structure} = (\d+)", (ROOT / "src/algorithms/solvers/solver_costs.f90").read_text())
     assert found is not None
     return int(found[1])
 

@@ -6,7 +6,9 @@ set(package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/mfv)
 string(REGEX MATCH "^[0-9]+" fortran_major ${CMAKE_Fortran_COMPILER_VERSION})
 set(MFV_FORTRAN_COMPILER ${CMAKE_Fortran_COMPILER_ID}-${fortran_major})
 set(MFV_MODULE_DIR ${CMAKE_INSTALL_LIBDIR}/fortran-modules/mfv/${MFV_FORTRAN_COMPILER})
-install(DIRECTORY ${PROJECT_BINARY_DIR}/modules/ DESTINATION ${MFV_MODULE_DIR} FILES_MATCHING PATTERN "*.mod" PATTERN "*.smod")
+foreach(modules ${MFV_MODULE_DIRECTORIES})
+  install(DIRECTORY ${modules}/ DESTINATION ${MFV_MODULE_DIR} FILES_MATCHING PATTERN "*.mod" PATTERN "*.smod")
+endforeach()
 
 # The static library is exported by itself: only who asks for it needs what it stands on.
 if(BUILD_SHARED_LIBS)

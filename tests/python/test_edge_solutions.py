@@ -1,4 +1,4 @@
-"""The numbers with which src/algorithms/zone_edges.f90 takes the error of the discretisation off tractions near an edge."""
+"""The numbers with which src/algorithms/measures/zone_edges.f90 takes the error of the discretisation off tractions near an edge."""
 
 from __future__ import annotations
 
