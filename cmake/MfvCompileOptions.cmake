@@ -19,6 +19,13 @@ function(mfv_compile_options target)
     $<${gnu_fortran}:-std=f2018 -frecursive -fimplicit-none -Wall -Wextra -Wcharacter-truncation
       -Wno-c-binding-type -Wno-unused-dummy-argument ${MFV_UNHEARD_WARNINGS}>
     $<${gnu_c}:-std=gnu11 -Wall -Wextra -Wconversion -Wshadow -Wstrict-prototypes>)
+  # What is built on the library is built again when its modules change.
+  if(NOT target MATCHES "^mfv_folder_|quadruple")
+    get_target_property(sources ${target} SOURCES)
+    list(FILTER sources INCLUDE REGEX "\\.f90$")
+    get_property(modules GLOBAL PROPERTY MFV_MODULE_FILES)
+    set_property(SOURCE ${sources} APPEND PROPERTY OBJECT_DEPENDS ${modules})
+  endif()
   if(MFV_STRICT)
     target_compile_options(${target} PRIVATE
       $<${gnu_fortran}:-Werror -fcheck=all,no-array-temps,no-recursion -fbacktrace -ffpe-trap=${traps}>

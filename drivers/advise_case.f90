@@ -5,13 +5,14 @@ module mfv_advise_case
    use mfv_case, only: case_type
    use mfv_case_reader, only: read_case_file
    use mfv_error, only: error_type, set_error
-   use mfv_help, only: refuse
+   use mfv_command_line, only: fail, get_argument, refuse
+   use mfv_interrupts, only: catch_interrupts
    use mfv_kinds, only: wp
    use mfv_one_thread, only: use_one_thread
    use mfv_output, only: print_text
    use mfv_status, only: MFV_COMPLETE
    use mfv_strings, only: shortened
-   use mfv_terminal
+   use mfv_terminal, only: terminal_observer_type
    implicit none
    private
    public :: advise_case
@@ -36,7 +37,7 @@ contains
       if (allocated(error)) call fail(error)
       call catch_interrupts()
       call observer%start()
-      observer%work = 'coarse meshes: '
+      call observer%begin_work('coarse meshes')
       call advise(case%scene, wanted_error, wanted, advice, observer)
       call observer%clear()
       if (advice%status /= MFV_COMPLETE) then

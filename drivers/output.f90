@@ -5,10 +5,10 @@ module mfv_output
    use, intrinsic :: iso_fortran_env, only: error_unit
    use mfv_safe_file, only: write_all
    use mfv_status, only: MFV_FILE_ERROR, status_exit_code
-   use mfv_terminal, only: end_program
+   use mfv_command_line, only: end_program
    implicit none
    private
-   public :: begin_program, print_text, print_line
+   public :: begin_program, print_text, print_line, print_lines
 
    interface
       subroutine c_begin_streams() bind(C, name='mfv_begin_streams')
@@ -40,5 +40,15 @@ contains
 
       call print_text(text//achar(10))
    end subroutine print_line
+
+   !> Print a text of one line an element.
+   subroutine print_lines(lines)
+      character(*), intent(in) :: lines(:)
+      integer :: i
+
+      do i = 1, size(lines)
+         call print_line(trim(lines(i)))
+      end do
+   end subroutine print_lines
 
 end module mfv_output

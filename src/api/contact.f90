@@ -6,23 +6,27 @@ module mfv_contact
    use mfv_case, only: case_type
    use mfv_case_checksum, only: find_case_checksum
    use mfv_case_reader, only: read_case_file, read_case_text
+   use mfv_clock, only: seconds_now
    use mfv_contact_state, only: contact_state_type
-   use mfv_discretisation_error, only: estimate_error
+   use mfv_discretisation_error, only: estimate_error, has_coarser_meshes
    use mfv_sensitivity, only: find_sensitivity
    use mfv_draft, only: draft_type
    use mfv_error, only: error_type, set_error
+   use mfv_features, only: has_hdf5
    use mfv_interior, only: interior_type, stress_count
    use mfv_kept_state, only: kept_state_type
    use mfv_kinds, only: wp
    use mfv_observer, only: observer_type
    use mfv_result_fields, only: field_named, field_type, group_fields, result_attributes, result_groups
-   use mfv_result_file, only: write_result
+   use mfv_result_file, only: check_writable, is_whole_result, resume_result, write_result
+   use mfv_safe_file, only: delete_path
    use mfv_scene, only: control_displacement, control_force, control_keep, most_cycles, step_type
    use mfv_simulation, only: new_simulation, simulation_type
    use mfv_state_interior, only: state_interior
    use mfv_status
    use mfv_stress_search, only: largest_tension, largest_type, largest_von_mises
    use mfv_strings, only: add_text, string_type, to_text
+   use mfv_summary, only: summarize
    use mfv_tangent, only: find_tangent
    use mfv_validity, only: validity_warnings
    implicit none
@@ -46,13 +50,22 @@ module mfv_contact
       !> A checksum by which states that are kept know their scene.
       integer(int64), private :: scene = 0
       logical, private :: is_made = .false.
+      !> Of a run that keeps checkpoints: the file, seconds between them (0: none), and when the next one is due.
+      character(:), allocatable :: checkpoint_path
+      real(wp), private :: checkpoint_seconds = 0.0_wp, next_checkpoint = 0.0_wp
       !> What was asked for last: paths of all fields, one group of them, warnings, attributes; dropped when the state changes.
       type(string_type), allocatable, private :: paths(:)
       character(:), allocatable, private :: group
       type(field_type), allocatable, private :: fields(:)
       type(string_type), allocatable, private :: warnings(:), attribute_names(:), attribute_texts(:)
    contains
+      procedure :: ask_for
+      procedure :: keep_checkpoints
+      procedure :: resume
       procedure :: run
+      procedure :: is_unfinished
+      procedure :: save
+      procedure :: summarize => summarize_contact
       procedure :: advance
       procedure :: status
       procedure :: get_message
@@ -71,20 +84,42 @@ module mfv_contact
       procedure :: get_largest_tension
       procedure :: make_interior
       procedure :: write
-      procedure, private :: get_reals, get_integers, get_real, get_integer, begin, interior_of, forget, expect_made
+      procedure, private :: get_reals, get_integers, get_real, get_integer, begin, interior_of, forget, expect_made, &
+                            write_checkpoint
    end type contact_type
 
 contains
 
-   !> The contact of the case in a namelist file. It may have no steps. Error MFV_INPUT_ERROR.
-   subroutine read_contact(path, contact, error)
+   !> The contact of the case in a namelist file. Error MFV_INPUT_ERROR. `needs_steps`: whether a case without steps is an error too.
+   !> `algorithm`: in place of the case's own; `suffix` is then inserted in the name of its result file.
+   subroutine read_contact(path, contact, error, needs_steps, algorithm, suffix)
       character(*), intent(in) :: path
       type(contact_type), intent(out) :: contact
       type(error_type), allocatable, intent(out) :: error
+      logical, intent(in), optional :: needs_steps
+      integer, intent(in), optional :: algorithm
+      character(*), intent(in), optional :: suffix
+      logical :: without_steps
 
-      call read_case_file(path, contact%case, error, without_steps=.true.)
-      if (.not. allocated(error)) call contact%begin()
+      without_steps = .true.
+      if (present(needs_steps)) without_steps = .not. needs_steps
+      call read_case_file(path, contact%case, error, without_steps)
+      if (allocated(error)) return
+      if (present(algorithm)) contact%case%scene%method%algorithm = algorithm
+      if (present(suffix)) contact%case%result_path = with_suffix(contact%case%result_path, suffix)
+      call contact%begin()
    end subroutine read_contact
+
+   !> The name of a file with a suffix before its extension.
+   pure function with_suffix(path, suffix) result(name)
+      character(*), intent(in) :: path, suffix
+      character(len=len(path) + len(suffix)) :: name
+      integer :: dot
+
+      dot = index(path, '.', back=.true.)
+      if (dot <= index(path, '/', back=.true.) + 1) dot = len(path) + 1
+      name = path(:dot - 1)//suffix//path(dot:)
+   end function with_suffix
 
    !> The same of a text. `source`: what messages call it; files that it names are looked for beside it.
    subroutine read_contact_text(text, source, contact, error)
@@ -123,6 +158,71 @@ contains
       if (.not. self%is_made) call set_error(error, MFV_BAD_HANDLE, 'the contact has not been made: see new_contact, read_contact')
    end subroutine expect_made
 
+   !> Have error bars and the sensitivity to round-off found out by run, even where the case does not ask for them. Error
+   !> MFV_INPUT_ERROR: a case that cannot have them.
+   subroutine ask_for(self, estimate, sensitivity, error)
+      class(contact_type), intent(inout) :: self
+      logical, intent(in) :: estimate, sensitivity
+      type(error_type), allocatable, intent(out) :: error
+
+      if (estimate .and. .not. has_coarser_meshes(self%case%scene)) then
+         call set_error(error, MFV_INPUT_ERROR, self%case%source//": --estimate: a body with shape='matrix' has no coarser mesh")
+      else if (sensitivity .and. .not. self%case%scene%friction%acts()) then
+         call set_error(error, MFV_INPUT_ERROR, self%case%source//': --sensitivity: the case has no friction to perturb')
+      end if
+      self%case%error_estimate = self%case%error_estimate .or. estimate
+      self%case%sensitivity = self%case%sensitivity .or. sensitivity
+   end subroutine ask_for
+
+   !> Have run write its result from time to time, at ends of segments, so that another process can continue (see resume): where
+   !> &output says; or beside that, with .partial in its name, where the result of a finished run is. Error MFV_INPUT_ERROR: the
+   !> result could not be written.
+   subroutine keep_checkpoints(self, error)
+      class(contact_type), intent(inout) :: self
+      type(error_type), allocatable, intent(out) :: error
+      real(wp), parameter :: seconds_of_a_minute = 60.0_wp
+
+      if (.not. has_hdf5) return
+      call check_writable(self%case%result_path, error)
+      if (allocated(error)) then
+         error%message = self%case%source//": &output file='"//self%case%result_path//"': "//error%message
+         return
+      end if
+      self%checkpoint_path = self%case%result_path
+      if (is_whole_result(self%case%result_path)) self%checkpoint_path = with_suffix(self%case%result_path, '.partial')
+      self%checkpoint_seconds = self%case%checkpoint_minutes*seconds_of_a_minute
+      self%next_checkpoint = seconds_now() + self%checkpoint_seconds
+      self%simulation%keep_restart = .true.
+   end subroutine keep_checkpoints
+
+   !> Continue from the checkpoint of an interrupted run of the case, the last segment that it finished. `message`: what is done.
+   !> `is_finished`: there is nothing left to do. Error MFV_INPUT_ERROR: the checkpoint cannot be used.
+   subroutine resume(self, message, is_finished, error)
+      class(contact_type), intent(inout) :: self
+      character(:), allocatable, intent(out) :: message
+      logical, intent(out) :: is_finished
+      type(error_type), allocatable, intent(out) :: error
+      character(:), allocatable :: path
+      logical :: exists
+
+      path = with_suffix(self%case%result_path, '.partial')
+      inquire (file=path, exist=exists)
+      if (.not. exists) path = self%case%result_path
+      if (.not. exists) inquire (file=path, exist=exists)
+      is_finished = .false.
+      message = 'no checkpoint found; starting from step 1'
+      if (.not. exists) return
+      call resume_result(path, self%case, self%simulation, is_finished, error)
+      if (allocated(error)) return
+      if (is_finished) then
+         message = path//' is complete; there is nothing to resume'
+      else
+         message = 'resuming from '//path//': '//to_text(self%simulation%scene_steps_done)//' of '// &
+                   to_text(size(self%case%scene%steps))//' steps done'
+         self%checkpoint_path = path
+      end if
+   end subroutine resume
+
    !> Run the steps of the case that have not been run. How it went: see status.
    subroutine run(self, observer)
       class(contact_type), intent(inout) :: self
@@ -130,11 +230,84 @@ contains
 
       if (self%status() /= MFV_COMPLETE) return
       call self%forget()
-      call self%simulation%run(observer)
-      if (self%case%error_estimate) call estimate_error(self%simulation, observer)
-      if (self%case%sensitivity) call find_sensitivity(self%simulation, observer)
+      do while (self%simulation%has_segments_left())
+         call self%simulation%run_segment(observer)
+         if (self%simulation%outcome == MFV_COMPLETE) call self%write_checkpoint(observer)
+      end do
+      if (self%simulation%keep_restart .and. self%simulation%outcome == MFV_COMPLETE) call self%simulation%note_restart()
+      if (self%case%error_estimate) then
+         if (present(observer)) call observer%begin_work('coarser meshes')
+         call estimate_error(self%simulation, observer)
+      end if
+      if (self%case%sensitivity .and. .not. self%is_unfinished()) then
+         if (present(observer)) call observer%begin_work('perturbed friction')
+         call find_sensitivity(self%simulation, observer)
+      end if
       if (self%simulation%outcome /= MFV_COMPLETE) call self%case%explain(self%simulation)
    end subroutine run
+
+   !> Write a checkpoint, where one is due. Where that fails the run goes on, and the observer is warned.
+   subroutine write_checkpoint(self, observer)
+      class(contact_type), intent(inout) :: self
+      class(observer_type), intent(inout), optional :: observer
+      type(error_type), allocatable :: error
+      character(:), allocatable :: message
+
+      if (.not. self%checkpoint_seconds > 0.0_wp) return
+      if (seconds_now() < self%next_checkpoint) return
+      message = self%simulation%message
+      call self%simulation%note_restart()
+      self%simulation%outcome = MFV_INTERRUPTED
+      self%simulation%message = 'a checkpoint: the run had not finished; '//message
+      call self%save(error)
+      self%simulation%outcome = MFV_COMPLETE
+      self%simulation%message = message
+      call self%forget()
+      if (allocated(error) .and. present(observer)) call observer%warn('no checkpoint: '//error%message)
+      self%next_checkpoint = seconds_now() + self%checkpoint_seconds
+   end subroutine write_checkpoint
+
+   !> Whether the run was interrupted, even if only while its error bars or its sensitivity were found out.
+   pure logical function is_unfinished(self)
+      class(contact_type), intent(in) :: self
+
+      is_unfinished = self%simulation%outcome == MFV_INTERRUPTED
+      if (allocated(self%simulation%estimate)) is_unfinished = is_unfinished .or. self%simulation%estimate%status == MFV_INTERRUPTED
+      if (allocated(self%simulation%sensitivity)) &
+         is_unfinished = is_unfinished .or. self%simulation%sensitivity%status == MFV_INTERRUPTED
+   end function is_unfinished
+
+   !> Write the result of a run that keeps checkpoints: where &output says when it is finished, else as its checkpoint. Error
+   !> MFV_FILE_ERROR.
+   subroutine save(self, error)
+      class(contact_type), intent(inout) :: self
+      type(error_type), allocatable, intent(out) :: error
+      type(error_type), allocatable :: not_ours
+      character(:), allocatable :: partial
+      logical :: exists
+
+      call find_warnings(self)
+      if (self%is_unfinished()) then
+         call write_result(self%checkpoint_path, self%case, self%simulation, self%warnings, error, with_restart=.true.)
+         return
+      end if
+      call write_result(self%case%result_path, self%case, self%simulation, self%warnings, error)
+      if (allocated(error)) return
+      partial = with_suffix(self%case%result_path, '.partial')
+      inquire (file=partial, exist=exists)
+      if (exists) call check_writable(partial, not_ours)
+      if (exists .and. .not. allocated(not_ours)) call delete_path(partial)
+   end subroutine save
+
+   !> The summary of the result, for a terminal. `seconds`: what the run took.
+   subroutine summarize_contact(self, seconds, text)
+      class(contact_type), intent(inout) :: self
+      real(wp), intent(in) :: seconds
+      character(:), allocatable, intent(out) :: text
+
+      call find_warnings(self)
+      call summarize(self%case, self%simulation, self%warnings, seconds, text)
+   end subroutine summarize_contact
 
    !> Lead the loads through one more step, straight from where they are: a force or a displacement in every direction that is to
    !> change, units as in step_type. `relative`: targets are increments on the loads now. How it went: see status.

@@ -10,7 +10,7 @@ import numpy as np
 
 import mfv
 
-SOURCE = Path(__file__).resolve().parents[2] / "src" / "compliance" / "edge_solutions.f90"
+SOURCE = Path(__file__).resolve().parents[2] / "src" / "stress" / "edge_solutions.f90"
 
 
 def numbers(text: str, pattern: str) -> np.ndarray:

@@ -11,7 +11,6 @@ module mfv_tangent
    use mfv_error, only: error_type, set_error
    use mfv_first_violation, only: lead_by_violations
    use mfv_kinds, only: wp
-   use mfv_march, only: march_type
    use mfv_node_status, only: in_contact
    use mfv_observer, only: observer_type
    use mfv_scene, only: control_displacement
@@ -65,7 +64,6 @@ contains
       !> So far, in parts of the mesh's length: little beside everything but round-off.
       real(wp), parameter :: little = 1.0e-9_wp
       type(segment_type) :: segment
-      type(march_type) :: march
       type(settled_type) :: observer
       real(wp) :: motion(3), largest
 
@@ -82,7 +80,7 @@ contains
          segment%tangential = load_type(control_displacement, f%shift, motion(along_shift))
          segment%rotational = load_type(control_displacement, f%rotation, motion(along_rotation))
       end associate
-      call lead_by_violations(path, segment, march, observer, error)
+      call lead_by_violations(path, segment, observer, error)
       if (.not. allocated(error)) return
       if (error%status == MFV_INTERRUPTED) deallocate (error)
    end subroutine turn

@@ -4,7 +4,6 @@
 !> their sort so far, so that units do not matter; the largest over all increments is kept.
 module mfv_certificate
    use, intrinsic :: ieee_arithmetic, only: ieee_is_finite
-   use mfv_archive, only: archive_type
    use mfv_contact_fields, only: contact_fields_type
    use mfv_contact_model, only: along_approach, along_rotation, along_shift, contact_model_type
    use mfv_contact_state, only: contact_state_type
@@ -69,7 +68,6 @@ module mfv_certificate
       procedure :: check_increment
       procedure :: note_jump
       procedure :: note_large_increment
-      procedure :: carry
       procedure, private :: note
    end type certificate_type
 
@@ -395,28 +393,5 @@ contains
       end if
       self%worst_increment(kind) = self%increments
    end subroutine note
-
-   !> See mfv_archive.
-   subroutine carry(self, archive)
-      class(certificate_type), intent(inout) :: self
-      type(archive_type), intent(inout) :: archive
-
-      call archive%fill(self%residual)
-      call archive%fill(self%claimed)
-      call archive%fill(self%worst_increment)
-      call archive%carry(self%increments)
-      call archive%carry(self%leaps)
-      call archive%carry(self%increment_traction_error)
-      call archive%carry(self%increment_dissipation_error)
-      call archive%carry(self%traction)
-      call archive%carry(self%normal)
-      call archive%carry(self%tangential)
-      call archive%carry(self%normal_force)
-      call archive%carry(self%tangential_force)
-      call archive%carry(self%moment)
-      call archive%carry(self%energy)
-      call archive%carry(self%work)
-      call archive%carry(self%gross_work)
-   end subroutine carry
 
 end module mfv_certificate

@@ -1,7 +1,6 @@
 !> What is kept of a cycle of the load history: its three turning points, and what it did.
 module mfv_cycle
    use, intrinsic :: ieee_arithmetic, only: ieee_quiet_nan, ieee_value
-   use mfv_archive, only: archive_type
    use mfv_contact_model, only: contact_model_type
    use mfv_contact_state, only: contact_state_type
    use mfv_kinds, only: pi, wp
@@ -23,8 +22,6 @@ module mfv_cycle
       real(wp) :: stiffness_on_leaving = 0.0_wp
       !> See contact_model_type.
       real(wp) :: largest_stiffness = 0.0_wp
-   contains
-      procedure :: carry => carry_turning_point
    end type turning_point_type
 
    type :: cycle_type
@@ -47,7 +44,6 @@ module mfv_cycle
       procedure, private :: only_sheared
       procedure :: secant_stiffness
       procedure :: loss_factor
-      procedure :: carry
    end type cycle_type
 
 contains
@@ -159,38 +155,5 @@ contains
       number = number + 1
       cycles(number) = cycle
    end subroutine append_cycle
-
-   !> See mfv_archive.
-   subroutine carry(self, archive)
-      class(cycle_type), intent(inout) :: self
-      type(archive_type), intent(inout) :: archive
-
-      call archive%carry(self%step)
-      call archive%carry(self%number)
-      call archive%carry(self%overall)
-      call self%start%carry(archive)
-      call self%reversal%carry(archive)
-      call self%return%carry(archive)
-      call archive%carry(self%change)
-      call archive%carry(self%first_dissipation)
-      call self%loading_slip%carry(archive)
-      call self%first_slip%carry(archive)
-   end subroutine carry
-
-   subroutine carry_turning_point(self, archive)
-      class(turning_point_type), intent(inout) :: self
-      type(archive_type), intent(inout) :: archive
-
-      call archive%carry(self%normal_force)
-      call archive%carry(self%tangential_force)
-      call archive%carry(self%approach)
-      call archive%carry(self%shift)
-      call archive%carry(self%rotation)
-      call archive%carry(self%dissipation)
-      call self%edges%carry(archive)
-      call self%slip%carry(archive)
-      call archive%carry(self%stiffness_on_leaving)
-      call archive%carry(self%largest_stiffness)
-   end subroutine carry_turning_point
 
 end module mfv_cycle

@@ -3,7 +3,6 @@
 !> interpolated where the contact has rolled by a whole number of intervals.
 module mfv_rolling
    use, intrinsic :: ieee_arithmetic, only: ieee_quiet_nan, ieee_value
-   use mfv_archive, only: archive_type
    use mfv_kinds, only: wp
    implicit none
    private
@@ -25,7 +24,6 @@ module mfv_rolling
       procedure :: creepage
       procedure :: is_steady
       procedure :: heads_right
-      procedure :: carry
    end type rolling_type
 
 contains
@@ -91,17 +89,5 @@ contains
 
       heads_right = self%direction > 0
    end function heads_right
-
-   !> See mfv_archive.
-   subroutine carry(self, archive)
-      class(rolling_type), intent(inout) :: self
-      type(archive_type), intent(inout) :: archive
-
-      call archive%carry(self%direction)
-      call archive%carry(self%passed)
-      call archive%carry(self%distance)
-      call archive%fill(self%slid)
-      call archive%carry(self%interval)
-   end subroutine carry
 
 end module mfv_rolling

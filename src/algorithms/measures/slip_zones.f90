@@ -8,7 +8,6 @@
 !> sticks as K/sqrt(d). The slip zone of Cattaneo and Mindlin, M (sqrt(d) - sqrt(d - c)), has the same far field where
 !> c = 2 K/M: for small forces, c/a = Q/(2 mu P). It dissipates pi mu L M c^3/(24 m), m the contact modulus.
 module mfv_slip_zones
-   use mfv_archive, only: archive_type
    use mfv_body, only: shape_matrix
    use mfv_compliance, only: block_up
    use mfv_contact_model, only: contact_model_type
@@ -44,8 +43,6 @@ module mfv_slip_zones
       real(wp) :: dissipation = 0.0_wp, normal_force = 0.0_wp, tangential_force = 0.0_wp
       !> Shear traction, force/length^2, shape (nodes).
       real(wp), allocatable :: shear(:)
-   contains
-      procedure :: carry => carry_leg_start
    end type leg_start_type
 
    !> What is known of the slip zones of all legs so far: sums, so that the difference of two records is the record of what is
@@ -69,7 +66,6 @@ module mfv_slip_zones
       procedure :: mean_nodes
       procedure :: mean_width
       procedure :: is_coarse_now
-      procedure :: carry
    end type slip_record_type
 
 contains
@@ -342,29 +338,5 @@ contains
       digits = 10.0_wp**(floor(log10(nodes)) - 1)
       if (nodes < countable) words = 'about '//to_text(nint(digits*ceiling(nodes/digits)))//' nodes ('//trim(words)//')'
    end function needed_mesh
-
-   !> See mfv_archive.
-   subroutine carry(self, archive)
-      class(slip_record_type), intent(inout) :: self
-      type(archive_type), intent(inout) :: archive
-
-      call archive%carry(self%work)
-      call archive%carry(self%coarse_work)
-      call archive%carry(self%nodes)
-      call archive%carry(self%width)
-      call archive%carry(self%sharpness)
-      call archive%carry(self%nodes_now)
-      call archive%carry(self%width_now)
-   end subroutine carry
-
-   subroutine carry_leg_start(self, archive)
-      class(leg_start_type), intent(inout) :: self
-      type(archive_type), intent(inout) :: archive
-
-      call archive%carry(self%dissipation)
-      call archive%carry(self%normal_force)
-      call archive%carry(self%tangential_force)
-      call archive%carry(self%shear)
-   end subroutine carry_leg_start
 
 end module mfv_slip_zones

@@ -12,7 +12,6 @@
 !> mfv_edge_solutions.
 module mfv_zone_edges
    use, intrinsic :: ieee_arithmetic, only: ieee_quiet_nan, ieee_value
-   use mfv_archive, only: archive_type
    use mfv_body, only: shape_matrix
    use mfv_compliance, only: block_wp, block_wt
    use mfv_contact_model, only: contact_model_type
@@ -57,7 +56,6 @@ module mfv_zone_edges
       procedure :: half_width
       procedure :: centre
       procedure :: stick_ratio
-      procedure :: carry
    end type zone_edges_type
 
    !> Most nodes that an edge is found from.
@@ -599,21 +597,5 @@ contains
       ends_with_body = model%scene%touchable(model%arc(node) + side*half*(1.0_wp - near)) .and. &
                        .not. model%scene%touchable(model%arc(node) + side*half*(1.0_wp + near))
    end function ends_with_body
-
-   !> See mfv_archive.
-   subroutine carry(self, archive)
-      class(zone_edges_type), intent(inout) :: self
-      type(archive_type), intent(inout) :: archive
-
-      call archive%carry(self%contact)
-      call archive%carry(self%stick)
-      call archive%carry(self%patches)
-      call archive%carry(self%contact_left)
-      call archive%carry(self%contact_right)
-      call archive%carry(self%contact_length)
-      call archive%carry(self%stick_left)
-      call archive%carry(self%stick_right)
-      call archive%carry(self%stick_length)
-   end subroutine carry
 
 end module mfv_zone_edges

@@ -1,7 +1,6 @@
 !> The fields of a contact state, or their rates per unit of load: tractions, surface displacements, rigid motions and
 !> forces.
 module mfv_contact_fields
-   use mfv_archive, only: archive_type
    use mfv_kinds, only: wp
    implicit none
    private
@@ -26,7 +25,6 @@ module mfv_contact_fields
       procedure :: move
       procedure :: slip
       procedure :: padded
-      procedure :: carry
    end type contact_fields_type
 
 contains
@@ -136,22 +134,5 @@ contains
       wider%tangential_force = self%tangential_force
       wider%moment = self%moment
    end function padded
-
-   !> See mfv_archive.
-   subroutine carry(self, archive)
-      class(contact_fields_type), intent(inout) :: self
-      type(archive_type), intent(inout) :: archive
-
-      call archive%carry(self%pressure)
-      call archive%carry(self%shear)
-      call archive%carry(self%normal)
-      call archive%carry(self%tangential)
-      call archive%carry(self%approach)
-      call archive%carry(self%shift)
-      call archive%carry(self%rotation)
-      call archive%carry(self%normal_force)
-      call archive%carry(self%tangential_force)
-      call archive%carry(self%moment)
-   end subroutine carry
 
 end module mfv_contact_fields

@@ -1,6 +1,5 @@
 !> A contact state: the fields and what the nodes remember.
 module mfv_contact_state
-   use mfv_archive, only: archive_type
    use mfv_contact_fields, only: contact_fields_type, new_contact_fields
    use mfv_friction_law, only: friction_point_type
    use mfv_kinds, only: wp
@@ -35,7 +34,6 @@ module mfv_contact_state
       procedure :: stick_nodes
       procedure :: slip_nodes
       procedure :: count_nodes
-      procedure :: carry
    end type contact_state_type
 
 contains
@@ -149,21 +147,5 @@ contains
 
       slip_nodes = count(slips(self%status))
    end function slip_nodes
-
-   !> See mfv_archive.
-   subroutine carry(self, archive)
-      class(contact_state_type), intent(inout) :: self
-      type(archive_type), intent(inout) :: archive
-
-      call self%fields%carry(archive)
-      call archive%carry(self%status)
-      call archive%carry(self%stuck_slip)
-      call archive%carry(self%slip_direction)
-      call archive%carry(self%slipped)
-      call archive%carry(self%excess)
-      call archive%carry(self%capped)
-      call archive%carry(self%dissipation)
-      call archive%carry(self%friction_work)
-   end subroutine carry
 
 end module mfv_contact_state

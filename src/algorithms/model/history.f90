@@ -1,6 +1,5 @@
 !> The load history: one record for every event or step end.
 module mfv_history
-   use mfv_archive, only: archive_type
    use mfv_contact_state, only: contact_state_type
    use mfv_kinds, only: wp
    implicit none
@@ -16,8 +15,6 @@ module mfv_history
       integer :: event_kind = 0, event_node = 0, event_count = 0
       !> Step of the load history, and linear solves so far.
       integer :: step = 0, linear_solves = 0
-   contains
-      procedure :: carry => carry_record
    end type history_record_type
 
    type :: history_type
@@ -28,7 +25,6 @@ module mfv_history
    contains
       procedure :: append
       procedure :: move_nodes
-      procedure :: carry
    end type history_type
 
 contains
@@ -69,42 +65,5 @@ contains
          if (self%record(i)%event_node > 0) self%record(i)%event_node = self%record(i)%event_node + extra
       end do
    end subroutine move_nodes
-
-   !> See mfv_archive.
-   subroutine carry(self, archive)
-      class(history_type), intent(inout) :: self
-      type(archive_type), intent(inout) :: archive
-      integer :: i
-
-      call archive%carry(self%records)
-      if (archive%is_reading()) then
-         if (allocated(self%record)) deallocate (self%record)
-         if (self%records > 0 .and. .not. archive%is_damaged()) allocate (self%record(self%records))
-      end if
-      do i = 1, self%records
-         if (archive%is_damaged()) return
-         call self%record(i)%carry(archive)
-      end do
-   end subroutine carry
-
-   subroutine carry_record(self, archive)
-      class(history_record_type), intent(inout) :: self
-      type(archive_type), intent(inout) :: archive
-
-      call archive%carry(self%normal_force)
-      call archive%carry(self%tangential_force)
-      call archive%carry(self%approach)
-      call archive%carry(self%shift)
-      call archive%carry(self%dissipation)
-      call archive%carry(self%moment)
-      call archive%carry(self%rotation)
-      call archive%carry(self%contact_nodes)
-      call archive%carry(self%stick_nodes)
-      call archive%carry(self%event_kind)
-      call archive%carry(self%event_node)
-      call archive%carry(self%event_count)
-      call archive%carry(self%step)
-      call archive%carry(self%linear_solves)
-   end subroutine carry_record
 
 end module mfv_history

@@ -7,10 +7,10 @@ module mfv_observer
    public :: observer_type, relay_type
 
    type, abstract :: observer_type
-      !> Set to leave the run where it is, at its next increment: the same call then goes on from there (mfv_simulation).
-      logical :: pause_wanted = .false.
    contains
       procedure(notify_interface), deferred :: notify
+      procedure :: begin_work
+      procedure :: warn
    end type observer_type
 
    abstract interface
@@ -39,6 +39,18 @@ module mfv_observer
    end type relay_type
 
 contains
+
+   !> Another part of the work begins, such as solving on coarser meshes.
+   subroutine begin_work(self, work)
+      class(observer_type), intent(inout) :: self
+      character(*), intent(in) :: work
+   end subroutine begin_work
+
+   !> Something that does not end the run, but that a user should know at once.
+   subroutine warn(self, text)
+      class(observer_type), intent(inout) :: self
+      character(*), intent(in) :: text
+   end subroutine warn
 
    !> See observer_type.
    subroutine relay(self, state, segment, segments, fraction, stop_wanted)

@@ -9,7 +9,6 @@
 !> S = Q(slot, :) - slope Q(partner, :) - stiffness, whose inverse is kept and updated too: a constraint costs a column of T and
 !> as many operations as S has entries, and when all of them go nothing is left to do.
 module mfv_constrained_inverse
-   use mfv_archive, only: archive_type
    use mfv_kinds, only: wp
    use mfv_lapack, only: dgemv, dger, dgetrf, dgetri
    use mfv_updated_inverse, only: updated_inverse_type
@@ -39,7 +38,6 @@ module mfv_constrained_inverse
       procedure :: change_constraint
       procedure :: refresh
       procedure :: solve
-      procedure :: carry
       procedure, private :: reserve
       procedure, private :: follow_change
       procedure, private :: functional
@@ -357,21 +355,5 @@ contains
          call move_alloc(real_values, values)
       end subroutine lengthen_real
    end subroutine reserve
-
-   !> See mfv_archive.
-   subroutine carry(self, archive)
-      class(constrained_inverse_type), intent(inout) :: self
-      type(archive_type), intent(inout) :: archive
-
-      call self%inverse%carry(archive)
-      call archive%carry(self%constraints)
-      call archive%carry(self%slot)
-      call archive%carry(self%partner)
-      call archive%carry(self%slope)
-      call archive%carry(self%stiffness)
-      call archive%carry(self%columns)
-      call archive%carry(self%small)
-      call archive%carry(self%stale)
-   end subroutine carry
 
 end module mfv_constrained_inverse

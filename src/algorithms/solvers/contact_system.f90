@@ -2,7 +2,6 @@
 !> loads given, the state and its rates per unit of load.
 module mfv_contact_system
    use, intrinsic :: iso_fortran_env, only: int64
-   use mfv_archive, only: archive_type
    use mfv_contact_fields, only: contact_fields_type
    use mfv_contact_model, only: contact_model_type
    use mfv_friction_law, only: friction_row_type
@@ -17,8 +16,6 @@ module mfv_contact_system
       integer :: control = control_force
       real(wp) :: value = 0.0_wp
       real(wp) :: rate = 0.0_wp
-   contains
-      procedure :: carry => carry_load
    end type load_type
 
    !> The equality constraints of all nodes (dissertation Table 2.1).
@@ -40,8 +37,6 @@ module mfv_contact_system
    !> The state that the constraints determine and its rates per unit of load.
    type :: response_type
       type(contact_fields_type) :: state, rate
-   contains
-      procedure :: carry => carry_response
    end type response_type
 
    type, abstract :: contact_system_type
@@ -56,8 +51,6 @@ module mfv_contact_system
    contains
       procedure(solve_interface), deferred :: solve
       !> See mfv_archive; a solver that keeps more than this type has overrides it.
-      procedure :: carry => carry_counts
-      procedure, non_overridable :: carry_counts
    end type contact_system_type
 
    abstract interface
@@ -74,38 +67,5 @@ module mfv_contact_system
          logical, intent(out) :: singular
       end subroutine solve_interface
    end interface
-
-contains
-
-   !> See mfv_archive.
-   subroutine carry_load(self, archive)
-      class(load_type), intent(inout) :: self
-      type(archive_type), intent(inout) :: archive
-
-      call archive%carry(self%control)
-      call archive%carry(self%value)
-      call archive%carry(self%rate)
-   end subroutine carry_load
-
-   !> See mfv_archive.
-   subroutine carry_response(self, archive)
-      class(response_type), intent(inout) :: self
-      type(archive_type), intent(inout) :: archive
-
-      call self%state%carry(archive)
-      call self%rate%carry(archive)
-   end subroutine carry_response
-
-   !> What every solver keeps.
-   subroutine carry_counts(self, archive)
-      class(contact_system_type), intent(inout) :: self
-      type(archive_type), intent(inout) :: archive
-
-      call archive%fill(self%name)
-      call archive%carry(self%solves)
-      call archive%carry(self%iterations)
-      call archive%carry(self%products)
-      call archive%carry(self%noise)
-   end subroutine carry_counts
 
 end module mfv_contact_system

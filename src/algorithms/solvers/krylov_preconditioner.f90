@@ -9,7 +9,6 @@
 !> for a few values of c, circulant ones. Those of nodes whose friction falls with slip (c < 0) are taken by themselves: where the
 !> bodies can unload as fast as friction falls, |c| is the larger part of C_ut + c.
 module mfv_krylov_preconditioner
-   use mfv_archive, only: archive_type
    use mfv_compliance, only: block_wp, compliance_type
    use mfv_fourier, only: back_transform, fast_length, real_transform
    use mfv_half_plane, only: log_kernel
@@ -25,8 +24,6 @@ module mfv_krylov_preconditioner
       !> The nodes, and the one before the first.
       integer, allocatable :: nodes(:)
       integer :: before = 0
-   contains
-      procedure :: carry => carry_block
    end type block_type
 
    type :: krylov_preconditioner_type
@@ -48,7 +45,6 @@ module mfv_krylov_preconditioner
       procedure :: apply_contact
       procedure :: apply_held
       procedure :: smallest
-      procedure :: carry
    end type krylov_preconditioner_type
 
 contains
@@ -225,34 +221,5 @@ contains
       call block%inverse%apply(self%work(:order))
       values = self%work(block%nodes - block%before)
    end subroutine apply_block
-
-   !> See mfv_archive.
-   subroutine carry(self, archive)
-      class(krylov_preconditioner_type), intent(inout) :: self
-      type(archive_type), intent(inout) :: archive
-      logical :: is_there
-
-      call archive%carry(self%kernel)
-      is_there = archive%carries(allocated(self%contact))
-      if (is_there) then
-         if (archive%is_reading()) allocate (self%contact, self%held)
-         call self%contact%carry(archive)
-         call self%held%carry(archive)
-      end if
-      call archive%carry(self%soft)
-      call archive%carry(self%softness)
-      call archive%carry(self%weight)
-      call archive%carry(self%symbol)
-      call archive%carry(self%work)
-   end subroutine carry
-
-   subroutine carry_block(self, archive)
-      class(block_type), intent(inout) :: self
-      type(archive_type), intent(inout) :: archive
-
-      call self%inverse%carry(archive)
-      call archive%carry(self%nodes)
-      call archive%carry(self%before)
-   end subroutine carry_block
 
 end module mfv_krylov_preconditioner

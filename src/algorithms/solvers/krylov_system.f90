@@ -16,7 +16,6 @@
 !> do not depend on their number: a dozen for nu = 0.3 and mu = 0.5, three dozen for nu = 0 and mu = 3.
 module mfv_krylov_system
    use, intrinsic :: ieee_arithmetic, only: ieee_is_finite
-   use mfv_archive, only: archive_type
    use mfv_compliance, only: block_up
    use mfv_contact_fields, only: contact_fields_type, new_contact_fields
    use mfv_contact_model, only: along_approach, along_rotation, along_shift, contact_model_type
@@ -69,7 +68,6 @@ module mfv_krylov_system
       real(wp) :: last_motion(3) = 0.0_wp
    contains
       procedure :: solve
-      procedure :: carry
    end type krylov_system_type
 
    !> The iteration is begun anew so often.
@@ -641,29 +639,5 @@ contains
          end if
       end subroutine meet
    end subroutine meet_loads
-
-   !> See mfv_archive. What a solve begins with is made anew by each: unknowns, their preconditioned columns, the iteration.
-   subroutine carry(self, archive)
-      class(krylov_system_type), intent(inout) :: self
-      type(archive_type), intent(inout) :: archive
-
-      call self%carry_counts(archive)
-      call self%preconditioner%carry(archive)
-      call archive%carry(self%stress)
-      call archive%carry(self%length)
-      call archive%carry(self%normal_arm)
-      call archive%carry(self%tangential_arm)
-      call archive%carry(self%width)
-      call archive%carry(self%pressure)
-      call archive%carry(self%shear)
-      call archive%carry(self%normal)
-      call archive%carry(self%tangential)
-      call archive%carry(self%found)
-      call archive%carry(self%last_pressure)
-      call archive%carry(self%last_shear)
-      call archive%fill(self%last_contact)
-      call archive%fill(self%last_held)
-      call archive%fill(self%last_motion)
-   end subroutine carry
 
 end module mfv_krylov_system

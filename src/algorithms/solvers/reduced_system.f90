@@ -16,7 +16,6 @@
 !> after the other, each with an inverse of its own. Goodman's coupling with rotation or radial normals is not symmetric: there
 !> the augmented system takes over.
 module mfv_reduced_system
-   use mfv_archive, only: archive_type
    use mfv_augmented_system, only: augmented_system_type
    use mfv_compliance, only: block_up, block_ut, block_wp, block_wt
    use mfv_constrained_inverse, only: constrained_inverse_type
@@ -41,8 +40,6 @@ module mfv_reduced_system
       integer, allocatable :: sort(:), of(:)
       !> Right side and solution of the rows, and values of the constraints.
       real(wp), allocatable :: right(:), solution(:), values(:)
-   contains
-      procedure :: carry => carry_part
    end type part_type
 
    !> Magnitudes that what is missing is measured by: normal and tangential displacements, length; tractions, force/length^2;
@@ -72,7 +69,6 @@ module mfv_reduced_system
    contains
       procedure :: solve
       procedure :: rebuilds
-      procedure :: carry
       procedure, private :: match
       procedure, private :: undetermined
       procedure, private :: follow
@@ -930,38 +926,5 @@ contains
          end do
       end associate
    end subroutine apply
-
-   !> See mfv_archive.
-   subroutine carry(self, archive)
-      class(reduced_system_type), intent(inout) :: self
-      type(archive_type), intent(inout) :: archive
-
-      call self%carry_counts(archive)
-      call self%part(1)%carry(archive)
-      call self%part(2)%carry(archive)
-      call archive%carry(self%apart)
-      call archive%carry(self%place)
-      call archive%fill(self%motion_place)
-      call archive%carry(self%constraint_of)
-      call archive%fill(self%motion_constraint)
-      call archive%carry(self%length)
-      call archive%fill(self%block)
-      call archive%carry(self%rotational)
-      call self%augmented%carry(archive)
-      call archive%carry(self%refinements)
-   end subroutine carry
-
-   subroutine carry_part(self, archive)
-      class(part_type), intent(inout) :: self
-      type(archive_type), intent(inout) :: archive
-
-      call self%system%carry(archive)
-      call archive%carry(self%unknowns)
-      call archive%carry(self%sort)
-      call archive%carry(self%of)
-      call archive%carry(self%right)
-      call archive%carry(self%solution)
-      call archive%carry(self%values)
-   end subroutine carry_part
 
 end module mfv_reduced_system

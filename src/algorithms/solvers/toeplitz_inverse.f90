@@ -8,7 +8,6 @@
 !> order. Levinson's recursion takes the predictor from one order to the next in O(m), up and down (Golub and Van Loan, Matrix
 !> Computations, 4th edition, section 4.7): a contact that changes by a node at a time never pays for more.
 module mfv_toeplitz_inverse
-   use mfv_archive, only: archive_type
    use mfv_fourier, only: back_transform, fast_length, real_transform
    use mfv_kinds, only: wp
    implicit none
@@ -32,7 +31,6 @@ module mfv_toeplitz_inverse
       procedure :: apply
       procedure :: copy_order
       procedure :: current_order
-      procedure :: carry
    end type toeplitz_inverse_type
 
 contains
@@ -191,16 +189,5 @@ contains
       self%values(2:m) = self%predictor(m:2:-1)
       call real_transform(self%values, self%backward)
    end subroutine make_spectra
-
-   !> See mfv_archive. Spectra are made anew from the predictor.
-   subroutine carry(self, archive)
-      class(toeplitz_inverse_type), intent(inout) :: self
-      type(archive_type), intent(inout) :: archive
-
-      call archive%carry(self%order)
-      call archive%carry(self%predictor)
-      call archive%carry(self%error)
-      if (archive%is_reading()) self%length = 0
-   end subroutine carry
 
 end module mfv_toeplitz_inverse

@@ -10,7 +10,6 @@
 !> and losing row j it becomes T - q q'/q(j), q its column j. Both add a product of a vector with itself. Such products are
 !> kept apart until there are `most_pending` of them, and then added together, as fast as matrices are multiplied.
 module mfv_updated_inverse
-   use mfv_archive, only: archive_type
    use mfv_kinds, only: wp
    use mfv_lapack, only: dgemm, dgemv, dgetrf, dgetri
    implicit none
@@ -43,7 +42,6 @@ module mfv_updated_inverse
       procedure :: column
       procedure :: multiply
       procedure :: rebuild
-      procedure :: carry
       procedure, private :: reserve
       procedure, private :: append
       procedure, private :: add_pending
@@ -264,26 +262,5 @@ contains
       call dgemm('N', 'T', n, n, most_pending, 1.0_wp, self%weighed, rows, self%vector, rows, 1.0_wp, self%base, rows)
       self%pending = 0
    end subroutine append
-
-   !> See mfv_archive.
-   subroutine carry(self, archive)
-      class(updated_inverse_type), intent(inout) :: self
-      type(archive_type), intent(inout) :: archive
-
-      call archive%carry(self%order)
-      call archive%carry(self%rebuilds)
-      call archive%carry(self%base)
-      call archive%carry(self%vector)
-      call archive%carry(self%weight)
-      call archive%carry(self%weighed)
-      call archive%carry(self%pending)
-      call archive%carry(self%borders)
-      call archive%carry(self%products)
-      call archive%carry(self%changes)
-      call archive%carry(self%weights)
-      call archive%carry(self%prepared)
-      call archive%carry(self%change)
-      call archive%carry(self%change_weight)
-   end subroutine carry
 
 end module mfv_updated_inverse

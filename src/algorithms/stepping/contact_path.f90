@@ -2,7 +2,6 @@
 !> straight part of the history, hold what nothing determines, change statuses, record.
 module mfv_contact_path
    use, intrinsic :: ieee_arithmetic, only: ieee_quiet_nan, ieee_value
-   use mfv_archive, only: archive_type
    use mfv_certificate, only: certificate_type, new_certificate
    use mfv_contact_fields, only: contact_fields_type
    use mfv_contact_model, only: along_rotation, along_shift, contact_model_type, new_contact_model
@@ -16,6 +15,7 @@ module mfv_contact_path
    use mfv_kinds, only: wp
    use mfv_linear_solvers, only: new_contact_system
    use mfv_node_status
+   use mfv_observer, only: observer_type
    use mfv_rolling, only: rolling_type
    use mfv_scene, only: algorithm_mfv, control_displacement, control_force, stepping_leap
    use mfv_slip_zones, only: widest_slip_zone
@@ -23,7 +23,8 @@ module mfv_contact_path
    use mfv_strings, only: to_text
    implicit none
    private
-   public :: contact_path_type, kept_path_type, new_contact_path, segment_type, moment_type, note_change, first_true
+   public :: contact_path_type, path_position_type, kept_path_type, new_contact_path, segment_type, moment_type, note_change, &
+             first_true
 
    !> A straight part of the load history: the controlled loads with their targets, and whether friction acts.
    type :: segment_type
@@ -34,14 +35,10 @@ module mfv_contact_path
       integer :: number = 1, segments = 1, step = 1
       !> Where this one begins and ends in parts of the whole that it belongs to, for progress.
       real(wp) :: from = 0.0_wp, to = 1.0_wp
-   contains
-      procedure :: carry => carry_segment
    end type segment_type
 
-   !> Where a path stands: what it takes to go on from here with the same digits, but for what only grows on the way and what can be made
-   !> again.
+   !> What a contact needs to continue from here, besides the work of the linear solver and what only grows (history records).
    type :: path_position_type
-      class(contact_system_type), allocatable :: system
       type(contact_state_type) :: state
       type(certificate_type) :: certificate
       !> Events so far: loads at which statuses changed.
@@ -55,12 +52,11 @@ module mfv_contact_path
       type(rolling_type) :: rolling
       !> Nodes of the widest slip zone that has dissipated in this segment, see mfv_slip_zones.
       integer :: slip_zone_nodes = 0
-   contains
-      procedure, private :: carry_position
    end type path_position_type
 
    type, extends(path_position_type) :: contact_path_type
       type(contact_model_type) :: model
+      class(contact_system_type), allocatable :: system
       !> The state before the last increment.
       type(contact_state_type), private :: before
       type(history_type) :: history
@@ -75,7 +71,8 @@ module mfv_contact_path
       procedure :: copy_without_history
       procedure :: keep
       procedure :: come_back
-      procedure :: carry
+      procedure :: resume
+      procedure :: notify
       procedure, private :: model_as
       procedure :: await_increment
       procedure :: begin_rotation
@@ -106,6 +103,7 @@ module mfv_contact_path
    type :: kept_path_type
       private
       type(path_position_type) :: position
+      class(contact_system_type), allocatable :: system
       integer :: records = 0, added = 0
       logical :: tangential = .false., rotational = .false.
    end type kept_path_type
@@ -123,8 +121,6 @@ module mfv_contact_path
       logical :: snapped = .false., solved = .false.
       !> First change at this load: event and node; and how many nodes changed with it.
       integer :: event = event_none, node = 0, count = 0
-   contains
-      procedure :: carry => carry_moment
    end type moment_type
 
 contains
@@ -151,6 +147,7 @@ contains
 
       copy%model = self%model
       copy%path_position_type = self%path_position_type
+      copy%system = self%system
       copy%record_events = .false.
    end subroutine copy_without_history
 
@@ -160,6 +157,7 @@ contains
       type(kept_path_type), intent(inout) :: kept
 
       kept%position = self%path_position_type
+      kept%system = self%system
       kept%records = self%history%records
       kept%added = self%model%added
       kept%tangential = self%model%tangential
@@ -175,6 +173,7 @@ contains
       call self%history%move_nodes(kept%added - self%model%added)
       call self%model_as(kept%added, kept%tangential, kept%rotational)
       self%path_position_type = kept%position
+      self%system = kept%system
       self%history%records = min(kept%records, self%history%records)
    end subroutine come_back
 
@@ -192,73 +191,32 @@ contains
       if (added > 0) call self%model%grow(added)
    end subroutine model_as
 
-   !> See mfv_archive. It is read into a path of the same scene.
-   subroutine carry(self, archive)
+   !> Continue from a position that a contact of the same scene has reached, with `added` nodes more at either end. The linear solver
+   !> starts anew.
+   subroutine resume(self, position, added)
       class(contact_path_type), intent(inout) :: self
-      type(archive_type), intent(inout) :: archive
-      integer :: added
-      logical :: tangential, rotational
+      type(path_position_type), intent(in) :: position
+      integer, intent(in) :: added
 
-      added = self%model%added
-      tangential = self%model%tangential
-      rotational = self%model%rotational
-      call archive%carry(added)
-      call archive%carry(tangential)
-      call archive%carry(rotational)
-      if (archive%is_damaged()) return
-      call self%model_as(added, tangential, rotational)
-      call self%carry_position(archive)
-      call self%history%carry(archive)
-      call archive%carry(self%record_events)
-      call archive%carry(self%start_force)
-      call archive%carry(self%start_shift)
-      call archive%carry(self%start_dissipation)
-      call archive%carry(self%awaits_increment)
-   end subroutine carry
+      call self%model_as(added, self%model%tangential, self%model%rotational)
+      self%path_position_type = position
+      call self%certificate%claim(self%model)
+   end subroutine resume
 
-   subroutine carry_position(self, archive)
-      class(path_position_type), intent(inout) :: self
-      type(archive_type), intent(inout) :: archive
+   !> Notify an observer, if there is one, of the load at the part `done` of a segment. Error MFV_INTERRUPTED: it stops the run.
+   subroutine notify(self, segment, done, observer, error)
+      class(contact_path_type), intent(in) :: self
+      type(segment_type), intent(in) :: segment
+      real(wp), intent(in) :: done
+      class(observer_type), intent(inout), optional :: observer
+      type(error_type), allocatable, intent(out) :: error
+      logical :: stop_wanted
 
-      call self%system%carry(archive)
-      call self%state%carry(archive)
-      call self%certificate%carry(archive)
-      call archive%carry(self%events)
-      call archive%carry(self%trial)
-      call archive%carry(self%first_stiffness)
-      call self%rolling%carry(archive)
-      call archive%carry(self%slip_zone_nodes)
-   end subroutine carry_position
-
-   subroutine carry_segment(self, archive)
-      class(segment_type), intent(inout) :: self
-      type(archive_type), intent(inout) :: archive
-
-      call self%normal%carry(archive)
-      call self%tangential%carry(archive)
-      call self%rotational%carry(archive)
-      call archive%carry(self%friction)
-      call archive%carry(self%number)
-      call archive%carry(self%segments)
-      call archive%carry(self%step)
-      call archive%carry(self%from)
-      call archive%carry(self%to)
-   end subroutine carry_segment
-
-   subroutine carry_moment(self, archive)
-      class(moment_type), intent(inout) :: self
-      type(archive_type), intent(inout) :: archive
-
-      call archive%carry(self%tried)
-      call archive%carry(self%tries)
-      call archive%carry(self%round_off)
-      call archive%carry(self%one_at_a_time)
-      call archive%carry(self%snapped)
-      call archive%carry(self%solved)
-      call archive%carry(self%event)
-      call archive%carry(self%node)
-      call archive%carry(self%count)
-   end subroutine carry_moment
+      if (.not. present(observer)) return
+      call observer%notify(self%state, segment%number, segment%segments, segment%from + (segment%to - segment%from)*done, &
+                           stop_wanted)
+      if (stop_wanted) call self%end_here(MFV_INTERRUPTED, 'stopped on request', error)
+   end subroutine notify
 
    !> A segment begins: have its first_stiffness and slip_zone_nodes found.
    subroutine await_increment(self)

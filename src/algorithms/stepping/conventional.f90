@@ -12,7 +12,6 @@ module mfv_conventional
    use mfv_error, only: error_type
    use mfv_event_search, only: status_after
    use mfv_kinds, only: wp
-   use mfv_march, only: march_type
    use mfv_node_status
    use mfv_observer, only: observer_type
    use mfv_scene, only: control_displacement, control_force
@@ -32,42 +31,36 @@ module mfv_conventional
 
 contains
 
-   !> Lead the loads along one segment in nominal steps. `observer` is told of every load step, and can have a pause there.
+   !> Apply the loads of one segment in nominal steps. `observer` is notified of every load step.
    !> Errors, each leaving the last converged state in place: MFV_CYCLING, MFV_INADMISSIBLE, MFV_GROSS_SLIDING, MFV_SEPARATED,
    !> MFV_MESH_EXCEEDED, MFV_INADMISSIBLE_STEP, MFV_INTERRUPTED.
-   subroutine lead_conventionally(path, segment, march, observer, error)
+   subroutine lead_conventionally(path, segment, observer, error)
       class(contact_path_type), intent(inout) :: path
       type(segment_type), intent(in) :: segment
-      type(march_type), intent(inout) :: march
       class(observer_type), intent(inout), optional :: observer
       type(error_type), allocatable, intent(out) :: error
       real(wp), parameter :: whole = 1.0e-9_wp
       integer, allocatable :: converged(:)
       real(wp), allocatable :: slipped(:)
-      logical :: stop_wanted, again
+      real(wp) :: done
+      logical :: again
 
-      if (.not. march%paused) then
-         call path%start_segment(segment, error)
-         march%part = 0.0_wp
-      end if
-      march%paused = .false.
-      do while (march%part < 1.0_wp .and. .not. (allocated(error) .or. march%paused))
-         march%part = march%part + path%model%scene%method%load_step
-         if (march%part > 1.0_wp - whole) march%part = 1.0_wp
+      call path%start_segment(segment, error)
+      done = 0.0_wp
+      do while (done < 1.0_wp .and. .not. allocated(error))
+         done = done + path%model%scene%method%load_step
+         if (done > 1.0_wp - whole) done = 1.0_wp
          again = .true.
          do while (again)
             converged = path%state%status
             slipped = path%state%slipped
-            call solve_load(path, segment, march%part, again, error)
+            call solve_load(path, segment, done, again, error)
             if (.not. allocated(error)) cycle
             path%state%status = converged
             path%state%slipped = slipped
             return
          end do
-         if (.not. present(observer)) cycle
-         call observer%notify(path%state, segment%number, segment%segments, march%part, stop_wanted)
-         if (stop_wanted) call path%end_here(MFV_INTERRUPTED, 'stopped on request', error)
-         march%paused = observer%pause_wanted .and. march%part < 1.0_wp .and. .not. stop_wanted
+         call path%notify(segment, done, observer, error)
       end do
    end subroutine lead_conventionally
 

@@ -2,7 +2,6 @@
 !> and after which step. Equations 2.3 to 2.5 with rates in place of a trial state; a slip in the wrong direction, which
 !> on rates is seen at once, breaks after no step at all.
 module mfv_event_search
-   use mfv_archive, only: archive_type
    use mfv_contact_fields, only: contact_fields_type
    use mfv_contact_model, only: contact_model_type
    use mfv_kinds, only: wp
@@ -34,8 +33,6 @@ module mfv_event_search
       real(wp), allocatable :: step(:)
       !> How fast the inequality breaks, in units of the largest rate of its sort, shape (nodes).
       real(wp), allocatable :: speed(:)
-   contains
-      procedure :: carry
    end type violations_type
 
 contains
@@ -187,15 +184,5 @@ contains
          status_after = status
       end select
    end function status_after
-
-   !> See mfv_archive.
-   subroutine carry(self, archive)
-      class(violations_type), intent(inout) :: self
-      type(archive_type), intent(inout) :: archive
-
-      call archive%carry(self%kind)
-      call archive%carry(self%step)
-      call archive%carry(self%speed)
-   end subroutine carry
 
 end module mfv_event_search

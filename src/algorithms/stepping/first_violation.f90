@@ -21,7 +21,6 @@ module mfv_first_violation
    use mfv_event_search, only: corners_type, status_after, violations_type
    use mfv_increment
    use mfv_kinds, only: wp
-   use mfv_march, only: march_type
    use mfv_node_status
    use mfv_observer, only: observer_type
    use mfv_rate_problem, only: settle_by_rates
@@ -52,118 +51,113 @@ module mfv_first_violation
    !> Neither is less than so many times the linear solver's noise.
    real(wp), parameter :: noises = 1.0e3_wp
 
+   !> Where on a segment the load is.
+   type :: progress_type
+      !> The part of the segment that is done; whether the last increment had a length, and whether it has reached the end.
+      real(wp) :: done = 0.0_wp
+      logical :: moved = .false., at_end = .false.
+      !> The load now, and the increment from there.
+      type(moment_type) :: moment
+      type(increment_type) :: increment
+      !> Whether the load advances: increments without a length in a row, tiny ones in a row, increments since the last milestone.
+      integer :: standing = 0, tiny = 0, since = 0
+      real(wp) :: milestone = 0.0_wp
+   end type progress_type
+
 contains
 
-   !> Lead the loads along one segment. `observer` is told of every increment; where it wants a pause, `march` keeps what it
-   !> takes to go on. It is asked too where one load takes long, because the mesh grows (under an absurd force, far) or changes
-   !> are many.
+   !> Apply the loads of one segment. `observer` is notified of every increment; and where one load takes long, because the mesh
+   !> grows (under an absurd force, far) or statuses change often.
    !> Errors, each leaving the last admissible state in place: MFV_GROSS_SLIDING, MFV_SEPARATED, MFV_NO_CONTINUATION,
    !> MFV_MESH_EXCEEDED, MFV_INADMISSIBLE_STEP, MFV_INTERRUPTED.
-   subroutine lead_by_violations(path, segment, march, observer, error)
+   subroutine lead_by_violations(path, segment, observer, error)
       class(contact_path_type), intent(inout) :: path
       type(segment_type), intent(in) :: segment
-      type(march_type), intent(inout) :: march
       class(observer_type), intent(inout), optional :: observer
       type(error_type), allocatable, intent(out) :: error
+      type(progress_type) :: progress
+      type(constraints_type) :: constraints
       integer :: nodes
 
-      if (.not. march%paused) then
-         call path%start_segment(segment, error)
-         if (allocated(error)) return
-         call begin(march)
-      end if
+      call path%start_segment(segment, error)
+      if (allocated(error)) return
       nodes = size(path%state%status)
       do
-         if (.not. march%paused) then
-            call make_increment(path, segment, march, error)
-            if (allocated(error)) return
-            if (present(observer) .and. (march%moved .or. march%standing > patience .or. size(path%state%status) > nodes)) &
-               call tell(path, segment, march, observer, error)
-            nodes = size(path%state%status)
-            if (march%paused .or. allocated(error)) return
-         end if
-         march%paused = .false.
-         if (march%moved .and. march%at_end) return
-         if (march%creeping > most_tiny_steps .or. march%since > most_events + 10*size(path%state%status)) then
+         call make_increment(path, segment, progress, constraints, error)
+         if (allocated(error)) return
+         if (progress%moved .or. progress%standing > patience .or. size(path%state%status) > nodes) &
+            call path%notify(segment, progress%done, observer, error)
+         if (allocated(error)) return
+         nodes = size(path%state%status)
+         if (progress%moved .and. progress%at_end) return
+         if (progress%tiny > most_tiny_steps .or. progress%since > most_events + 10*size(path%state%status)) then
             call path%no_continuation('the load does not advance', error)
             return
          end if
-         if (.not. march%increment%ends_in_event) cycle
-         call change_statuses(path, segment, march%done, march%increment, march%moment, error)
+         if (.not. progress%increment%ends_in_event) cycle
+         call change_statuses(path, segment, progress%done, progress%increment, progress%moment, error)
          if (allocated(error)) return
       end do
    end subroutine lead_by_violations
 
-   !> At the start of a segment.
-   subroutine begin(march)
-      type(march_type), intent(inout) :: march
-
-      march%moment = moment_type()
-      march%done = 0.0_wp
-      march%at_end = .false.
-      march%standing = 0
-      march%creeping = 0
-      march%since = 0
-      march%milestone = 0.0_wp
-   end subroutine begin
-
-   !> With the statuses as they are, the next increment, and the way to its end. Where it has no length (not `march%moved`) only
+   !> With the statuses as they are, the next increment, and the way to its end. Where it has no length (not `progress%moved`) only
    !> statuses are to change. Errors as lead_by_violations.
-   subroutine make_increment(path, segment, march, error)
+   subroutine make_increment(path, segment, progress, constraints, error)
       class(contact_path_type), intent(inout) :: path
       type(segment_type), intent(in) :: segment
-      type(march_type), intent(inout) :: march
+      type(progress_type), intent(inout) :: progress
+      type(constraints_type), intent(inout) :: constraints
       type(error_type), allocatable, intent(out) :: error
       logical :: drop, ready, passed
       logical, allocatable :: dropping(:)
 
-      march%moved = .false.
+      progress%moved = .false.
       do
-         march%standing = march%standing + 1
-         if (march%standing > most_tiny_steps + 10*size(path%state%status)) then
+         progress%standing = progress%standing + 1
+         if (progress%standing > most_tiny_steps + 10*size(path%state%status)) then
             call path%no_continuation('the load does not advance', error)
             return
          end if
-         if (march%standing == patience + size(path%state%status) .and. .not. march%moment%solved) then
-            call settle_at_once(path, segment, march%done, ready)
-            march%moment%solved = .true.
-            if (ready) march%moment%tries = 0
+         if (progress%standing == patience + size(path%state%status) .and. .not. progress%moment%solved) then
+            call settle_at_once(path, segment, progress%done, ready)
+            progress%moment%solved = .true.
+            if (ready) progress%moment%tries = 0
          end if
          drop = path%dropping()
-         call path%settle_loads(segment, march%done, march%moment, march%constraints, ready, error)
+         call path%settle_loads(segment, progress%done, progress%moment, constraints, ready, error)
          if (allocated(error)) return
          if (.not. ready) cycle
          passed = .false.
-         if (march%since > many_events) call pass_accumulation(path, march%constraints, 1.0_wp - march%done, worth_telling, &
-                                                               march%moment%round_off, march%increment, passed)
-         if (.not. passed) call find_increment(path, march%constraints, merge(1.0_wp, 1.0_wp - march%done, drop), drop, &
-                                               march%moment%round_off, march%increment)
-         call look_for_solution(path, march, ready, error)
+         if (progress%since > many_events) call pass_accumulation(path, constraints, 1.0_wp - progress%done, worth_telling, &
+                                                               progress%moment%round_off, progress%increment, passed)
+         if (.not. passed) call find_increment(path, constraints, merge(1.0_wp, 1.0_wp - progress%done, drop), drop, &
+                                               progress%moment%round_off, progress%increment)
+         call look_for_solution(path, progress, ready, error)
          if (allocated(error)) return
          if (ready) exit
       end do
-      if (.not. march%increment%step > no_step_of(path)) return
-      call path%keep_settled(segment, march%moment)
-      associate (step => march%increment%step)
-         march%at_end = .not. drop .and. step*(1.0_wp + tie_of(path)) + last_step(path, segment) >= 1.0_wp - march%done
-         if (march%at_end) step = 1.0_wp - march%done
+      if (.not. progress%increment%step > no_step_of(path)) return
+      call path%keep_settled(segment, progress%moment)
+      associate (step => progress%increment%step)
+         progress%at_end = .not. drop .and. step*(1.0_wp + tie_of(path)) + last_step(path, segment) >= 1.0_wp - progress%done
+         if (progress%at_end) step = 1.0_wp - progress%done
          if (drop .and. step*(1.0_wp + tie_of(path)) + no_step_of(path) >= 1.0_wp) step = 1.0_wp
          dropping = path%state%excess > 0.0_wp
-         call advance(path, march%increment, drop, error)
+         call advance(path, progress%increment, drop, error)
          if (allocated(error)) return
          if (drop .and. .not. path%dropping() .and. path%record_events) &
             call path%record(event_dropped, first_true(dropping), count(dropping), segment%step)
-         march%moved = .true.
-         if (.not. drop) march%done = march%done + step
-         if (march%at_end) return
-         call renew(march%moment)
-         march%standing = 0
-         if (.not. drop) march%creeping = merge(march%creeping + 1, 0, step < tie_of(path))
+         progress%moved = .true.
+         if (.not. drop) progress%done = progress%done + step
+         if (progress%at_end) return
+         call renew(progress%moment)
+         progress%standing = 0
+         if (.not. drop) progress%tiny = merge(progress%tiny + 1, 0, step < tie_of(path))
       end associate
-      march%since = march%since + 1
-      if (march%done > march%milestone + worth_telling) then
-         march%milestone = march%done
-         march%since = 0
+      progress%since = progress%since + 1
+      if (progress%done > progress%milestone + worth_telling) then
+         progress%milestone = progress%done
+         progress%since = 0
       end if
    end subroutine make_increment
 
@@ -185,42 +179,24 @@ contains
 
    !> Whether the increment could be found. `found`: it was; else nodes have been let snap, and it is to be found again.
    !> Error MFV_NO_CONTINUATION.
-   subroutine look_for_solution(path, march, found, error)
+   subroutine look_for_solution(path, progress, found, error)
       class(contact_path_type), intent(inout) :: path
-      type(march_type), intent(inout) :: march
+      type(progress_type), intent(inout) :: progress
       logical, intent(out) :: found
       type(error_type), allocatable, intent(out) :: error
       logical :: snapped
 
-      found = .not. (march%increment%singular .or. march%increment%diverges)
+      found = .not. (progress%increment%singular .or. progress%increment%diverges)
       if (found) return
-      if (march%increment%singular) then
+      if (progress%increment%singular) then
          call path%no_continuation('the linear system is singular', error)
          return
       end if
       snapped = .false.
-      if (.not. march%moment%snapped) call path%snap(march%moment, snapped)
-      march%moment%snapped = snapped
+      if (.not. progress%moment%snapped) call path%snap(progress%moment, snapped)
+      progress%moment%snapped = snapped
       if (.not. snapped) call path%no_continuation('the equations of friction have no solution nearby', error)
    end subroutine look_for_solution
-
-   !> Tell the observer where the load is. Error MFV_INTERRUPTED: it wants an end.
-   subroutine tell(path, segment, march, observer, error)
-      class(contact_path_type), intent(in) :: path
-      type(segment_type), intent(in) :: segment
-      type(march_type), intent(inout) :: march
-      class(observer_type), intent(inout) :: observer
-      type(error_type), allocatable, intent(out) :: error
-      logical :: stop_wanted
-
-      call observer%notify(path%state, segment%number, segment%segments, &
-                           segment%from + (segment%to - segment%from)*march%done, stop_wanted)
-      if (stop_wanted) then
-         call path%end_here(MFV_INTERRUPTED, 'stopped on request', error)
-      else
-         march%paused = observer%pause_wanted
-      end if
-   end subroutine tell
 
    !> Take a step of the load (of the drop) with the rates of the increment, and check it; the increment's state goes along.
    !> Errors MFV_NO_CONTINUATION: the statuses would make the tractions jump, or the certificate fails by far (loads out of

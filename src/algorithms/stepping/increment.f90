@@ -10,7 +10,6 @@
 !> of the two over the increment is what a method of first order would err by; the increment is shortened until that is
 !> within `friction_tolerance`, so that the error of the result falls with the tolerance itself.
 module mfv_increment
-   use mfv_archive, only: archive_type
    use mfv_contact_fields, only: contact_fields_type
    use mfv_contact_path, only: contact_path_type
    use mfv_contact_system
@@ -35,8 +34,6 @@ module mfv_increment
       logical :: ends_in_event = .false.
       !> The linear system has no solution, or the corrector does not converge; the increment is then of no use.
       logical :: singular = .false., diverges = .false.
-   contains
-      procedure :: carry
    end type increment_type
 
 contains
@@ -353,19 +350,5 @@ contains
 
       product = fields%plus(factor - 1.0_wp, fields)
    end function scaled
-
-   !> See mfv_archive.
-   subroutine carry(self, archive)
-      class(increment_type), intent(inout) :: self
-      type(archive_type), intent(inout) :: archive
-
-      call self%response%carry(archive)
-      call self%violations%carry(archive)
-      call archive%carry(self%step)
-      call archive%carry(self%reach)
-      call archive%carry(self%ends_in_event)
-      call archive%carry(self%singular)
-      call archive%carry(self%diverges)
-   end subroutine carry
 
 end module mfv_increment

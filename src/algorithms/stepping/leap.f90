@@ -22,7 +22,6 @@ module mfv_leap
    use mfv_error, only: error_type
    use mfv_first_violation, only: lead_by_violations
    use mfv_kinds, only: wp
-   use mfv_march, only: march_type
    use mfv_node_status
    use mfv_observer, only: observer_type
    use mfv_scene, only: control_force
@@ -43,6 +42,13 @@ module mfv_leap
    !> What differences may be, in parts of the tolerance: the error of the finer chain is about as large as its difference from
    !> one half as fine.
    real(wp), parameter :: safety = 0.5_wp
+
+   !> Where on a segment the load is, in parts of the segment: what is done, how far large increments go, and the length of the next
+   !> interval. `by_violations`: whether events lead on from there.
+   type :: progress_type
+      real(wp) :: done = 0.0_wp, goal = 0.0_wp, length = 0.0_wp
+      logical :: by_violations = .false.
+   end type progress_type
 
    !> An interval in equal increments.
    type :: chain_type
@@ -66,55 +72,46 @@ module mfv_leap
 
 contains
 
-   !> Lead the loads along one segment by large increments. `observer` is told of every interval, and can have a pause there.
+   !> Apply the loads of one segment by large increments. `observer` is notified of every interval.
    !> Errors, each leaving the last admissible state in place: those of mfv_first_violation.
-   subroutine lead_by_leaps(path, segment, march, observer, error)
+   subroutine lead_by_leaps(path, segment, observer, error)
       class(contact_path_type), intent(inout) :: path
       type(segment_type), intent(in) :: segment
-      type(march_type), intent(inout) :: march
       class(observer_type), intent(inout), optional :: observer
       type(error_type), allocatable, intent(out) :: error
-      real(wp) :: goal
+      type(progress_type) :: progress
 
       if (.not. (segment%friction .and. path%model%scene%friction%acts())) then
-         call lead_straight(path, segment, march, observer, error)
+         call lead_straight(path, segment, observer, error)
          return
       end if
-      if (.not. march%paused) then
-         call path%start_segment(segment, error)
-         if (allocated(error)) return
-         march%part = 0.0_wp
-         march%by_violations = .false.
-         march%goal = before_separation(segment)
-         if (carries_nothing_yet(path, segment)) march%goal = 0.0_wp
-         march%length = march%goal
-      else if (march%part < march%goal .and. .not. march%by_violations) then
-         march%paused = .false.
-      end if
-      goal = march%goal
-      do while (march%part < goal)
-         if (march%by_violations) then
-            call go_by_violations(path, segment, march, observer, error)
+      call path%start_segment(segment, error)
+      if (allocated(error)) return
+      if (.not. carries_nothing_yet(path, segment)) progress%goal = before_separation(segment)
+      progress%length = progress%goal
+      do while (progress%done < progress%goal)
+         if (progress%by_violations) then
+            call go_by_violations(path, segment, progress, observer, error)
          else
-            call leap_on(path, segment, march, observer, error)
+            call leap_on(path, segment, progress, observer, error)
          end if
-         if (allocated(error) .or. march%paused) return
+         if (allocated(error)) return
       end do
-      if (goal < 1.0_wp) call lead_by_violations(path, part_of(segment, goal, 1.0_wp), march, observer, error)
+      if (progress%goal < 1.0_wp) call lead_by_violations(path, part_of(segment, progress%goal, 1.0_wp), observer, error)
    end subroutine lead_by_leaps
 
    !> Try the next interval, and take it where it is right; else a shorter one is next, or events lead on
-   !> (`march%by_violations`).
-   subroutine leap_on(path, segment, march, observer, error)
+   !> (`progress%by_violations`).
+   subroutine leap_on(path, segment, progress, observer, error)
       class(contact_path_type), intent(inout) :: path
       type(segment_type), intent(in) :: segment
-      type(march_type), intent(inout) :: march
+      type(progress_type), intent(inout) :: progress
       class(observer_type), intent(inout), optional :: observer
       type(error_type), allocatable, intent(out) :: error
       type(chain_type) :: chain
       logical :: accepted, grown
 
-      associate (done => march%part, goal => march%goal, length => march%length)
+      associate (done => progress%done, goal => progress%goal, length => progress%length)
          call refine(path, segment, done, length, chain, accepted)
          if (chain%exceeded) then
             call grow_mesh(path, grown)
@@ -125,28 +122,26 @@ contains
             done = merge(goal, done + length, length >= goal - done)
             length = goal - done
             call close_leap(path, segment, done, observer, error)
-            if (allocated(error)) return
-            if (present(observer)) march%paused = observer%pause_wanted .and. done < goal
          else if (.not. chain%settled .and. chain%solves < path%state%contact_nodes() .and. length > shortest) then
             length = 0.5_wp*length
          else
-            march%by_violations = .true.
+            progress%by_violations = .true.
          end if
       end associate
    end subroutine leap_on
 
    !> Go by events where large increments do not lead on, or would cost more.
-   subroutine go_by_violations(path, segment, march, observer, error)
+   subroutine go_by_violations(path, segment, progress, observer, error)
       class(contact_path_type), intent(inout) :: path
       type(segment_type), intent(in) :: segment
-      type(march_type), intent(inout) :: march
+      type(progress_type), intent(inout) :: progress
       class(observer_type), intent(inout), optional :: observer
       type(error_type), allocatable, intent(out) :: error
 
-      associate (done => march%part, goal => march%goal, length => march%length)
-         call lead_by_violations(path, part_of(segment, done, done + length), march, observer, error)
-         if (allocated(error) .or. march%paused) return
-         march%by_violations = .false.
+      associate (done => progress%done, goal => progress%goal, length => progress%length)
+         call lead_by_violations(path, part_of(segment, done, done + length), observer, error)
+         if (allocated(error)) return
+         progress%by_violations = .false.
          done = merge(goal, done + length, length >= goal - done)
          length = goal - done
       end associate

@@ -1,6 +1,5 @@
 !> What closed forms need to know of the steps that were taken, folded up step by step: of one size however many there are.
 module mfv_load_way
-   use mfv_archive, only: archive_type
    use mfv_kinds, only: wp
    use mfv_scene, only: control_displacement, control_force, control_keep, step_type
    implicit none
@@ -21,7 +20,6 @@ module mfv_load_way
       real(wp), private :: normal_target = 0.0_wp
    contains
       procedure :: add
-      procedure :: carry
    end type load_way_type
 
 contains
@@ -47,20 +45,5 @@ contains
          self%friction_in_press = self%friction_in_press .or. step%friction
       end if
    end subroutine add
-
-   !> See mfv_archive.
-   subroutine carry(self, archive)
-      class(load_way_type), intent(inout) :: self
-      type(archive_type), intent(inout) :: archive
-
-      call archive%carry(self%steps)
-      call archive%carry(self%rotated)
-      call archive%carry(self%cycled)
-      call archive%carry(self%pressed_harder)
-      call archive%carry(self%pressed_then_sheared)
-      call archive%carry(self%sheared)
-      call archive%carry(self%friction_in_press)
-      call archive%carry(self%normal_target)
-   end subroutine carry
 
 end module mfv_load_way

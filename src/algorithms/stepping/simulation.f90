@@ -2,33 +2,31 @@
 module mfv_simulation
    use, intrinsic :: ieee_arithmetic, only: ieee_quiet_nan, ieee_value
    use, intrinsic :: iso_fortran_env, only: int64, int8
-   use mfv_archive, only: archive_type
    use mfv_checksum, only: add_to_checksum
    use mfv_contact_model, only: new_contact_model
    use mfv_contact_state, only: contact_state_type
    use mfv_contact_system, only: load_type
    use mfv_cycle, only: append_cycle, cycle_type, new_turning_point
    use mfv_error, only: error_type
-   use mfv_contact_path, only: contact_path_type, new_contact_path, segment_type
+   use mfv_contact_path, only: contact_path_type, new_contact_path, path_position_type, segment_type
    use mfv_conventional, only: lead_conventionally
    use mfv_error_bar, only: error_estimate_type
    use mfv_kinds, only: wp
    use mfv_leap, only: lead_by_leaps
    use mfv_load_way, only: load_way_type
-   use mfv_march, only: march_type
    use mfv_node_status, only: event_none, event_step_end, event_stopped
    use mfv_observer, only: observer_type
    use mfv_scene
    use mfv_slip_zones, only: leg_start_type, slip_record_type
-   use mfv_status, only: MFV_COMPLETE, MFV_INTERRUPTED
+   use mfv_status, only: MFV_COMPLETE
    use mfv_straight, only: lead_straight
    use mfv_strings, only: to_text
    implicit none
    private
-   public :: simulation_type, position_type, new_simulation, snapshot_type, sensitivity_type, history_events, history_steps, &
-             history_none
+   public :: simulation_type, position_type, restart_type, new_simulation, snapshot_type, sensitivity_type, history_events, &
+             history_steps, history_none
    public :: states_reversals, states_steps, states_none
-   public :: mark_loading, mark_reversal, mark_return, mark_cycle_start
+   public :: mark_loading, mark_reversal, mark_return, mark_cycle_start, mark_count
 
    !> What the load history keeps: a record an event, a record a step end, nothing.
    integer, parameter :: history_events = 1, history_steps = 2, history_none = 3
@@ -48,8 +46,6 @@ module mfv_simulation
       integer :: step = 0, reversal = 0
       !> Nodes added to the mesh at either end when it was taken.
       integer :: added = 0
-   contains
-      procedure :: carry => carry_snapshot
    end type snapshot_type
 
    !> Where a simulation stands, but for its contact and what only grows on the way.
@@ -72,8 +68,6 @@ module mfv_simulation
       !> What the loads control now.
       type(load_type) :: normal, tangential
       type(load_type) :: rotational = load_type(control_displacement)
-   contains
-      procedure, private :: carry_position
    end type position_type
 
    !> By how much the final state changes with all coefficients of friction times 1 + `perturbation` (see mfv_sensitivity).
@@ -96,9 +90,17 @@ module mfv_simulation
       type(cycle_type) :: cycle
       type(segment_type) :: segment
       type(leg_start_type) :: start
-   contains
-      procedure :: carry => carry_leg
    end type leg_type
+
+   !> The start of a segment, from which an interrupted run continues: the contact, the records of the load history so far, the work
+   !> of the linear solver so far, the segment's number in its step, the nodes added to the mesh, and what is known of the slip zones.
+   type :: restart_type
+      type(path_position_type) :: path
+      integer :: records = 0, solves = 0, leg = 1, added = 0
+      integer(int64) :: iterations = 0, products = 0
+      type(slip_record_type) :: slip
+      type(load_type) :: loads(3)
+   end type restart_type
 
    type, extends(position_type) :: simulation_type
       type(contact_path_type) :: contact
@@ -115,20 +117,23 @@ module mfv_simulation
       type(error_estimate_type), allocatable :: estimate
       !> How much the present state depends on round-off, where that has been found out (see mfv_sensitivity).
       type(sensitivity_type), allocatable :: sensitivity
-      !> Where a pause has left it; nothing of meaning between steps.
-      type(leg_type), private :: leg
-      type(march_type), private :: march
-      logical, private :: paused = .false.
+      !> The step under way.
+      type(leg_type) :: leg
+      !> Whether the start of each segment is kept in `restart`.
+      logical :: keep_restart = .false.
+      type(restart_type) :: restart
    contains
       procedure :: run
       procedure :: advance
-      procedure :: is_paused
-      procedure :: interrupt
-      procedure :: carry
+      procedure :: has_segments_left
+      procedure :: run_segment
+      procedure :: note_restart
+      procedure :: resume
       procedure :: trail
       procedure :: came_through
       procedure :: padded_state
       procedure :: padded
+      procedure, private :: advance_segment
       procedure, private :: lead_to
       procedure, private :: begin_segment
       procedure, private :: take_snapshot
@@ -159,31 +164,39 @@ contains
       if (keep_history /= history_none) call self%contact%record(event_none, 0, 0, 0)
    end function new_simulation
 
-   !> Run the steps of the scene that have not been run yet. The outcome is in the object; `observer` watches. Where it wants a
-   !> pause the run is left between two increments (`is_paused`), and the next call goes on from there with the same digits.
+   !> Run the steps of the scene that have not been run yet. The outcome is in the object; `observer` watches.
    subroutine run(self, observer)
       class(simulation_type), intent(inout) :: self
       class(observer_type), intent(inout), optional :: observer
-      integer :: i, segment, segments
 
-      associate (steps => self%contact%model%scene%steps)
-         segments = sum(reversals(steps))
-         segment = 0
-         do i = 1, size(steps)
-            segment = segment + reversals(steps(i))
-            if (i <= self%scene_steps_done) cycle
-            call self%advance(steps(i), segment - reversals(steps(i)), segments, observer)
-            if (self%paused) return
-            if (self%outcome /= MFV_COMPLETE) then
-               self%failed_scene_step = i
-               return
-            end if
-            self%scene_steps_done = i
-            if (present(observer) .and. i < size(steps)) self%paused = observer%pause_wanted
-            if (self%paused) return
-         end do
-      end associate
+      do while (self%has_segments_left())
+         call self%run_segment(observer)
+      end do
    end subroutine run
+
+   !> Whether steps of the scene are left, and nothing has gone wrong.
+   pure logical function has_segments_left(self)
+      class(simulation_type), intent(in) :: self
+
+      has_segments_left = self%outcome == MFV_COMPLETE .and. self%scene_steps_done < size(self%contact%model%scene%steps)
+   end function has_segments_left
+
+   !> Run the next segment of the scene's steps: a step, or one way of a cycle.
+   subroutine run_segment(self, observer)
+      class(simulation_type), intent(inout) :: self
+      class(observer_type), intent(inout), optional :: observer
+      integer :: i
+
+      i = self%scene_steps_done + 1
+      associate (steps => self%contact%model%scene%steps)
+         call self%advance_segment(steps(i), sum(reversals(steps(:i - 1))), sum(reversals(steps)), observer)
+      end associate
+      if (self%outcome /= MFV_COMPLETE) then
+         self%failed_scene_step = i
+      else if (self%leg%number == 0) then
+         self%scene_steps_done = i
+      end if
+   end subroutine run_segment
 
    !> Straight parts of the load history in a step: one, or there and back for every cycle.
    elemental integer function reversals(step)
@@ -192,186 +205,145 @@ contains
       reversals = max(1, 2*step%cycles)
    end function reversals
 
-   !> Whether an observer's pause has left it between two increments.
-   pure logical function is_paused(self)
-      class(simulation_type), intent(in) :: self
-
-      is_paused = self%paused
-   end function is_paused
-
-   !> End a run that is paused, as an observer does that stops it.
-   subroutine interrupt(self)
-      class(simulation_type), intent(inout) :: self
-      type(error_type), allocatable :: error
-      integer :: next
-
-      if (.not. self%paused) return
-      self%paused = .false.
-      self%march%paused = .false.
-      next = self%scene_steps_done + 1
-      self%failed_scene_step = next
-      call self%contact%end_here(MFV_INTERRUPTED, 'stopped on request', error)
-      if (self%leg%number == 0) call self%way%add(self%contact%model%scene%steps(next))
-      if (self%keep_history /= history_none) call self%contact%record(event_stopped, 0, 0, self%steps_done + 1)
-      call self%end_step_early(self%contact%model%scene%steps(next), error)
-   end subroutine interrupt
-
-   !> See mfv_archive. It is read into a new simulation of the same scene, of which the same is kept.
-   subroutine carry(self, archive)
-      class(simulation_type), intent(inout) :: self
-      type(archive_type), intent(inout) :: archive
-      integer :: i, cycles, trails
-
-      call archive%carry(self%paused)
-      call self%contact%carry(archive)
-      call self%carry_position(archive)
-      if (archive%is_damaged()) return
-      if (archive%is_reading()) then
-         if (self%snapshot_count > size(self%snapshots)) then
-            deallocate (self%snapshots)
-            allocate (self%snapshots(self%snapshot_count))
-         end if
-      end if
-      do i = 1, self%snapshot_count
-         call self%snapshots(i)%carry(archive)
-      end do
-      cycles = 0
-      if (allocated(self%cycles)) cycles = self%cycle_count
-      call archive%carry(cycles)
-      if (archive%is_damaged()) return
-      if (archive%is_reading() .and. cycles > 0) allocate (self%cycles(cycles))
-      do i = 1, cycles
-         call self%cycles(i)%carry(archive)
-      end do
-      trails = 0
-      ! The trail of a step comes at its end: while one is taken there may be no place for it yet.
-      if (allocated(self%trails)) trails = min(self%way%steps, size(self%trails))
-      call archive%carry(trails)
-      if (archive%is_damaged()) return
-      if (archive%is_reading() .and. trails > 0) allocate (self%trails(trails))
-      do i = 1, trails
-         call archive%carry(self%trails(i))
-      end do
-      call self%leg%carry(archive)
-      call self%march%carry(archive)
-   end subroutine carry
-
-   subroutine carry_position(self, archive)
-      class(position_type), intent(inout) :: self
-      type(archive_type), intent(inout) :: archive
-      integer :: i
-
-      call archive%carry(self%snapshot_count)
-      call archive%carry(self%cycle_count)
-      call archive%carry(self%cycles_done)
-      do i = 1, mark_count
-         call self%marks(i)%carry(archive)
-      end do
-      call archive%carry(self%outcome)
-      call archive%carry(self%message)
-      call archive%carry(self%failed_step)
-      call archive%carry(self%steps_done)
-      call archive%carry(self%failed_scene_step)
-      call archive%carry(self%scene_steps_done)
-      call self%slip%carry(archive)
-      call self%way%carry(archive)
-      call self%normal%carry(archive)
-      call self%tangential%carry(archive)
-      call self%rotational%carry(archive)
-   end subroutine carry_position
-
-   subroutine carry_snapshot(self, archive)
-      class(snapshot_type), intent(inout) :: self
-      type(archive_type), intent(inout) :: archive
-
-      call self%state%carry(archive)
-      call archive%carry(self%step)
-      call archive%carry(self%reversal)
-      call archive%carry(self%added)
-   end subroutine carry_snapshot
-
-   subroutine carry_leg(self, archive)
-      class(leg_type), intent(inout) :: self
-      type(archive_type), intent(inout) :: archive
-      integer :: i
-
-      call archive%carry(self%number)
-      do i = 1, size(self%there)
-         call self%there(i)%carry(archive)
-         call self%back(i)%carry(archive)
-      end do
-      call self%cycle%carry(archive)
-      call self%segment%carry(archive)
-      call self%start%carry(archive)
-   end subroutine carry_leg
-
-   !> Lead the loads through one more step, from wherever they are; after a pause, the rest of the same step. `before`, `segments`:
-   !> for progress, how many straight parts of the load history are done and how many there are.
-   subroutine advance(self, step, before, segments, observer)
+   !> Apply the loads of one more step, from the present state.
+   subroutine advance(self, step, observer)
       class(simulation_type), intent(inout) :: self
       type(step_type), intent(in) :: step
-      integer, intent(in), optional :: before, segments
+      class(observer_type), intent(inout), optional :: observer
+
+      do while (self%outcome == MFV_COMPLETE)
+         call self%advance_segment(step, 0, reversals(step), observer)
+         if (self%leg%number == 0) exit
+      end do
+   end subroutine advance
+
+   !> Apply the loads of the next segment of a step; it is done when leg%number is 0. `before`, `segments`: for progress, how many
+   !> segments there are before this step, and how many in all.
+   subroutine advance_segment(self, step, before, segments, observer)
+      class(simulation_type), intent(inout) :: self
+      type(step_type), intent(in) :: step
+      integer, intent(in) :: before, segments
       class(observer_type), intent(inout), optional :: observer
       type(error_type), allocatable :: error
       logical :: is_last
-      integer :: i, cycles
 
-      if (self%outcome /= MFV_COMPLETE) return
-      self%paused = .false.
       if (allocated(self%estimate)) deallocate (self%estimate)
       if (allocated(self%sensitivity)) deallocate (self%sensitivity)
+      if (self%keep_restart) call self%note_restart()
       if (self%leg%number == 0) call self%begin_step(step)
-      cycles = 0
-      do i = self%leg%number, reversals(step)
-         self%leg%number = i
-         call self%lead_to(step, before, segments, observer, error)
-         self%paused = self%march%paused
-         if (self%paused) return
-         if (allocated(error)) then
-            call self%end_step_early(step, error)
-            return
-         end if
-         cycles = i/2
+      call self%lead_to(step, before, segments, observer, error)
+      if (allocated(error)) then
+         call self%end_step_early(step, error)
+         return
+      end if
+      associate (i => self%leg%number)
          is_last = i == reversals(step)
          if (step%cycles > 0) call self%end_of_leg(i, self%leg%cycle)
          if (mod(i, 2) == 0 .and. i > 2 .and. step%steady_tolerance > 0.0_wp) &
             is_last = is_last .or. self%leg%cycle%change <= step%steady_tolerance
          if (is_last .and. self%keep_states /= states_none .or. self%keep_states == states_reversals) &
             call self%take_snapshot(self%steps_done + 1, i)
-         if (is_last) exit
-         if (present(observer)) self%paused = observer%pause_wanted
-         if (self%paused) then
-            self%leg%number = i + 1
-            return
-         end if
-      end do
+         i = i + 1
+      end associate
+      if (is_last) call end_step(self, step)
+   end subroutine advance_segment
+
+   !> A step has reached its end.
+   subroutine end_step(self, step)
+      class(simulation_type), intent(inout) :: self
+      type(step_type), intent(in) :: step
+      integer :: cycles
+
+      cycles = (self%leg%number - 1)/2
       self%leg%number = 0
       self%steps_done = self%steps_done + 1
       self%message = 'step '//to_text(self%steps_done)//' was reached'
       if (step%cycles > cycles) self%message = self%message//', steady after '//to_text(cycles)//' of '// &
                                                to_text(step%cycles)//' cycles'
       call self%note_trail(step)
-   end subroutine advance
+   end subroutine end_step
 
-   !> A step begins: where its loads lead, and where they come back to.
+   !> Keep what it takes to continue from here, the start of a segment.
+   subroutine note_restart(self)
+      class(simulation_type), intent(inout) :: self
+
+      associate (r => self%restart, system => self%contact%system)
+         r%path = self%contact%path_position_type
+         r%records = self%contact%history%records
+         r%leg = max(self%leg%number, 1)
+         r%added = self%contact%model%added
+         r%solves = system%solves
+         r%iterations = system%iterations
+         r%products = system%products
+         r%slip = self%slip
+         r%loads = [self%normal, self%tangential, self%rotational]
+      end associate
+   end subroutine note_restart
+
+   !> Continue from `restart`, which another run of the scene has kept; snapshots, cycles, marks, history and the numbers of position_type
+   !> are those of that run already. The linear solver starts anew.
+   subroutine resume(self)
+      class(simulation_type), intent(inout) :: self
+      integer :: i
+
+      associate (r => self%restart, steps => self%contact%model%scene%steps)
+         call self%contact%resume(r%path, r%added)
+         self%contact%system%solves = r%solves
+         self%contact%system%iterations = r%iterations
+         self%contact%system%products = r%products
+         self%slip = r%slip
+         self%normal = r%loads(1)
+         self%tangential = r%loads(2)
+         self%rotational = r%loads(3)
+         self%steps_done = self%scene_steps_done
+         do i = 1, self%scene_steps_done
+            call self%way%add(steps(i))
+            call self%note_trail(steps(i))
+         end do
+         if (self%scene_steps_done > 0) self%message = 'step '//to_text(self%scene_steps_done)//' was reached'
+         if (r%leg > 1) call continue_step(self, steps(self%scene_steps_done + 1), r%leg)
+      end associate
+   end subroutine resume
+
+   !> The step in which a run was interrupted goes on with segment `leg`; its cycles began at mark_loading.
+   subroutine continue_step(self, step, leg)
+      class(simulation_type), intent(inout) :: self
+      type(step_type), intent(in) :: step
+      integer, intent(in) :: leg
+
+      call self%way%add(step)
+      self%leg%number = leg
+      call set_ends(self, step, self%marks(mark_loading)%state)
+   end subroutine continue_step
+
+   !> A step begins at the present state.
    subroutine begin_step(self, step)
       class(simulation_type), intent(inout) :: self
       type(step_type), intent(in) :: step
-      integer :: i
 
       call self%way%add(step)
+      self%leg%number = 1
+      if (step%rotational_control /= control_keep) call self%contact%begin_rotation()
+      call set_ends(self, step, self%contact%state)
+      if (step%cycles > 0) call self%begin_cycles(self%leg%cycle)
+   end subroutine begin_step
+
+   !> The loads at both ends of a step that begins at a state: its targets, and where its cycles return to.
+   subroutine set_ends(self, step, start)
+      class(simulation_type), intent(inout) :: self
+      type(step_type), intent(in) :: step
+      type(contact_state_type), intent(in) :: start
+      integer :: i
+
       associate (leg => self%leg)
-         leg%number = 1
          leg%there(1) = target_of(self%normal, step%normal_control, step%normal_target)
          leg%there(2) = target_of(self%tangential, step%tangential_control, step%tangential_target)
          leg%there(3) = target_of(self%rotational, step%rotational_control, step%rotational_target)
-         if (step%rotational_control /= control_keep) call self%contact%begin_rotation()
          do i = 1, size(leg%back)
-            leg%back(i) = start_of(self%contact%state, leg%there(i), i)
+            leg%back(i) = start_of(start, leg%there(i), i)
          end do
-         if (step%cycles > 0) call self%begin_cycles(leg%cycle)
       end associate
-   end subroutine begin_step
+   end subroutine set_ends
 
    !> The step cannot be led to its end, and why.
    subroutine end_step_early(self, step, error)
@@ -396,9 +368,9 @@ contains
       integer(int8) :: mold(1)
 
       if (self%keep_history == history_none .and. self%keep_states == states_none) return
-      if (.not. allocated(self%trails)) allocate (self%trails(first_capacity))
+      if (.not. allocated(self%trails)) allocate (self%trails(first_capacity), source=0_int64)
       if (self%way%steps > size(self%trails)) then
-         allocate (longer(2*size(self%trails)))
+         allocate (longer(2*self%way%steps), source=0_int64)
          longer(:size(self%trails)) = self%trails
          call move_alloc(longer, self%trails)
       end if
@@ -527,25 +499,26 @@ contains
                                                load%control == control_force))
    end function start_of
 
-   !> Lead the loads straight to where the leg goes, and keep the state there; unless there is a pause on the way.
+   !> Apply the loads of the leg, straight to where it goes.
    subroutine lead_to(self, step, before, segments, observer, error)
       class(simulation_type), intent(inout) :: self
       type(step_type), intent(in) :: step
-      integer, intent(in), optional :: before, segments
+      integer, intent(in) :: before, segments
       class(observer_type), intent(inout), optional :: observer
       type(error_type), allocatable, intent(out) :: error
       type(load_type) :: targets(3)
 
       targets = merge(self%leg%there, self%leg%back, mod(self%leg%number, 2) == 1)
-      if (.not. self%march%paused) call self%begin_segment(targets, step, before, segments)
-      if (self%contact%model%scene%method%algorithm == algorithm_conventional) then
-         call lead_conventionally(self%contact, self%leg%segment, self%march, observer, error)
-      else if (self%contact%model%scene%method%stepping == stepping_leap) then
-         call lead_by_leaps(self%contact, self%leg%segment, self%march, observer, error)
-      else
-         call lead_straight(self%contact, self%leg%segment, self%march, observer, error)
-      end if
-      if (self%march%paused) return
+      call self%begin_segment(targets, step, before, segments)
+      associate (method => self%contact%model%scene%method)
+         if (method%algorithm == algorithm_conventional) then
+            call lead_conventionally(self%contact, self%leg%segment, observer, error)
+         else if (method%stepping == stepping_leap) then
+            call lead_by_leaps(self%contact, self%leg%segment, observer, error)
+         else
+            call lead_straight(self%contact, self%leg%segment, observer, error)
+         end if
+      end associate
       call self%slip%add_leg(self%contact%model, self%leg%start, self%contact%state, self%contact%slip_zone_nodes, &
                              self%contact%system%noise)
       self%normal = load_type(targets(1)%control, targets(1)%value)
@@ -560,7 +533,7 @@ contains
       class(simulation_type), intent(inout) :: self
       type(load_type), intent(in) :: targets(3)
       type(step_type), intent(in) :: step
-      integer, intent(in), optional :: before, segments
+      integer, intent(in) :: before, segments
       real(wp) :: force
 
       force = self%contact%certificate%force_scale()
@@ -571,10 +544,8 @@ contains
                                            force*self%contact%model%length())
          segment%friction = step%friction
          segment%step = self%steps_done + 1
-         segment%number = self%leg%number
-         segment%segments = reversals(step)
-         if (present(before)) segment%number = before + self%leg%number
-         if (present(segments)) segment%segments = segments
+         segment%number = before + self%leg%number
+         segment%segments = segments
       end associate
       associate (state => self%contact%state)
          self%leg%start = leg_start_type(state%dissipation, state%fields%normal_force, state%fields%tangential_force, &

@@ -10,11 +10,9 @@ module mfv_straight
    use mfv_error, only: error_type
    use mfv_first_violation, only: failed_certificate, lead_by_violations, noises
    use mfv_kinds, only: wp
-   use mfv_march, only: march_type
    use mfv_node_status
    use mfv_observer, only: observer_type
    use mfv_scene, only: control_force, stepping_nominal
-   use mfv_status, only: MFV_INTERRUPTED
    use mfv_strings, only: to_text
    implicit none
    private
@@ -23,44 +21,39 @@ module mfv_straight
 
 contains
 
-   !> Lead the loads along one segment, straight to its end where no friction can act, else by violations. `observer` is told of
-   !> the end, or of every increment, and can have a pause there. Errors: those of mfv_first_violation.
-   subroutine lead_straight(path, segment, march, observer, error)
+   !> Apply the loads of one segment, straight to its end where no friction can act, else by violations. `observer` is notified of
+   !> the end, or of every increment. Errors: those of mfv_first_violation.
+   subroutine lead_straight(path, segment, observer, error)
       class(contact_path_type), intent(inout) :: path
       type(segment_type), intent(in) :: segment
-      type(march_type), intent(inout) :: march
       class(observer_type), intent(inout), optional :: observer
       type(error_type), allocatable, intent(out) :: error
       type(contact_fields_type) :: fields
+      real(wp) :: part
       logical :: settled, friction
 
-      if (march%paused) then
-         call lead_by_violations(path, part_of(segment, march%part, 1.0_wp), march, observer, error)
-         return
-      end if
-      march%part = 0.0_wp
       friction = segment%friction .and. path%model%scene%friction%acts()
       if (friction .or. path%model%scene%method%stepping == stepping_nominal) then
-         call lead_by_violations(path, segment, march, observer, error)
+         call lead_by_violations(path, segment, observer, error)
          return
       end if
       call path%start_segment(segment, error)
       if (allocated(error)) return
-      march%part = before_separation(segment)
-      if (carries_nothing_yet(path, segment)) march%part = 0.0_wp
+      part = before_separation(segment)
+      if (carries_nothing_yet(path, segment)) part = 0.0_wp
       settled = .false.
-      if (march%part > 0.0_wp) call settle_and_grow(path, segment, march%part, fields, settled)
-      if (.not. settled) march%part = 0.0_wp
+      if (part > 0.0_wp) call settle_and_grow(path, segment, part, fields, settled)
+      if (.not. settled) part = 0.0_wp
       if (settled) then
          call path%take_increment(fields, fields%slip() - path%state%fields%slip(), 0.0_wp, &
                                   friction_work=0.0_wp*fields%shear)
-         call close_leap(path, segment, march%part, observer, error)
-         if (allocated(error) .or. .not. march%part < 1.0_wp) return
+         call close_leap(path, segment, part, observer, error)
+         if (allocated(error) .or. .not. part < 1.0_wp) return
       end if
-      call lead_by_violations(path, part_of(segment, march%part, 1.0_wp), march, observer, error)
+      call lead_by_violations(path, part_of(segment, part, 1.0_wp), observer, error)
    end subroutine lead_straight
 
-   !> After large increments to the part `part` of the segment: look at the certificate, and tell the observer.
+   !> After large increments to the part `part` of the segment: check the certificate, and notify the observer.
    !> Errors MFV_NO_CONTINUATION: the certificate fails by far; MFV_INTERRUPTED.
    subroutine close_leap(path, segment, part, observer, error)
       class(contact_path_type), intent(in) :: path
@@ -68,15 +61,11 @@ contains
       real(wp), intent(in) :: part
       class(observer_type), intent(inout), optional :: observer
       type(error_type), allocatable, intent(out) :: error
-      logical :: stop_wanted
 
       if (path%certificate%largest() > max(failed_certificate, noises*path%system%noise)) &
          call path%no_continuation('the equations are no longer satisfied (certificate '// &
                                    to_text(path%certificate%largest())//')', error)
-      if (allocated(error) .or. .not. present(observer)) return
-      call observer%notify(path%state, segment%number, segment%segments, &
-                           segment%from + (segment%to - segment%from)*part, stop_wanted)
-      if (stop_wanted) call path%end_here(MFV_INTERRUPTED, 'stopped on request', error)
+      if (.not. allocated(error)) call path%notify(segment, part, observer, error)
    end subroutine close_leap
 
    !> Statuses and fields at a part of the segment, on a mesh that grows with the contact where it may. `settled`: whether they

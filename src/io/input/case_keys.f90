@@ -216,8 +216,8 @@ contains
       call add_logical_key(keys, 'output', 'sensitivity', '.false.', 'whether the case is run once more with all '// &
                            'coefficients of friction times 1 + 1e-12, to report how much that changes tractions, '// &
                            'dissipation and stick ratio')
-      call add_real_key(keys, 'output', 'checkpoint_minutes', 'minutes', 'mfv_run: time from one checkpoint to the next, '// &
-                        'from which mfv_run --resume goes on; 0: only where the run is interrupted', lower=0.0_wp, upper=1.0e6_wp)
+      call add_real_key(keys, 'output', 'checkpoint_minutes', 'minutes', 'mfv_run: least time between two checkpoints, '// &
+                        'from which mfv_run --resume continues; 0: only when the run is interrupted', lower=0.0_wp, upper=1.0e6_wp)
       keys(size(keys))%default = '10'
    end subroutine add_output_keys
 

@@ -272,7 +272,7 @@ contains
          call set_error(error, MFV_INPUT_ERROR, name//' does not hold numbers')
    end subroutine check_type
 
-   !> How large a dataset is. Error where it has not as many dimensions as `extent` has places.
+   !> How large a dataset is; one value is a vector too. Error where it has not as many dimensions as `extent` has places.
    subroutine find_extent(dataset, name, extent, error)
       integer(hid_t), intent(in) :: dataset
       character(*), intent(in) :: name
@@ -288,6 +288,10 @@ contains
       if (code == 0) then
          call h5sget_simple_extent_ndims_f(space, dimensions, code)
          if (dimensions == size(extent)) call h5sget_simple_extent_dims_f(space, extent, most, code)
+         if (dimensions == 0 .and. size(extent) == 1) then
+            extent = 1
+            dimensions = 1
+         end if
          call h5sclose_f(space, ignored)
       end if
       if (dimensions >= 0 .and. dimensions /= size(extent)) then

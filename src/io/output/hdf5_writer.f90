@@ -230,7 +230,7 @@ contains
          extent = size(field%values)
          stored_type = H5T_IEEE_F64LE
       end if
-      if (field%along == along_nothing) then
+      if (field%along == along_nothing .and. extent(1) == 1) then
          call h5screate_f(H5S_SCALAR_F, space, code)
       else
          call h5screate_simple_f(1, extent, space, code)

@@ -28,7 +28,7 @@ module mfv_result_fields
    private
    public :: field_type, result_groups, group_fields, field_named, step_group, along_nodes, along_records, &
              along_companions, along_cycles, along_patches, along_nothing, scale_count
-   public :: result_attributes
+   public :: result_attributes, add_real, add_whole
 
    !> What the values of a field run along.
    integer, parameter :: along_nothing = 0, along_nodes = 1, along_records = 2, along_companions = 3, along_cycles = 4, &

@@ -5,16 +5,18 @@ module mfv_result_file
    use hdf5
    use h5ds
    use mfv_case, only: case_type
-   use mfv_error, only: error_type
-   use mfv_hdf5_reader, only: close_read, open_to_read, read_text_attribute
+   use mfv_error, only: error_type, set_error
+   use mfv_hdf5_reader, only: close_read, has, open_to_read, read_text_attribute
+   use mfv_hdf5_restart, only: read_restart, restart_fields, restart_group
    use mfv_hdf5_writer
    use mfv_result_fields
    use mfv_simulation, only: simulation_type
-   use mfv_status, only: MFV_INTERRUPTED, status_outcome
+   use mfv_status, only: MFV_INPUT_ERROR, MFV_INTERRUPTED, status_outcome
    use mfv_strings, only: string_type
+   use mfv_version, only: library_version
    implicit none
    private
-   public :: check_writable, is_whole_result, write_result
+   public :: check_writable, is_whole_result, write_result, resume_result
 
 contains
 
@@ -37,21 +39,68 @@ contains
       if (is_whole_result) is_whole_result = outcome /= status_outcome(MFV_INTERRUPTED)
    end function is_whole_result
 
-   !> Write the result of a case to `path`, with its `warnings` (see mfv_validity). Error MFV_FILE_ERROR; what was at `path`
-   !> before is then still there. See check_writable for what is not replaced.
-   subroutine write_result(path, case, simulation, warnings, error)
+   !> Bring a new simulation of a case to where the interrupted run was whose result is at `path`. `is_finished`: that run was not
+   !> interrupted, nothing is done. Error MFV_INPUT_ERROR: the file cannot be read, is no result, is that of another case or of
+   !> another version, or is damaged; the simulation is then of no use.
+   subroutine resume_result(path, case, simulation, is_finished, error)
+      character(*), intent(in) :: path
+      type(case_type), intent(in) :: case
+      type(simulation_type), intent(inout) :: simulation
+      logical, intent(out) :: is_finished
+      type(error_type), allocatable, intent(out) :: error
+      integer(hid_t) :: file
+
+      is_finished = .false.
+      call open_to_read(path, file, error)
+      if (.not. allocated(error)) then
+         call resume_open_file(file, case, simulation, is_finished, error)
+         call close_read(file)
+         if (allocated(error)) error%message = path//': '//error%message
+      end if
+      if (allocated(error)) error%message = error%message//'; without --resume the case starts again from step 1'
+   end subroutine resume_result
+
+   !> The same for an open file.
+   subroutine resume_open_file(file, case, simulation, is_finished, error)
+      integer(hid_t), intent(in) :: file
+      type(case_type), intent(in) :: case
+      type(simulation_type), intent(inout) :: simulation
+      logical, intent(out) :: is_finished
+      type(error_type), allocatable, intent(out) :: error
+      character(:), allocatable :: input, version
+
+      is_finished = .false.
+      call read_text_attribute(file, 'input', input, error)
+      if (.not. allocated(error)) call read_text_attribute(file, 'mfv_version', version, error)
+      if (allocated(error)) return
+      if (input /= case%text) then
+         call set_error(error, MFV_INPUT_ERROR, 'the result of another case: the text of the case has changed')
+      else if (.not. has(file, restart_group)) then
+         is_finished = .true.
+      else if (version /= library_version) then
+         call set_error(error, MFV_INPUT_ERROR, 'written by version '//version//'; this is '//library_version)
+      else
+         call read_restart(file, simulation, error)
+      end if
+   end subroutine resume_open_file
+
+   !> Write the result of a case to `path`, with its `warnings` (see mfv_validity). `with_restart`: with what an interrupted run
+   !> needs to continue. Error MFV_FILE_ERROR; what was at `path` before is then still there. See check_writable for what is not
+   !> replaced.
+   subroutine write_result(path, case, simulation, warnings, error, with_restart)
       character(*), intent(in) :: path
       type(case_type), intent(in) :: case
       type(simulation_type), intent(in) :: simulation
       type(string_type), intent(in) :: warnings(:)
       type(error_type), allocatable, intent(out) :: error
+      logical, intent(in), optional :: with_restart
       type(writer_type) :: writer
 
       call create_file(path, writer, error)
       if (allocated(error)) return
       if (writer%code == 0) then
          call write_attributes(writer, case, simulation, warnings)
-         call write_groups(writer, case, simulation)
+         call write_groups(writer, case, simulation, with_restart)
       end if
       call finish_file(path, 'the result', writer, error)
    end subroutine write_result
@@ -73,10 +122,11 @@ contains
    end subroutine write_attributes
 
    !> All groups with their datasets.
-   subroutine write_groups(writer, case, simulation)
+   subroutine write_groups(writer, case, simulation, with_restart)
       type(writer_type), intent(inout) :: writer
       type(case_type), intent(in) :: case
       type(simulation_type), intent(in) :: simulation
+      logical, intent(in), optional :: with_restart
       type(string_type), allocatable :: groups(:)
       type(field_type), allocatable :: fields(:), scales(:)
       integer :: i
@@ -88,6 +138,10 @@ contains
          call group_fields(case, simulation, groups(i)%text, fields)
          if (size(fields) > 0) call write_group(writer, groups(i)%text, fields, scales)
       end do
+      if (.not. present(with_restart)) return
+      if (.not. with_restart) return
+      call restart_fields(simulation, fields)
+      call write_group(writer, restart_group, fields, scales)
    end subroutine write_groups
 
    !> The fields that are dimension scales: x of the nodes, record of the load history, intervals of the coarser meshes, number of

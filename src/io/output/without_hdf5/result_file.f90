@@ -1,4 +1,4 @@
-!> In place of io/result_file.f90 where MFV is built without HDF5: results cannot be written.
+!> In place of result_file.f90 where MFV is built without HDF5: results cannot be written.
 module mfv_result_file
    use mfv_case, only: case_type
    use mfv_error, only: error_type, set_error
@@ -8,7 +8,7 @@ module mfv_result_file
    use mfv_strings, only: string_type
    implicit none
    private
-   public :: check_writable, is_whole_result, write_result
+   public :: check_writable, is_whole_result, write_result, resume_result
 
 contains
 
@@ -27,12 +27,25 @@ contains
       is_whole_result = .false. .and. len(path) > 0
    end function is_whole_result
 
+   !> Error MFV_INPUT_ERROR, always.
+   subroutine resume_result(path, case, simulation, is_finished, error)
+      character(*), intent(in) :: path
+      type(case_type), intent(in) :: case
+      type(simulation_type), intent(inout) :: simulation
+      logical, intent(out) :: is_finished
+      type(error_type), allocatable, intent(out) :: error
+
+      is_finished = .false.
+      call set_error(error, MFV_INPUT_ERROR, path//' cannot be read: '//hdf5_is_left_out)
+   end subroutine resume_result
+
    !> Error MFV_FILE_ERROR, always.
-   subroutine write_result(path, case, simulation, warnings, error)
+   subroutine write_result(path, case, simulation, warnings, error, with_restart)
       character(*), intent(in) :: path
       type(case_type), intent(in) :: case
       type(simulation_type), intent(in) :: simulation
       type(string_type), intent(in) :: warnings(:)
+      logical, intent(in), optional :: with_restart
       type(error_type), allocatable, intent(out) :: error
 
       call check_writable(path, error)

@@ -1,25 +1,49 @@
-!> What the programs say about themselves: --help, and refusals of wrong arguments.
-module mfv_help
+!> Command-line arguments, refusals of wrong ones, and the end of a program.
+module mfv_command_line
+   use, intrinsic :: iso_c_binding, only: c_int
    use, intrinsic :: iso_fortran_env, only: error_unit
-   use mfv_output, only: print_line
+   use mfv_error, only: error_type
    use mfv_status, only: MFV_INPUT_ERROR, status_exit_code
    use mfv_strings, only: add_text, list_of_words, nearest_name, shortened, string_type
-   use mfv_terminal, only: end_program
    implicit none
    private
-   public :: print_lines, refuse, refuse_option
+   public :: get_argument, refuse, refuse_option, fail, end_program
+
+   interface
+      subroutine c_exit(code) bind(C, name='exit')
+         import :: c_int
+         integer(c_int), value :: code
+      end subroutine c_exit
+   end interface
 
 contains
 
-   !> Print a text of one line an element.
-   subroutine print_lines(lines)
-      character(*), intent(in) :: lines(:)
-      integer :: i
+   !> Command-line argument `number`, empty where there is none.
+   subroutine get_argument(number, text)
+      integer, intent(in) :: number
+      character(:), allocatable, intent(out) :: text
+      integer :: length
 
-      do i = 1, size(lines)
-         call print_line(trim(lines(i)))
-      end do
-   end subroutine print_lines
+      call get_command_argument(number, length=length)
+      allocate (character(len=length) :: text)
+      if (length > 0) call get_command_argument(number, text)
+   end subroutine get_argument
+
+   !> End the program with the message and the exit code of an error.
+   subroutine fail(error)
+      type(error_type), intent(in) :: error
+
+      write (error_unit, '(a)') error%message
+      call end_program(status_exit_code(error%status))
+   end subroutine fail
+
+   !> End the program with an exit code, without the words that a stop statement may print.
+   subroutine end_program(code)
+      integer, intent(in) :: code
+
+      flush (error_unit)
+      call c_exit(int(code, c_int))
+   end subroutine end_program
 
    !> End `program` because of its arguments: say why, and how it is used. `usage`: lines of text.
    subroutine refuse(program, usage, why)
@@ -63,4 +87,4 @@ contains
       end do
    end subroutine find_options
 
-end module mfv_help
+end module mfv_command_line

@@ -1,0 +1,410 @@
+!> The restart data of a result file: what an interrupted run needs to continue from the start of the segment in which it was
+!> stopped, besides the history and the states that every result has. They are in its group `restart`.
+!>
+!> Every quantity is named once: `exchange` adds it to the fields that are written, or takes it from the file that is read.
+module mfv_hdf5_restart
+   use hdf5, only: hid_t
+   use, intrinsic :: iso_fortran_env, only: int64
+   use mfv_contact_model, only: contact_model_type
+   use mfv_contact_state, only: contact_state_type, new_contact_state
+   use mfv_error, only: error_type, set_error
+   use mfv_hdf5_reader, only: read_vector
+   use mfv_history, only: history_record_type, history_type
+   use mfv_kinds, only: wp
+   use mfv_node_status, only: node_creep_left, node_open
+   use mfv_result_fields, only: add_real, add_whole, along_nothing, field_type, step_group
+   use mfv_scene, only: control_displacement, control_keep
+   use mfv_simulation, only: mark_count, simulation_type, snapshot_type
+   use mfv_status, only: MFV_INPUT_ERROR
+   use mfv_strings, only: to_text
+   implicit none
+   private
+   public :: restart_group, restart_fields, read_restart
+
+   character(*), parameter :: restart_group = 'restart'
+   !> Scenes are the same to this part of the largest number of a sort.
+   real(wp), parameter :: same = 1.0e-9_wp
+   !> No run counts further.
+   integer, parameter :: most = 1000000000
+   character(*), parameter :: internal = 'internal values of this version of MFV, for --resume'
+
+   !> One group of a file, that is written or read.
+   type :: exchange_type
+      logical :: reading = .false.
+      integer(hid_t) :: file = -1
+      !> The group and, for several states in one group, what their names begin with.
+      character(:), allocatable :: group, prefix
+      !> Fields to be written.
+      type(field_type), allocatable :: fields(:)
+      !> The first thing that was wrong with what was read.
+      type(error_type), allocatable :: error
+   contains
+      generic :: exchange => exchange_reals, exchange_real, exchange_integers, exchange_integer
+      procedure, private :: exchange_reals, exchange_real, exchange_integers, exchange_integer
+      procedure, private :: read_list, complain
+   end type exchange_type
+
+contains
+
+   !> The fields of the group `restart` of a run that has been interrupted, all on the mesh as it is now.
+   subroutine restart_fields(simulation, fields)
+      type(simulation_type), intent(in) :: simulation
+      type(field_type), allocatable, intent(out) :: fields(:)
+      type(exchange_type) :: to_file
+      type(simulation_type) :: copy
+      integer :: i, nodes
+
+      copy%position_type = simulation%position_type
+      copy%restart = simulation%restart
+      copy%leg = simulation%leg
+      if (allocated(simulation%cycles)) copy%cycles = simulation%cycles
+      copy%snapshots = simulation%snapshots(:simulation%snapshot_count)
+      copy%contact%model = simulation%contact%model
+      copy%contact%history = simulation%contact%history
+      associate (r => copy%restart)
+         r%path%state = copy%padded(snapshot_type(state=r%path%state, added=r%added))
+         r%added = copy%contact%model%added
+      end associate
+      do i = 1, mark_count
+         if (copy%marks(i)%step > 0) copy%marks(i)%state = copy%padded(copy%marks(i))
+      end do
+      do i = 1, simulation%snapshot_count
+         copy%snapshots(i)%state = simulation%padded_state(i)
+      end do
+      to_file%group = restart_group
+      allocate (to_file%fields(0))
+      call exchange_restart(to_file, copy, nodes)
+      call move_alloc(to_file%fields, fields)
+   end subroutine restart_fields
+
+   !> Bring a new simulation to where the run of its scene was whose result is open as `file`. Error MFV_INPUT_ERROR: the file has no
+   !> restart data, those of another scene, or damaged ones; the simulation is then of no use.
+   subroutine read_restart(file, simulation, error)
+      integer(hid_t), intent(in) :: file
+      type(simulation_type), intent(inout) :: simulation
+      type(error_type), allocatable, intent(out) :: error
+      type(exchange_type) :: from_file
+      integer :: i, nodes
+
+      from_file%reading = .true.
+      from_file%file = file
+      from_file%group = restart_group
+      call exchange_restart(from_file, simulation, nodes)
+      if (allocated(from_file%error)) then
+         call move_alloc(from_file%error, error)
+      else
+         call simulation%resume()
+         do i = 1, simulation%snapshot_count
+            call simulation%contact%model%displace(simulation%snapshots(i)%state%fields)
+         end do
+      end if
+   end subroutine read_restart
+
+   !> All of the group `restart`. `nodes`: of the mesh in the file.
+   subroutine exchange_restart(self, simulation, nodes)
+      type(exchange_type), intent(inout) :: self
+      type(simulation_type), intent(inout) :: simulation
+      integer, intent(out) :: nodes
+      integer :: i
+
+      nodes = simulation%contact%model%nodes()
+      self%prefix = ''
+      call exchange_scene(self, simulation%contact%model)
+      associate (r => simulation%restart, steps => simulation%contact%model%scene%steps)
+         call self%exchange('added_nodes', r%added, 'nodes added to the mesh at either end', 0, most/10)
+         nodes = nodes + 2*(r%added - simulation%contact%model%added)
+         call self%exchange('steps_done', simulation%scene_steps_done, 'steps reached', 0, size(steps))
+         call self%exchange('segment', r%leg, 'segment of the next step, 1 where it has not begun', 1, most)
+         call self%exchange('states', simulation%snapshot_count, 'states in steps before that segment', 0, most)
+         call self%exchange('cycles_done', simulation%cycles_done, 'whole cycles of all steps', 0, most)
+         call self%exchange('linear_solves', r%solves, 'linear solves before that segment', 0, most)
+         call exchange_counter(self, 'iterations', r%iterations, 'iterations of the linear solver')
+         call exchange_counter(self, 'products', r%products, 'products with the compliance')
+         if (simulation%scene_steps_done == size(steps) .and. r%leg > 1) call self%complain('segment')
+         do i = 1, size(r%loads)
+            call self%exchange('control_'//to_text(i), r%loads(i)%control, 'what controls motion '//to_text(i), control_keep, &
+                               control_displacement)
+            call self%exchange('load_'//to_text(i), r%loads(i)%value, 'load of motion '//to_text(i))
+         end do
+         if (self%reading .and. .not. allocated(self%error)) call read_snapshots(self, simulation, nodes)
+         call exchange_internals(self, simulation)
+         call exchange_state(self, 'state_', nodes, r%path%state)
+      end associate
+      do i = 1, mark_count
+         call exchange_mark(self, 'mark_'//to_text(i), nodes, simulation%restart%added, simulation%marks(i))
+      end do
+      if (allocated(self%error) .or. .not. simulation%contact%model%tangential) return
+      do i = 1, simulation%snapshot_count
+         call self%exchange('stuck_slip_'//to_text(i), simulation%snapshots(i)%state%stuck_slip, &
+                            'slip at which stuck nodes hold in '//step_group(i))
+      end do
+   end subroutine exchange_restart
+
+   !> A state that the cycles need.
+   subroutine exchange_mark(self, name, nodes, added, mark)
+      type(exchange_type), intent(inout) :: self
+      character(*), intent(in) :: name
+      integer, intent(in) :: nodes, added
+      type(snapshot_type), intent(inout) :: mark
+
+      call self%exchange(name//'_step', mark%step, 'step of the states '//name, 0, most)
+      call self%exchange(name//'_reversal', mark%reversal, 'reversal of the states '//name, 0, most)
+      if (mark%step == 0) return
+      mark%added = added
+      call exchange_state(self, name//'_', nodes, mark%state)
+   end subroutine exchange_mark
+
+   !> By what another scene is recognised: positions, gaps, coefficients of friction, and what uneven tractions make of the compliance;
+   !> of the nodes that the mesh had at first.
+   subroutine exchange_scene(self, model)
+      type(exchange_type), intent(inout) :: self
+      type(contact_model_type), intent(in) :: model
+      real(wp), dimension(model%nodes()) :: traction, normal, tangential
+      real(wp), allocatable :: ours(:, :), numbers(:)
+      integer :: i, first, last
+
+      first = model%added + 1
+      last = model%nodes() - model%added
+      traction = 0.0_wp
+      traction(first:last) = [(1.0_wp + sqrt(real(i, wp)), i=1, last - first + 1)]
+      call model%compliance%displacements(traction, traction, normal, tangential)
+      ours = reshape([model%x(first:last), model%initial_gap(first:last), model%static_friction(first:last), &
+                      model%kinetic_friction(first:last), normal(first:last), tangential(first:last)], [last - first + 1, 6])
+      numbers = reshape(ours, [size(ours)])
+      call self%exchange('scene', numbers, 'positions, gaps, coefficients of friction and displacements, to recognise the scene')
+      if (.not. self%reading .or. allocated(self%error)) return
+      associate (theirs => reshape(numbers, shape(ours)))
+         do i = 1, size(ours, 2)
+            if (maxval(abs(theirs(:, i) - ours(:, i))) > same*maxval(abs(ours(:, i)))) then
+               call set_error(self%error, MFV_INPUT_ERROR, 'another case: a file that the case reads has changed')
+               return
+            end if
+         end do
+      end associate
+   end subroutine exchange_scene
+
+   !> Records without names of their own in a result: those of the certificate, of rolling, of slip zones and of cycles.
+   subroutine exchange_internals(self, simulation)
+      type(exchange_type), intent(inout) :: self
+      type(simulation_type), intent(inout) :: simulation
+      integer, allocatable :: list(:)
+      integer :: length
+
+      associate (r => simulation%restart)
+         call self%exchange('events', r%path%events, 'loads at which nodes changed their status', 0, huge(1))
+         call self%exchange('trial', r%path%trial, 'length of the next increment, in parts of a segment')
+         list = transfer(r%path%certificate, [0])
+         call self%exchange('certificate', list, internal)
+         r%path%certificate = transfer(list, r%path%certificate)
+         list = transfer(r%path%rolling, [0])
+         call self%exchange('rolling', list, internal)
+         r%path%rolling = transfer(list, r%path%rolling)
+         list = transfer(r%slip, [0])
+         call self%exchange('slip_zones', list, internal)
+         r%slip = transfer(list, r%slip)
+      end associate
+      list = transfer(simulation%leg%cycle, [0])
+      length = size(list)
+      call self%exchange('cycle_under_way', list, internal)
+      simulation%leg%cycle = transfer(list, simulation%leg%cycle)
+      call self%exchange('cycles', simulation%cycle_count, 'cycles in cycle_list', 0, most/length)
+      if (allocated(self%error)) return
+      if (self%reading) allocate (simulation%cycles(max(simulation%cycle_count, 1)))
+      if (simulation%cycle_count > 0) then
+         list = transfer(simulation%cycles(:simulation%cycle_count), [0], length*simulation%cycle_count)
+         call self%exchange('cycle_list', list, internal)
+         simulation%cycles(:simulation%cycle_count) = transfer(list, simulation%cycles, simulation%cycle_count)
+      end if
+      call exchange_history(self, simulation%restart%records, simulation%contact%history)
+   end subroutine exchange_internals
+
+   !> The first `records` records of the load history.
+   subroutine exchange_history(self, records, history)
+      type(exchange_type), intent(inout) :: self
+      integer, intent(inout) :: records
+      type(history_type), intent(inout) :: history
+      type(history_record_type) :: one
+      integer, allocatable :: list(:)
+
+      call self%exchange('records', records, 'records in record_list', 0, most/size(transfer(one, [0])))
+      if (allocated(self%error) .or. records == 0) return
+      if (self%reading) then
+         history%records = records
+         if (allocated(history%record)) deallocate (history%record)
+         allocate (history%record(records))
+      end if
+      list = transfer(history%record(:records), [0])
+      call self%exchange('record_list', list, internal)
+      history%record(:records) = transfer(list, history%record, records)
+   end subroutine exchange_history
+
+   !> A state with everything that later increments depend on.
+   subroutine exchange_state(self, prefix, nodes, state)
+      type(exchange_type), intent(inout) :: self
+      character(*), intent(in) :: prefix
+      integer, intent(in) :: nodes
+      type(contact_state_type), intent(inout) :: state
+      integer :: capped(nodes)
+
+      if (allocated(self%error)) return
+      if (self%reading) state = new_contact_state(nodes)
+      self%prefix = prefix
+      call exchange_visible(self, state)
+      call self%exchange('moment', state%fields%moment, 'moment')
+      call self%exchange('rotation', state%fields%rotation, 'rotation')
+      call self%exchange('friction_work', state%friction_work, 'energy dissipated per unit of surface')
+      call self%exchange('normal', state%fields%normal, 'how far the surfaces draw apart by deformation and rotation')
+      call self%exchange('tangential', state%fields%tangential, 'how far the lower surface moves to the right of the upper one')
+      call self%exchange('stuck_slip', state%stuck_slip, 'slip at which a stuck node holds')
+      call self%exchange('slip_direction', state%slip_direction, 'sign of the last slip rate')
+      call self%exchange('slipped', state%slipped, 'slip since the node last held')
+      call self%exchange('excess', state%excess, 'shear traction beyond kinetic friction')
+      capped = merge(1, 0, state%capped)
+      call self%exchange('capped', capped, 'whether that is all that the static limit allows')
+      state%capped = capped /= 0
+      self%prefix = ''
+   end subroutine exchange_state
+
+   !> What every state of a result has.
+   subroutine exchange_visible(self, state)
+      type(exchange_type), intent(inout) :: self
+      type(contact_state_type), intent(inout) :: state
+
+      call self%exchange('status', state%status, 'contact status')
+      if (any(state%status < node_open .or. state%status > node_creep_left)) call self%complain('status')
+      call self%exchange('pressure', state%fields%pressure, 'pressure')
+      call self%exchange('shear', state%fields%shear, 'shear traction')
+      call self%exchange('approach', state%fields%approach, 'approach')
+      call self%exchange('shift', state%fields%shift, 'shift')
+      call self%exchange('normal_force', state%fields%normal_force, 'normal force')
+      call self%exchange('tangential_force', state%fields%tangential_force, 'tangential force')
+      call self%exchange('dissipation', state%dissipation, 'energy dissipated so far')
+   end subroutine exchange_visible
+
+   !> The states of steps and reversals before the restart.
+   subroutine read_snapshots(self, simulation, nodes)
+      type(exchange_type), intent(inout) :: self
+      type(simulation_type), intent(inout) :: simulation
+      integer, intent(in) :: nodes
+      integer :: i
+
+      if (simulation%snapshot_count > size(simulation%snapshots)) then
+         deallocate (simulation%snapshots)
+         allocate (simulation%snapshots(simulation%snapshot_count))
+      end if
+      do i = 1, simulation%snapshot_count
+         associate (snapshot => simulation%snapshots(i), model => simulation%contact%model)
+            self%group = step_group(i)
+            snapshot%state = new_contact_state(nodes)
+            call exchange_visible(self, snapshot%state)
+            if (model%rotational) call self%exchange('moment', snapshot%state%fields%moment, '')
+            if (model%rotational) call self%exchange('rotation', snapshot%state%fields%rotation, '')
+            if (model%tangential) call self%exchange('friction_work', snapshot%state%friction_work, '')
+            call self%exchange('step', snapshot%step, '', 1, size(model%scene%steps))
+            call self%exchange('reversal', snapshot%reversal, '', 1, huge(1))
+            if (allocated(self%error)) return
+            snapshot%added = simulation%restart%added
+         end associate
+      end do
+      self%group = restart_group
+   end subroutine read_snapshots
+
+   subroutine exchange_reals(self, name, values, meaning)
+      class(exchange_type), intent(inout) :: self
+      character(*), intent(in) :: name, meaning
+      real(wp), intent(inout) :: values(:)
+      real(wp), allocatable :: theirs(:)
+
+      if (allocated(self%error)) return
+      if (self%reading) then
+         call read_vector(self%file, self%group//'/'//self%prefix//name, size(values), theirs, self%error)
+         if (.not. allocated(self%error)) values = theirs
+      else
+         call add_real(self%fields, self%prefix//name, values, along_nothing, '1', meaning)
+      end if
+   end subroutine exchange_reals
+
+   subroutine exchange_real(self, name, value, meaning)
+      class(exchange_type), intent(inout) :: self
+      character(*), intent(in) :: name, meaning
+      real(wp), intent(inout) :: value
+      real(wp) :: values(1)
+
+      values = value
+      call self%exchange(name, values, meaning)
+      value = values(1)
+   end subroutine exchange_real
+
+   !> Whole numbers, from `least` to `most` where given.
+   subroutine exchange_integers(self, name, values, meaning, least, most)
+      class(exchange_type), intent(inout) :: self
+      character(*), intent(in) :: name, meaning
+      integer, intent(inout) :: values(:)
+      integer, intent(in), optional :: least, most
+      integer, allocatable :: theirs(:)
+
+      if (allocated(self%error)) return
+      if (self%reading) then
+         call self%read_list(name, size(values), theirs)
+         if (allocated(self%error)) return
+         if (present(least) .and. present(most)) then
+            if (any(theirs < least .or. theirs > most)) call self%complain(name)
+         end if
+         values = theirs
+      else
+         call add_whole(self%fields, self%prefix//name, values, along_nothing, meaning)
+      end if
+   end subroutine exchange_integers
+
+   subroutine exchange_integer(self, name, value, meaning, least, most)
+      class(exchange_type), intent(inout) :: self
+      character(*), intent(in) :: name, meaning
+      integer, intent(inout) :: value
+      integer, intent(in), optional :: least, most
+      integer :: values(1)
+
+      values = value
+      call self%exchange(name, values, meaning, least, most)
+      value = values(1)
+   end subroutine exchange_integer
+
+   !> Counters that may be larger than a default integer.
+   subroutine exchange_counter(self, name, counter, meaning)
+      type(exchange_type), intent(inout) :: self
+      character(*), intent(in) :: name, meaning
+      integer(int64), intent(inout) :: counter
+      real(wp), parameter :: most = 9.0e15_wp
+      real(wp) :: value
+
+      value = real(counter, wp)
+      call self%exchange(name, value, meaning)
+      counter = nint(max(min(value, most), 0.0_wp), int64)
+   end subroutine exchange_counter
+
+   !> `length` whole numbers of the file.
+   subroutine read_list(self, name, length, list)
+      class(exchange_type), intent(inout) :: self
+      character(*), intent(in) :: name
+      integer, intent(in) :: length
+      integer, allocatable, intent(out) :: list(:)
+      real(wp), allocatable :: values(:)
+
+      call read_vector(self%file, self%group//'/'//self%prefix//name, length, values, self%error)
+      if (allocated(self%error)) return
+      if (any(abs(values) > real(huge(1), wp) + 1.0_wp)) then
+         call self%complain(name)
+      else
+         list = nint(values)
+      end if
+   end subroutine read_list
+
+   !> A value that no run writes.
+   subroutine complain(self, name)
+      class(exchange_type), intent(inout) :: self
+      character(*), intent(in) :: name
+
+      if (.not. allocated(self%error)) &
+         call set_error(self%error, MFV_INPUT_ERROR, self%group//'/'//self%prefix//name//' is damaged')
+   end subroutine complain
+
+end module mfv_hdf5_restart
