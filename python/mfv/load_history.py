@@ -14,7 +14,7 @@ from .case import Case
 from .compare import compare
 from .errors import MfvError
 from .inputs import groups
-from .result import Field, Group, Result
+from .result import Field, Group, Result, is_last
 
 #: Loads by the keys of a step that lead them.
 LOADS = ("normal_force", "approach", "tangential_force", "shift", "moment", "rotation")
@@ -51,9 +51,7 @@ class LoadHistory(NamedTuple):
 
 def kept_states(result: Result) -> Result:
     """A result whose `steps` end with its last state, also where a run ended early, or has not begun."""
-    if result.steps and all(
-        np.array_equal(result.steps[-1][name], result.state[name]) for name in ("pressure", "shear")
-    ):
+    if result.steps and is_last(result, result.steps[-1]):
         return result
     loads = {name: _field(result.summary, name) for name in result.summary if name not in result.state}
     last = Group({**{name: _field(result.state, name) for name in result.state}, **loads})

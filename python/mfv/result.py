@@ -258,6 +258,11 @@ def counts(loads: Group) -> str:
     return text
 
 
+def is_last(result: Result, state: Group) -> bool:
+    """Whether a state has the tractions of the last one."""
+    return all(np.array_equal(state[name], result.state[name]) for name in ("pressure", "shear"))
+
+
 def read(path: str | os.PathLike[str]) -> Result:
     """The result in a file. Raises OSError, NotAResult."""
     path = os.fspath(path)
