@@ -65,11 +65,9 @@ def movie(result: Result) -> Movie:
                 handles=zones, ncols=len(zones), fontsize=10, loc="upper center", bbox_to_anchor=(0.5, below / HEIGHT),
                 borderaxespad=0.0, borderpad=0.0,
             )  # fmt: skip
-    panels = [
+    panels: list[tuple[Axes, plot.Panel, tuple[float, float]]] = [
         (axes[0], plot.pressure, (0.0, _largest(result, "pressure"))),
-        (axes[1], plot.shear, _symmetric(_largest_shear(result)))
-        if is_rubbed
-        else (axes[1], plot.surfaces, _heights(result)),
+        (axes[1], plot.shear if is_rubbed else plot.surfaces, _limits_of_shear(result) if is_rubbed else _heights(result)),
     ]
     framed = contact(result)
     curve = curve_of(result)
@@ -146,14 +144,11 @@ def _largest(result: Result, name: str) -> float:
     return max(float(np.max(np.abs(state[name]))) for state in result.steps) or 1.0
 
 
-def _largest_shear(result: Result) -> float:
-    """What the limits of friction come to; without any, the shear traction."""
-    if "static_friction" not in result.mesh:
-        return _largest(result, "shear")
-    return max(float(np.max(result.mesh.static_friction * state.pressure)) for state in result.steps) or 1.0
-
-
-def _symmetric(largest: float) -> tuple[float, float]:
+def _limits_of_shear(result: Result) -> tuple[float, float]:
+    """The largest limits of friction; without any, the largest shear traction."""
+    largest = _largest(result, "shear")
+    if "static_friction" in result.mesh:
+        largest = max(float(np.max(result.mesh.static_friction * state.pressure)) for state in result.steps) or 1.0
     return -largest, largest
 
 

@@ -9,11 +9,10 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from .again import case_of
 from .case import Case
 from .compare import compare
 from .errors import MfvError
-from .inputs import groups
+from .inputs import case_of, groups
 from .result import Field, Group, Result, is_last
 
 #: Loads by the keys of a step that lead them.
