@@ -12,6 +12,7 @@ from typing import Any, NamedTuple, TextIO
 
 import numpy as np
 
+from . import _html
 from .inputs import keys
 from .result import Group, Result
 
@@ -97,7 +98,7 @@ class Comparison:
                 f"tractions {state}, {how}",
                 f"  {'':26}{'first':>14} {'second':>14}   largest difference, and in the mean square",
                 *(
-                    f"  {name:26}{first:14.6g} {second:14.6g}   {largest:<10.3g}{mean_square:<10.3g}{_shown(unit)}"
+                    f"  {name:26}{first:14.6g} {second:14.6g}   {largest:<10.3g}{mean_square:<10.3g}{_html.unit(unit)}"
                     for name, unit, first, second, largest, mean_square in self.tractions
                 ),
             ],
@@ -114,7 +115,7 @@ class Comparison:
         return lines + [
             f"  {number.name:26}{_figure(number.first):>14} {_figure(number.second):>14}   "
             f"{_figure(number.relative_difference, 3):<10}"
-            f"{_shown(number.unit)}".rstrip()
+            f"{_html.unit(number.unit)}".rstrip()
             for number in numbers
         ]
 
@@ -233,7 +234,3 @@ def _text(value: Any) -> str:
 def _figure(value: float, digits: int = 6) -> str:
     """A number; - where there is none."""
     return "-" if np.isnan(value) else f"{value or 0.0:.{digits}g}"
-
-
-def _shown(unit: str) -> str:
-    return "" if unit in ("", "1") else unit

@@ -63,10 +63,14 @@ def thinned(result: Result, states: int) -> Result:
     """A result with at most that many of its states in `steps`, evenly, the last one among them."""
     if len(result.steps) <= states:
         return result
-    chosen = np.unique(np.linspace(0, len(result.steps) - 1, states).round().astype(int))
     thinner = copy.copy(result)
-    thinner.steps = [result.steps[number] for number in chosen]
+    thinner.steps = [result.steps[number] for number in evenly(len(result.steps), states)]
     return thinner
+
+
+def evenly(size: int, most: int) -> np.ndarray:
+    """Indices of at most that many of a number of things, evenly, the first and the last among them."""
+    return np.unique(np.linspace(0, size - 1, min(size, most)).round().astype(int))
 
 
 def with_states_between(result: Result, states: int, progress: Progress = iter) -> LoadHistory:

@@ -401,7 +401,7 @@ def turning(result: Result, ax: Axes | None = None, step: int | None = None) -> 
     """Moment over rotation; step ends are numbered, `step` stands out."""
     ax = _axes(ax)
     history = result.history
-    points = _points(len(history.moment))
+    points = _points(history.rotation.size)
     ax.plot(history.rotation, history.moment, color=NUMBERS, linewidth=0.8, **points, label="computed")
     labels = r"rotation $\varphi$ [rad]", _label("moment", "M", history.unit("moment"))
     return _finished_curve(ax, result, step, ("rotation", "moment"), labels)

@@ -17,9 +17,9 @@ from jinja2 import Environment, StrictUndefined
 from markupsafe import Markup
 from plotly.offline import get_plotlyjs
 
-from . import __version__
+from . import __version__, _html
 from .codes import NodeStatus
-from .load_history import LoadHistory, kept_states, thinned
+from .load_history import LoadHistory, evenly, kept_states, thinned
 from .result import Group, Result, counts, is_last
 from .views import (
     LOADS,
@@ -121,7 +121,7 @@ def page(result: Result, source: str, history: LoadHistory | None = None) -> str
             **_cycle_figures(result, _in_view(result, limits)),
         },
     }
-    resources = files(__package__) / "pages"
+    resources, reference = files(__package__) / "pages", result.reference
     environment = Environment(autoescape=True, undefined=StrictUndefined, trim_blocks=True, lstrip_blocks=True)
     environment.filters["number"] = _number
     return environment.from_string((resources / "report.html").read_text(encoding="utf-8")).render(
@@ -130,12 +130,12 @@ def page(result: Result, source: str, history: LoadHistory | None = None) -> str
         result=result,
         attributes={name: text.strip() for name, text in result.attributes.items()},
         key_numbers=_key_numbers(result),
-        zones=_zones(shown),
+        zones=[STATUSES[NodeStatus(code)] for code in statuses(shown) if code != NodeStatus.OPEN],
         notes=notes,
         figures=data["figures"],
         states=len(shown.steps),
         has_friction=has_friction(result),
-        sources=_sources(result),
+        sources={name: reference.description(name) for name in ("pressure", "shear", "shift") if name in reference},
         tables=_tables(result),
         cycles=_cycle_table(result),
         version=__version__,
@@ -244,7 +244,7 @@ def _curve_figure(result: Result, curve: Curve) -> dict[str, Any]:
     units = (result.summary.unit(name) for name in (curve.across, curve.up))
     figure = _figure(*(_axis(*label, unit) for label, unit in zip((curve.across_label, curve.up_label), units)))
     across, up = curve.values(result)
-    chosen = _some(across.size, MOST_RECORDS)
+    chosen = evenly(across.size, MOST_RECORDS)
     loads = _list(up[chosen])
     figure.add_scatter(x=_list(across[chosen]), y=loads, name="computed", mode="lines", line=NUMBERS)
     if curve.across == "shift" and result.history and "shift" in result.reference:
@@ -279,7 +279,7 @@ def _history_figures(result: Result) -> dict[str, Any]:
     history = result.history
     if not history:
         return {}
-    chosen = _some(history.normal_force.size, MOST_RECORDS)
+    chosen = evenly(history.normal_force.size, MOST_RECORDS)
     record = (chosen + 1).tolist()
 
     def over_records(names: Iterable[tuple[str, str]], label: tuple[str, str, str]) -> dict[str, Any]:
@@ -375,18 +375,6 @@ def _edges(result: Result, inside: slice) -> list[float]:
     return [float(2.0 * x[0] - middles[0]), *map(float, middles), float(2.0 * x[-1] - middles[-1])]
 
 
-def _zones(result: Result) -> list[tuple[str, str]]:
-    """Words and colours of what nodes in contact come to be."""
-    return [STATUSES[NodeStatus(code)] for code in statuses(result) if code != NodeStatus.OPEN]
-
-
-def _sources(result: Result) -> dict[str, str]:
-    """Where the closed forms come from, by what they are of."""
-    return {
-        name: result.reference.description(name) for name in ("pressure", "shear", "shift") if name in result.reference
-    }
-
-
 def _key_numbers(result: Result) -> list[dict[str, str]]:
     """What a reader looks for first: name, value with unit, error bar, definition."""
     found = []
@@ -432,7 +420,7 @@ def _cycle_table(result: Result) -> dict[str, Any]:
     if not cycles:
         return {}
     names = [name for name in CYCLE_COLUMNS if name in cycles and not np.isnan(cycles[name]).all()]
-    chosen = _some(cycles.cycle.size, MOST_CYCLES)
+    chosen = evenly(cycles.cycle.size, MOST_CYCLES)
     rows = [(int(cycles.cycle[row]), [_number(cycles[name][row]) for name in names]) for row in chosen]
     return {
         "names": [(name.replace("_", " "), _unit(cycles.unit(name))) for name in names],
@@ -449,7 +437,7 @@ def _with_unit(group: Group, name: str) -> str:
 
 def _unit(unit: str) -> str:
     """A unit for a reader; nothing for that of a pure number."""
-    return "" if unit == "1" else unit.replace("^2", "²").replace("^3", "³")
+    return _html.unit(unit).replace("^2", "²").replace("^3", "³")
 
 
 def _number(value: Any) -> str:
@@ -461,11 +449,6 @@ def _number(value: Any) -> str:
         return digits
     power = str(int(exponent.replace("\N{MINUS SIGN}", "-")))
     return f"{digits}\N{NO-BREAK SPACE}\N{MULTIPLICATION SIGN}\N{NO-BREAK SPACE}10{power.translate(SUPERSCRIPTS)}"
-
-
-def _some(size: int, most: int) -> np.ndarray:
-    """Indices of at most that many of a number of things, evenly, the first and the last among them."""
-    return np.unique(np.linspace(0, size - 1, min(size, most)).round().astype(int))
 
 
 def _list(values: Any) -> list[float | None]:
