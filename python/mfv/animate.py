@@ -65,9 +65,10 @@ def movie(result: Result) -> Movie:
                 handles=zones, ncols=len(zones), fontsize=10, loc="upper center", bbox_to_anchor=(0.5, below / HEIGHT),
                 borderaxespad=0.0, borderpad=0.0,
             )  # fmt: skip
+    second = (plot.shear, _limits_of_shear(result)) if is_rubbed else (plot.surfaces, _heights(result))
     panels: list[tuple[Axes, plot.Panel, tuple[float, float]]] = [
         (axes[0], plot.pressure, (0.0, _largest(result, "pressure"))),
-        (axes[1], plot.shear if is_rubbed else plot.surfaces, _limits_of_shear(result) if is_rubbed else _heights(result)),
+        (axes[1], *second),
     ]
     framed = contact(result)
     curve = curve_of(result)
@@ -136,7 +137,7 @@ def _ffmpeg() -> str:
 
 
 def _zones(result: Result) -> list[Patch]:
-    """Patches for a legend of what nodes come to be in any of the states."""
+    """Patches for a legend of the statuses that nodes have in any of the states."""
     return [Patch(**style) for status, style in plot.ZONES.items() if status in statuses(result)]
 
 

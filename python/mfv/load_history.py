@@ -3,13 +3,11 @@
 from __future__ import annotations
 
 import copy
-import functools
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
 
-from .case import Case
 from .compare import compare
 from .errors import MfvError
 from .inputs import case_of, groups
@@ -111,32 +109,28 @@ def _solved_again(result: Result, states: int, progress: Progress) -> Result:
     divisions = states // max(len(parts), 1)
     if divisions < 2:
         raise ValueError(f"{len(parts)} straight parts of the load history want {2 * len(parts)} states at least")
+    divided = [(part, division / divisions) for part in parts for division in range(1, divisions + 1)]
+    began: dict[int, dict[str, float]] = {}
     with case_of(result, keeping_states=True) as case:
-        for part, loads in progress(list(_divided(case, parts, divisions))):
-            if case.advance(friction=part.friction, **loads()) != "complete":
+        start: dict[str, float] = {}
+        for part, share in progress(divided):
+            if share == 1.0 / divisions:
+                start = {name: float(case[f"summary/{name}"]) for name in part.targets}
+                began.setdefault(part.step, start)
+            ends = began[part.step] if part.is_back else part.targets
+            loads: dict[str, Any] = _loads_at(share, part, start, ends)
+            if case.advance(friction=part.friction, **loads) != "complete":
                 break
         return kept_states(case.result())
 
 
-def _divided(case: Case, parts: list[Part], divisions: int) -> Iterator[tuple[Part, Callable[[], dict[str, float]]]]:
-    """Every part with the loads at each of its divisions, as functions to be called when the case is there. One that ended early
-    is divided up to where it ended; the last of its divisions leads to its targets, so that it ends so again."""
-    began: dict[int, dict[str, float]] = {}
-    start: dict[str, float] = {}
-
-    def loads(part: Part, division: int) -> dict[str, float]:
-        if division == 1:
-            start.update({name: float(case[f"summary/{name}"]) for name in part.targets})
-            began.setdefault(part.step, dict(start))
-        ends = began[part.step] if part.is_back else part.targets
-        if division == divisions:
-            return {name: ends[name] for name in part.targets}
-        share, shown = division / divisions, part.reached or ends
-        return {name: start[name] + share * (shown[name] - start[name]) for name in part.targets}
-
-    for part in parts:
-        for division in range(1, divisions + 1):
-            yield part, functools.partial(loads, part, division)
+def _loads_at(share: float, part: Part, start: dict[str, float], ends: dict[str, float]) -> dict[str, float]:
+    """The loads at a share of a part. A part that ended early is divided up to where it ended; the last of its divisions
+    leads to its targets, for it to end early again."""
+    if share == 1.0:
+        return {name: ends[name] for name in part.targets}
+    shown = part.reached or ends
+    return {name: start[name] + share * (shown[name] - start[name]) for name in part.targets}
 
 
 def _parts(result: Result) -> Iterator[Part]:

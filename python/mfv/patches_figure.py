@@ -29,9 +29,14 @@ def patches_of(result: Result, state: Group) -> list[tuple[float, float]]:
     half = 0.5 * result.mesh.width
     return [
         (float(result.mesh.x[first] - half[first]), float(result.mesh.x[last] + half[last]))
-        for touching, first, last in plot._runs((state.status != NodeStatus.OPEN).astype(int))
-        if touching
+        for first, last in _touching_nodes(state)
     ]
+
+
+def _touching_nodes(state: Group) -> list[tuple[int, int]]:
+    """First and last node of every patch."""
+    touching = (state.status != NodeStatus.OPEN).astype(int)
+    return [(first, last) for is_patch, first, last in plot._runs(touching) if is_patch]
 
 
 def figure(result: Result, step: int | None = None) -> Figure:
@@ -62,13 +67,8 @@ def figure(result: Result, step: int | None = None) -> Figure:
 
 def _largest(result: Result, state: Group) -> int:
     """Index of the patch that bears most."""
-    touching = state.status != NodeStatus.OPEN
-    forces = [
-        float(np.sum((result.mesh.width * state.pressure)[first : last + 1]))
-        for is_patch, first, last in plot._runs(touching.astype(int))
-        if is_patch
-    ]
-    return int(np.argmax(forces))
+    forces = result.mesh.width * state.pressure
+    return int(np.argmax([np.sum(forces[first : last + 1]) for first, last in _touching_nodes(state)]))
 
 
 def _pressure(result: Result, state: Group, patches: list[tuple[float, float]], ax: Axes) -> None:
@@ -112,8 +112,7 @@ def _by_patch(
 ) -> list[tuple[np.ndarray, np.ndarray]]:
     """Places and values of every patch. A traction ends at the patch's edges, at zero unless it is singular there."""
     curves = []
-    runs = [run for run in plot._runs((state.status != NodeStatus.OPEN).astype(int)) if run[0]]
-    for (_, first, last), (left, right) in zip(runs, patches):
+    for (first, last), (left, right) in zip(_touching_nodes(state), patches):
         x, y, pressure = (array[first : last + 1] for array in (result.mesh.x, values, state.pressure))
         falls = len(x) < 2 or pressure[0] < pressure.max(), len(x) < 2 or pressure[-1] < pressure.max()
         ends = np.where(falls, 0.0, (y[0], y[-1]))

@@ -373,8 +373,9 @@ def loop(result: Result, ax: Axes | None = None, step: int | None = None) -> Axe
         ax.plot(
             result.reference.shift, force, color=CLOSED_FORM, linewidth=0.9, label="closed form", markersize=4, **style
         )
-    labels = _label("shift", "U", history.unit("shift")), _label("tangential force", "Q", history.unit("tangential_force"))
-    return _finished_curve(ax, result, step, ("shift", "tangential_force"), labels)
+    across = _label("shift", "U", history.unit("shift"))
+    up = _label("tangential force", "Q", history.unit("tangential_force"))
+    return _finished_curve(ax, result, step, ("shift", "tangential_force"), (across, up))
 
 
 def nonlinear_loop(result: Result, ax: Axes | None = None, step: int | None = None) -> Axes:
@@ -412,8 +413,9 @@ def rolling(result: Result, ax: Axes | None = None, step: int | None = None) -> 
     ax = _axes(ax)
     history = result.history
     ax.plot(history.rolled, history.slid, color=NUMBERS, linewidth=0.8, **_points(len(history.slid)), label="computed")
-    labels = _label("rolled distance", "s", history.unit("rolled")), _label("sliding", r"U + h\varphi", history.unit("slid"))
-    return _finished_curve(ax, result, step, ("rolled", "slid"), labels)
+    across = _label("rolled distance", "s", history.unit("rolled"))
+    up = _label("sliding", r"U + h\varphi", history.unit("slid"))
+    return _finished_curve(ax, result, step, ("rolled", "slid"), (across, up))
 
 
 def _finished_curve(

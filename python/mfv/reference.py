@@ -24,7 +24,7 @@ _Function = TypeVar("_Function", bound=Callable[..., Array])
 
 
 def _closed_form(declared: _Function) -> _Function:
-    """What evaluates the library's function of the same name, mfv_NAME, over arrays; a plain number for plain numbers."""
+    """Evaluate the library's function of the same name, mfv_NAME, over arrays; a plain number for plain numbers."""
     signature = inspect.signature(declared)
 
     @functools.wraps(declared)

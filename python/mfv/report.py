@@ -189,11 +189,7 @@ def _words(result: Result, state: Group, number: int, is_kept: bool) -> str:
     place = f"state {number + 1} of {len(result.steps)}"
     if is_kept and "step" in state:
         place += f" (step {state.step}, reversal {state.reversal})"
-    loads = [
-        f"{symbol} = {_with_unit(state, name)}"
-        for symbol, name in LOADS
-        if name in state
-    ]
+    loads = [f"{symbol} = {_with_unit(state, name)}" for symbol, name in LOADS if name in state]
     return ", ".join([place, *loads, counts(state)])
 
 

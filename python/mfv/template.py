@@ -76,7 +76,7 @@ def _is_there(place: Path, companion: str) -> bool:
 
 
 def _matrix() -> bytes:
-    """A file of the compliance of an elastic half-plane by nodal forces, in closed form (Johnson 1985, sections 2.2 and 2.3)."""
+    """An HDF5 file with the compliance of an elastic half-plane by nodal forces (Johnson 1985, sections 2.2 and 2.3)."""
     interval = 2.0 * HALF_WIDTH / NODES
     x = interval * (np.arange(NODES) - 0.5 * (NODES - 1))
     distance = x[:, None] - x

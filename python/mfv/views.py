@@ -1,5 +1,7 @@
-"""What of a result is shown, by pictures, animations and pages alike: which load over which displacement, which part of the surface,
-which limits of friction."""
+"""What pictures, animations and pages show of a result: which load over which displacement, which part of the surface.
+
+Nothing here draws; `mfv.plot`, `mfv.animate`, `mfv.report` and `mfv.comparison_figure` do.
+"""
 
 from __future__ import annotations
 
@@ -52,8 +54,10 @@ def curve_of(result: Result) -> Curve:
 
 
 def contact(result: Result, states: Sequence[Group] = ()) -> tuple[float, float]:
-    """All that is in contact in any of the states (by default those of the result) and a quarter of its length on either side, as
-    far as the mesh goes; without contact all of the mesh."""
+    """All that is in contact in any of the states, and a quarter of its length on either side, as far as the mesh goes.
+
+    `states`: by default those of the result. Without contact it is all of the mesh.
+    """
     states = states or result.steps or kept_states(result).steps
     touched = np.any([state.status != NodeStatus.OPEN for state in states], axis=0)
     starts, ends = result.mesh.x - 0.5 * result.mesh.width, result.mesh.x + 0.5 * result.mesh.width
@@ -65,7 +69,7 @@ def contact(result: Result, states: Sequence[Group] = ()) -> tuple[float, float]
 
 
 def statuses(result: Result) -> np.ndarray:
-    """What nodes come to be in any of the states in `steps`."""
+    """The statuses that nodes have in any of the states in `steps`."""
     return np.unique([state.status for state in result.steps])
 
 

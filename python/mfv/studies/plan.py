@@ -229,7 +229,11 @@ class Study:
             if kept is not None and again:
                 kept.clear()
             names, jobs, solved = self._cases(kept)
-            wanted = {name: job for name, job in jobs.items() if name not in solved or _has_lost_its_file(job)}
+            wanted = {
+                name: job
+                for name, job in jobs.items()
+                if name not in solved or (job.result is not None and not os.path.exists(job.result))
+            }
             if wanted:
                 there = len(jobs) - len(wanted)
                 with tqdm(total=len(jobs), initial=there, unit="case", disable=None if progress else True) as bar:
@@ -399,11 +403,6 @@ def is_table(path: Path) -> bool:
         return False
     with h5py.File(path) as file:
         return bool(file.attrs.get("title", "") == TITLE)
-
-
-def _has_lost_its_file(job: Job) -> bool:
-    """Whether the result file of a case that was solved is not there any more."""
-    return job.result is not None and not os.path.exists(job.result)
 
 
 def _tried(length: int) -> Iterable[int]:
