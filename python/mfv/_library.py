@@ -8,7 +8,7 @@ import functools
 import itertools
 import os
 import struct
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from ctypes import POINTER, c_char_p, c_double, c_int, c_int32, c_size_t, c_void_p
 from enum import IntEnum
 from pathlib import Path
@@ -240,6 +240,15 @@ def text_buffer() -> ctypes.Array[ctypes.c_char]:
 def text_of(buffer: ctypes.Array[ctypes.c_char]) -> str:
     """The text in a buffer."""
     return buffer.value.decode("utf-8", errors="replace")
+
+
+def whole_text(call: Callable[..., object], *arguments: object) -> str:
+    """A text of any length from what takes, after the arguments, a buffer, its size and where to put the length."""
+    length = c_size_t()
+    call(*arguments, None, 0, ctypes.byref(length))
+    buffer = ctypes.create_string_buffer(length.value + 1)
+    call(*arguments, buffer, len(buffer), None)
+    return text_of(buffer)
 
 
 def text_for(text: str | os.PathLike[str]) -> bytes:

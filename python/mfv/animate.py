@@ -22,7 +22,7 @@ from . import plot
 from ._packages import how_to_install
 from .load_history import kept_states
 from .result import Group, Result, counts
-from .views import Curve, contact, curve_of
+from .views import LOADS, Curve, contact, curve_of, has_friction, heights, is_named, statuses
 
 #: What can be written, by the suffix of the file.
 SUFFIXES = (".gif", ".mp4")
@@ -49,30 +49,26 @@ def movie(result: Result) -> Movie:
     """The states in `result.steps`, without any the last one, one after the other: pressure; shear traction with stick and slip
     zones, or the surfaces without friction; the curve of load over displacement with a point where the state is."""
     result = result if result.steps else kept_states(result)
-    has_friction = plot._has_friction(result)
+    is_rubbed = has_friction(result)
     with matplotlib.rc_context(plot.STYLE):
         picture = Figure(figsize=(3 * plot.PANEL_WIDTH, HEIGHT), dpi=RESOLUTION)
         axes = picture.subplots(1, 3)
         picture.suptitle(result.title, fontsize=12, parse_math=False)
-        zones = _zones(result) if has_friction else []
+        zones = _zones(result) if is_rubbed else []
         below = CAPTION + (LEGEND if zones else 0.0)
         picture.set_layout_engine(
             ConstrainedLayoutEngine(rect=(0.0, below / HEIGHT, 1.0, 1.0 - below / HEIGHT), w_pad=0.08)
         )
         caption = picture.text(0.5, 0.08 / HEIGHT, "", ha="center", fontsize=10, color="0.35", parse_math=False)
         if zones:
-            place: dict[str, Any] = {
-                "loc": "upper center",
-                "bbox_to_anchor": (0.5, below / HEIGHT),
-                "borderaxespad": 0.0,
-                "borderpad": 0.0,
-            }
-            picture.legend(handles=zones, ncols=len(zones), fontsize=10, **place)
-    panels = [
+            picture.legend(
+                handles=zones, ncols=len(zones), fontsize=10, loc="upper center", bbox_to_anchor=(0.5, below / HEIGHT),
+                borderaxespad=0.0, borderpad=0.0,
+            )  # fmt: skip
+    second = (plot.shear, _limits_of_shear(result)) if is_rubbed else (plot.surfaces, _heights(result))
+    panels: list[tuple[Axes, plot.Panel, tuple[float, float]]] = [
         (axes[0], plot.pressure, (0.0, _largest(result, "pressure"))),
-        (axes[1], plot.shear, _symmetric(_largest_shear(result)))
-        if has_friction
-        else (axes[1], plot.surfaces, _heights(result)),
+        (axes[1], *second),
     ]
     framed = contact(result)
     curve = curve_of(result)
@@ -141,23 +137,19 @@ def _ffmpeg() -> str:
 
 
 def _zones(result: Result) -> list[Patch]:
-    """Patches for a legend of what nodes come to be in any of the states."""
-    seen = np.unique(np.concatenate([state.status for state in result.steps]))
-    return [Patch(**style) for status, style in plot.ZONES.items() if status in seen]
+    """Patches for a legend of the statuses that nodes have in any of the states."""
+    return [Patch(**style) for status, style in plot.ZONES.items() if status in statuses(result)]
 
 
 def _largest(result: Result, name: str) -> float:
     return max(float(np.max(np.abs(state[name]))) for state in result.steps) or 1.0
 
 
-def _largest_shear(result: Result) -> float:
-    """What the limits of friction come to; without any, the shear traction."""
-    if "static_friction" not in result.mesh:
-        return _largest(result, "shear")
-    return max(float(np.max(result.mesh.static_friction * state.pressure)) for state in result.steps) or 1.0
-
-
-def _symmetric(largest: float) -> tuple[float, float]:
+def _limits_of_shear(result: Result) -> tuple[float, float]:
+    """The largest limits of friction; without any, the largest shear traction."""
+    largest = _largest(result, "shear")
+    if "static_friction" in result.mesh:
+        largest = max(float(np.max(result.mesh.static_friction * state.pressure)) for state in result.steps) or 1.0
     return -largest, largest
 
 
@@ -165,8 +157,8 @@ def _heights(result: Result) -> tuple[float, float]:
     """The lowest and the highest point of both surfaces in view."""
     left, right = contact(result)
     in_view = (result.mesh.x >= left) & (result.mesh.x <= right)
-    heights = np.concatenate([height[in_view] for state in result.steps for height in plot._heights(result, state)])
-    return float(np.nanmin(heights)), float(np.nanmax(heights))
+    shown = [height[in_view] for state in result.steps for height in heights(result, state)]
+    return float(np.nanmin(shown)), float(np.nanmax(shown))
 
 
 def _with_margin(limits: tuple[float, float]) -> tuple[float, float]:
@@ -177,13 +169,8 @@ def _with_margin(limits: tuple[float, float]) -> tuple[float, float]:
 
 def _draw_curve(result: Result, ax: Axes, curve: Curve) -> Any:
     """The curve of load over displacement, from the history or, without one, the states; returns the point to be moved."""
-    names = curve.across, curve.up
-    if result.history:
-        across, up = (result.history[name] for name in names)
-    else:
-        across, up = ([state[name] for state in result.steps] for name in names)
     with matplotlib.rc_context(plot.STYLE):
-        ax.plot(across, up, color=plot.NUMBERS, linewidth=0.8)
+        ax.plot(*curve.values(result), color=plot.NUMBERS, linewidth=0.8)
         (point,) = ax.plot([], [], "o", color=plot.CLOSED_FORM, markersize=8, zorder=5)
         ax.set_xlabel(plot._label(*curve.across_label, result.summary.unit(curve.across)))
         ax.set_ylabel(plot._label(*curve.up_label, result.summary.unit(curve.up)))
@@ -195,9 +182,9 @@ def _draw_curve(result: Result, ax: Axes, curve: Curve) -> Any:
 def _caption(result: Result, state: Group, number: int) -> str:
     """Number of the state, its loads and how many nodes stick."""
     parts = [f"state {number} of {len(result.steps)}"]
-    for symbol, name in (("P", "normal_force"), ("Q", "tangential_force"), ("M", "moment")):
+    for symbol, name in LOADS:
         if name in state:
             unit = state.unit(name)
-            parts.append(f"{symbol} = {state[name]:.3g}{f' {unit}' if plot._is_named(unit) else ''}")
+            parts.append(f"{symbol} = {state[name]:.3g}{f' {unit}' if is_named(unit) else ''}")
     parts.append(counts(state))
     return " \N{MIDDLE DOT} ".join(parts)

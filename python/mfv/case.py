@@ -10,7 +10,7 @@ import threading
 import weakref
 from collections.abc import Iterator
 from contextlib import contextmanager
-from ctypes import POINTER, byref, c_int, c_int32, c_size_t, c_void_p, create_string_buffer
+from ctypes import POINTER, byref, c_int, c_int32, c_size_t, c_void_p
 from operator import index
 from types import TracebackType
 from typing import TYPE_CHECKING, Any, Callable, NoReturn
@@ -31,6 +31,7 @@ from ._library import (
     text_buffer,
     text_for,
     text_of,
+    whole_text,
 )
 from ._observer import Observer
 from .loads import Loads, Progress
@@ -475,12 +476,8 @@ class Case:
 
     def _attribute(self, name: str) -> str:
         """Text of an attribute, of any length."""
-        length = c_size_t()
         with self._lock:
-            self._call("mfv_attribute", text_for(name), None, 0, byref(length))
-            buffer = create_string_buffer(length.value + 1)
-            self._call("mfv_attribute", text_for(name), buffer, len(buffer), None)
-        return text_of(buffer)
+            return whole_text(self._call, "mfv_attribute", text_for(name))
 
     def _lead(self, check: bool, watched: bool, function: Callable[..., int], *arguments: object) -> str:
         """Call what leads the loads; return the outcome. Raises for a bad call, and with `check` for an early end.

@@ -6,11 +6,13 @@
 from __future__ import annotations
 
 import csv
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any, NamedTuple, TextIO
 
 import numpy as np
 
+from . import _html
 from .inputs import keys
 from .result import Group, Result
 
@@ -96,7 +98,7 @@ class Comparison:
                 f"tractions {state}, {how}",
                 f"  {'':26}{'first':>14} {'second':>14}   largest difference, and in the mean square",
                 *(
-                    f"  {name:26}{first:14.6g} {second:14.6g}   {largest:<10.3g}{mean_square:<10.3g}{_shown(unit)}"
+                    f"  {name:26}{first:14.6g} {second:14.6g}   {largest:<10.3g}{mean_square:<10.3g}{_html.unit(unit)}"
                     for name, unit, first, second, largest, mean_square in self.tractions
                 ),
             ],
@@ -113,7 +115,7 @@ class Comparison:
         return lines + [
             f"  {number.name:26}{_figure(number.first):>14} {_figure(number.second):>14}   "
             f"{_figure(number.relative_difference, 3):<10}"
-            f"{_shown(number.unit)}".rstrip()
+            f"{_html.unit(number.unit)}".rstrip()
             for number in numbers
         ]
 
@@ -121,17 +123,14 @@ class Comparison:
         """Write everything as comma-separated values, with a line of names."""
         writer = csv.writer(file, lineterminator="\n")
         writer.writerow(("group", "name", "unit", "first", "second", "relative_difference", "meaning"))
-        for setting in self.settings:
-            writer.writerow(("settings", setting.name, "", setting.first, setting.second, "", ""))
-        if not isinstance(self.inputs, str):
-            for setting in self.inputs:
-                writer.writerow(("input", setting.name, "", setting.first, setting.second, "", ""))
+        inputs = [] if isinstance(self.inputs, str) else self.inputs
+        for group, settings in (("settings", self.settings), ("input", inputs)):
+            writer.writerows((group, name, "", first, second, "", "") for name, first, second in settings)
         for number in self.numbers:
             group, name, unit, meaning, first, second = number
             writer.writerow((group, name, unit, first, second, number.relative_difference, meaning))
-        for traction in self.tractions:
-            name, unit, first, second, largest, _ = traction
-            meaning = "largest absolute values; largest difference in parts of the larger"
+        meaning = "largest absolute values; largest difference in parts of the larger"
+        for name, unit, first, second, largest, _ in self.tractions:
             writer.writerow(("tractions", name, unit, first, second, largest, meaning))
         meaning = "largest difference of a traction in parts of the largest traction"
         writer.writerow(("tractions", "largest_difference", "1", "", "", self.largest_difference, meaning))
@@ -154,7 +153,7 @@ def compare(first: Result, second: Result, step: int | None = None) -> Compariso
         first,
         second,
         step,
-        _different_settings(first, second),
+        [one for one in _different(first.attributes, second.attributes) if one.name not in NOT_SETTINGS],
         _different_keys(first, second),
         [number for group in GROUPS for number in _numbers(group, getattr(first, group), getattr(second, group))],
         [_traction(name, states[0].unit(name), *values[name]) for name in TRACTIONS],
@@ -173,14 +172,6 @@ def relative_difference(first: float, second: float) -> float:
     return abs(second - first) / max(abs(first), abs(second))
 
 
-def _different_settings(first: Result, second: Result) -> list[Setting]:
-    """Attributes that differ."""
-    one, other = (
-        {name: text for name, text in r.attributes.items() if name not in NOT_SETTINGS} for r in (first, second)
-    )
-    return _different(one, other)
-
-
 def _different_keys(first: Result, second: Result) -> list[Setting] | str:
     """Keys of the inputs that differ, or why they cannot be told."""
     try:
@@ -189,7 +180,7 @@ def _different_keys(first: Result, second: Result) -> list[Setting] | str:
         return str(error)
 
 
-def _different(one: dict[str, Any], other: dict[str, Any]) -> list[Setting]:
+def _different(one: Mapping[str, Any], other: Mapping[str, Any]) -> list[Setting]:
     names = [*one, *(name for name in other if name not in one)]
     return [Setting(name, one.get(name), other.get(name)) for name in names if one.get(name) != other.get(name)]
 
@@ -243,7 +234,3 @@ def _text(value: Any) -> str:
 def _figure(value: float, digits: int = 6) -> str:
     """A number; - where there is none."""
     return "-" if np.isnan(value) else f"{value or 0.0:.{digits}g}"
-
-
-def _shown(unit: str) -> str:
-    return "" if unit in ("", "1") else unit

@@ -3,22 +3,24 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Any
+from functools import partial
+from typing import Any, Callable
 
 import matplotlib
 import numpy as np
-from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from matplotlib.patches import Patch
 
 from . import plot
 from .compare import Comparison
+from .views import has_friction, heights
 
 #: How the two are drawn over each other, and their difference.
-FIRST: dict[str, Any] = {"color": plot.NUMBERS, "linewidth": 1.0}
-SECOND: dict[str, Any] = {"color": plot.CLOSED_FORM, "linewidth": 1.0, "linestyle": (0, (4, 2))}
-DIFFERENCE: dict[str, Any] = {"color": plot.SURFACE, "linewidth": 0.8}
+STYLES: tuple[dict[str, Any], dict[str, Any]] = (
+    {"label": "first", "color": plot.NUMBERS, "linewidth": 1.0},
+    {"label": "second", "color": plot.CLOSED_FORM, "linewidth": 1.0, "linestyle": (0, (4, 2))},
+)
+DIFFERENCE: dict[str, Any] = {"label": "second less first", "color": plot.SURFACE, "linewidth": 0.8}
 
 
 def figure(comparison: Comparison, first: str = "first", second: str = "second") -> Figure:
@@ -28,10 +30,15 @@ def figure(comparison: Comparison, first: str = "first", second: str = "second")
     `first`, `second`: what the results are called.
     """
     results = comparison.first, comparison.second
-    rows = [plot.pressure, plot.shear if any(map(plot._has_friction, results)) else plot.surfaces]
+    rows = [plot.pressure, plot.shear if any(map(has_friction, results)) else plot.surfaces]
     if any(map(plot._is_sheared, results)):
         rows.append(plot.loop)
-    over = {plot.pressure: _pressures, plot.shear: _shears, plot.surfaces: _gaps, plot.loop: _loops}
+    over: dict[Any, Callable[[Comparison, Axes], None]] = {
+        plot.pressure: partial(_draw_tractions, "pressure"),
+        plot.shear: partial(_draw_tractions, "shear"),
+        plot.surfaces: _draw_gaps,
+        plot.loop: _draw_loops,
+    }
     with matplotlib.rc_context(plot.STYLE):
         picture = Figure(
             figsize=(3 * plot.PANEL_WIDTH, len(rows) * 0.92 * plot.PANEL_HEIGHT + 0.9), layout="constrained"
@@ -51,42 +58,34 @@ def figure(comparison: Comparison, first: str = "first", second: str = "second")
             f"Largest difference of the tractions: {comparison.largest_difference:.3g} of the largest traction",
             fontsize=12,
         )
-        _add_legend(picture)
+        picture.legend(*plot._legend_entries(picture), ncols=6, fontsize=10, loc="outside lower center")
     return picture
 
 
-def _pressures(comparison: Comparison, ax: Axes) -> None:
-    _draw_tractions(comparison, ax, "pressure")
-
-
-def _shears(comparison: Comparison, ax: Axes) -> None:
-    _draw_tractions(comparison, ax, "shear")
-
-
-def _draw_tractions(comparison: Comparison, ax: Axes, name: str) -> None:
+def _draw_tractions(name: str, comparison: Comparison, ax: Axes) -> None:
     """A traction of both results over x, and its difference."""
     results = comparison.first, comparison.second
     states = [result.at(comparison.step) for result in results]
-    for result, state, label, style in zip(results, states, ("first", "second"), (FIRST, SECOND)):
-        ax.plot(result.mesh.x, state[name], label=label, **style)
+    for result, state, style in zip(results, states, STYLES):
+        ax.plot(result.mesh.x, state[name], **style)
     x = np.union1d(*(result.mesh.x for result in results))
     one, other = (np.interp(x, r.mesh.x, state[name], 0.0, 0.0) for r, state in zip(results, states))
-    ax.plot(x, other - one, label="second less first", **DIFFERENCE)
+    ax.plot(x, other - one, **DIFFERENCE)
     plot._frame_contact(ax, comparison.first, states[0])
 
 
-def _gaps(comparison: Comparison, ax: Axes) -> None:
+def _draw_gaps(comparison: Comparison, ax: Axes) -> None:
     """Deformed surfaces of the lower body of both results."""
-    for result, label, style in zip((comparison.first, comparison.second), ("first", "second"), (FIRST, SECOND)):
-        ax.plot(result.mesh.x, plot._heights(result, result.at(comparison.step))[0], label=label, **style)
+    for result, style in zip((comparison.first, comparison.second), STYLES):
+        ax.plot(result.mesh.x, heights(result, result.at(comparison.step))[0], **style)
     plot._frame_contact(ax, comparison.first, comparison.first.at(comparison.step))
 
 
-def _loops(comparison: Comparison, ax: Axes) -> None:
+def _draw_loops(comparison: Comparison, ax: Axes) -> None:
     """Tangential force over shift of those that have it."""
-    for result, label, style in zip((comparison.first, comparison.second), ("first", "second"), (FIRST, SECOND)):
+    for result, style in zip((comparison.first, comparison.second), STYLES):
         if plot._is_sheared(result):
-            ax.plot(result.history.shift, result.history.tangential_force, label=label, **style)
+            ax.plot(result.history.shift, result.history.tangential_force, **style)
             ax.set_xlabel(plot._label("shift", "U", result.history.unit("shift")))
     ax.locator_params(axis="x", nbins=5)
     ax.margins(0.12)
@@ -102,13 +101,3 @@ def _unite_limits(axes: Sequence[Axes], only_across: bool) -> None:
             ax.set_ylim(up[:, 0].min(), up[:, 1].max())
     for ax in axes[1:]:
         ax.set_ylabel("")
-
-
-def _add_legend(picture: Figure) -> None:
-    """One legend below all panels, lines before zones."""
-    handles: dict[str, Artist] = {}
-    for ax in picture.axes:
-        for handle, label in zip(*ax.get_legend_handles_labels()):
-            handles.setdefault(label, handle)
-    labels = sorted(handles, key=lambda label: isinstance(handles[label], Patch))
-    picture.legend([handles[label] for label in labels], labels, ncols=6, fontsize=10, loc="outside lower center")

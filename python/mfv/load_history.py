@@ -3,18 +3,15 @@
 from __future__ import annotations
 
 import copy
-import functools
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
 
-from .again import case_of
-from .case import Case
 from .compare import compare
 from .errors import MfvError
-from .inputs import groups
-from .result import Field, Group, Result
+from .inputs import case_of, groups
+from .result import Field, Group, Result, is_last
 
 #: Loads by the keys of a step that lead them.
 LOADS = ("normal_force", "approach", "tangential_force", "shift", "moment", "rotation")
@@ -51,9 +48,7 @@ class LoadHistory(NamedTuple):
 
 def kept_states(result: Result) -> Result:
     """A result whose `steps` end with its last state, also where a run ended early, or has not begun."""
-    if result.steps and all(
-        np.array_equal(result.steps[-1][name], result.state[name]) for name in ("pressure", "shear")
-    ):
+    if result.steps and is_last(result, result.steps[-1]):
         return result
     loads = {name: _field(result.summary, name) for name in result.summary if name not in result.state}
     last = Group({**{name: _field(result.state, name) for name in result.state}, **loads})
@@ -66,10 +61,14 @@ def thinned(result: Result, states: int) -> Result:
     """A result with at most that many of its states in `steps`, evenly, the last one among them."""
     if len(result.steps) <= states:
         return result
-    chosen = np.unique(np.linspace(0, len(result.steps) - 1, states).round().astype(int))
     thinner = copy.copy(result)
-    thinner.steps = [result.steps[number] for number in chosen]
+    thinner.steps = [result.steps[number] for number in evenly(len(result.steps), states)]
     return thinner
+
+
+def evenly(size: int, most: int) -> np.ndarray:
+    """Indices of at most that many of a number of things, evenly, the first and the last among them."""
+    return np.unique(np.linspace(0, size - 1, min(size, most)).round().astype(int))
 
 
 def with_states_between(result: Result, states: int, progress: Progress = iter) -> LoadHistory:
@@ -110,32 +109,28 @@ def _solved_again(result: Result, states: int, progress: Progress) -> Result:
     divisions = states // max(len(parts), 1)
     if divisions < 2:
         raise ValueError(f"{len(parts)} straight parts of the load history want {2 * len(parts)} states at least")
+    divided = [(part, division / divisions) for part in parts for division in range(1, divisions + 1)]
+    began: dict[int, dict[str, float]] = {}
     with case_of(result, keeping_states=True) as case:
-        for part, loads in progress(list(_divided(case, parts, divisions))):
-            if case.advance(friction=part.friction, **loads()) != "complete":
+        start: dict[str, float] = {}
+        for part, share in progress(divided):
+            if share == 1.0 / divisions:
+                start = {name: float(case[f"summary/{name}"]) for name in part.targets}
+                began.setdefault(part.step, start)
+            ends = began[part.step] if part.is_back else part.targets
+            loads: dict[str, Any] = _loads_at(share, part, start, ends)
+            if case.advance(friction=part.friction, **loads) != "complete":
                 break
         return kept_states(case.result())
 
 
-def _divided(case: Case, parts: list[Part], divisions: int) -> Iterator[tuple[Part, Callable[[], dict[str, float]]]]:
-    """Every part with the loads at each of its divisions, as functions to be called when the case is there. One that ended early
-    is divided up to where it ended; the last of its divisions leads to its targets, so that it ends so again."""
-    began: dict[int, dict[str, float]] = {}
-    start: dict[str, float] = {}
-
-    def loads(part: Part, division: int) -> dict[str, float]:
-        if division == 1:
-            start.update({name: float(case[f"summary/{name}"]) for name in part.targets})
-            began.setdefault(part.step, dict(start))
-        ends = began[part.step] if part.is_back else part.targets
-        if division == divisions:
-            return {name: ends[name] for name in part.targets}
-        share, shown = division / divisions, part.reached or ends
-        return {name: start[name] + share * (shown[name] - start[name]) for name in part.targets}
-
-    for part in parts:
-        for division in range(1, divisions + 1):
-            yield part, functools.partial(loads, part, division)
+def _loads_at(share: float, part: Part, start: dict[str, float], ends: dict[str, float]) -> dict[str, float]:
+    """The loads at a share of a part. A part that ended early is divided up to where it ended; the last of its divisions
+    leads to its targets, for it to end early again."""
+    if share == 1.0:
+        return {name: ends[name] for name in part.targets}
+    shown = part.reached or ends
+    return {name: start[name] + share * (shown[name] - start[name]) for name in part.targets}
 
 
 def _parts(result: Result) -> Iterator[Part]:

@@ -10,6 +10,7 @@ from matplotlib.figure import Figure
 from . import plot
 from .codes import NodeStatus
 from .result import Group, Result
+from .views import friction_limits, has_friction
 
 #: Size of the picture and of a row, inch.
 WIDTH, ROW = 10.8, 2.4
@@ -28,9 +29,14 @@ def patches_of(result: Result, state: Group) -> list[tuple[float, float]]:
     half = 0.5 * result.mesh.width
     return [
         (float(result.mesh.x[first] - half[first]), float(result.mesh.x[last] + half[last]))
-        for touching, first, last in plot._runs((state.status != NodeStatus.OPEN).astype(int))
-        if touching
+        for first, last in _touching_nodes(state)
     ]
+
+
+def _touching_nodes(state: Group) -> list[tuple[int, int]]:
+    """First and last node of every patch."""
+    touching = (state.status != NodeStatus.OPEN).astype(int)
+    return [(first, last) for is_patch, first, last in plot._runs(touching) if is_patch]
 
 
 def figure(result: Result, step: int | None = None) -> Figure:
@@ -38,7 +44,7 @@ def figure(result: Result, step: int | None = None) -> Figure:
     most. See `plot.figure`."""
     state = result.at(step)
     patches = patches_of(result, state)
-    panels = [_pressure, _shear, _gap] if plot._has_friction(result) else [_pressure, _gap]
+    panels = [_pressure, _shear, _gap] if has_friction(result) else [_pressure, _gap]
     chosen = _largest(result, state)
     with matplotlib.rc_context(plot.STYLE):
         picture = Figure(figsize=(WIDTH, ROW * len(panels) + 1.0), layout="constrained")
@@ -51,19 +57,18 @@ def figure(result: Result, step: int | None = None) -> Figure:
         axes[0, 0].set_title(f"{len(patches)} patches")
         axes[0, 1].set_title(f"patch {chosen + 1}, which bears most")
         picture.suptitle(plot._heading(result, step), fontsize=12, parse_math=False)
-        _add_legend(picture, axes, plot._caption(result, step))
+        legend = picture.legend(
+            *plot._legend_entries(picture, lines_first=False), ncols=6, fontsize=10, loc="outside lower center",
+            title=plot._caption(result, step), title_fontsize=9,
+        )  # fmt: skip
+        legend.get_title().set(color="0.35", parse_math=False)
     return picture
 
 
 def _largest(result: Result, state: Group) -> int:
     """Index of the patch that bears most."""
-    touching = state.status != NodeStatus.OPEN
-    forces = [
-        float(np.sum((result.mesh.width * state.pressure)[first : last + 1]))
-        for is_patch, first, last in plot._runs(touching.astype(int))
-        if is_patch
-    ]
-    return int(np.argmax(forces))
+    forces = result.mesh.width * state.pressure
+    return int(np.argmax([np.sum(forces[first : last + 1]) for first, last in _touching_nodes(state)]))
 
 
 def _pressure(result: Result, state: Group, patches: list[tuple[float, float]], ax: Axes) -> None:
@@ -78,11 +83,12 @@ def _pressure(result: Result, state: Group, patches: list[tuple[float, float]], 
 def _shear(result: Result, state: Group, patches: list[tuple[float, float]], ax: Axes) -> None:
     """Shear traction between the limits of friction, stick and slip zones of every patch."""
     plot._shade_zones(ax, result, state)
-    for coefficient, style in plot._coefficients(result):
+    for index, coefficient in friction_limits(result):
+        style = plot._limit_style(index)
         for sign in (1.0, -1.0):
-            for number, (x, values) in enumerate(_by_patch(result, state, patches, sign * coefficient * state.pressure)):
-                label = style["label"] if sign > 0.0 and number == 0 else "_more"
-                ax.plot(x, values, color="0.35", linewidth=0.7, linestyle=style.get("linestyle", "-"), label=label)
+            for x, values in _by_patch(result, state, patches, sign * coefficient * state.pressure):
+                ax.plot(x, values, **style)
+                style["label"] = "_more"
     for number, (x, values) in enumerate(_by_patch(result, state, patches, state.shear)):
         ax.plot(x, values, color=plot.CLOSED_FORM, linewidth=1.0, label="shear traction" if number == 0 else "_more")
     ax.axhline(0.0, color="0.6", linewidth=0.4, zorder=0.5)
@@ -106,8 +112,7 @@ def _by_patch(
 ) -> list[tuple[np.ndarray, np.ndarray]]:
     """Places and values of every patch. A traction ends at the patch's edges, at zero unless it is singular there."""
     curves = []
-    runs = [run for run in plot._runs((state.status != NodeStatus.OPEN).astype(int)) if run[0]]
-    for (_, first, last), (left, right) in zip(runs, patches):
+    for (first, last), (left, right) in zip(_touching_nodes(state), patches):
         x, y, pressure = (array[first : last + 1] for array in (result.mesh.x, values, state.pressure))
         falls = len(x) < 2 or pressure[0] < pressure.max(), len(x) < 2 or pressure[-1] < pressure.max()
         ends = np.where(falls, 0.0, (y[0], y[-1]))
@@ -144,15 +149,3 @@ def _limit_gap(result: Result, ax: Axes, shown: tuple[float, float]) -> None:
     largest = float(np.nanmax(here)) if np.isfinite(here).any() else 0.0
     if largest > 0.0:
         ax.set_ylim(0.0, 1.15 * largest)
-
-
-def _add_legend(picture: Figure, axes: np.ndarray, caption: str) -> None:
-    """Everything that is drawn, once, below the caption."""
-    handles = {}
-    for ax in axes.flat:
-        for handle, label in zip(*ax.get_legend_handles_labels()):
-            handles.setdefault(label, handle)
-    legend = picture.legend(
-        list(handles.values()), list(handles), ncols=6, fontsize=10, loc="outside lower center", title=caption, title_fontsize=9
-    )
-    legend.get_title().set(color="0.35", parse_math=False)

@@ -8,8 +8,8 @@ stresses inside a body.
 from __future__ import annotations
 
 import textwrap
-from collections.abc import Iterator
-from typing import Any
+from collections.abc import Iterator, Sequence
+from typing import Any, Callable
 
 import matplotlib
 import numpy as np
@@ -22,8 +22,9 @@ from matplotlib.patches import Patch
 from matplotlib.ticker import MaxNLocator
 
 from .codes import EventKind, NodeStatus
-from .result import Group, Result, counts
-from .stress import NAMES, StressField, grid, stored, surface
+from .result import Group, Result, counts, is_last
+from .stress import NAMES, StressField, grid, stored
+from .views import contact, friction_limits, has_friction, has_last_normal_force, heights, is_named, limit_of_friction
 
 #: Colours from Okabe and Ito, told apart by the colour-blind too.
 NUMBERS, CLOSED_FORM, SURFACE, MARKS = "#0072B2", "#D55E00", "#009E73", "#000000"
@@ -83,6 +84,10 @@ CAPTION_LETTERS = 68
 NAMED_TOGETHER = 4
 
 
+#: What draws a result, or one of its states, into axes.
+Panel = Callable[[Result, "Axes | None", "int | None"], Axes]
+
+
 def figure(result: Result, step: int | None = None) -> Figure:
     """A picture of a result: pressure; shear traction, or the surfaces without friction; load-displacement curve of the
     tangential force, with cycles also without its linear part, which hides the loop, or, without a force, of the moment; or,
@@ -95,7 +100,7 @@ def figure(result: Result, step: int | None = None) -> Figure:
         from . import patches_figure  # here: it takes its panels from this module
 
         return patches_figure.figure(result, step)
-    panels = [pressure, shear if _has_friction(result) else surfaces]
+    panels = [pressure, shear if has_friction(result) else surfaces]
     if _is_rolled(result):
         panels.append(rolling)
     elif _is_sheared(result):
@@ -104,14 +109,7 @@ def figure(result: Result, step: int | None = None) -> Figure:
             panels.append(nonlinear_loop)
     elif _is_turned(result):
         panels.append(turning)
-    with matplotlib.rc_context(STYLE):
-        picture = Figure()
-        for panel, ax, letter in zip(panels, picture.subplots(1, len(panels)), "abcd"):
-            panel(result, ax, step)
-            ax.set_title(f"({letter})")
-        picture.suptitle(_heading(result, step), fontsize=12, parse_math=False)
-        _add_legend_and_caption(picture, _caption(result, step))
-    return picture
+    return _panels_in_a_row(panels, result, step, _caption(result, step))
 
 
 def cycles_figure(result: Result) -> Figure:
@@ -121,29 +119,30 @@ def cycles_figure(result: Result) -> Figure:
     """
     if not result.cycles:
         raise ValueError("there are no cycles in this result: a step with cycles=... makes them")
-    panels = [panel for panel, is_there in _cycle_panels(result) if is_there]
-    if not panels:
-        raise ValueError("nothing of the cycles can be drawn: the result has no history, and without friction nothing dissipates")
-    with matplotlib.rc_context(STYLE):
-        picture = Figure()
-        axes = np.atleast_1d(picture.subplots(1, len(panels)))
-        for panel, ax, letter in zip(panels, axes, "abc"):
-            panel(result, ax)
-            ax.set_title(f"({letter})")
-        picture.suptitle(_heading(result, None), fontsize=12, parse_math=False)
-        _add_legend_and_caption(picture, _cycle_caption(result))
-    return picture
-
-
-def _cycle_panels(result: Result) -> list[tuple[Any, bool]]:
-    """What can be drawn of cycles, and whether this result has it."""
     turns = _turns_in_the_last_cycle(result)
-    return [
+    drawable = [
         (loop, "shift" in result.history and not turns),
         (turning, turns),
         (nonlinear_loop, "nonlinear_shift" in result.history),
         (friction_work, "friction_work" in result.cycles),
     ]
+    panels = [panel for panel, is_there in drawable if is_there]
+    if not panels:
+        raise ValueError("nothing of the cycles can be drawn: the result has no history, and without friction nothing dissipates")
+    return _panels_in_a_row(panels, result, None, _cycle_caption(result))
+
+
+def _panels_in_a_row(panels: Sequence[Panel], result: Result, step: int | None, caption: str) -> Figure:
+    """A picture of panels beside each other, with a heading, a legend and a caption."""
+    with matplotlib.rc_context(STYLE):
+        picture = Figure()
+        axes = picture.subplots(1, len(panels), squeeze=False)[0]
+        for panel, ax, letter in zip(panels, axes, "abcd"):
+            panel(result, ax, step)
+            ax.set_title(f"({letter})")
+        picture.suptitle(_heading(result, step), fontsize=12, parse_math=False)
+        _add_legend_and_caption(picture, caption)
+    return picture
 
 
 def _turns_in_the_last_cycle(result: Result) -> bool:
@@ -162,7 +161,7 @@ def _cycle_caption(result: Result) -> str:
     seen, unit = result.observables, result.observables.unit("cycle_dissipation")
     parts = [
         f"{result.cycles.cycle.size} cycles",
-        f"the last dissipates {seen.cycle_dissipation:.4g}{f' {unit}' if _is_named(unit) else ''}",
+        f"the last dissipates {seen.cycle_dissipation:.4g}{f' {unit}' if is_named(unit) else ''}",
         f"loss factor {seen.loss_factor:.3g}" if "loss_factor" in seen else "",
         f"tractions change by {seen.cycle_change:.1e} over it",
     ]
@@ -203,7 +202,7 @@ def _stress_size(field: StressField) -> tuple[float, float]:
 def _scales(result: Result, field: StressField) -> str:
     """What pressure and length the picture is drawn over, the largest von Mises stress and tension, in the user's units."""
     unit, length = (
-        f" {unit}" if _is_named(unit) else "" for unit in (result.state.unit("pressure"), result.mesh.unit("x"))
+        f" {unit}" if is_named(unit) else "" for unit in (result.state.unit("pressure"), result.mesh.unit("x"))
     )
     parts = [
         f"p0 = {field.largest_pressure:.4g}{unit}",
@@ -306,7 +305,7 @@ def _mark_stress(ax: Axes, place: tuple[float, float], text: str, upper: bool) -
 
 def _unit(unit: str) -> str:
     """A unit to stand after a value; empty unless the user has named it."""
-    return f" {unit.replace('$', chr(92) + '$').replace('^2', '$^2$')}" if _is_named(unit) else ""
+    return f" {unit.replace('$', chr(92) + '$').replace('^2', '$^2$')}" if is_named(unit) else ""
 
 
 def _rounded(value: float) -> str:
@@ -332,48 +331,34 @@ def shear(result: Result, ax: Axes | None = None, step: int | None = None) -> Ax
     ax = _axes(ax)
     state = result.at(step)
     _shade_zones(ax, result, state)
-    for coefficient, style in _coefficients(result):
-        limit = np.where(state.status != NodeStatus.OPEN, coefficient * state.pressure, np.nan)
-        for sign, named in ((1.0, {}), (-1.0, {"label": "_limit to the left"})):
-            ax.plot(result.mesh.x, sign * limit, color="0.35", linewidth=0.7, **{**style, **named})
+    for index, coefficient in friction_limits(result):
+        limit = limit_of_friction(coefficient, state)
+        ax.plot(result.mesh.x, limit, **_limit_style(index))
+        ax.plot(result.mesh.x, -limit, **{**_limit_style(index), "label": "_limit to the left"})
     _draw_points(ax, result, state, state.shear)
-    if "shear" in result.reference and _is_last(result, state):
+    if "shear" in result.reference and is_last(result, state):
         _draw_closed_form(ax, result, result.reference.shear)
     ax.set_ylabel(_label("shear traction", r"\tau", state.unit("shear")))
     _frame_contact(ax, result, state)
     return ax
 
 
-def _coefficients(result: Result) -> list[tuple[np.ndarray, dict[str, Any]]]:
-    """Coefficients of friction at the nodes, and how their limits are drawn: one, or static and kinetic."""
-    mesh = result.mesh
-    if "static_friction" not in mesh:
-        return []
-    if np.array_equal(mesh.static_friction, mesh.kinetic_friction):
-        return [(mesh.static_friction, {"label": r"limit $\pm\mu p$"})]
-    return [
-        (mesh.static_friction, {"label": r"limit $\pm\mu_s p$"}),
-        (mesh.kinetic_friction, {"label": r"limit $\pm\mu_k p$", "linestyle": (0, (2, 2))}),
-    ]
+def _limit_style(index: str) -> dict[str, Any]:
+    """How a limit of friction is drawn: the kinetic one is dashed."""
+    label = rf"limit $\pm\mu_{index} p$" if index else r"limit $\pm\mu p$"
+    return {"color": "0.35", "linewidth": 0.7, "linestyle": (0, (2, 2)) if index == "k" else "-", "label": label}
 
 
 def surfaces(result: Result, ax: Axes | None = None, step: int | None = None) -> Axes:
     """The deformed surface of the lower body and the upper body on it."""
     ax = _axes(ax)
     state = result.at(step)
-    lower, upper = _heights(result, state)
+    lower, upper = heights(result, state)
     _draw_points(ax, result, state, lower, label="surface of the lower body", color=SURFACE)
     ax.plot(result.mesh.x, upper, color=MARKS, linewidth=0.9, label="surface of the upper body")
     ax.set_ylabel(_label("height", "y", state.unit("gap")))
     _frame_contact(ax, result, state)
     return ax
-
-
-def _heights(result: Result, state: Group) -> tuple[np.ndarray, np.ndarray]:
-    """Heights of both surfaces: the lower one deformed from its own shape, the upper one a gap above it."""
-    x = result.mesh.x
-    lower = surface(result, "lower", x) - state.get("normal_displacement", np.zeros_like(x))
-    return lower, np.where(np.isfinite(state.gap), lower + state.gap, np.nan)
 
 
 def loop(result: Result, ax: Axes | None = None, step: int | None = None) -> Axes:
@@ -388,12 +373,9 @@ def loop(result: Result, ax: Axes | None = None, step: int | None = None) -> Axe
         ax.plot(
             result.reference.shift, force, color=CLOSED_FORM, linewidth=0.9, label="closed form", markersize=4, **style
         )
-    _mark_step_ends(ax, result, step)
-    ax.set_xlabel(_label("shift", "U", history.unit("shift")))
-    ax.set_ylabel(_label("tangential force", "Q", history.unit("tangential_force")))
-    ax.locator_params(axis="x", nbins=5)
-    ax.margins(0.12)
-    return ax
+    across = _label("shift", "U", history.unit("shift"))
+    up = _label("tangential force", "Q", history.unit("tangential_force"))
+    return _finished_curve(ax, result, step, ("shift", "tangential_force"), (across, up))
 
 
 def nonlinear_loop(result: Result, ax: Axes | None = None, step: int | None = None) -> Axes:
@@ -401,12 +383,9 @@ def nonlinear_loop(result: Result, ax: Axes | None = None, step: int | None = No
     ax = _axes(ax)
     history = result.history
     ax.plot(history.nonlinear_shift, history.tangential_force, color=NUMBERS, linewidth=0.8)
-    _mark_step_ends(ax, result, step, "nonlinear_shift")
-    ax.set_xlabel(_label("non-linear shift", "U - Q/k", history.unit("nonlinear_shift")))
-    ax.set_ylabel(_label("tangential force", "Q", history.unit("tangential_force")))
-    ax.locator_params(axis="x", nbins=4)
-    ax.margins(0.12)
-    return ax
+    across = _label("non-linear shift", "U - Q/k", history.unit("nonlinear_shift"))
+    up = _label("tangential force", "Q", history.unit("tangential_force"))
+    return _finished_curve(ax, result, step, ("nonlinear_shift", "tangential_force"), (across, up), ticks=4)
 
 
 def friction_work(result: Result, ax: Axes | None = None, step: int | None = None) -> Axes:
@@ -423,13 +402,10 @@ def turning(result: Result, ax: Axes | None = None, step: int | None = None) -> 
     """Moment over rotation; step ends are numbered, `step` stands out."""
     ax = _axes(ax)
     history = result.history
-    ax.plot(history.rotation, history.moment, color=NUMBERS, linewidth=0.8, **_points(len(history.moment)), label="computed")
-    _mark_step_ends(ax, result, step, "rotation", "moment")
-    ax.set_xlabel(r"rotation $\varphi$ [rad]")
-    ax.set_ylabel(_label("moment", "M", history.unit("moment")))
-    ax.locator_params(axis="x", nbins=5)
-    ax.margins(0.12)
-    return ax
+    points = _points(history.rotation.size)
+    ax.plot(history.rotation, history.moment, color=NUMBERS, linewidth=0.8, **points, label="computed")
+    labels = r"rotation $\varphi$ [rad]", _label("moment", "M", history.unit("moment"))
+    return _finished_curve(ax, result, step, ("rotation", "moment"), labels)
 
 
 def rolling(result: Result, ax: Axes | None = None, step: int | None = None) -> Axes:
@@ -437,10 +413,18 @@ def rolling(result: Result, ax: Axes | None = None, step: int | None = None) -> 
     ax = _axes(ax)
     history = result.history
     ax.plot(history.rolled, history.slid, color=NUMBERS, linewidth=0.8, **_points(len(history.slid)), label="computed")
-    _mark_step_ends(ax, result, step, "rolled", "slid")
-    ax.set_xlabel(_label("rolled distance", "s", history.unit("rolled")))
-    ax.set_ylabel(_label("sliding", r"U + h\varphi", history.unit("slid")))
-    ax.locator_params(axis="x", nbins=5)
+    across = _label("rolled distance", "s", history.unit("rolled"))
+    up = _label("sliding", r"U + h\varphi", history.unit("slid"))
+    return _finished_curve(ax, result, step, ("rolled", "slid"), (across, up))
+
+
+def _finished_curve(
+    ax: Axes, result: Result, step: int | None, names: tuple[str, str], labels: tuple[str, str], ticks: int = 5
+) -> Axes:
+    """A curve over the records of the history with numbered step ends and labels."""
+    _mark_step_ends(ax, result, step, *names)
+    ax.set(xlabel=labels[0], ylabel=labels[1])
+    ax.locator_params(axis="x", nbins=ticks)
     ax.margins(0.12)
     return ax
 
@@ -461,14 +445,9 @@ def _loads(result: Result, step: int | None) -> Group:
     return result.summary if step is None else result.at(step)
 
 
-def _has_friction(result: Result) -> bool:
-    """Whether the tangential problem was solved; slip is not a number where it was not."""
-    return not bool(np.isnan(result.state.slip).all())
-
-
 def _is_sheared(result: Result) -> bool:
     """Whether the load history has a tangential force to speak of."""
-    if not _has_friction(result) or not result.history:
+    if not has_friction(result) or not result.history:
         return False
     negligible = 1.0e-9 * np.max(np.abs(result.history.normal_force))
     return bool(np.any(np.abs(result.history.tangential_force) > negligible))
@@ -486,14 +465,7 @@ def _is_rolled(result: Result) -> bool:
 
 def _same_normal_force(result: Result, step: int | None) -> bool:
     """Whether the closed form of the pressure, which is that of the last state, holds for this one."""
-    if step is not None and _is_rolled(result):
-        return False
-    return bool(np.isclose(_loads(result, step).normal_force, result.summary.normal_force, rtol=1.0e-9, atol=0.0))
-
-
-def _is_last(result: Result, state: Group) -> bool:
-    """Whether a state is the last one, for which alone the closed form of the shear traction holds."""
-    return all(np.array_equal(state[name], result.state[name]) for name in ("pressure", "shear"))
+    return step is None or (has_last_normal_force(result, result.at(step)) and not _is_rolled(result))
 
 
 def _draw_closed_form(ax: Axes, result: Result, values: np.ndarray) -> None:
@@ -540,21 +512,12 @@ def _runs(values: np.ndarray) -> Iterator[tuple[int, int, int]]:
 
 def _frame_contact(ax: Axes, result: Result, state: Group) -> None:
     """Show the contact and a quarter of its length on either side, as far as the mesh goes; else all of it."""
-    half = 0.5 * result.mesh.width
-    starts, ends = result.mesh.x - half, result.mesh.x + half
-    left, right = starts[0], ends[-1]
-    touching = state.status != NodeStatus.OPEN
-    if touching.any():
-        margin = 0.25 * (ends[touching][-1] - starts[touching][0])
-        left, right = max(left, starts[touching][0] - margin), min(right, ends[touching][-1] + margin)
-    ax.set_xlim(left, right)
+    ax.set_xlim(contact(result, [state]))
     ax.locator_params(axis="x", nbins=5)
     ax.set_xlabel(_label("position", "x", result.mesh.unit("x")))
 
 
-def _mark_step_ends(
-    ax: Axes, result: Result, step: int | None, across: str = "shift", up: str = "tangential_force"
-) -> None:
+def _mark_step_ends(ax: Axes, result: Result, step: int | None, across: str, up: str) -> None:
     """Numbers at the ends of steps and reversals, as in `result.steps`, those at one place together; an early end."""
     history = result.history
     curve = np.column_stack((history[across], history[up]))
@@ -606,13 +569,19 @@ def _enumeration(numbers: list[int]) -> str:
     return ", ".join(str(number) for number in numbers)
 
 
-def _add_legend_and_caption(picture: Figure, caption: str) -> None:
-    """One legend below all panels, lines before zones, and the caption below it; sets the size of the picture."""
+def _legend_entries(picture: Figure, lines_first: bool = True) -> tuple[list[Artist], list[str]]:
+    """Handles and labels of everything that is drawn, once, lines before zones."""
     handles: dict[str, Artist] = {}
     for ax in picture.axes:
         for handle, label in zip(*ax.get_legend_handles_labels()):
             handles.setdefault(label, handle)
-    labels = sorted(handles, key=lambda label: isinstance(handles[label], Patch))
+    labels = sorted(handles, key=lambda label: lines_first and isinstance(handles[label], Patch))
+    return [handles[label] for label in labels], labels
+
+
+def _add_legend_and_caption(picture: Figure, caption: str) -> None:
+    """One legend below all panels, lines before zones, and the caption below it; sets the size of the picture."""
+    handles, labels = _legend_entries(picture)
     columns = 2 * len(picture.axes)
     caption = "\n".join(textwrap.fill(line, CAPTION_LETTERS * len(picture.axes)) for line in caption.splitlines())
     legend_top = 2.0 * SPACE + CAPTION_ROW * (1 + caption.count("\n")) + LEGEND_ROW * -(-len(labels) // columns)
@@ -621,7 +590,7 @@ def _add_legend_and_caption(picture: Figure, caption: str) -> None:
     panels = (0.0, 1.0 - PANEL_HEIGHT / height, 1.0, PANEL_HEIGHT / height)
     picture.set_layout_engine(ConstrainedLayoutEngine(rect=panels, w_pad=0.08))
     picture.legend(
-        [handles[label] for label in labels],
+        handles,
         labels,
         ncols=columns,
         fontsize=10,
@@ -656,12 +625,7 @@ def _caption(result: Result, step: int | None) -> str:
 
 def _label(name: str, symbol: str, unit: str) -> str:
     """Label of an axis; the unit only where the user has named it."""
-    if not _is_named(unit):
+    if not is_named(unit):
         return f"{name} ${symbol}$"
     shown = unit.replace("$", r"\$").replace("^2", "$^2$")
     return f"{name} ${symbol}$ [{shown}]"
-
-
-def _is_named(unit: str) -> bool:
-    """Whether the user has named a unit."""
-    return unit not in ("", "1") and "length" not in unit and "force" not in unit

@@ -1,3 +1,4 @@
+# mypy: disable-error-code="empty-body"
 """Closed forms, evaluated by the library, NaN outside their domain. Arguments may be arrays; they are broadcast.
 
 Forces are per unit thickness. `half_width` is that of the contact. `beta` is Dundurs' parameter
@@ -6,256 +7,210 @@ Forces are per unit thickness. `half_width` is that of the contact. `beta` is Du
 
 from __future__ import annotations
 
+import functools
+import inspect
+from typing import Any, Callable, TypeVar, cast
+
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ._library import library
 
+#: A number, or an array of them.
+Number = ArrayLike
+Array = NDArray[np.float64]
 
-def hertz_half_width(
-    normal_force: ArrayLike, radius: ArrayLike, shear_modulus: ArrayLike, kolosov_constant: ArrayLike
-) -> NDArray[np.float64]:
+_Function = TypeVar("_Function", bound=Callable[..., Array])
+
+
+def _closed_form(declared: _Function) -> _Function:
+    """Evaluate the library's function of the same name, mfv_NAME, over arrays; a plain number for plain numbers."""
+    signature = inspect.signature(declared)
+
+    @functools.wraps(declared)
+    def evaluated(*arguments: Number, **named: Number) -> Any:
+        function = np.vectorize(getattr(library(), f"mfv_{declared.__name__}"), otypes=[np.float64])
+        return function(*signature.bind(*arguments, **named).args)[()]
+
+    return cast(_Function, evaluated)
+
+
+@_closed_form
+def hertz_half_width(normal_force: Number, radius: Number, shear_modulus: Number, kolosov_constant: Number) -> Array:
     """Half-width of the contact of a rigid cylinder with a half-plane (Hertz)."""
-    return _evaluated("mfv_hertz_half_width", normal_force, radius, shear_modulus, kolosov_constant)
 
 
-def hertz_pressure(x: ArrayLike, normal_force: ArrayLike, half_width: ArrayLike) -> NDArray[np.float64]:
+@_closed_form
+def hertz_pressure(x: Number, normal_force: Number, half_width: Number) -> Array:
     """Pressure at x under a cylinder (Hertz)."""
-    return _evaluated("mfv_hertz_pressure", x, normal_force, half_width)
 
 
-def flat_punch_pressure(x: ArrayLike, normal_force: ArrayLike, half_width: ArrayLike) -> NDArray[np.float64]:
+@_closed_form
+def flat_punch_pressure(x: Number, normal_force: Number, half_width: Number) -> Array:
     """Pressure at x under a rigid flat punch without friction."""
-    return _evaluated("mfv_flat_punch_pressure", x, normal_force, half_width)
 
 
-def spence_stick_ratio(friction_coefficient: ArrayLike, beta: ArrayLike) -> NDArray[np.float64]:
+@_closed_form
+def spence_stick_ratio(friction_coefficient: Number, beta: Number) -> Array:
     """Width of the stuck zone over that of the contact under a growing normal force (Spence)."""
-    return _evaluated("mfv_spence_stick_ratio", friction_coefficient, beta)
 
 
+@_closed_form
 def spence_cylinder_shear(
-    x: ArrayLike, normal_force: ArrayLike, half_width: ArrayLike, friction_coefficient: ArrayLike, beta: ArrayLike
-) -> NDArray[np.float64]:
+    x: Number, normal_force: Number, half_width: Number, friction_coefficient: Number, beta: Number
+) -> Array:
     """Shear traction at x under a cylinder pressed with friction, Goodman's coupling (Spence)."""
-    return _evaluated("mfv_spence_cylinder_shear", x, normal_force, half_width, friction_coefficient, beta)
 
 
+@_closed_form
 def spence_flat_punch_shear(
-    x: ArrayLike, normal_force: ArrayLike, half_width: ArrayLike, friction_coefficient: ArrayLike, beta: ArrayLike
-) -> NDArray[np.float64]:
+    x: Number, normal_force: Number, half_width: Number, friction_coefficient: Number, beta: Number
+) -> Array:
     """Shear traction at x under a flat punch pressed with friction, Goodman's coupling (Spence)."""
-    return _evaluated("mfv_spence_flat_punch_shear", x, normal_force, half_width, friction_coefficient, beta)
 
 
-def mindlin_stick_ratio(
-    tangential_force: ArrayLike, normal_force: ArrayLike, friction_coefficient: ArrayLike
-) -> NDArray[np.float64]:
+@_closed_form
+def mindlin_stick_ratio(tangential_force: Number, normal_force: Number, friction_coefficient: Number) -> Array:
     """Width of the stuck zone over that of the contact of a cylinder pressed, then sheared (Cattaneo, Mindlin)."""
-    return _evaluated("mfv_mindlin_stick_ratio", tangential_force, normal_force, friction_coefficient)
 
 
+@_closed_form
 def mindlin_shear(
-    x: ArrayLike,
-    tangential_force: ArrayLike,
-    normal_force: ArrayLike,
-    half_width: ArrayLike,
-    friction_coefficient: ArrayLike,
-) -> NDArray[np.float64]:
+    x: Number, tangential_force: Number, normal_force: Number, half_width: Number, friction_coefficient: Number
+) -> Array:
     """Shear traction at x under a cylinder pressed, then sheared by a growing force (Cattaneo, Mindlin)."""
-    return _evaluated("mfv_mindlin_shear", x, tangential_force, normal_force, half_width, friction_coefficient)
 
 
+@_closed_form
 def mindlin_dissipation(
-    tangential_force: ArrayLike,
-    normal_force: ArrayLike,
-    half_width: ArrayLike,
-    radius: ArrayLike,
-    friction_coefficient: ArrayLike,
-) -> NDArray[np.float64]:
+    tangential_force: Number, normal_force: Number, half_width: Number, radius: Number, friction_coefficient: Number
+) -> Array:
     """Energy that a cylinder dissipates in a cycle of shear between +Q and -Q, per unit thickness (Mindlin)."""
-    return _evaluated(
-        "mfv_mindlin_dissipation", tangential_force, normal_force, half_width, radius, friction_coefficient
-    )
 
 
+@_closed_form
 def carter_creepage(
-    tangential_force: ArrayLike,
-    normal_force: ArrayLike,
-    half_width: ArrayLike,
-    radius: ArrayLike,
-    friction_coefficient: ArrayLike,
-) -> NDArray[np.float64]:
+    tangential_force: Number, normal_force: Number, half_width: Number, radius: Number, friction_coefficient: Number
+) -> Array:
     """Sliding per rolled distance of two similar cylinders in steady rolling to the right (Carter).
 
     1/radius = 1/R1 + 1/R2. Rolling to the left the creepage has the other sign.
     """
-    return _evaluated("mfv_carter_creepage", tangential_force, normal_force, half_width, radius, friction_coefficient)
 
 
+@_closed_form
 def carter_shear(
-    x: ArrayLike,
-    tangential_force: ArrayLike,
-    normal_force: ArrayLike,
-    half_width: ArrayLike,
-    friction_coefficient: ArrayLike,
-) -> NDArray[np.float64]:
+    x: Number, tangential_force: Number, normal_force: Number, half_width: Number, friction_coefficient: Number
+) -> Array:
     """Shear traction at x, from the middle of the contact, of similar cylinders that roll to the right (Carter)."""
-    return _evaluated("mfv_carter_shear", x, tangential_force, normal_force, half_width, friction_coefficient)
 
 
-def wedge_half_width(
-    normal_force: ArrayLike, slope: ArrayLike, shear_modulus: ArrayLike, kolosov_constant: ArrayLike
-) -> NDArray[np.float64]:
+def wedge_half_width(normal_force: Number, slope: Number, shear_modulus: Number, kolosov_constant: Number) -> Array:
     """Half-width of the contact of a rigid wedge with a half-plane; `slope`: tangent of the angle of a flank to the surface."""
     return power_half_width(normal_force, slope, 1.0, shear_modulus, kolosov_constant)
 
 
-def wedge_pressure(x: ArrayLike, normal_force: ArrayLike, half_width: ArrayLike) -> NDArray[np.float64]:
+def wedge_pressure(x: Number, normal_force: Number, half_width: Number) -> Array:
     """Pressure at x under a wedge, large at its tip."""
     return power_pressure(x, normal_force, half_width, 1.0)
 
 
-def wedge_stick_ratio(
-    tangential_force: ArrayLike, normal_force: ArrayLike, friction_coefficient: ArrayLike
-) -> NDArray[np.float64]:
+def wedge_stick_ratio(tangential_force: Number, normal_force: Number, friction_coefficient: Number) -> Array:
     """Width of the stuck zone over that of the contact of a wedge pressed, then sheared: 1 - Q/(mu P)."""
     return power_stick_ratio(tangential_force, normal_force, friction_coefficient, 1.0)
 
 
 def wedge_shear(
-    x: ArrayLike,
-    tangential_force: ArrayLike,
-    normal_force: ArrayLike,
-    half_width: ArrayLike,
-    friction_coefficient: ArrayLike,
-) -> NDArray[np.float64]:
+    x: Number, tangential_force: Number, normal_force: Number, half_width: Number, friction_coefficient: Number
+) -> Array:
     """Shear traction at x under a wedge pressed, then sheared by a growing force."""
     return power_shear(x, tangential_force, normal_force, half_width, friction_coefficient, 1.0)
 
 
+@_closed_form
 def power_half_width(
-    normal_force: ArrayLike,
-    coefficient: ArrayLike,
-    exponent: ArrayLike,
-    shear_modulus: ArrayLike,
-    kolosov_constant: ArrayLike,
-) -> NDArray[np.float64]:
+    normal_force: Number, coefficient: Number, exponent: Number, shear_modulus: Number, kolosov_constant: Number
+) -> Array:
     """Half-width of the contact of a rigid body of the shape coefficient |x|^exponent with a half-plane."""
-    return _evaluated("mfv_power_half_width", normal_force, coefficient, exponent, shear_modulus, kolosov_constant)
 
 
-def power_approach(
-    half_width: ArrayLike, coefficient: ArrayLike, exponent: ArrayLike, datum: ArrayLike
-) -> NDArray[np.float64]:
+@_closed_form
+def power_approach(half_width: Number, coefficient: Number, exponent: Number, datum: Number) -> Array:
     """Approach of such a body to a half-plane's surface point at the distance `datum`."""
-    return _evaluated("mfv_power_approach", half_width, coefficient, exponent, datum)
 
 
-def power_pressure(
-    x: ArrayLike, normal_force: ArrayLike, half_width: ArrayLike, exponent: ArrayLike
-) -> NDArray[np.float64]:
+@_closed_form
+def power_pressure(x: Number, normal_force: Number, half_width: Number, exponent: Number) -> Array:
     """Pressure at x under such a body."""
-    return _evaluated("mfv_power_pressure", x, normal_force, half_width, exponent)
 
 
+@_closed_form
 def power_stick_ratio(
-    tangential_force: ArrayLike, normal_force: ArrayLike, friction_coefficient: ArrayLike, exponent: ArrayLike
-) -> NDArray[np.float64]:
+    tangential_force: Number, normal_force: Number, friction_coefficient: Number, exponent: Number
+) -> Array:
     """Width of the stuck zone over that of the contact of such a body pressed, then sheared (Jaeger, Ciavarella)."""
-    return _evaluated("mfv_power_stick_ratio", tangential_force, normal_force, friction_coefficient, exponent)
 
 
+@_closed_form
 def power_shear(
-    x: ArrayLike,
-    tangential_force: ArrayLike,
-    normal_force: ArrayLike,
-    half_width: ArrayLike,
-    friction_coefficient: ArrayLike,
-    exponent: ArrayLike,
-) -> NDArray[np.float64]:
+    x: Number,
+    tangential_force: Number,
+    normal_force: Number,
+    half_width: Number,
+    friction_coefficient: Number,
+    exponent: Number,
+) -> Array:
     """Shear traction at x under such a body pressed, then sheared by a growing force (Jaeger, Ciavarella)."""
-    return _evaluated("mfv_power_shear", x, tangential_force, normal_force, half_width, friction_coefficient, exponent)
 
 
+@_closed_form
 def rounded_punch_half_width(
-    normal_force: ArrayLike,
-    flat_half_width: ArrayLike,
-    edge_radius: ArrayLike,
-    shear_modulus: ArrayLike,
-    kolosov_constant: ArrayLike,
-) -> NDArray[np.float64]:
+    normal_force: Number, flat_half_width: Number, edge_radius: Number, shear_modulus: Number, kolosov_constant: Number
+) -> Array:
     """Half-width of the contact of a rigid flat punch with rounded edges with a half-plane (Ciavarella, Hills and Monno)."""
-    return _evaluated(
-        "mfv_rounded_punch_half_width", normal_force, flat_half_width, edge_radius, shear_modulus, kolosov_constant
-    )
 
 
-def rounded_punch_approach(
-    half_width: ArrayLike, flat_half_width: ArrayLike, edge_radius: ArrayLike, datum: ArrayLike
-) -> NDArray[np.float64]:
+@_closed_form
+def rounded_punch_approach(half_width: Number, flat_half_width: Number, edge_radius: Number, datum: Number) -> Array:
     """Approach of such a punch to a half-plane's surface point at the distance `datum`."""
-    return _evaluated("mfv_rounded_punch_approach", half_width, flat_half_width, edge_radius, datum)
 
 
-def rounded_punch_pressure(
-    x: ArrayLike, normal_force: ArrayLike, half_width: ArrayLike, flat_half_width: ArrayLike
-) -> NDArray[np.float64]:
+@_closed_form
+def rounded_punch_pressure(x: Number, normal_force: Number, half_width: Number, flat_half_width: Number) -> Array:
     """Pressure at x under such a punch."""
-    return _evaluated("mfv_rounded_punch_pressure", x, normal_force, half_width, flat_half_width)
 
 
+@_closed_form
 def rounded_punch_stick_ratio(
-    tangential_force: ArrayLike,
-    normal_force: ArrayLike,
-    friction_coefficient: ArrayLike,
-    half_width: ArrayLike,
-    flat_half_width: ArrayLike,
-) -> NDArray[np.float64]:
+    tangential_force: Number,
+    normal_force: Number,
+    friction_coefficient: Number,
+    half_width: Number,
+    flat_half_width: Number,
+) -> Array:
     """Width of the stuck zone over that of the contact of such a punch pressed, then sheared (Jaeger, Ciavarella)."""
-    return _evaluated(
-        "mfv_rounded_punch_stick_ratio", tangential_force, normal_force, friction_coefficient, half_width, flat_half_width
-    )
 
 
+@_closed_form
 def rounded_punch_shear(
-    x: ArrayLike,
-    tangential_force: ArrayLike,
-    normal_force: ArrayLike,
-    half_width: ArrayLike,
-    friction_coefficient: ArrayLike,
-    flat_half_width: ArrayLike,
-) -> NDArray[np.float64]:
+    x: Number,
+    tangential_force: Number,
+    normal_force: Number,
+    half_width: Number,
+    friction_coefficient: Number,
+    flat_half_width: Number,
+) -> Array:
     """Shear traction at x under such a punch pressed, then sheared by a growing force (Jaeger, Ciavarella)."""
-    return _evaluated(
-        "mfv_rounded_punch_shear",
-        x,
-        tangential_force,
-        normal_force,
-        half_width,
-        friction_coefficient,
-        flat_half_width,
-    )
 
 
-def persson_force(
-    half_angle: ArrayLike, clearance: ArrayLike, youngs_modulus: ArrayLike, poisson_ratio: ArrayLike
-) -> NDArray[np.float64]:
+@_closed_form
+def persson_force(half_angle: Number, clearance: Number, youngs_modulus: Number, poisson_ratio: Number) -> Array:
     """Force at which the contact of a pin in a bore reaches `half_angle` (radians) to either side (Persson).
 
     Both of one material in plane strain, without friction. `clearance`: by how much the bore's radius is larger.
     """
-    return _evaluated("mfv_persson_force", half_angle, clearance, youngs_modulus, poisson_ratio)
 
 
-def yield_contact_arc(
-    youngs_modulus: ArrayLike, poisson_ratio: ArrayLike, yield_strength: ArrayLike
-) -> NDArray[np.float64]:
+@_closed_form
+def yield_contact_arc(youngs_modulus: Number, poisson_ratio: Number, yield_strength: Number) -> Array:
     """Contact arc 2a/R (radians) at which a cylinder pressed on a rigid plane without friction yields, plane strain."""
-    return _evaluated("mfv_yield_contact_arc", youngs_modulus, poisson_ratio, yield_strength)
-
-
-def _evaluated(function: str, *arguments: ArrayLike) -> NDArray[np.float64]:
-    """A function of the library over arrays; a plain number for plain numbers."""
-    values: NDArray[np.float64] = np.vectorize(getattr(library(), function), otypes=[np.float64])(*arguments)
-    return values[()]

@@ -17,11 +17,23 @@ from jinja2 import Environment, StrictUndefined
 from markupsafe import Markup
 from plotly.offline import get_plotlyjs
 
-from . import __version__, plot
+from . import __version__, _html
 from .codes import NodeStatus
-from .load_history import LoadHistory, kept_states, thinned
-from .result import Group, Result, counts
-from .views import Curve, contact, curve_of
+from .load_history import LoadHistory, evenly, kept_states, thinned
+from .result import Group, Result, counts, is_last
+from .views import (
+    LOADS,
+    Curve,
+    contact,
+    curve_of,
+    friction_limits,
+    has_friction,
+    has_last_normal_force,
+    heights,
+    is_named,
+    limit_of_friction,
+    statuses,
+)
 
 #: The most states, records of the history and rows of the table of cycles that a page shows.
 MOST_STATES, MOST_RECORDS, MOST_CYCLES = 240, 4000, 40
@@ -75,6 +87,9 @@ CYCLE_COLUMNS = (
     "change",
 )
 
+#: How the page writes the limits of friction, by the index of their coefficients.
+LIMITS = {"": "μp", "s": "μₛp", "k": "μₖp"}
+
 SUPERSCRIPTS = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 
 NUMBERS = {"color": "var(--numbers)", "width": 1.5}
@@ -106,7 +121,7 @@ def page(result: Result, source: str, history: LoadHistory | None = None) -> str
             **_cycle_figures(result, _in_view(result, limits)),
         },
     }
-    resources = files(__package__) / "pages"
+    resources, reference = files(__package__) / "pages", result.reference
     environment = Environment(autoescape=True, undefined=StrictUndefined, trim_blocks=True, lstrip_blocks=True)
     environment.filters["number"] = _number
     return environment.from_string((resources / "report.html").read_text(encoding="utf-8")).render(
@@ -115,12 +130,12 @@ def page(result: Result, source: str, history: LoadHistory | None = None) -> str
         result=result,
         attributes={name: text.strip() for name, text in result.attributes.items()},
         key_numbers=_key_numbers(result),
-        zones=_zones(shown),
+        zones=[STATUSES[NodeStatus(code)] for code in statuses(shown) if code != NodeStatus.OPEN],
         notes=notes,
         figures=data["figures"],
         states=len(shown.steps),
-        has_friction=plot._has_friction(result),
-        sources=_sources(result),
+        has_friction=has_friction(result),
+        sources={name: reference.description(name) for name in ("pressure", "shear", "shift") if name in reference},
         tables=_tables(result),
         cycles=_cycle_table(result),
         version=__version__,
@@ -144,26 +159,24 @@ def _state(result: Result, number: int, inside: slice, curve: Curve, is_kept: bo
     `is_kept`: whether it is one of the file's, with a step and a reversal of its own.
     """
     state = result.steps[number]
-    is_last = plot._is_last(result, state)
     pressures: dict[str, Any] = {"pressure": _list(state.pressure[inside])}
     if "pressure" in result.reference:
-        same_force = np.isclose(state.normal_force, result.summary.normal_force, rtol=1.0e-9, atol=0.0)
-        pressures["closed form"] = _list(result.reference.pressure[inside]) if same_force else []
-    if plot._has_friction(result):
+        holds = has_last_normal_force(result, state)
+        pressures["closed form"] = _list(result.reference.pressure[inside]) if holds else []
+    if has_friction(result):
         shears: dict[str, Any] = {
             "zones": [state.status[inside].tolist()],
             "shear traction": _list(state.shear[inside]),
         }
-        for name, coefficient in _coefficients(result):
-            limit = np.where(state.status != NodeStatus.OPEN, coefficient * state.pressure, np.nan)[inside]
+        for index, coefficient in friction_limits(result):
+            name, limit = LIMITS[index], limit_of_friction(coefficient, state)[inside]
             shears[f"+{name}"], shears[f"\N{MINUS SIGN}{name}"] = _list(limit), _list(-limit)
         if "shear" in result.reference:
-            shears["closed form"] = _list(result.reference.shear[inside]) if is_last else []
+            shears["closed form"] = _list(result.reference.shear[inside]) if is_last(result, state) else []
         lower = {"shear": shears}
     else:
-        heights = plot._heights(result, state)
-        names = "lower body", "upper body"
-        lower = {"surfaces": {name: _list(height[inside]) for name, height in zip(names, heights)}}
+        below, above = (_list(height[inside]) for height in heights(result, state))
+        lower = {"surfaces": {"lower body": below, "upper body": above}}
     return {
         "curves": {"pressure": pressures, **lower},
         "point": [_rounded(state[curve.across]), _rounded(state[curve.up])],
@@ -176,22 +189,8 @@ def _words(result: Result, state: Group, number: int, is_kept: bool) -> str:
     place = f"state {number + 1} of {len(result.steps)}"
     if is_kept and "step" in state:
         place += f" (step {state.step}, reversal {state.reversal})"
-    loads = [
-        f"{symbol} = {_with_unit(state, name)}"
-        for symbol, name in (("P", "normal_force"), ("Q", "tangential_force"), ("M", "moment"))
-        if name in state
-    ]
+    loads = [f"{symbol} = {_with_unit(state, name)}" for symbol, name in LOADS if name in state]
     return ", ".join([place, *loads, counts(state)])
-
-
-def _coefficients(result: Result) -> list[tuple[str, np.ndarray]]:
-    """Names of the limits of friction and the coefficients at the nodes: one, or static and kinetic."""
-    mesh = result.mesh
-    if "static_friction" not in mesh:
-        return []
-    if np.array_equal(mesh.static_friction, mesh.kinetic_friction):
-        return [("μp", mesh.static_friction)]
-    return [("μₛp", mesh.static_friction), ("μₖp", mesh.kinetic_friction)]
 
 
 def _traction_figures(result: Result, inside: slice) -> dict[str, Any]:
@@ -204,7 +203,7 @@ def _traction_figures(result: Result, inside: slice) -> dict[str, Any]:
         pressure.add_scatter(x=x, name="closed form", mode="lines", line=CLOSED_FORM)
     pressure.add_scatter(x=x, name="pressure", **POINTS)
     figures = {"pressure": pressure}
-    if plot._has_friction(result):
+    if has_friction(result):
         figures["shear"] = _shear_figure(result, inside, x, across)
     else:
         surfaces = _figure(across, _axis("height", "y", result.state.unit("gap")))
@@ -216,7 +215,7 @@ def _traction_figures(result: Result, inside: slice) -> dict[str, Any]:
 
 def _shear_figure(result: Result, inside: slice, x: Sequence[Any], across: dict[str, Any]) -> go.Figure:
     """Shear traction between the limits of friction, stick and slip zones behind them."""
-    limits = _coefficients(result)
+    limits = friction_limits(result)
     bound = max(
         [float(np.max(np.abs(state.shear))) for state in result.steps]
         + [float(np.max(coefficient * state.pressure)) for state in result.steps for _, coefficient in limits]
@@ -226,10 +225,10 @@ def _shear_figure(result: Result, inside: slice, x: Sequence[Any], across: dict[
     figure.add_heatmap(
         x=_edges(result, inside), y=[-2.0 * bound, 2.0 * bound], name="zones", hoverinfo="skip", **_status_colours()
     )
-    for number, (name, _) in enumerate(limits):
-        line = {**LIMIT, "dash": "dot" if number > 0 else "solid"}
+    for index, _ in limits:
+        line = {**LIMIT, "dash": "dot" if index == "k" else "solid"}
         for sign in "+\N{MINUS SIGN}":
-            figure.add_scatter(x=x, name=f"{sign}{name}", mode="lines", line=line)
+            figure.add_scatter(x=x, name=f"{sign}{LIMITS[index]}", mode="lines", line=line)
     if "shear" in result.reference:
         figure.add_scatter(x=x, name="closed form", mode="lines", line=CLOSED_FORM)
     figure.add_scatter(x=x, name="shear traction", **POINTS)
@@ -238,21 +237,16 @@ def _shear_figure(result: Result, inside: slice, x: Sequence[Any], across: dict[
 
 def _curve_figure(result: Result, curve: Curve) -> dict[str, Any]:
     """Load over displacement, and the point that the slider moves, which comes last."""
-    names = curve.across, curve.up
-    labels = (
-        _axis(*label, result.summary.unit(name)) for name, label in zip(names, (curve.across_label, curve.up_label))
-    )
-    figure = _figure(*labels)
-    if result.history:
-        chosen = _some(result.history[curve.across].size, MOST_RECORDS)
-        values = [_list(result.history[name][chosen]) for name in names]
-    else:
-        values = [_list([state[name] for state in result.steps]) for name in names]
-    figure.add_scatter(x=values[0], y=values[1], name="computed", mode="lines", line=NUMBERS)
+    units = (result.summary.unit(name) for name in (curve.across, curve.up))
+    figure = _figure(*(_axis(*label, unit) for label, unit in zip((curve.across_label, curve.up_label), units)))
+    across, up = curve.values(result)
+    chosen = evenly(across.size, MOST_RECORDS)
+    loads = _list(up[chosen])
+    figure.add_scatter(x=_list(across[chosen]), y=loads, name="computed", mode="lines", line=NUMBERS)
     if curve.across == "shift" and result.history and "shift" in result.reference:
         closed = {**CLOSED_FORM, "dash": "dash"}
         shift = _list(result.reference.shift[chosen])
-        figure.add_scatter(x=shift, y=values[1], name="closed form", mode="lines", line=closed)
+        figure.add_scatter(x=shift, y=loads, name="closed form", mode="lines", line=closed)
     figure.add_scatter(name="this state", mode="markers", marker={"size": 13, "color": "var(--point)"})
     return _plain(figure)
 
@@ -281,7 +275,7 @@ def _history_figures(result: Result) -> dict[str, Any]:
     history = result.history
     if not history:
         return {}
-    chosen = _some(history.normal_force.size, MOST_RECORDS)
+    chosen = evenly(history.normal_force.size, MOST_RECORDS)
     record = (chosen + 1).tolist()
 
     def over_records(names: Iterable[tuple[str, str]], label: tuple[str, str, str]) -> dict[str, Any]:
@@ -290,11 +284,11 @@ def _history_figures(result: Result) -> dict[str, Any]:
             figure.add_scatter(x=record, y=_list(history[name][chosen]), name=shown, mode="lines", line=line)
         return _plain(figure)
 
-    has_friction = plot._has_friction(result)
-    forces = [("normal_force", "normal force P")] + [("tangential_force", "tangential force Q")] * has_friction
-    nodes = [("contact_nodes", "in contact")] + [("stick_nodes", "stuck")] * has_friction
+    is_rubbed = has_friction(result)
+    forces = [("normal_force", "normal force P")] + [("tangential_force", "tangential force Q")] * is_rubbed
+    nodes = [("contact_nodes", "in contact")] + [("stick_nodes", "stuck")] * is_rubbed
     figures = {"forces": over_records(forces, ("force", "", history.unit("normal_force")))}
-    if has_friction:
+    if is_rubbed:
         label = "dissipation", "", history.unit("dissipation")
         figures["dissipation"] = over_records([("dissipation", "dissipation")], label)
     figures["nodes"] = over_records(nodes, ("nodes", "", "1"))
@@ -346,7 +340,7 @@ def _figure(across: dict[str, Any], up: dict[str, Any]) -> go.Figure:
 
 def _axis(name: str, symbol: str, unit: str, limits: Sequence[float] | None = None) -> dict[str, Any]:
     """Title, and where given the range, of an axis; the unit only where the user has named it."""
-    shown = f" [{_unit(unit)}]" if plot._is_named(unit) else ""
+    shown = f" [{_unit(unit)}]" if is_named(unit) else ""
     title = f"{name} <i>{symbol}</i>{shown}" if symbol else f"{name}{shown}"
     axis: dict[str, Any] = {"title": {"text": title}}
     if limits is not None:
@@ -377,23 +371,10 @@ def _edges(result: Result, inside: slice) -> list[float]:
     return [float(2.0 * x[0] - middles[0]), *map(float, middles), float(2.0 * x[-1] - middles[-1])]
 
 
-def _zones(result: Result) -> list[tuple[str, str]]:
-    """Words and colours of what nodes in contact come to be."""
-    seen = np.unique(np.concatenate([state.status for state in result.steps]))
-    return [STATUSES[NodeStatus(code)] for code in seen if code != NodeStatus.OPEN]
-
-
-def _sources(result: Result) -> dict[str, str]:
-    """Where the closed forms come from, by what they are of."""
-    return {
-        name: result.reference.description(name) for name in ("pressure", "shear", "shift") if name in result.reference
-    }
-
-
 def _key_numbers(result: Result) -> list[dict[str, str]]:
     """What a reader looks for first: name, value with unit, error bar, definition."""
     found = []
-    left_out = () if plot._has_friction(result) else OF_FRICTION
+    left_out: tuple[str, ...] = () if has_friction(result) else OF_FRICTION
     if result.summary.get("patches", 1) == 1:
         left_out += ("contact_length", "patches")  # what is a half-width is not told twice
     for group_name, name, shown in KEY_NUMBERS:
@@ -435,7 +416,7 @@ def _cycle_table(result: Result) -> dict[str, Any]:
     if not cycles:
         return {}
     names = [name for name in CYCLE_COLUMNS if name in cycles and not np.isnan(cycles[name]).all()]
-    chosen = _some(cycles.cycle.size, MOST_CYCLES)
+    chosen = evenly(cycles.cycle.size, MOST_CYCLES)
     rows = [(int(cycles.cycle[row]), [_number(cycles[name][row]) for name in names]) for row in chosen]
     return {
         "names": [(name.replace("_", " "), _unit(cycles.unit(name))) for name in names],
@@ -447,12 +428,12 @@ def _cycle_table(result: Result) -> dict[str, Any]:
 def _with_unit(group: Group, name: str) -> str:
     """A number with its unit where the user has named one."""
     unit = group.unit(name)
-    return f"{_number(group[name])}{f' {_unit(unit)}' if plot._is_named(unit) else ''}"
+    return f"{_number(group[name])}{f' {_unit(unit)}' if is_named(unit) else ''}"
 
 
 def _unit(unit: str) -> str:
     """A unit for a reader; nothing for that of a pure number."""
-    return "" if unit == "1" else unit.replace("^2", "²").replace("^3", "³")
+    return _html.unit(unit).replace("^2", "²").replace("^3", "³")
 
 
 def _number(value: Any) -> str:
@@ -464,11 +445,6 @@ def _number(value: Any) -> str:
         return digits
     power = str(int(exponent.replace("\N{MINUS SIGN}", "-")))
     return f"{digits}\N{NO-BREAK SPACE}\N{MULTIPLICATION SIGN}\N{NO-BREAK SPACE}10{power.translate(SUPERSCRIPTS)}"
-
-
-def _some(size: int, most: int) -> np.ndarray:
-    """Indices of at most that many of a number of things, evenly, the first and the last among them."""
-    return np.unique(np.linspace(0, size - 1, min(size, most)).round().astype(int))
 
 
 def _list(values: Any) -> list[float | None]:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import contextlib
 import os
 from collections.abc import Iterator, Mapping
 from typing import TYPE_CHECKING, Any, NamedTuple
@@ -11,7 +10,7 @@ import h5py
 import numpy as np
 
 from . import _html
-from .errors import MfvError, NotAResult
+from .errors import NotAResult
 
 if TYPE_CHECKING:
     import xarray
@@ -258,39 +257,37 @@ def counts(loads: Group) -> str:
     return text
 
 
+def is_last(result: Result, state: Group) -> bool:
+    """Whether a state has the tractions of the last one."""
+    return all(np.array_equal(state[name], result.state[name]) for name in ("pressure", "shear"))
+
+
 def read(path: str | os.PathLike[str]) -> Result:
     """The result in a file. Raises OSError, NotAResult."""
     path = os.fspath(path)
-    with open_hdf5(path, "result file of MFV") as file:
-        if "mfv_version" not in file.attrs:
-            raise NotAResult(None, f"{path}: not a result file of MFV, though it is HDF5")
-        groups = _groups(file)
-        missing = [f"the group {name}" for name in GROUPS if name not in groups]
-        missing += [f"the attribute {name}" for name in TEXTS if name not in file.attrs]
-        if missing:
-            raise NotAResult(None, f"{path}: not a result file of MFV: it is without {', '.join(missing)}")
-        return Result(groups, {name: str(value) for name, value in file.attrs.items()})
-
-
-@contextlib.contextmanager
-def open_hdf5(path: str, expected: str) -> Iterator[h5py.File]:
-    """An HDF5 file to read in a `with`; `expected`: what it should be, for the message. Raises OSError, NotAResult."""
     if os.path.exists(path) and not os.path.isfile(path) and not os.path.isdir(path):
-        raise NotAResult(None, f"{path}: not a {expected}, but a pipe or a device")
+        raise NotAResult(None, f"{path}: not a result file of MFV, but a pipe or a device")
     with open(path, "rb"):  # a missing file and the like are Python's to report
         pass
     if not h5py.is_hdf5(path):
-        raise NotAResult(None, f"{path}: not a {expected} (not even HDF5)")
+        raise NotAResult(None, f"{path}: not a result file of MFV (not even HDF5)")
     try:
         with h5py.File(path, "r") as file:
-            yield file
-    except MfvError:
-        raise
+            is_ours = "mfv_version" in file.attrs
+            groups = _groups(file) if is_ours else {}
+            texts = {name: str(value) for name, value in file.attrs.items()} if is_ours else {}
     except Exception as error:  # of every kind: h5py and numpy meet what is damaged wherever it is
-        raise NotAResult(None, f"{path}: not a {expected}, or damaged: {error}") from error
+        raise NotAResult(None, f"{path}: not a result file of MFV, or damaged: {error}") from error
+    if not is_ours:
+        raise NotAResult(None, f"{path}: not a result file of MFV, though it is HDF5")
+    missing = [f"the group {name}" for name in GROUPS if name not in groups]
+    missing += [f"the attribute {name}" for name in TEXTS if name not in texts]
+    if missing:
+        raise NotAResult(None, f"{path}: not a result file of MFV: it is without {', '.join(missing)}")
+    return Result(groups, texts)
 
 
-def values_of(dataset: h5py.Dataset) -> Values:
+def _values_of(dataset: h5py.Dataset) -> Values:
     """The values of a dataset. Raises ValueError where it says that it is larger than what the file holds can be: no memory is
     taken for what is not there. (Deflate makes at most 1032 bytes of one; a value can come from one byte.)"""
     if dataset.nbytes > 2**20 and dataset.size > 1032 * dataset.id.get_storage_size():
@@ -318,7 +315,7 @@ def _field(dataset: h5py.Dataset) -> Field:
     name = dataset.name.rsplit("/", 1)[1]
     dimensions = (name,) if dataset.is_scale else tuple(d[0].name.rsplit("/", 1)[1] for d in dataset.dims if len(d) > 0)
     unit, description = (str(dataset.attrs.get(attribute, "")) for attribute in ("units", "long_name"))
-    return Field(values_of(dataset), unit, description, dimensions)
+    return Field(_values_of(dataset), unit, description, dimensions)
 
 
 def _dataset(fields: Mapping[str, Field], coordinates: Mapping[str, Field]) -> xarray.Dataset:

@@ -12,7 +12,7 @@ import numbers
 import os
 import sys
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from ctypes import byref, c_size_t, c_void_p, create_string_buffer
+from ctypes import byref, c_void_p
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Callable, ClassVar, Literal, TypeVar, Union
 
@@ -20,7 +20,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from . import _html, errors
-from ._library import LARGEST_INTEGER, library, real_pointer, text_buffer, text_for, text_of
+from ._library import LARGEST_INTEGER, library, real_pointer, text_buffer, text_for, text_of, whole_text
 from .inputs import groups
 
 if TYPE_CHECKING:
@@ -605,11 +605,7 @@ def _scene_handle(text: str, name: str) -> Iterator[c_void_p]:
 
 def _text_of_scene(handle: c_void_p) -> str:
     """The library's scene as a namelist text, of any length."""
-    length = c_size_t()
-    library().mfv_scene_text(handle, None, 0, byref(length))
-    buffer = create_string_buffer(length.value + 1)
-    library().mfv_scene_text(handle, buffer, len(buffer), None)
-    return text_of(buffer)
+    return whole_text(library().mfv_scene_text, handle)
 
 
 def _set_keys(handle: c_void_p, group: str, keys: Mapping[str, Any]) -> list[int]:

@@ -59,30 +59,24 @@ def write(name: str, path: Path, written: Callable[[Path], Any], overwrite: bool
             raise FileExistsError(f"{place}: exists already; --force overwrites it, -o NAME.nml writes elsewhere")
     for place, source in reversed(targets.items()):
         with written(place) as part:
-            _write_one(source, part, place.stem)
+            part.write_bytes(_content(source, place))
     return list(targets)
 
 
-def _write_one(source: str, part: Path, name: str) -> None:
-    """Write one file of a template; `name`: that of the file without its suffix, for the commands in its comments."""
+def _content(source: str, place: Path) -> bytes:
+    """What a file of a template has in it; the commands in its comments name the place."""
     if source == "compliance.h5":
-        _write_matrix(part)
-    else:
-        part.write_bytes(_packaged(source, name))
-
-
-def _packaged(source: str, name: str) -> bytes:
-    """A file of the package, with its name in the commands in its comments."""
-    return (_FOLDER / source).read_bytes().replace(b"FILE", name.encode())
+        return _matrix()
+    return (_FOLDER / source).read_bytes().replace(b"FILE", place.stem.encode())
 
 
 def _is_there(place: Path, companion: str) -> bool:
     """Whether a file that a template needs is there already, the same."""
-    return companion != "compliance.h5" and place.is_file() and place.read_bytes() == _packaged(companion, place.stem)
+    return companion != "compliance.h5" and place.is_file() and place.read_bytes() == _content(companion, place)
 
 
-def _write_matrix(path: Path) -> None:
-    """Write the compliance of an elastic half-plane by nodal forces, in closed form (Johnson 1985, sections 2.2 and 2.3)."""
+def _matrix() -> bytes:
+    """An HDF5 file with the compliance of an elastic half-plane by nodal forces (Johnson 1985, sections 2.2 and 2.3)."""
     interval = 2.0 * HALF_WIDTH / NODES
     x = interval * (np.arange(NODES) - 0.5 * (NODES - 1))
     distance = x[:, None] - x
@@ -95,4 +89,4 @@ def _write_matrix(path: Path) -> None:
         file["x"] = x
         file["width"] = np.full(NODES, interval)
         file["compliance"] = np.block([[direct, coupling], [-coupling, direct]])
-    path.write_bytes(memory.getvalue())
+    return memory.getvalue()

@@ -1,15 +1,19 @@
-"""What of a load history is shown: which load over which displacement, and which part of the surface."""
+"""What pictures, animations and pages show of a result: which load over which displacement, which part of the surface.
+
+Nothing here draws; `mfv.plot`, `mfv.animate`, `mfv.report` and `mfv.comparison_figure` do.
+"""
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
 
-from . import plot
 from .codes import NodeStatus
 from .load_history import kept_states
-from .result import Result
+from .result import Group, Result
+from .stress import surface
 
 
 class Curve(NamedTuple):
@@ -20,10 +24,20 @@ class Curve(NamedTuple):
     across_label: tuple[str, str]
     up_label: tuple[str, str]
 
+    def values(self, result: Result) -> tuple[np.ndarray, np.ndarray]:
+        """Displacements and loads, from the history or, without one, from the states."""
+        if result.history:
+            return result.history[self.across], result.history[self.up]
+        across, up = (np.array([state[name] for state in result.steps]) for name in (self.across, self.up))
+        return across, up
+
 
 TANGENTIAL = Curve("shift", "tangential_force", ("shift", "U"), ("tangential force", "Q"))
 ROTATIONAL = Curve("rotation", "moment", ("rotation", "\N{GREEK SMALL LETTER PHI}"), ("moment", "M"))
 NORMAL = Curve("approach", "normal_force", ("approach", "h"), ("normal force", "P"))
+
+#: Loads that a state is described by, with their symbols.
+LOADS = (("P", "normal_force"), ("Q", "tangential_force"), ("M", "moment"))
 
 
 def curve_of(result: Result) -> Curve:
@@ -34,14 +48,17 @@ def curve_of(result: Result) -> Curve:
         negligible = 1.0e-9 * max(abs(state.normal_force) for state in states)
         return all(name in state for state in states) and any(abs(state[name]) > negligible for state in states)
 
-    if plot._has_friction(result) and moves("tangential_force"):
+    if has_friction(result) and moves("tangential_force"):
         return TANGENTIAL
     return ROTATIONAL if moves("moment") and moves("rotation") else NORMAL
 
 
-def contact(result: Result) -> tuple[float, float]:
-    """All that is in contact in any state and a quarter of its length on either side, as far as the mesh goes."""
-    states = result.steps or kept_states(result).steps
+def contact(result: Result, states: Sequence[Group] = ()) -> tuple[float, float]:
+    """All that is in contact in any of the states, and a quarter of its length on either side, as far as the mesh goes.
+
+    `states`: by default those of the result. Without contact it is all of the mesh.
+    """
+    states = states or result.steps or kept_states(result).steps
     touched = np.any([state.status != NodeStatus.OPEN for state in states], axis=0)
     starts, ends = result.mesh.x - 0.5 * result.mesh.width, result.mesh.x + 0.5 * result.mesh.width
     if not touched.any():
@@ -49,3 +66,45 @@ def contact(result: Result) -> tuple[float, float]:
     left, right = starts[touched][0], ends[touched][-1]
     margin = 0.25 * (right - left)
     return float(max(starts[0], left - margin)), float(min(ends[-1], right + margin))
+
+
+def statuses(result: Result) -> np.ndarray:
+    """The statuses that nodes have in any of the states in `steps`."""
+    return np.unique([state.status for state in result.steps])
+
+
+def has_friction(result: Result) -> bool:
+    """Whether the tangential problem was solved; slip is not a number where it was not."""
+    return not bool(np.isnan(result.state.slip).all())
+
+
+def friction_limits(result: Result) -> list[tuple[str, np.ndarray]]:
+    """Coefficients of friction at the nodes with their index in formulas: one, "", or static and kinetic, "s" and "k"."""
+    mesh = result.mesh
+    if "static_friction" not in mesh:
+        return []
+    if np.array_equal(mesh.static_friction, mesh.kinetic_friction):
+        return [("", mesh.static_friction)]
+    return [("s", mesh.static_friction), ("k", mesh.kinetic_friction)]
+
+
+def limit_of_friction(coefficient: np.ndarray, state: Group) -> np.ndarray:
+    """The shear traction that friction can bear at the nodes in contact."""
+    return np.where(state.status != NodeStatus.OPEN, coefficient * state.pressure, np.nan)
+
+
+def heights(result: Result, state: Group) -> tuple[np.ndarray, np.ndarray]:
+    """Heights of both surfaces: the lower one deformed from its own shape, the upper one a gap above it."""
+    x = result.mesh.x
+    lower = surface(result, "lower", x) - state.get("normal_displacement", np.zeros_like(x))
+    return lower, np.where(np.isfinite(state.gap), lower + state.gap, np.nan)
+
+
+def has_last_normal_force(result: Result, state: Group) -> bool:
+    """Whether the normal force is that of the last state, for which the closed form of the pressure holds."""
+    return bool(np.isclose(state.normal_force, result.summary.normal_force, rtol=1.0e-9, atol=0.0))
+
+
+def is_named(unit: str) -> bool:
+    """Whether the user has named a unit."""
+    return unit not in ("", "1") and "length" not in unit and "force" not in unit

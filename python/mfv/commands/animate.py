@@ -7,7 +7,7 @@ from pathlib import Path
 
 from .._files import target, written
 from ..result import read
-from .whole_numbers import at_least
+from .shared import at_least, solved_between
 
 NAME, HELP = "animate", "the load history as a GIF or an MP4"
 
@@ -45,7 +45,6 @@ def run(options: argparse.Namespace) -> None:
 
     from ..animate import SUFFIXES, movie, save
     from ..load_history import kept_states, thinned
-    from .between import solved_between
 
     result = read(options.file)
     output = target(options.output, options.file.with_suffix(".gif"), SUFFIXES, [options.file])

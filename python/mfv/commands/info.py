@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from .._html import unit
 from ..result import Group, Result, kept, read
 from ..studies.plan import is_table
 
@@ -50,10 +51,8 @@ def columns_of(table: xarray.Dataset) -> str:
     named = [*(table[name] for name in table.coords), *table.data_vars.values()]
     lines = []
     for one in named:
-        unit = one.attrs.get("units", "1")
-        lines.append(
-            f"  {one.name!s:28}{_values(one.values):34}{'' if unit == '1' else unit:16}{one.attrs.get('long_name', '')}"
-        )
+        shown_unit, meaning = unit(one.attrs.get("units", "1")), one.attrs.get("long_name", "")
+        lines.append(f"  {one.name!s:28}{_values(one.values):34}{shown_unit:16}{meaning}")
     sizes = " x ".join(f"{size} {name}" for name, size in table["case"].sizes.items())
     return "\n".join([f"{table['case'].size} cases: {sizes}", *(line.rstrip() for line in lines)])
 
@@ -74,12 +73,10 @@ def description(result: Result) -> str:
     """A result in words and numbers, the input aside."""
     attributes = [f"{name:20}{value}" for name, value in result.attributes.items() if name != "input"]
     sources = [f"{name:20}{result.reference.description(name)}" for name in result.reference]
+    groups = {name: getattr(result, name) for name in ("summary", "observables", "certificate", "sensitivity")}
     blocks = [
         attributes,
-        ["summary", *_lines(result.summary)],
-        *([["observables", *_lines(result.observables)]] if result.observables else []),
-        ["certificate", *_lines(result.certificate)],
-        *([["sensitivity", *_lines(result.sensitivity)]] if result.sensitivity else []),
+        *([name, *_lines(group)] for name, group in groups.items() if group),
         *([["error estimate", *_bars(result.error_estimate)]] if result.error_estimate else []),
         ["closed form", *(f"  {line}" for line in sources)] if sources else ["closed form: none"],
         [f"{result.mesh.x.size} nodes, {kept(result)}"],
@@ -89,18 +86,14 @@ def description(result: Result) -> str:
 
 def _lines(group: Group) -> list[str]:
     """The scalars of a group, one a line."""
-    return [f"  {name:26}{group[name]:<14.6g}{_unit(group, name):16}{group.description(name)}" for name in group]
+    return [f"  {name:26}{group[name]:<14.6g}{unit(group.unit(name)):16}{group.description(name)}" for name in group]
 
 
 def _bars(estimate: Group) -> list[str]:
     """The quantities of an error estimate with their bars, one a line."""
     names = [name for name in estimate if f"{name}_error" in estimate]
     return [
-        f"  {name:26}{estimate[name]:<14.6g}+- {estimate[name + '_error']:<11.2g}{_unit(estimate, name):16}"
+        f"  {name:26}{estimate[name]:<14.6g}+- {estimate[name + '_error']:<11.2g}{unit(estimate.unit(name)):16}"
         f"order {estimate[name + '_order']:.2g}"
         for name in names
     ]
-
-
-def _unit(group: Group, name: str) -> str:
-    return "" if group.unit(name) == "1" else group.unit(name)

@@ -7,7 +7,7 @@ from pathlib import Path
 
 from .._files import target, written
 from ..result import read
-from .whole_numbers import at_least
+from .shared import at_least, solved_between
 
 NAME, HELP = "report", "a result as one web page"
 
@@ -41,7 +41,6 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(options: argparse.Namespace) -> None:
     """Write the page. Raises OSError, NotAResult, ModuleNotFoundError."""
     from ..report import page
-    from .between import solved_between
 
     result, history = read(options.file), None
     output = target(options.output, options.file.with_suffix(".html"), (".html", ".htm"), [options.file])

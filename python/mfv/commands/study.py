@@ -12,7 +12,7 @@ from .._files import target
 from ..studies.executors import NAMES
 from ..studies.namelist import check_study, keys_in_markdown, read_study
 from ..studies.plan import SUFFIXES, Study, is_table
-from .whole_numbers import at_least
+from .shared import at_least
 
 if TYPE_CHECKING:
     import xarray

@@ -37,6 +37,9 @@ DIMENSIONS = {
     Along.PATCHES: "patch",
 }
 
+#: Types of columns by those of their values; numbers are float.
+COLUMN_TYPES = {str: object, int: np.int32}
+
 _NAN = float("nan")
 
 
@@ -58,7 +61,7 @@ def dataset_of(study: Study, keys: Sequence[str], solved: Sequence[Solved | None
     columns = {
         name: (
             dimensions,
-            np.array(values, dtype=_kind(values)).reshape(study.shape),
+            np.array(values, dtype=COLUMN_TYPES.get(type(values[0]), float)).reshape(study.shape),
             {"units": _labelled(unit, units), "long_name": meaning},
         )
         for name, values, unit, meaning in _columns(study, keys, solved)
@@ -119,10 +122,6 @@ def _columns(
         files = [os.path.join(folder, result_name(key)) if one.counts["nodes"] else "" for key, one in zip(keys, there)]
         columns.append(("result_file", files, "1", "result file of the case"))
     return columns
-
-
-def _kind(values: Sequence[Any]) -> Any:
-    return {str: object, int: np.int32}.get(type(values[0]), float)
 
 
 def _errors(study: Study, solved: Sequence[Solved]) -> list[tuple[str, list[Any], str, str]]:

@@ -109,7 +109,17 @@ def opened(executor: str | Executor, workers: int | None) -> Iterator[Executor]:
             stack.callback(pool.shutdown, cancel_futures=True)
             yield pool
         else:
-            yield _dask_client(stack, address, workers).get_executor()
+            from dask.distributed import Client, LocalCluster
+
+            cluster = address or stack.enter_context(
+                LocalCluster(
+                    n_workers=workers or processors(),
+                    threads_per_worker=1,
+                    dashboard_address=":0",
+                    silence_logs=logging.CRITICAL,
+                )
+            )
+            yield stack.enter_context(Client(cluster)).get_executor()
 
 
 def processors() -> int:
@@ -144,21 +154,6 @@ def _end_with_the_study() -> None:
     if study is not None:
         study.join()
         os._exit(1)
-
-
-def _dask_client(stack: contextlib.ExitStack, address: str, workers: int | None) -> Any:
-    """The client of a cluster with an address, or of one on this machine, closed with `stack`."""
-    from dask.distributed import Client, LocalCluster
-
-    cluster = address or stack.enter_context(
-        LocalCluster(
-            n_workers=workers or processors(),
-            threads_per_worker=1,
-            dashboard_address=":0",
-            silence_logs=logging.CRITICAL,
-        )
-    )
-    return stack.enter_context(Client(cluster))
 
 
 #: Studies that are at work in threads of this process, and the limit of BLAS's threads that they share; BLAS is the process's.

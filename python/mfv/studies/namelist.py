@@ -306,7 +306,7 @@ def _fault_of_values(key: Key, values: Sequence[Any]) -> str:
         return "must be one value"
     if any(value is None or isinstance(value, complex) for value in values):
         return "must have values between all commas"
-    if not all(_is_finite(value) for value in values):
+    if any(isinstance(value, float) and not math.isfinite(value) for value in values):
         return "must be finite"
     words = key.kind.split()
     kinds: dict[str, Any] = {"text": str, "number": (int, float), "whole": int, "any": object}
@@ -317,10 +317,6 @@ def _fault_of_values(key: Key, values: Sequence[Any]) -> str:
         for value in values
     )
     return "" if is_right else f"must be {_wanted(key)}"
-
-
-def _is_finite(value: Any) -> bool:
-    return not isinstance(value, float) or math.isfinite(value)
 
 
 def _suggestion(word: str, known: Sequence[str] | dict[str, Any], before: str = "") -> str:

@@ -20,10 +20,18 @@ from .. import errors
 from ..errors import input_error
 from ..scene import Scene
 from . import executors
-from .axes import Coordinate, Dimension, as_written, dimensions_of, fault
+from .axes import (
+    Coordinate,
+    Dimension,
+    as_written,
+    dimensions_of,
+    fault,
+    fault_of_key,
+    fault_of_pair,
+    numbered_group,
+)
 from .bases import Given, absolute, base_of, counts_of_groups, units_of, whole_paths
 from .cases import FILE_KEYS, Base, Job, Solved, case_text, check, digest, digest_of_base, observables
-from .keys import fault_of_key, fault_of_pair, numbered_group
 from .store import Store
 
 if TYPE_CHECKING:
@@ -208,65 +216,52 @@ class Study:
         A case that cannot be begun, or that ends early, is in the dataset with its outcome and message.
         Raises InputError, FileError, and what an executor raises; KeyboardInterrupt within an increment with threads.
         """
+        from tqdm.auto import tqdm  # here: it looks whether this is a notebook
+
+        from .dataset import dataset_of  # here: it imports xarray
+
         executors.check(executor, workers)
         self.check()
         if self.results is not None:
             self.results.mkdir(parents=True, exist_ok=True)
 
-        def solve(kept: Store | None) -> tuple[list[str], list[Solved | None]]:
+        with contextlib.nullcontext() if store is None else Store(store) as kept:
             if kept is not None and again:
                 kept.clear()
-            return self._solve(
-                kept, lambda wanted, keep: executors.solve_all(wanted, executor, workers, keep), progress
-            )
+            names, jobs, solved = self._cases(kept)
+            wanted = {
+                name: job
+                for name, job in jobs.items()
+                if name not in solved or (job.result is not None and not os.path.exists(job.result))
+            }
+            if wanted:
+                there = len(jobs) - len(wanted)
+                with tqdm(total=len(jobs), initial=there, unit="case", disable=None if progress else True) as bar:
 
-        return self._with_store(store, solve)
+                    def keep(name: str, one: Solved) -> None:
+                        if kept is not None:
+                            kept.write(name, one)
+                        solved[name] = one
+                        bar.update()
+
+                    executors.solve_all(wanted, executor, workers, keep)
+            return dataset_of(self, names, [solved.get(name) for name in names])
 
     def so_far(self, store: str | os.PathLike[str]) -> xarray.Dataset:
         """The dataset of the cases that a store has; the others have the outcome 'not solved'. Raises FileError, OSError."""
-        if not os.path.isfile(store):
-            raise FileNotFoundError(errno.ENOENT, "there is no file of solved cases", os.fspath(store))
-        return self._with_store(store, lambda kept: self._solve(kept, lambda wanted, keep: None, False))
-
-    def _with_store(
-        self,
-        store: str | os.PathLike[str] | None,
-        solve: Callable[[Store | None], tuple[list[str], list[Solved | None]]],
-    ) -> xarray.Dataset:
         from .dataset import dataset_of  # here: it imports xarray
 
-        with contextlib.nullcontext() if store is None else Store(store) as kept:
-            return dataset_of(self, *solve(kept))
+        if not os.path.isfile(store):
+            raise FileNotFoundError(errno.ENOENT, "there is no file of solved cases", os.fspath(store))
+        with Store(store) as kept:
+            names, _, solved = self._cases(kept)
+        return dataset_of(self, names, [solved.get(name) for name in names])
 
-    def _solve(
-        self,
-        kept: Store | None,
-        solve: Callable[[dict[str, Job], Callable[[str, Solved], None]], None],
-        progress: bool,
-    ) -> tuple[list[str], list[Solved | None]]:
-        """The cases in order with their names; `solve` solves those that are not there."""
-        from tqdm.auto import tqdm  # here: it looks whether this is a notebook
-
-        jobs = {}
-        keys = []
-        for key, job in self._named_jobs():
-            keys.append(key)
-            jobs[key] = job
-        there = {} if kept is None else kept.read(jobs.keys())
-        wanted = {key: job for key, job in jobs.items() if key not in there or _has_lost_its_file(job)}
-        if wanted:
-            with tqdm(
-                total=len(jobs), initial=len(jobs) - len(wanted), unit="case", disable=None if progress else True
-            ) as bar:
-
-                def keep(key: str, solved: Solved) -> None:
-                    if kept is not None:
-                        kept.write(key, solved)
-                    there[key] = solved
-                    bar.update()
-
-                solve(wanted, keep)
-        return keys, [there.get(key) for key in keys]
+    def _cases(self, store: Store | None) -> tuple[list[str], dict[str, Job], dict[str, Solved]]:
+        """The names of the cases in order, their jobs, and what a store has of them."""
+        named = list(self._named_jobs())
+        jobs = dict(named)
+        return [name for name, _ in named], jobs, {} if store is None else store.read(jobs.keys())
 
     def _named_jobs(self) -> Iterator[tuple[str, Job]]:
         """The jobs of all cases with their names; cases that are the same have one."""
@@ -408,11 +403,6 @@ def is_table(path: Path) -> bool:
         return False
     with h5py.File(path) as file:
         return bool(file.attrs.get("title", "") == TITLE)
-
-
-def _has_lost_its_file(job: Job) -> bool:
-    """Whether the result file of a case that was solved is not there any more."""
-    return job.result is not None and not os.path.exists(job.result)
 
 
 def _tried(length: int) -> Iterable[int]:

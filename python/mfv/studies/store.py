@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+import contextlib
 import json
 import math
 import os
 import sqlite3
-from collections.abc import Collection
+from collections.abc import Collection, Iterator
 from types import TracebackType
 from typing import TYPE_CHECKING
 
@@ -32,11 +33,9 @@ class Store:
     def __init__(self, path: str | os.PathLike[str]) -> None:
         """Raises FileError where the file cannot be used, is another program's, or is in use."""
         self.path = os.fspath(path)
-        try:
+        with self._named_in_errors():
             self._connection = sqlite3.connect(self.path, isolation_level=None, timeout=0.0)
             self._open()
-        except sqlite3.Error as error:
-            raise self._failure(error) from None
 
     def __enter__(self) -> Self:
         return self
@@ -48,27 +47,20 @@ class Store:
 
     def read(self, keys: Collection[str]) -> dict[str, Solved]:
         """Those of the cases with these names that are there. Raises FileError."""
-        try:
+        with self._named_in_errors():
             rows = self._connection.execute("SELECT key, solved, arrays FROM cases")
             return {key: _solved(text, arrays) for key, text, arrays in rows if key in keys}
-        except (sqlite3.Error, ValueError, KeyError) as error:
-            raise self._failure(error) from None
 
     def write(self, key: str, solved: Solved) -> None:
         """Keep a case: it is there whatever becomes of this process. Raises FileError, on a full disk for one."""
-        try:
-            self._connection.execute(
-                "INSERT OR REPLACE INTO cases VALUES (?, ?, ?)", (key, _text(solved), _bytes(solved))
-            )
-        except sqlite3.Error as error:
-            raise self._failure(error) from None
+        row = key, _text(solved), _bytes(solved)
+        with self._named_in_errors():
+            self._connection.execute("INSERT OR REPLACE INTO cases VALUES (?, ?, ?)", row)
 
     def clear(self) -> None:
         """Forget all cases. Raises FileError."""
-        try:
+        with self._named_in_errors():
             self._connection.execute("DELETE FROM cases")
-        except sqlite3.Error as error:
-            raise self._failure(error) from None
 
     def _open(self) -> None:
         """One process alone, and a log that a kill leaves whole."""
@@ -86,11 +78,14 @@ class Store:
         )
         execute("COMMIT")
 
-    def _failure(self, error: Exception) -> errors.MfvError:
-        why = str(error)
-        if "locked" in why:
-            why = "another study is at work with it"
-        return errors.file_error(f"{self.path}: solved cases cannot be kept here: {why}")
+    @contextlib.contextmanager
+    def _named_in_errors(self) -> Iterator[None]:
+        """Raises FileError, which names the file, for what SQLite raises and for rows that cannot be read."""
+        try:
+            yield
+        except (sqlite3.Error, ValueError, KeyError) as error:
+            why = "another study is at work with it" if "locked" in str(error) else error
+            raise errors.file_error(f"{self.path}: solved cases cannot be kept here: {why}") from None
 
 
 def _text(solved: Solved) -> str:

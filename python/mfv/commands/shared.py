@@ -1,12 +1,28 @@
-"""States between those that a result keeps, for commands that draw a load history."""
+"""What several commands take and do."""
 
 from __future__ import annotations
 
 import argparse
 import sys
+from collections.abc import Callable
 
 from ..load_history import LoadHistory, with_states_between
 from ..result import Result
+
+
+def at_least(least: int) -> Callable[[str], int]:
+    """What reads a whole number that is not below `least`, for argparse."""
+
+    def whole_number(text: str) -> int:
+        try:
+            value = int(text)
+        except ValueError:
+            value = least - 1
+        if value < least:
+            raise argparse.ArgumentTypeError(f"a whole number of at least {least} is wanted, not '{text}'")
+        return value
+
+    return whole_number
 
 
 def solved_between(options: argparse.Namespace, result: Result, states: int) -> LoadHistory:
