@@ -1,5 +1,5 @@
 /* The table of live handles. A handle is a number, not an address: it is looked up, and nothing is read where it points. Numbers are
- * never reused, so a handle that is null, was freed, is of another kind or was made up is always found out.
+ * never reused, so a handle that is null, was freed, is of another kind or was made up is always detected.
  * src/api/handles.f90 has the same for Fortran. */
 #ifndef MFV_HANDLES_H
 #define MFV_HANDLES_H

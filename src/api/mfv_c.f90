@@ -217,9 +217,8 @@ contains
       type(error_type), allocatable :: error
 
       call find_scene(scene, key, c_associated(value), draft, status)
-      if (status /= MFV_COMPLETE) return
-      call draft%set(text_in(key), text_in(value), error)
-      status = merge(MFV_BAD_ARGUMENT, MFV_COMPLETE, allocated(error))
+      if (status == MFV_COMPLETE) call draft%set(text_in(key), text_in(value), error)
+      if (allocated(error)) status = MFV_BAD_ARGUMENT
    end function mfv_scene_set_text_unguarded
 
    integer(c_int) function mfv_scene_set_real_unguarded(scene, key, value) result(status) bind(C)
@@ -229,9 +228,8 @@ contains
       type(error_type), allocatable :: error
 
       call find_scene(scene, key, .true., draft, status)
-      if (status /= MFV_COMPLETE) return
-      call draft%set(text_in(key), value, error)
-      status = merge(MFV_BAD_ARGUMENT, MFV_COMPLETE, allocated(error))
+      if (status == MFV_COMPLETE) call draft%set(text_in(key), value, error)
+      if (allocated(error)) status = MFV_BAD_ARGUMENT
    end function mfv_scene_set_real_unguarded
 
    integer(c_int) function mfv_scene_set_reals_unguarded(scene, key, values, count) result(status) bind(C)
@@ -242,9 +240,8 @@ contains
       type(error_type), allocatable :: error
 
       call find_scene(scene, key, present(values) .and. (count == 0 .or. is_size(count)), draft, status)
-      if (status /= MFV_COMPLETE) return
-      call draft%set(text_in(key), values, error)
-      status = merge(MFV_BAD_ARGUMENT, MFV_COMPLETE, allocated(error))
+      if (status == MFV_COMPLETE) call draft%set(text_in(key), values, error)
+      if (allocated(error)) status = MFV_BAD_ARGUMENT
    end function mfv_scene_set_reals_unguarded
 
    integer(c_int) function mfv_scene_set_integer_unguarded(scene, key, value) result(status) bind(C)
@@ -254,9 +251,8 @@ contains
       type(error_type), allocatable :: error
 
       call find_scene(scene, key, .true., draft, status)
-      if (status /= MFV_COMPLETE) return
-      call draft%set(text_in(key), int(value), error)
-      status = merge(MFV_BAD_ARGUMENT, MFV_COMPLETE, allocated(error))
+      if (status == MFV_COMPLETE) call draft%set(text_in(key), int(value), error)
+      if (allocated(error)) status = MFV_BAD_ARGUMENT
    end function mfv_scene_set_integer_unguarded
 
    integer(c_int) function mfv_scene_set_logical_unguarded(scene, key, value) result(status) bind(C)
@@ -266,35 +262,29 @@ contains
       type(error_type), allocatable :: error
 
       call find_scene(scene, key, .true., draft, status)
-      if (status /= MFV_COMPLETE) return
-      call draft%set(text_in(key), value /= 0, error)
-      status = merge(MFV_BAD_ARGUMENT, MFV_COMPLETE, allocated(error))
+      if (status == MFV_COMPLETE) call draft%set(text_in(key), value /= 0, error)
+      if (allocated(error)) status = MFV_BAD_ARGUMENT
    end function mfv_scene_set_logical_unguarded
 
    integer(c_int) function mfv_scene_remove_unguarded(scene, key) result(status) bind(C)
       type(c_ptr), value :: scene, key
-
-      status = removed(scene, key, alternatives=.false.)
-   end function mfv_scene_remove_unguarded
-
-   integer(c_int) function mfv_scene_make_room_unguarded(scene, key) result(status) bind(C)
-      type(c_ptr), value :: scene, key
-
-      status = removed(scene, key, alternatives=.true.)
-   end function mfv_scene_make_room_unguarded
-
-   !> Take a key of a scene out, with or without its alternatives.
-   integer(c_int) function removed(scene, key, alternatives) result(status)
-      type(c_ptr), intent(in) :: scene, key
-      logical, intent(in) :: alternatives
       type(draft_type), pointer :: draft
       type(error_type), allocatable :: error
 
       call find_scene(scene, key, .true., draft, status)
-      if (status /= MFV_COMPLETE) return
-      call draft%remove(text_in(key), error, alternatives)
-      status = merge(MFV_BAD_ARGUMENT, MFV_COMPLETE, allocated(error))
-   end function removed
+      if (status == MFV_COMPLETE) call draft%remove(text_in(key), error)
+      if (allocated(error)) status = MFV_BAD_ARGUMENT
+   end function mfv_scene_remove_unguarded
+
+   integer(c_int) function mfv_scene_make_room_unguarded(scene, key) result(status) bind(C)
+      type(c_ptr), value :: scene, key
+      type(draft_type), pointer :: draft
+      type(error_type), allocatable :: error
+
+      call find_scene(scene, key, .true., draft, status)
+      if (status == MFV_COMPLETE) call draft%remove(text_in(key), error, alternatives=.true.)
+      if (allocated(error)) status = MFV_BAD_ARGUMENT
+   end function mfv_scene_make_room_unguarded
 
    integer(c_int) function mfv_scene_set_data_unguarded(scene, file, dataset, rows, columns, values) result(status) bind(C)
       type(c_ptr), value :: scene, file, dataset
@@ -306,9 +296,8 @@ contains
 
       usable = c_associated(dataset) .and. present(values) .and. is_size(rows) .and. is_size(columns)
       call find_scene(scene, file, usable, draft, status)
-      if (status /= MFV_COMPLETE) return
-      call draft%set_data(text_in(file), text_in(dataset), transpose(values), error)
-      status = merge(MFV_BAD_ARGUMENT, MFV_COMPLETE, allocated(error))
+      if (status == MFV_COMPLETE) call draft%set_data(text_in(file), text_in(dataset), transpose(values), error)
+      if (allocated(error)) status = MFV_BAD_ARGUMENT
    end function mfv_scene_set_data_unguarded
 
    !> The object of a scene. MFV_BAD_ARGUMENT without a key or usable values for it; of the values mfv_create tells, too.
@@ -722,10 +711,9 @@ contains
       type(string_type), pointer :: paths(:)
 
       call c_f_pointer(handle, self)
-      status = expected(self, present(count), 'mfv_field_count: count is null')
-      if (status /= MFV_COMPLETE) return
       call self%contact%field_paths(paths)
-      count = size(paths, kind=c_size_t)
+      status = expected(self, present(count), 'mfv_field_count: count is null')
+      if (status == MFV_COMPLETE) count = size(paths, kind=c_size_t)
    end function mfv_field_count_unguarded
 
    integer(c_int) function mfv_field_path_unguarded(handle, index, buffer, size) result(status) bind(C)
