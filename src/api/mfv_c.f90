@@ -579,11 +579,11 @@ contains
    end function mfv_get_loads_unguarded
 
    integer(c_int) function mfv_tangent_unguarded(handle, motions, direction, tangent) result(status) bind(C)
-      type(c_ptr), value :: handle
+      type(c_ptr), value :: handle, direction
       integer(c_int), value :: motions
-      real(c_double), intent(in), optional :: direction(motions)
       real(c_double), intent(inout), optional :: tangent(motions, motions)
       type(handle_type), pointer :: self
+      real(c_double), pointer :: towards(:)
       type(error_type), allocatable :: error
       real(wp) :: found(3, 3)
 
@@ -592,7 +592,9 @@ contains
       if (status /= MFV_COMPLETE) return
       status = expected(self, present(tangent), 'mfv_tangent: tangent is null')
       if (status /= MFV_COMPLETE) return
-      call self%contact%get_tangent(found(:motions, :motions), error, direction)
+      nullify (towards)
+      if (c_associated(direction)) call c_f_pointer(direction, towards, [motions])
+      call self%contact%get_tangent(found(:motions, :motions), error, towards)
       status = failed(self, error)
       if (status == MFV_COMPLETE) tangent = transpose(found(:motions, :motions))
    end function mfv_tangent_unguarded
