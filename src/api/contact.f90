@@ -520,13 +520,14 @@ contains
       paths => self%paths
    end subroutine field_paths
 
-   !> The field at a path. The group it is in is kept, for the next field of it; the pointer holds until another group is asked for
-   !> or the state changes. Error MFV_BAD_ARGUMENT.
-   subroutine find_field(self, path, field, error)
+   !> The field at a path; `whole`: it must have whole numbers, or reals. The group it is in is kept, for the next field of it; the
+   !> pointer holds until another group is asked for or the state changes. Error MFV_BAD_ARGUMENT.
+   subroutine find_field(self, path, field, error, whole)
       class(contact_type), intent(inout), target :: self
       character(*), intent(in) :: path
       type(field_type), pointer, intent(out) :: field
       type(error_type), allocatable, intent(out) :: error
+      logical, intent(in), optional :: whole
       integer :: number, slash
 
       nullify (field)
@@ -543,9 +544,12 @@ contains
       end if
       if (number == 0) then
          call set_error(error, MFV_BAD_ARGUMENT, "there is no field '"//path//"'")
-      else
-         field => self%fields(number)
+         return
       end if
+      field => self%fields(number)
+      if (.not. present(whole)) return
+      if (allocated(field%whole) .neqv. whole) &
+         call set_error(error, MFV_BAD_ARGUMENT, path//' has '//trim(merge('reals        ', 'whole numbers', whole)))
    end subroutine find_field
 
    !> Whether the group that was looked at last is this one.
@@ -557,6 +561,7 @@ contains
       if (allocated(group)) is_at_hand = group == wanted
    end function is_at_hand
 
+   !> See get, as for the next three.
    subroutine get_reals(self, path, values, error)
       class(contact_type), intent(inout), target :: self
       character(*), intent(in) :: path
@@ -564,13 +569,8 @@ contains
       type(error_type), allocatable, intent(out) :: error
       type(field_type), pointer :: field
 
-      call self%find_field(path, field, error)
-      if (allocated(error)) return
-      if (allocated(field%whole)) then
-         call set_error(error, MFV_BAD_ARGUMENT, path//' has whole numbers')
-      else
-         values = field%values
-      end if
+      call self%find_field(path, field, error, whole=.false.)
+      if (.not. allocated(error)) values = field%values
    end subroutine get_reals
 
    subroutine get_integers(self, path, values, error)
@@ -580,13 +580,8 @@ contains
       type(error_type), allocatable, intent(out) :: error
       type(field_type), pointer :: field
 
-      call self%find_field(path, field, error)
-      if (allocated(error)) return
-      if (allocated(field%whole)) then
-         values = field%whole
-      else
-         call set_error(error, MFV_BAD_ARGUMENT, path//' has reals')
-      end if
+      call self%find_field(path, field, error, whole=.true.)
+      if (.not. allocated(error)) values = field%whole
    end subroutine get_integers
 
    subroutine get_real(self, path, value, error)
@@ -598,8 +593,7 @@ contains
 
       value = 0.0_wp
       call self%get_reals(path, values, error)
-      if (allocated(error)) return
-      if (size(values) /= 1) call set_error(error, MFV_BAD_ARGUMENT, path//' has '//to_text(size(values))//' values, not one')
+      if (.not. allocated(error)) call expect_one(path, size(values), error)
       if (.not. allocated(error)) value = values(1)
    end subroutine get_real
 
@@ -612,10 +606,18 @@ contains
 
       value = 0
       call self%get_integers(path, values, error)
-      if (allocated(error)) return
-      if (size(values) /= 1) call set_error(error, MFV_BAD_ARGUMENT, path//' has '//to_text(size(values))//' values, not one')
+      if (.not. allocated(error)) call expect_one(path, size(values), error)
       if (.not. allocated(error)) value = values(1)
    end subroutine get_integer
+
+   !> Error MFV_BAD_ARGUMENT for a field that has not one value but `count`.
+   subroutine expect_one(path, count, error)
+      character(*), intent(in) :: path
+      integer, intent(in) :: count
+      type(error_type), allocatable, intent(out) :: error
+
+      if (count /= 1) call set_error(error, MFV_BAD_ARGUMENT, path//' has '//to_text(count)//' values, not one')
+   end subroutine expect_one
 
    !> Names and texts of the attributes of the result: title, outcome, input and so on. They hold until the state changes.
    subroutine attributes(self, names, texts)
@@ -710,10 +712,8 @@ contains
       end if
       state = self%simulation%contact%state
       if (number > 0) state = self%simulation%padded_state(number)
-      call expect_body(body, error)
-      if (allocated(error)) return
       call state_interior(self%simulation%contact%model, state, body == body_upper, interior, available)
-      if (.not. available) call refuse_body(body, error)
+      call expect_inside(body, available, error)
    end subroutine interior_of
 
    !> A body under tractions (on the lower body, to the right; force/length^2) at nodes with the intervals `width` around `arc`
@@ -727,29 +727,23 @@ contains
       type(error_type), allocatable, intent(out) :: error
       logical :: available
 
-      call expect_body(body, error)
-      if (allocated(error)) return
       call self%case%scene%interior(body == body_upper, arc, width, pressure, shear, contact_edge, stick_edge, interior, available)
-      if (.not. available) call refuse_body(body, error)
+      call expect_inside(body, available, error)
    end subroutine make_interior
 
-   !> Error MFV_BAD_ARGUMENT for what is not the number of a body.
-   subroutine expect_body(body, error)
+   !> Error MFV_BAD_ARGUMENT for what is not the number of a body, and for a body whose inside is not available.
+   subroutine expect_inside(body, available, error)
       integer, intent(in) :: body
+      logical, intent(in) :: available
       type(error_type), allocatable, intent(out) :: error
 
-      if (body /= body_lower .and. body /= body_upper) &
+      if (body /= body_lower .and. body /= body_upper) then
          call set_error(error, MFV_BAD_ARGUMENT, 'the body must be MFV_LOWER or MFV_UPPER')
-   end subroutine expect_body
-
-   !> Error MFV_BAD_ARGUMENT for a body without an inside.
-   subroutine refuse_body(body, error)
-      integer, intent(in) :: body
-      type(error_type), allocatable, intent(out) :: error
-
-      call set_error(error, MFV_BAD_ARGUMENT, 'the '//merge('upper', 'lower', body == body_upper)// &
-                     ' body is rigid or a matrix: there are no stresses inside it')
-   end subroutine refuse_body
+      else if (.not. available) then
+         call set_error(error, MFV_BAD_ARGUMENT, 'the '//merge('upper', 'lower', body == body_upper)// &
+                        ' body is rigid or a matrix: there are no stresses inside it')
+      end if
+   end subroutine expect_inside
 
    !> Write the result file to `path`, or where &output says when that is empty. Errors MFV_FILE_ERROR, MFV_BAD_ARGUMENT.
    subroutine write(self, path, error)

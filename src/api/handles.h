@@ -1,25 +1,26 @@
-/* The table of live handles. A handle is a number, not an address: the place of its entry in a table, and how often that place has
- * been given out. So a handle that is null, was freed, is of another sort or was never given out is told without
- * looking where it points. */
+/* The table of live handles. A handle is a number, not an address: it is looked up, and nothing is read where it points. Numbers are
+ * never reused, so a handle that is null, was freed, is of another kind or was made up is always detected.
+ * src/api/handles.f90 has the same for Fortran. */
 #ifndef MFV_HANDLES_H
 #define MFV_HANDLES_H
 
-/* What a handle is of; 0 is what a free place is of. */
-typedef enum { MFV_SORT_SCENE = 1, MFV_SORT_CASE, MFV_SORT_STATE } mfv_sort;
+/* What a handle stands for. */
+typedef enum { MFV_KIND_SCENE = 1, MFV_KIND_CASE, MFV_KIND_STATE } mfv_kind;
 
-/* How a call uses what a handle is of: alone, or only reading, as others may at the same time. */
+/* How a call uses the object of a handle: no other call may use it meanwhile, or others may read it, too. */
 typedef enum { MFV_ALONE, MFV_READING } mfv_use;
 
-/* A handle of an object; NULL where there is no memory for one more. */
-void *mfv_handle_issue(mfv_sort sort, void *object);
+/* A new handle of an object; NULL if the table has no room for it. */
+void *mfv_handle_issue(mfv_kind kind, void *object);
 
-/* Begin to use what a handle is of: *object. MFV_BAD_HANDLE; MFV_IN_USE where another call uses it. */
-int mfv_handle_enter(const void *handle, mfv_sort sort, mfv_use use, void **object);
+/* Look a handle up and mark it as in use: *object. MFV_BAD_HANDLE; MFV_IN_USE during another call on it. */
+int mfv_handle_enter(const void *handle, mfv_kind kind, mfv_use use, void **object);
 
 /* End the use. */
 void mfv_handle_leave(const void *handle);
 
-/* End the use, and the handle with it: no later one is the same. */
-void mfv_handle_withdraw(const void *handle);
+/* Remove *handle from the table and set it to NULL; *object is what it stood for, to be freed, else NULL. No harm if `handle` or
+ * *handle is NULL. MFV_BAD_HANDLE; MFV_IN_USE, which leaves everything as it is. */
+int mfv_handle_remove(void **handle, mfv_kind kind, void **object);
 
 #endif

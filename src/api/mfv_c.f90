@@ -1,5 +1,6 @@
-!> The C interface of include/mfv.h: thin walls around the library. Unpack, call, return the status. Calls with a handle
-!> come from guards.c, which has looked the handle up: they have the address of its object in its place, and no other call uses it.
+!> The C interface of include/mfv.h: thin walls around the library. Unpack, call, return the status. guards.c calls procedures
+!> `..._unguarded`, with the address of an object in place of its handle, and sees to it that no other call uses the object. A null
+!> pointer to a number or an array is an absent argument.
 module mfv_c
    use, intrinsic :: ieee_arithmetic, only: ieee_is_finite, ieee_quiet_nan, ieee_value
    use, intrinsic :: iso_c_binding
@@ -9,6 +10,7 @@ module mfv_c
    use mfv_draft, only: draft_type, read_draft
    use mfv_error, only: error_type, set_error
    use mfv_features, only: has_hdf5
+   use mfv_handles
    use mfv_interior, only: interior_type, stress_count
    use mfv_kept_state, only: kept_state_type
    use mfv_key_path, only: read_key_name
@@ -33,22 +35,14 @@ module mfv_c
       procedure :: notify
    end type c_observer_type
 
-   !> What the handle of a case is of.
+   !> The object of a case's handle. Those of a scene's and a state's are of draft_type and kept_state_type.
    type :: handle_type
       type(contact_type) :: contact
       type(c_observer_type) :: observer
       character(:), allocatable :: message
    end type handle_type
 
-   !> What the handles of a scene and of a state are of.
-   type :: scene_handle_type
-      type(draft_type) :: draft
-   end type scene_handle_type
-
-   type :: state_handle_type
-      type(kept_state_type) :: state
-   end type state_handle_type
-
+   !> What messages call a text that has no name.
    character(*), parameter :: unnamed = 'text'
 
    !> Sizes of arrays beyond this are a mistake: (size_t)-1, say.
@@ -101,43 +95,39 @@ module mfv_c
 contains
 
    !> See include/mfv.h, as for all that follow.
-   function mfv_version(buffer, size) result(status) bind(C, name='mfv_version')
+   integer(c_int) function mfv_version(buffer, size) result(status) bind(C)
       type(c_ptr), value :: buffer
       integer(c_size_t), value :: size
-      integer(c_int) :: status
 
       status = text_out(library_version, buffer, size)
    end function mfv_version
 
-   function mfv_status_text(code, outcome, outcome_size, explanation, explanation_size) result(status) &
-      bind(C, name='mfv_status_text')
+   integer(c_int) function mfv_status_text(code, outcome, outcome_size, explanation, explanation_size) result(status) bind(C)
       integer(c_int), value :: code
       type(c_ptr), value :: outcome, explanation
       integer(c_size_t), value :: outcome_size, explanation_size
-      integer(c_int) :: status
 
       status = text_out(status_outcome(code), outcome, outcome_size)
       status = max(status, text_out(status_explanation(code), explanation, explanation_size))
       if (status_exit_code(code) < 0) status = MFV_BAD_ARGUMENT
    end function mfv_status_text
 
-   function mfv_has_feature(feature, there) result(status) bind(C, name='mfv_has_feature')
-      type(c_ptr), value :: feature, there
-      integer(c_int) :: status
+   integer(c_int) function mfv_has_feature(feature, there) result(status) bind(C)
+      type(c_ptr), value :: feature
+      integer(c_int), intent(inout), optional :: there
 
       status = MFV_BAD_ARGUMENT
-      if (.not. c_associated(feature) .or. .not. c_associated(there)) return
-      call integer_out(0, there)
+      if (.not. (c_associated(feature) .and. present(there))) return
+      there = 0
       if (text_in(feature) /= 'hdf5' .or. c_strlen(feature) /= 4) return
-      call integer_out(merge(1, 0, has_hdf5), there)
+      there = merge(1, 0, has_hdf5)
       status = MFV_COMPLETE
    end function mfv_has_feature
 
-   function mfv_key_info(key, is_integer, unit, unit_size, description, description_size) result(status) &
-      bind(C, name='mfv_key_info')
-      type(c_ptr), value :: key, is_integer, unit, description
+   integer(c_int) function mfv_key_info(key, is_integer, unit, unit_size, description, description_size) result(status) bind(C)
+      type(c_ptr), value :: key, unit, description
+      integer(c_int), intent(inout), optional :: is_integer
       integer(c_size_t), value :: unit_size, description_size
-      integer(c_int) :: status
       type(catalogue_type) :: catalogue
       character(:), allocatable :: group, name, why
       integer :: number
@@ -150,18 +140,17 @@ contains
       call read_key_name(text_in(key), catalogue, group, number, name, why)
       if (why /= '') return
       associate (found => catalogue%keys(catalogue%place(group, name)))
-         if (c_associated(is_integer)) call integer_out(merge(1, 0, found%kind == kind_integer), is_integer)
+         if (present(is_integer)) is_integer = merge(1, 0, found%kind == kind_integer)
          call say(found%unit, unit, unit_size)
          call say(found%meaning, description, description_size)
       end associate
       status = MFV_COMPLETE
    end function mfv_key_info
 
-   function mfv_observable_info(index, name, name_size, unit, unit_size, description, description_size) result(status) &
-      bind(C, name='mfv_observable_info')
+   integer(c_int) function mfv_observable_info(index, name, name_size, unit, unit_size, description, description_size) &
+      result(status) bind(C)
       integer(c_size_t), value :: index, name_size, unit_size, description_size
       type(c_ptr), value :: name, unit, description
-      integer(c_int) :: status
       integer :: number
 
       status = MFV_BAD_ARGUMENT
@@ -176,208 +165,159 @@ contains
       status = MFV_COMPLETE
    end function mfv_observable_info
 
-   function mfv_scene_create(scene) result(status) bind(C, name='mfv_scene_create_unguarded')
+   ! --- scenes ---
+
+   integer(c_int) function mfv_scene_create(scene) result(status) bind(C)
       type(c_ptr), intent(out), optional :: scene
-      integer(c_int) :: status
-      type(draft_type) :: draft
+      type(draft_type), pointer :: draft
 
       status = MFV_BAD_ARGUMENT
       if (.not. present(scene)) return
-      call hand_out_scene(draft, scene)
       status = MFV_COMPLETE
+      allocate (draft)
+      call issue(kind_scene, c_loc(draft), scene, status)
+      if (status /= MFV_COMPLETE) deallocate (draft)
    end function mfv_scene_create
 
-   function mfv_scene_from_text(text, name, scene, message, message_size) result(status) &
-      bind(C, name='mfv_scene_from_text_unguarded')
+   integer(c_int) function mfv_scene_from_text(text, name, scene, message, message_size) result(status) bind(C)
       type(c_ptr), value :: text, name, message
       type(c_ptr), intent(out), optional :: scene
       integer(c_size_t), value :: message_size
-      integer(c_int) :: status
-      type(draft_type) :: draft
+      type(draft_type), pointer :: draft
       type(error_type), allocatable :: error
 
-      call say('a pointer is null', message, message_size)
       status = MFV_BAD_ARGUMENT
+      call say('a pointer is null', message, message_size)
       if (.not. present(scene)) return
       scene = c_null_ptr
       if (.not. c_associated(text)) return
-      call read_draft(text_in(text), name_in(name), draft, error)
+      allocate (draft)
+      call read_draft(text_in(text), text_or(name, unnamed), draft, error)
       status = told(error, message, message_size)
-      if (status == MFV_COMPLETE) call hand_out_scene(draft, scene)
+      call issue(kind_scene, c_loc(draft), scene, status)
+      if (status /= MFV_COMPLETE) deallocate (draft)
    end function mfv_scene_from_text
 
-   subroutine hand_out_scene(draft, scene)
-      type(draft_type), intent(in) :: draft
-      type(c_ptr), intent(out) :: scene
-      type(scene_handle_type), pointer :: self
+   !> The handle of a new object, if `status` says that it could be made.
+   subroutine issue(kind, object, handle, status)
+      integer(c_int), intent(in) :: kind
+      type(c_ptr), intent(in) :: object
+      type(c_ptr), intent(out) :: handle
+      integer(c_int), intent(inout) :: status
 
-      allocate (self)
-      self%draft = draft
-      scene = c_loc(self)
-   end subroutine hand_out_scene
+      handle = c_null_ptr
+      if (status /= MFV_COMPLETE) return
+      handle = mfv_handle_issue(kind, object)
+      if (.not. c_associated(handle)) status = MFV_BAD_HANDLE
+   end subroutine issue
 
-   function mfv_scene_set_text(scene, key, value) result(status) bind(C, name='mfv_scene_set_text_unguarded')
+   integer(c_int) function mfv_scene_set_text_unguarded(scene, key, value) result(status) bind(C)
       type(c_ptr), value :: scene, key, value
-      integer(c_int) :: status
-      type(scene_handle_type), pointer :: self
+      type(draft_type), pointer :: draft
       type(error_type), allocatable :: error
 
-      call find_scene(scene, self, status, key, value)
-      if (status /= MFV_COMPLETE) return
-      call self%draft%set(text_in(key), text_in(value), error)
-      status = merge(MFV_BAD_ARGUMENT, MFV_COMPLETE, allocated(error))
-   end function mfv_scene_set_text
+      call find_scene(scene, key, c_associated(value), draft, status)
+      if (status == MFV_COMPLETE) call draft%set(text_in(key), text_in(value), error)
+      if (allocated(error)) status = MFV_BAD_ARGUMENT
+   end function mfv_scene_set_text_unguarded
 
-   function mfv_scene_set_real(scene, key, value) result(status) bind(C, name='mfv_scene_set_real_unguarded')
+   integer(c_int) function mfv_scene_set_real_unguarded(scene, key, value) result(status) bind(C)
       type(c_ptr), value :: scene, key
       real(c_double), value :: value
-      integer(c_int) :: status
-      type(scene_handle_type), pointer :: self
+      type(draft_type), pointer :: draft
       type(error_type), allocatable :: error
 
-      call find_scene(scene, self, status, key)
-      if (status /= MFV_COMPLETE) return
-      call self%draft%set(text_in(key), value, error)
-      status = merge(MFV_BAD_ARGUMENT, MFV_COMPLETE, allocated(error))
-   end function mfv_scene_set_real
+      call find_scene(scene, key, .true., draft, status)
+      if (status == MFV_COMPLETE) call draft%set(text_in(key), value, error)
+      if (allocated(error)) status = MFV_BAD_ARGUMENT
+   end function mfv_scene_set_real_unguarded
 
-   function mfv_scene_set_reals(scene, key, values, count) result(status) bind(C, name='mfv_scene_set_reals_unguarded')
-      type(c_ptr), value :: scene, key, values
+   integer(c_int) function mfv_scene_set_reals_unguarded(scene, key, values, count) result(status) bind(C)
+      type(c_ptr), value :: scene, key
       integer(c_size_t), value :: count
-      integer(c_int) :: status
-      type(scene_handle_type), pointer :: self
+      real(c_double), intent(in), optional :: values(count)
+      type(draft_type), pointer :: draft
       type(error_type), allocatable :: error
-      real(c_double), pointer :: list(:)
 
-      call find_scene(scene, self, status, key, values)
-      if (status /= MFV_COMPLETE) return
-      if (count /= 0 .and. .not. is_size(count)) then
-         status = MFV_BAD_ARGUMENT
-         call keep_null(self, text_in(key))
-         return
-      end if
-      call c_f_pointer(values, list, [count])
-      call self%draft%set(text_in(key), list, error)
-      status = merge(MFV_BAD_ARGUMENT, MFV_COMPLETE, allocated(error))
-   end function mfv_scene_set_reals
+      call find_scene(scene, key, present(values) .and. (count == 0 .or. is_size(count)), draft, status)
+      if (status == MFV_COMPLETE) call draft%set(text_in(key), values, error)
+      if (allocated(error)) status = MFV_BAD_ARGUMENT
+   end function mfv_scene_set_reals_unguarded
 
-   function mfv_scene_set_integer(scene, key, value) result(status) bind(C, name='mfv_scene_set_integer_unguarded')
+   integer(c_int) function mfv_scene_set_integer_unguarded(scene, key, value) result(status) bind(C)
       type(c_ptr), value :: scene, key
       integer(c_int), value :: value
-      integer(c_int) :: status
-      type(scene_handle_type), pointer :: self
+      type(draft_type), pointer :: draft
       type(error_type), allocatable :: error
 
-      call find_scene(scene, self, status, key)
-      if (status /= MFV_COMPLETE) return
-      call self%draft%set(text_in(key), int(value), error)
-      status = merge(MFV_BAD_ARGUMENT, MFV_COMPLETE, allocated(error))
-   end function mfv_scene_set_integer
+      call find_scene(scene, key, .true., draft, status)
+      if (status == MFV_COMPLETE) call draft%set(text_in(key), int(value), error)
+      if (allocated(error)) status = MFV_BAD_ARGUMENT
+   end function mfv_scene_set_integer_unguarded
 
-   function mfv_scene_set_logical(scene, key, value) result(status) bind(C, name='mfv_scene_set_logical_unguarded')
+   integer(c_int) function mfv_scene_set_logical_unguarded(scene, key, value) result(status) bind(C)
       type(c_ptr), value :: scene, key
       integer(c_int), value :: value
-      integer(c_int) :: status
-      type(scene_handle_type), pointer :: self
+      type(draft_type), pointer :: draft
       type(error_type), allocatable :: error
 
-      call find_scene(scene, self, status, key)
-      if (status /= MFV_COMPLETE) return
-      call self%draft%set(text_in(key), value /= 0, error)
-      status = merge(MFV_BAD_ARGUMENT, MFV_COMPLETE, allocated(error))
-   end function mfv_scene_set_logical
+      call find_scene(scene, key, .true., draft, status)
+      if (status == MFV_COMPLETE) call draft%set(text_in(key), value /= 0, error)
+      if (allocated(error)) status = MFV_BAD_ARGUMENT
+   end function mfv_scene_set_logical_unguarded
 
-   function mfv_scene_remove(scene, key) result(status) bind(C, name='mfv_scene_remove_unguarded')
+   integer(c_int) function mfv_scene_remove_unguarded(scene, key) result(status) bind(C)
       type(c_ptr), value :: scene, key
-      integer(c_int) :: status
-
-      status = removed(scene, key, alternatives=.false.)
-   end function mfv_scene_remove
-
-   function mfv_scene_make_room(scene, key) result(status) bind(C, name='mfv_scene_make_room_unguarded')
-      type(c_ptr), value :: scene, key
-      integer(c_int) :: status
-
-      status = removed(scene, key, alternatives=.true.)
-   end function mfv_scene_make_room
-
-   !> Take a key of a scene out, with or without its alternatives.
-   integer(c_int) function removed(scene, key, alternatives) result(status)
-      type(c_ptr), intent(in) :: scene, key
-      logical, intent(in) :: alternatives
-      type(scene_handle_type), pointer :: self
+      type(draft_type), pointer :: draft
       type(error_type), allocatable :: error
 
-      call find_scene(scene, self, status, key)
-      if (status /= MFV_COMPLETE) return
-      call self%draft%remove(text_in(key), error, alternatives)
-      status = merge(MFV_BAD_ARGUMENT, MFV_COMPLETE, allocated(error))
-   end function removed
+      call find_scene(scene, key, .true., draft, status)
+      if (status == MFV_COMPLETE) call draft%remove(text_in(key), error)
+      if (allocated(error)) status = MFV_BAD_ARGUMENT
+   end function mfv_scene_remove_unguarded
 
-   function mfv_scene_set_data(scene, file, dataset, rows, columns, values) result(status) &
-      bind(C, name='mfv_scene_set_data_unguarded')
-      type(c_ptr), value :: scene, file, dataset, values
+   integer(c_int) function mfv_scene_make_room_unguarded(scene, key) result(status) bind(C)
+      type(c_ptr), value :: scene, key
+      type(draft_type), pointer :: draft
+      type(error_type), allocatable :: error
+
+      call find_scene(scene, key, .true., draft, status)
+      if (status == MFV_COMPLETE) call draft%remove(text_in(key), error, alternatives=.true.)
+      if (allocated(error)) status = MFV_BAD_ARGUMENT
+   end function mfv_scene_make_room_unguarded
+
+   integer(c_int) function mfv_scene_set_data_unguarded(scene, file, dataset, rows, columns, values) result(status) bind(C)
+      type(c_ptr), value :: scene, file, dataset
       integer(c_size_t), value :: rows, columns
-      integer(c_int) :: status
-      type(scene_handle_type), pointer :: self
+      real(c_double), intent(in), optional :: values(columns, rows)
+      type(draft_type), pointer :: draft
       type(error_type), allocatable :: error
-      real(c_double), pointer :: by_rows(:, :)
+      logical :: usable
 
-      call find_scene(scene, self, status, file, dataset)
-      if (status /= MFV_COMPLETE) return
-      status = MFV_BAD_ARGUMENT
-      if (.not. (c_associated(values) .and. is_size(rows) .and. is_size(columns))) then
-         call keep_null(self, text_in(file))
-         return
-      end if
-      call c_f_pointer(values, by_rows, [columns, rows])
-      call self%draft%set_data(text_in(file), text_in(dataset), transpose(by_rows), error)
-      status = merge(MFV_BAD_ARGUMENT, MFV_COMPLETE, allocated(error))
-   end function mfv_scene_set_data
+      usable = c_associated(dataset) .and. present(values) .and. is_size(rows) .and. is_size(columns)
+      call find_scene(scene, file, usable, draft, status)
+      if (status == MFV_COMPLETE) call draft%set_data(text_in(file), text_in(dataset), transpose(values), error)
+      if (allocated(error)) status = MFV_BAD_ARGUMENT
+   end function mfv_scene_set_data_unguarded
 
-   function mfv_scene_text(scene, buffer, size, length) result(status) bind(C, name='mfv_scene_text_unguarded')
-      type(c_ptr), value :: scene, buffer, length
-      integer(c_size_t), value :: size
-      integer(c_int) :: status
-      type(scene_handle_type), pointer :: self
-      character(:), allocatable :: text
-
-      call find_scene(scene, self, status)
-      if (status /= MFV_COMPLETE) return
-      call self%draft%write_text(text)
-      call size_out(len(text, kind=c_size_t), length)
-      if (c_associated(buffer)) status = text_out(text, buffer, size)
-   end function mfv_scene_text
-
-   subroutine mfv_scene_free(scene) bind(C, name='mfv_scene_free_unguarded')
-      type(c_ptr), value :: scene
-      type(scene_handle_type), pointer :: self
-
-      call c_f_pointer(scene, self)
-      deallocate (self)
-   end subroutine mfv_scene_free
-
-   !> The object of a scene, and whether the arguments that must be there are: MFV_BAD_ARGUMENT.
-   subroutine find_scene(scene, self, status, first, second)
-      type(c_ptr), intent(in) :: scene
-      type(scene_handle_type), pointer, intent(out) :: self
+   !> The object of a scene. MFV_BAD_ARGUMENT without a key or usable values for it; of the values mfv_create tells, too.
+   subroutine find_scene(scene, key, has_values, draft, status)
+      type(c_ptr), intent(in) :: scene, key
+      logical, intent(in) :: has_values
+      type(draft_type), pointer, intent(out) :: draft
       integer(c_int), intent(out) :: status
-      type(c_ptr), intent(in), optional :: first, second
+      type(error_type), allocatable :: fault
 
-      call c_f_pointer(scene, self)
-      status = MFV_COMPLETE
-      if (present(first)) status = expected(first)
-      if (status /= MFV_COMPLETE .or. .not. present(second)) return
-      status = expected(second)
-      if (status /= MFV_COMPLETE) call keep_null(self, text_in(first))
+      call c_f_pointer(scene, draft)
+      status = MFV_BAD_ARGUMENT
+      if (.not. c_associated(key)) return
+      if (has_values) then
+         status = MFV_COMPLETE
+      else
+         call set_error(fault, MFV_INPUT_ERROR, text_in(key)//': an argument is null, empty or too large')
+         call draft%keep_fault(text_in(key), fault)
+      end if
    end subroutine find_scene
-
-   !> MFV_BAD_ARGUMENT for a null pointer.
-   integer(c_int) function expected(pointer)
-      type(c_ptr), intent(in) :: pointer
-
-      expected = merge(MFV_COMPLETE, MFV_BAD_ARGUMENT, c_associated(pointer))
-   end function expected
 
    !> Whether this can be the size of an array that a caller has. (The upper half of size_t is below 0 here.)
    pure logical function is_size(count)
@@ -386,88 +326,100 @@ contains
       is_size = count > 0 .and. count <= most
    end function is_size
 
-   !> Have a scene keep that something was null.
-   subroutine keep_null(self, name)
-      type(scene_handle_type), intent(inout) :: self
-      character(*), intent(in) :: name
-      type(error_type), allocatable :: fault
+   integer(c_int) function mfv_scene_text_unguarded(scene, buffer, size, length) result(status) bind(C)
+      type(c_ptr), value :: scene, buffer
+      integer(c_size_t), value :: size
+      integer(c_size_t), intent(inout), optional :: length
+      type(draft_type), pointer :: draft
+      character(:), allocatable :: text
 
-      call set_error(fault, MFV_INPUT_ERROR, name//': an argument is null, empty or too large')
-      call self%draft%keep_fault(name, fault)
-   end subroutine keep_null
+      call c_f_pointer(scene, draft)
+      status = MFV_COMPLETE
+      call draft%write_text(text)
+      if (present(length)) length = len(text, kind=c_size_t)
+      if (c_associated(buffer)) status = text_out(text, buffer, size)
+   end function mfv_scene_text_unguarded
 
-   !> `found`: what became of the scene's handle; the scene is there where it is MFV_COMPLETE.
-   function mfv_create(scene, found, handle, message, message_size) result(status) bind(C, name='mfv_create_unguarded')
+   integer(c_int) function mfv_scene_free(scene) result(status) bind(C)
+      type(c_ptr), intent(inout), optional :: scene
+      type(draft_type), pointer :: draft
+      type(c_ptr) :: object
+
+      status = mfv_handle_remove(scene, kind_scene, object)
+      if (.not. c_associated(object)) return
+      call c_f_pointer(object, draft)
+      deallocate (draft)
+   end function mfv_scene_free
+
+   integer(c_int) function mfv_create(scene, handle, message, message_size) result(status) bind(C)
       type(c_ptr), value :: scene, message
-      integer(c_int), value :: found
       type(c_ptr), intent(out), optional :: handle
       integer(c_size_t), value :: message_size
-      integer(c_int) :: status
-      type(scene_handle_type), pointer :: given
+      type(c_ptr) :: object
+      type(draft_type), pointer :: draft
       type(handle_type), pointer :: self
       type(error_type), allocatable :: error
+      character(:), allocatable :: why
 
       status = MFV_BAD_ARGUMENT
       call say('the place for the handle is null', message, message_size)
       if (.not. present(handle)) return
       handle = c_null_ptr
-      status = found
-      call say('the scene is null, was freed, or is none', message, message_size)
-      if (found == MFV_IN_USE) call say('the scene is in use by another call', message, message_size)
-      if (found /= MFV_COMPLETE) return
-      call c_f_pointer(scene, given)
+      status = mfv_handle_enter(scene, kind_scene, use_reading, object)
+      if (status /= MFV_COMPLETE) then
+         call explain_handle('scene', status, why)
+         call say(why, message, message_size)
+         return
+      end if
+      call c_f_pointer(object, draft)
       allocate (self)
-      call new_contact(given%draft, self%contact, error)
+      call new_contact(draft, self%contact, error)
+      call mfv_handle_leave(scene)
       status = told(error, message, message_size)
-      call hand_out(self, status, handle)
+      call hand_out(self, handle, status)
    end function mfv_create
 
-   function mfv_create_from_file(path, handle, message, message_size) result(status) &
-      bind(C, name='mfv_create_from_file_unguarded')
+   integer(c_int) function mfv_create_from_file(path, handle, message, message_size) result(status) bind(C)
       type(c_ptr), value :: path, message
       type(c_ptr), intent(out), optional :: handle
       integer(c_size_t), value :: message_size
-      integer(c_int) :: status
       type(handle_type), pointer :: self
       type(error_type), allocatable :: error
 
-      call say('a pointer is null', message, message_size)
       status = MFV_BAD_ARGUMENT
+      call say('a pointer is null', message, message_size)
       if (.not. present(handle)) return
       handle = c_null_ptr
       if (.not. c_associated(path)) return
       allocate (self)
       call read_contact(text_in(path), self%contact, error)
       status = told(error, message, message_size)
-      call hand_out(self, status, handle)
+      call hand_out(self, handle, status)
    end function mfv_create_from_file
 
-   function mfv_create_from_text(text, name, handle, message, message_size) result(status) &
-      bind(C, name='mfv_create_from_text_unguarded')
+   integer(c_int) function mfv_create_from_text(text, name, handle, message, message_size) result(status) bind(C)
       type(c_ptr), value :: text, name, message
       type(c_ptr), intent(out), optional :: handle
       integer(c_size_t), value :: message_size
-      integer(c_int) :: status
       type(handle_type), pointer :: self
       type(error_type), allocatable :: error
 
-      call say('a pointer is null', message, message_size)
       status = MFV_BAD_ARGUMENT
+      call say('a pointer is null', message, message_size)
       if (.not. present(handle)) return
       handle = c_null_ptr
       if (.not. c_associated(text)) return
       allocate (self)
-      call read_contact_text(text_in(text), name_in(name), self%contact, error)
+      call read_contact_text(text_in(text), text_or(name, unnamed), self%contact, error)
       status = told(error, message, message_size)
-      call hand_out(self, status, handle)
+      call hand_out(self, handle, status)
    end function mfv_create_from_text
 
    !> The status of an error, MFV_COMPLETE where there is none; its message goes to a buffer, which may be null.
-   function told(error, message, message_size) result(status)
+   integer(c_int) function told(error, message, message_size) result(status)
       type(error_type), allocatable, intent(in) :: error
       type(c_ptr), intent(in) :: message
       integer(c_size_t), intent(in) :: message_size
-      integer(c_int) :: status
 
       status = MFV_COMPLETE
       call say('', message, message_size)
@@ -483,61 +435,64 @@ contains
       integer(c_size_t), intent(in) :: message_size
       integer(c_int) :: copied
 
-      if (c_associated(message)) copied = text_out(text, message, message_size)
+      copied = text_out(text, message, message_size)
    end subroutine say
 
-   !> Hand out an object whose contact was made; do away with it where `status` says that it was not.
-   subroutine hand_out(self, status, handle)
+   !> The handle of a new case. It is freed if `status` says that it could not be made, or if there is no handle for it.
+   subroutine hand_out(self, handle, status)
       type(handle_type), pointer, intent(inout) :: self
-      integer(c_int), intent(in) :: status
-      type(c_ptr), intent(inout) :: handle
+      type(c_ptr), intent(out) :: handle
+      integer(c_int), intent(inout) :: status
 
-      if (status == MFV_COMPLETE) then
-         call self%contact%get_message(self%message)
-         handle = c_loc(self)
-      else
-         deallocate (self)
-      end if
+      call self%contact%get_message(self%message)
+      call issue(kind_case, c_loc(self), handle, status)
+      if (status /= MFV_COMPLETE) deallocate (self)
    end subroutine hand_out
 
-   function mfv_copy(handle, copy) result(status) bind(C, name='mfv_copy_unguarded')
+   integer(c_int) function mfv_copy(handle, copy) result(status) bind(C)
       type(c_ptr), value :: handle
-      type(c_ptr), intent(out) :: copy
-      integer(c_int) :: status
+      type(c_ptr), intent(out), optional :: copy
+      type(c_ptr) :: object
       type(handle_type), pointer :: self, other
 
-      call c_f_pointer(handle, self)
-      status = MFV_COMPLETE
+      status = MFV_BAD_ARGUMENT
+      if (.not. present(copy)) return
+      copy = c_null_ptr
+      status = mfv_handle_enter(handle, kind_case, use_reading, object)
+      if (status /= MFV_COMPLETE) return
+      call c_f_pointer(object, self)
       allocate (other)
       other%contact = self%contact
-      call hand_out(other, status, copy)
+      call mfv_handle_leave(handle)
+      call hand_out(other, copy, status)
    end function mfv_copy
 
-   subroutine mfv_free(handle) bind(C, name='mfv_free_unguarded')
-      type(c_ptr), value :: handle
+   integer(c_int) function mfv_free(handle) result(status) bind(C)
+      type(c_ptr), intent(inout), optional :: handle
       type(handle_type), pointer :: self
+      type(c_ptr) :: object
 
-      call c_f_pointer(handle, self)
+      status = mfv_handle_remove(handle, kind_case, object)
+      if (.not. c_associated(object)) return
+      call c_f_pointer(object, self)
       deallocate (self)
-   end subroutine mfv_free
+   end function mfv_free
 
-   function mfv_observe(handle, observer, user) result(status) bind(C, name='mfv_observe_unguarded')
+   integer(c_int) function mfv_observe_unguarded(handle, observer, user) result(status) bind(C)
       type(c_ptr), value :: handle, user
       type(c_funptr), value :: observer
-      integer(c_int) :: status
       type(handle_type), pointer :: self
 
       call c_f_pointer(handle, self)
-      status = MFV_COMPLETE
       nullify (self%observer%observe)
       if (c_associated(observer)) call c_f_procpointer(observer, self%observer%observe)
       self%observer%user = user
-   end function mfv_observe
+      status = MFV_COMPLETE
+   end function mfv_observe_unguarded
 
    !> An observer: `user` points to an integer that is not 0 when the run is to end.
-   function mfv_stop_when_set(progress, user) result(stop_wanted) bind(C, name='mfv_stop_when_set')
+   integer(c_int) function mfv_stop_when_set(progress, user) result(stop_wanted) bind(C)
       type(c_ptr), value :: progress, user
-      integer(c_int) :: stop_wanted
       integer(c_int), pointer, volatile :: flag
 
       stop_wanted = 0
@@ -546,7 +501,7 @@ contains
       stop_wanted = flag
    end function mfv_stop_when_set
 
-   !> See mfv_observer.
+   !> See mfv_observer. Nobody may be there to be told.
    subroutine notify(self, state, segment, segments, fraction, stop_wanted)
       class(c_observer_type), intent(inout) :: self
       type(contact_state_type), intent(in) :: state
@@ -555,26 +510,22 @@ contains
       logical, intent(out) :: stop_wanted
       type(c_progress) :: progress
 
+      stop_wanted = .false.
+      if (.not. associated(self%observe)) return
       progress = c_progress(c_sizeof(progress), fraction, segment, segments, state%contact_nodes(), state%stick_nodes(), &
                             state%fields%normal_force, state%fields%tangential_force, state%fields%approach, state%fields%shift)
       stop_wanted = self%observe(progress, self%user) /= 0
    end subroutine notify
 
-   function mfv_run(handle) result(status) bind(C, name='mfv_run_unguarded')
+   integer(c_int) function mfv_run_unguarded(handle) result(status) bind(C)
       type(c_ptr), value :: handle
-      integer(c_int) :: status
       type(handle_type), pointer :: self
 
       call c_f_pointer(handle, self)
-      status = MFV_COMPLETE
-      if (associated(self%observer%observe)) then
-         call self%contact%run(self%observer)
-      else
-         call self%contact%run()
-      end if
+      call self%contact%run(self%observer)
       call self%contact%get_message(self%message)
       status = self%contact%status()
-   end function mfv_run
+   end function mfv_run_unguarded
 
    function mfv_advance(handle, step) result(status) bind(C, name='mfv_advance_unguarded')
       type(c_ptr), value :: handle, step
@@ -611,187 +562,143 @@ contains
       end if
    end function mfv_advance
 
-   function mfv_get_loads(handle, loads) result(status) bind(C, name='mfv_get_loads_unguarded')
-      type(c_ptr), value :: handle, loads
-      integer(c_int) :: status
+   integer(c_int) function mfv_get_loads_unguarded(handle, loads) result(status) bind(C)
+      type(c_ptr), value :: handle
+      type(c_loads), intent(inout), optional :: loads
       type(handle_type), pointer :: self
-      type(c_loads), pointer :: given
       type(loads_type) :: now
 
       call c_f_pointer(handle, self)
-      status = MFV_COMPLETE
-      if (.not. c_associated(loads)) then
-         status = refused(self, 'mfv_get_loads: loads is null')
-         return
-      end if
-      call c_f_pointer(loads, given)
-      if (given%size /= c_sizeof(given)) then
-         status = refused(self, 'mfv_get_loads: size is not sizeof(mfv_loads)')
-         return
-      end if
-      now = self%contact%loads()
-      given = c_loads(given%size, now%normal_force, now%tangential_force, now%moment, now%approach, now%shift, now%rotation, &
-                      now%dissipation, now%contact_nodes, now%stick_nodes, now%slip_nodes, now%events, now%linear_solves, 0)
-      status = MFV_COMPLETE
-   end function mfv_get_loads
-
-   function mfv_tangent(handle, motions, direction, tangent) result(status) bind(C, name='mfv_tangent_unguarded')
-      type(c_ptr), value :: handle, direction, tangent
-      integer(c_int), value :: motions
-      integer(c_int) :: status
-      type(handle_type), pointer :: self
-      real(c_double), pointer :: towards(:), by_rows(:, :)
-      type(error_type), allocatable :: error
-      real(wp), allocatable :: found(:, :)
-
-      call c_f_pointer(handle, self)
-      status = MFV_COMPLETE
-      if (motions /= 2 .and. motions /= 3) then
-         status = refused(self, 'mfv_tangent: motions must be 2, or 3 with rotation')
-         return
-      end if
-      if (.not. c_associated(tangent)) then
-         status = refused(self, 'mfv_tangent: tangent is null')
-         return
-      end if
-      allocate (found(motions, motions))
-      if (c_associated(direction)) then
-         call c_f_pointer(direction, towards, [motions])
-         call self%contact%get_tangent(found(:motions, :motions), error, towards)
-      else
-         call self%contact%get_tangent(found(:motions, :motions), error)
-      end if
-      status = failed(self, error)
+      status = expected(self, present(loads), 'mfv_get_loads: loads is null')
       if (status /= MFV_COMPLETE) return
-      call c_f_pointer(tangent, by_rows, [motions, motions])
-      by_rows = transpose(found(:motions, :motions))
-   end function mfv_tangent
+      status = expected(self, loads%size == c_sizeof(loads), 'mfv_get_loads: size is not sizeof(mfv_loads)')
+      if (status /= MFV_COMPLETE) return
+      now = self%contact%loads()
+      loads = c_loads(loads%size, now%normal_force, now%tangential_force, now%moment, now%approach, now%shift, now%rotation, &
+                      now%dissipation, now%contact_nodes, now%stick_nodes, now%slip_nodes, now%events, now%linear_solves, 0)
+   end function mfv_get_loads_unguarded
 
-   !> `state`: the object of a state, made where it is null; `found`: what became of its handle.
-   function mfv_save(handle, found, state) result(status) bind(C, name='mfv_save_unguarded')
-      type(c_ptr), value :: handle
-      integer(c_int), value :: found
-      type(c_ptr), intent(inout), optional :: state
-      integer(c_int) :: status
+   integer(c_int) function mfv_tangent_unguarded(handle, motions, direction, tangent) result(status) bind(C)
+      type(c_ptr), value :: handle, direction
+      integer(c_int), value :: motions
+      real(c_double), intent(inout), optional :: tangent(motions, motions)
       type(handle_type), pointer :: self
-      type(state_handle_type), pointer :: kept
+      real(c_double), pointer :: towards(:)
+      type(error_type), allocatable :: error
+      real(wp) :: found(3, 3)
 
       call c_f_pointer(handle, self)
-      if (.not. present(state)) then
-         status = refused(self, 'mfv_save: state is null')
-         return
-      end if
-      status = found
-      if (found /= MFV_COMPLETE) then
-         call keep_bad_state(self, found)
-         return
-      end if
-      if (.not. c_associated(state)) then
-         allocate (kept)
-         state = c_loc(kept)
-      end if
-      call c_f_pointer(state, kept)
-      call self%contact%keep(kept%state)
-   end function mfv_save
+      status = expected(self, motions == 2 .or. motions == 3, 'mfv_tangent: motions must be 2, or 3 with rotation')
+      if (status /= MFV_COMPLETE) return
+      status = expected(self, present(tangent), 'mfv_tangent: tangent is null')
+      if (status /= MFV_COMPLETE) return
+      nullify (towards)
+      if (c_associated(direction)) call c_f_pointer(direction, towards, [motions])
+      call self%contact%get_tangent(found(:motions, :motions), error, towards)
+      status = failed(self, error)
+      if (status == MFV_COMPLETE) tangent = transpose(found(:motions, :motions))
+   end function mfv_tangent_unguarded
 
-   !> `found`: what became of the state's handle; the state is there where it is MFV_COMPLETE.
-   function mfv_restore(handle, found, state) result(status) bind(C, name='mfv_restore_unguarded')
-      type(c_ptr), value :: handle, state
-      integer(c_int), value :: found
-      integer(c_int) :: status
+   integer(c_int) function mfv_save_unguarded(handle, state) result(status) bind(C)
+      type(c_ptr), value :: handle
+      type(c_ptr), intent(inout), optional :: state
       type(handle_type), pointer :: self
-      type(state_handle_type), pointer :: kept
+      type(kept_state_type), pointer :: kept
+      type(c_ptr) :: object
+
+      call c_f_pointer(handle, self)
+      status = expected(self, present(state), 'mfv_save: state is null')
+      if (status /= MFV_COMPLETE) return
+      if (c_associated(state)) then
+         status = mfv_handle_enter(state, kind_state, use_alone, object)
+         if (status /= MFV_COMPLETE) then
+            call explain_handle('state', status, self%message)
+            return
+         end if
+         call c_f_pointer(object, kept)
+         call self%contact%keep(kept)
+         call mfv_handle_leave(state)
+      else
+         allocate (kept)
+         call self%contact%keep(kept)
+         call issue(kind_state, c_loc(kept), state, status)
+         if (status /= MFV_COMPLETE) deallocate (kept)
+      end if
+   end function mfv_save_unguarded
+
+   integer(c_int) function mfv_restore_unguarded(handle, state) result(status) bind(C)
+      type(c_ptr), value :: handle, state
+      type(handle_type), pointer :: self
+      type(kept_state_type), pointer :: kept
+      type(c_ptr) :: object
       type(error_type), allocatable :: error
 
       call c_f_pointer(handle, self)
-      status = found
-      if (found /= MFV_COMPLETE) then
-         call keep_bad_state(self, found)
+      status = mfv_handle_enter(state, kind_state, use_reading, object)
+      if (status /= MFV_COMPLETE) then
+         call explain_handle('state', status, self%message)
          return
       end if
-      call c_f_pointer(state, kept)
-      call self%contact%come_back(kept%state, error)
+      call c_f_pointer(object, kept)
+      call self%contact%come_back(kept, error)
+      call mfv_handle_leave(state)
       status = failed(self, error)
       if (status == MFV_COMPLETE) call self%contact%get_message(self%message)
-   end function mfv_restore
+   end function mfv_restore_unguarded
 
-   subroutine mfv_state_free(state) bind(C, name='mfv_state_free_unguarded')
-      type(c_ptr), value :: state
-      type(state_handle_type), pointer :: kept
+   integer(c_int) function mfv_state_free(state) result(status) bind(C)
+      type(c_ptr), intent(inout), optional :: state
+      type(kept_state_type), pointer :: kept
+      type(c_ptr) :: object
 
-      call c_f_pointer(state, kept)
+      status = mfv_handle_remove(state, kind_state, object)
+      if (.not. c_associated(object)) return
+      call c_f_pointer(object, kept)
       deallocate (kept)
-   end subroutine mfv_state_free
+   end function mfv_state_free
 
-   !> What is wrong with the handle of a state, as the message of a case's.
-   subroutine keep_bad_state(self, found)
-      type(handle_type), intent(inout) :: self
-      integer(c_int), intent(in) :: found
+   !> What is wrong with the handle of a scene or a state that was looked up.
+   subroutine explain_handle(what, status, message)
+      character(*), intent(in) :: what
+      integer(c_int), intent(in) :: status
+      character(:), allocatable, intent(out) :: message
 
-      self%message = 'the state is null, was freed, or is none'
-      if (found == MFV_IN_USE) self%message = 'the state is in use by another call'
-   end subroutine keep_bad_state
+      message = 'the '//what//' is null, was freed, or is none'
+      if (status == MFV_IN_USE) message = 'the '//what//' is in use by another call'
+   end subroutine explain_handle
 
-   function mfv_message(handle, buffer, size) result(status) bind(C, name='mfv_message_unguarded')
+   integer(c_int) function mfv_message_unguarded(handle, buffer, size) result(status) bind(C)
       type(c_ptr), value :: handle, buffer
       integer(c_size_t), value :: size
-      integer(c_int) :: status
       type(handle_type), pointer :: self
 
       call c_f_pointer(handle, self)
       status = text_out(self%message, buffer, size)
-   end function mfv_message
+   end function mfv_message_unguarded
 
-   function mfv_field_count(handle, count) result(status) bind(C, name='mfv_field_count_unguarded')
-      type(c_ptr), value :: handle, count
-      integer(c_int) :: status
-      type(handle_type), pointer :: self
-      type(string_type), pointer :: paths(:)
-
-      call c_f_pointer(handle, self)
-      status = MFV_COMPLETE
-      if (.not. c_associated(count)) then
-         status = refused(self, 'mfv_field_count: count is null')
-         return
-      end if
-      call self%contact%field_paths(paths)
-      call size_out(size(paths, kind=c_size_t), count)
-      status = MFV_COMPLETE
-   end function mfv_field_count
-
-   function mfv_field_path(handle, index, buffer, size) result(status) bind(C, name='mfv_field_path_unguarded')
-      type(c_ptr), value :: handle, buffer
-      integer(c_size_t), value :: index, size
-      integer(c_int) :: status
-      type(handle_type), pointer :: self
-      type(string_type), pointer :: paths(:)
-
-      call c_f_pointer(handle, self)
-      status = MFV_COMPLETE
-      call self%contact%field_paths(paths)
-      if (index < 0 .or. index >= ubound(paths, 1)) then
-         status = refused(self, 'mfv_field_path: there are '//to_text(ubound(paths, 1))//' fields')
-         return
-      end if
-      status = text_out(paths(index + 1)%text, buffer, size)
-      if (status /= MFV_COMPLETE) status = refused(self, 'mfv_field_path: the buffer is null or has no room')
-   end function mfv_field_path
-
-   !> MFV_BAD_ARGUMENT, with its reason as the handle's message.
-   function refused(self, why) result(status)
+   !> MFV_BAD_ARGUMENT, with its reason as the case's message.
+   integer(c_int) function refused(self, why) result(status)
       type(handle_type), intent(inout) :: self
       character(*), intent(in) :: why
-      integer(c_int) :: status
 
       self%message = why
       status = MFV_BAD_ARGUMENT
    end function refused
 
-   !> The status of an error, with its message as the handle's; MFV_COMPLETE where there is none.
-   function failed(self, error) result(status)
+   !> MFV_COMPLETE where an argument is good, else refused.
+   integer(c_int) function expected(self, is_good, why) result(status)
+      type(handle_type), intent(inout) :: self
+      logical, intent(in) :: is_good
+      character(*), intent(in) :: why
+
+      status = MFV_COMPLETE
+      if (.not. is_good) status = refused(self, why)
+   end function expected
+
+   !> The status of an error, with its message as the case's; MFV_COMPLETE where there is none.
+   integer(c_int) function failed(self, error) result(status)
       type(handle_type), intent(inout) :: self
       type(error_type), allocatable, intent(in) :: error
-      integer(c_int) :: status
 
       status = MFV_COMPLETE
       if (.not. allocated(error)) return
@@ -799,329 +706,154 @@ contains
       self%message = error%message
    end function failed
 
-   function mfv_attribute_name(handle, index, buffer, size) result(status) bind(C, name='mfv_attribute_name_unguarded')
+   integer(c_int) function mfv_field_count_unguarded(handle, count) result(status) bind(C)
+      type(c_ptr), value :: handle
+      integer(c_size_t), intent(inout), optional :: count
+      type(handle_type), pointer :: self
+      type(string_type), pointer :: paths(:)
+
+      call c_f_pointer(handle, self)
+      call self%contact%field_paths(paths)
+      status = expected(self, present(count), 'mfv_field_count: count is null')
+      if (status == MFV_COMPLETE) count = size(paths, kind=c_size_t)
+   end function mfv_field_count_unguarded
+
+   integer(c_int) function mfv_field_path_unguarded(handle, index, buffer, size) result(status) bind(C)
       type(c_ptr), value :: handle, buffer
       integer(c_size_t), value :: index, size
-      integer(c_int) :: status
+      type(handle_type), pointer :: self
+      type(string_type), pointer :: paths(:)
+
+      call c_f_pointer(handle, self)
+      call self%contact%field_paths(paths)
+      status = listed_text_out(self, 'mfv_field_path', 'fields', paths, index, buffer, size)
+   end function mfv_field_path_unguarded
+
+   integer(c_int) function mfv_attribute_name_unguarded(handle, index, buffer, size) result(status) bind(C)
+      type(c_ptr), value :: handle, buffer
+      integer(c_size_t), value :: index, size
       type(handle_type), pointer :: self
       type(string_type), pointer :: names(:), texts(:)
 
       call c_f_pointer(handle, self)
-      status = MFV_COMPLETE
       call self%contact%attributes(names, texts)
-      if (index < 0 .or. index >= ubound(names, 1)) then
-         status = refused(self, 'mfv_attribute_name: there are '//to_text(ubound(names, 1))//' attributes')
+      status = listed_text_out(self, 'mfv_attribute_name', 'attributes', names, index, buffer, size)
+   end function mfv_attribute_name_unguarded
+
+   !> Text `index` (from 0) of a list into a caller's buffer. `caller`, `items`: the function that is called and what the list has.
+   integer(c_int) function listed_text_out(self, caller, items, list, index, buffer, size) result(status)
+      type(handle_type), intent(inout) :: self
+      character(*), intent(in) :: caller, items
+      type(string_type), intent(in) :: list(:)
+      integer(c_size_t), intent(in) :: index, size
+      type(c_ptr), intent(in) :: buffer
+
+      if (index < 0 .or. index >= ubound(list, 1)) then
+         status = refused(self, caller//': there are '//to_text(ubound(list, 1))//' '//items)
          return
       end if
-      status = text_out(names(index + 1)%text, buffer, size)
-      if (status /= MFV_COMPLETE) status = refused(self, 'mfv_attribute_name: the buffer is null or has no room')
-   end function mfv_attribute_name
+      status = text_out(list(index + 1)%text, buffer, size)
+      if (status /= MFV_COMPLETE) status = refused(self, caller//': the buffer is null or has no room')
+   end function listed_text_out
 
-   function mfv_attribute(handle, name, buffer, size, length) result(status) bind(C, name='mfv_attribute_unguarded')
-      type(c_ptr), value :: handle, name, buffer, length
+   integer(c_int) function mfv_attribute_unguarded(handle, name, buffer, size, length) result(status) bind(C)
+      type(c_ptr), value :: handle, name, buffer
       integer(c_size_t), value :: size
-      integer(c_int) :: status
+      integer(c_size_t), intent(inout), optional :: length
       type(handle_type), pointer :: self
       type(string_type), pointer :: names(:), texts(:)
       character(:), allocatable :: wanted
       integer :: i
 
       call c_f_pointer(handle, self)
-      status = MFV_COMPLETE
-      if (.not. c_associated(name)) then
-         status = refused(self, 'mfv_attribute: the name is null')
-         return
-      end if
+      status = expected(self, c_associated(name), 'mfv_attribute: the name is null')
+      if (status /= MFV_COMPLETE) return
       wanted = text_in(name)
       call self%contact%attributes(names, texts)
       do i = 1, ubound(names, 1)
          if (names(i)%text /= wanted .or. len(names(i)%text) /= len(wanted)) cycle
-         call size_out(len(texts(i)%text, kind=c_size_t), length)
+         if (present(length)) length = len(texts(i)%text, kind=c_size_t)
          if (c_associated(buffer)) status = text_out(texts(i)%text, buffer, size)
          if (status /= MFV_COMPLETE) status = refused(self, 'mfv_attribute: the buffer has no room')
          return
       end do
       status = refused(self, "there is no attribute '"//wanted//"'")
-   end function mfv_attribute
+   end function mfv_attribute_unguarded
 
-   function mfv_field_info(handle, path, count, is_integer, along, unit, unit_size, description, description_size) &
-      result(status) bind(C, name='mfv_field_info_unguarded')
-      type(c_ptr), value :: handle, path, count, is_integer, along, unit, description
+   integer(c_int) function mfv_field_info_unguarded(handle, path, count, is_integer, along, unit, unit_size, description, &
+                                                    description_size) result(status) bind(C)
+      type(c_ptr), value :: handle, path, unit, description
       integer(c_size_t), value :: unit_size, description_size
-      integer(c_int) :: status
+      integer(c_size_t), intent(inout), optional :: count
+      integer(c_int), intent(inout), optional :: is_integer, along
       type(field_type), pointer :: field
-      integer(c_int) :: copied
 
-      call field_at(handle, path, field, status)
+      call find_field(handle, path, field, status)
       if (status /= MFV_COMPLETE) return
-      call size_out(values_of(field), count)
-      call integer_out(merge(1, 0, allocated(field%whole)), is_integer)
-      call integer_out(field%along, along)
-      if (c_associated(unit)) copied = text_out(field%unit, unit, unit_size)
-      if (c_associated(description)) copied = text_out(field%description, description, description_size)
-   end function mfv_field_info
+      if (present(count)) count = values_of(field)
+      if (present(is_integer)) is_integer = merge(1, 0, allocated(field%whole))
+      if (present(along)) along = field%along
+      call say(field%unit, unit, unit_size)
+      call say(field%description, description, description_size)
+   end function mfv_field_info_unguarded
 
-   function mfv_copy_real(handle, path, values, count) result(status) bind(C, name='mfv_copy_real_unguarded')
-      type(c_ptr), value :: handle, path, values
-      integer(c_size_t), value :: count
-      integer(c_int) :: status
-      type(field_type), pointer :: field
-      real(c_double), pointer :: copy(:)
-
-      call field_at(handle, path, field, status)
-      if (status /= MFV_COMPLETE) return
-      status = fit_for_copy(handle, path, field, .false., values, count)
-      if (status /= MFV_COMPLETE) return
-      call c_f_pointer(values, copy, [count])
-      copy = field%values
-   end function mfv_copy_real
-
-   function mfv_copy_integer(handle, path, values, count) result(status) bind(C, name='mfv_copy_integer_unguarded')
-      type(c_ptr), value :: handle, path, values
-      integer(c_size_t), value :: count
-      integer(c_int) :: status
-      type(field_type), pointer :: field
-      integer(c_int32_t), pointer :: copy(:)
-
-      call field_at(handle, path, field, status)
-      if (status /= MFV_COMPLETE) return
-      status = fit_for_copy(handle, path, field, .true., values, count)
-      if (status /= MFV_COMPLETE) return
-      call c_f_pointer(values, copy, [count])
-      copy = field%whole
-   end function mfv_copy_integer
-
-   !> Whether a field can be copied as reals or whole numbers into `count` places; if not, MFV_BAD_ARGUMENT and why.
-   function fit_for_copy(handle, path, field, whole, values, count) result(status)
-      type(c_ptr), intent(in) :: handle, path, values
-      type(field_type), intent(in) :: field
-      logical, intent(in) :: whole
-      integer(c_size_t), intent(in) :: count
-      integer(c_int) :: status
-      type(handle_type), pointer :: self
-
-      call c_f_pointer(handle, self)
-      status = MFV_COMPLETE
-      if (allocated(field%whole) .neqv. whole) then
-         status = refused(self, text_in(path)//' has '//trim(merge('whole numbers', 'reals        ', .not. whole)))
-      else if (.not. c_associated(values)) then
-         status = refused(self, text_in(path)//': values is null')
-      else if (count /= values_of(field)) then
-         status = refused(self, text_in(path)//' has '//to_text(int(values_of(field)))//' values, count is another number')
-      end if
-   end function fit_for_copy
-
-   function mfv_stress(handle, body, step, count, x, y, stresses) result(status) bind(C, name='mfv_stress_unguarded')
-      type(c_ptr), value :: handle, x, y, stresses
-      integer(c_int), value :: body, step
-      integer(c_size_t), value :: count
-      integer(c_int) :: status
-      type(handle_type), pointer :: self
-      type(error_type), allocatable :: error
-      real(c_double), pointer :: across(:), up(:), values(:, :)
-
-      call c_f_pointer(handle, self)
-      status = MFV_COMPLETE
-      if (count == 0) return
-      call take_points(self, count, x, y, stresses, across, up, values, status)
-      if (status /= MFV_COMPLETE) return
-      call self%contact%get_stresses(int(body), across, up, values, error, int(step))
-      status = failed(self, error)
-   end function mfv_stress
-
-   !> Arrays for points and the stresses at them. MFV_BAD_ARGUMENT.
-   subroutine take_points(self, count, x, y, stresses, across, up, values, status)
-      type(handle_type), intent(inout) :: self
-      integer(c_size_t), intent(in) :: count
-      type(c_ptr), intent(in) :: x, y, stresses
-      real(c_double), pointer, intent(out) :: across(:), up(:), values(:, :)
-      integer(c_int), intent(out) :: status
-
-      nullify (across, up, values)
-      if (.not. (c_associated(x) .and. c_associated(y) .and. c_associated(stresses))) then
-         status = refused(self, 'an array is null')
-         return
-      end if
-      if (count < 0 .or. count > most) then
-         status = refused(self, 'count is too large: there must be that many points')
-         return
-      end if
-      call c_f_pointer(x, across, [count])
-      call c_f_pointer(y, up, [count])
-      call c_f_pointer(stresses, values, [int(stress_count, c_size_t), count])
-      status = MFV_COMPLETE
-   end subroutine take_points
-
-   function mfv_largest_von_mises(handle, body, step, place) result(status) bind(C, name='mfv_largest_von_mises_unguarded')
-      type(c_ptr), value :: handle, place
-      integer(c_int), value :: body, step
-      integer(c_int) :: status
-
-      status = largest_stress(handle, body, step, place, tension=.false.)
-   end function mfv_largest_von_mises
-
-   function mfv_largest_tension(handle, body, step, place) result(status) bind(C, name='mfv_largest_tension_unguarded')
-      type(c_ptr), value :: handle, place
-      integer(c_int), value :: body, step
-      integer(c_int) :: status
-
-      status = largest_stress(handle, body, step, place, tension=.true.)
-   end function mfv_largest_tension
-
-   !> The largest von Mises stress or `tension` of a body, with its place.
-   integer(c_int) function largest_stress(handle, body, step, place, tension) result(status)
-      type(c_ptr), intent(in) :: handle, place
-      integer(c_int), intent(in) :: body, step
-      logical, intent(in) :: tension
-      type(handle_type), pointer :: self
-      type(error_type), allocatable :: error
-      type(largest_type) :: largest
-
-      call c_f_pointer(handle, self)
-      if (.not. c_associated(place)) then
-         status = refused(self, 'place is null')
-         return
-      end if
-      if (tension) then
-         call self%contact%get_largest_tension(int(body), largest, error, int(step))
-      else
-         call self%contact%get_largest_von_mises(int(body), largest, error, int(step))
-      end if
-      status = failed(self, error)
-      if (status == MFV_COMPLETE) call place_out(largest, place)
-   end function largest_stress
-
-   !> A largest stress and its place through a pointer.
-   subroutine place_out(largest, place)
-      type(largest_type), intent(in) :: largest
-      type(c_ptr), intent(in) :: place
-      real(c_double), pointer :: values(:)
-
-      call c_f_pointer(place, values, [3])
-      values = [largest%value, largest%x, largest%y]
-   end subroutine place_out
-
-   function mfv_stress_under(handle, body, nodes, arc, width, pressure, shear, contact_edge, stick_edge, count, x, y, stresses, &
-                             place, tension) result(status) bind(C, name='mfv_stress_under_unguarded')
-      type(c_ptr), value :: handle, arc, width, pressure, shear, contact_edge, stick_edge, x, y, stresses, place, tension
-      integer(c_int), value :: body
-      integer(c_size_t), value :: nodes, count
-      integer(c_int) :: status
-      type(handle_type), pointer :: self
-      type(interior_type) :: interior
-      type(error_type), allocatable :: error
-      real(c_double), pointer, dimension(:) :: positions, widths, pressures, shears, across, up
-      real(c_double), pointer :: values(:, :)
-      integer(c_size_t) :: i
-      logical :: usable
-
-      call c_f_pointer(handle, self)
-      status = MFV_COMPLETE
-      if (.not. (c_associated(arc) .and. c_associated(width) .and. c_associated(pressure) .and. c_associated(shear))) then
-         status = refused(self, 'mfv_stress_under: an array is null')
-         return
-      end if
-      if (.not. is_size(nodes)) then
-         status = refused(self, 'mfv_stress_under: nodes must be at least 1 and the number of tractions')
-         return
-      end if
-      call c_f_pointer(arc, positions, [nodes])
-      call c_f_pointer(width, widths, [nodes])
-      call c_f_pointer(pressure, pressures, [nodes])
-      call c_f_pointer(shear, shears, [nodes])
-      usable = all(ieee_is_finite(positions)) .and. all(ieee_is_finite(widths)) .and. all(ieee_is_finite(pressures)) .and. &
-               all(ieee_is_finite(shears))
-      if (usable) usable = all(widths > 0.0_wp)
-      if (.not. usable) then
-         status = refused(self, 'mfv_stress_under: values must be finite and widths positive')
-         return
-      end if
-      call self%contact%make_interior(int(body), positions, widths, pressures, shears, edges_at(contact_edge), &
-                                      edges_at(stick_edge), interior, error)
-      status = failed(self, error)
-      if (status == MFV_COMPLETE .and. c_associated(stresses)) then
-         call take_points(self, count, x, y, stresses, across, up, values, status)
-         if (status /= MFV_COMPLETE) return
-         do i = 1, count
-            values(:, i) = interior%all_stresses(across(i), up(i))
-         end do
-      end if
-      if (status == MFV_COMPLETE .and. c_associated(place)) call place_out(largest_von_mises(interior), place)
-      if (status == MFV_COMPLETE .and. c_associated(tension)) call place_out(largest_tension(interior), tension)
-
-   contains
-
-      !> Edges of the caller's, not numbers where the pointer is null.
-      function edges_at(pointer_to_edges) result(edges)
-         type(c_ptr), intent(in) :: pointer_to_edges
-         real(wp) :: edges(nodes)
-         real(c_double), pointer :: theirs(:)
-
-         edges = ieee_value(1.0_wp, ieee_quiet_nan)
-         if (.not. c_associated(pointer_to_edges)) return
-         call c_f_pointer(pointer_to_edges, theirs, [nodes])
-         edges = theirs
-      end function edges_at
-   end function mfv_stress_under
-
-   function mfv_write(handle, path) result(status) bind(C, name='mfv_write_unguarded')
+   integer(c_int) function mfv_copy_real_unguarded(handle, path, values, count) result(status) bind(C)
       type(c_ptr), value :: handle, path
-      integer(c_int) :: status
-      type(handle_type), pointer :: self
-      type(error_type), allocatable :: error
+      integer(c_size_t), value :: count
+      real(c_double), intent(inout), optional :: values(count)
+      type(field_type), pointer :: field
 
-      call c_f_pointer(handle, self)
-      status = MFV_COMPLETE
-      if (c_associated(path)) then
-         call self%contact%write(text_in(path), error)
-      else
-         call self%contact%write('', error)
-      end if
-      status = failed(self, error)
-      if (status == MFV_COMPLETE) call self%contact%get_message(self%message)
-   end function mfv_write
+      call find_field_to_copy(handle, path, .false., present(values), count, field, status)
+      if (status == MFV_COMPLETE) values = field%values
+   end function mfv_copy_real_unguarded
 
-   !> The field at a path of a case; MFV_BAD_ARGUMENT where there is none.
-   subroutine field_at(handle, path, field, status)
+   integer(c_int) function mfv_copy_integer_unguarded(handle, path, values, count) result(status) bind(C)
+      type(c_ptr), value :: handle, path
+      integer(c_size_t), value :: count
+      integer(c_int32_t), intent(inout), optional :: values(count)
+      type(field_type), pointer :: field
+
+      call find_field_to_copy(handle, path, .true., present(values), count, field, status)
+      if (status == MFV_COMPLETE) values = field%whole
+   end function mfv_copy_integer_unguarded
+
+   !> The field at a path of a case, of reals or (`whole`) whole numbers if that matters. MFV_BAD_ARGUMENT.
+   subroutine find_field(handle, path, field, status, whole)
       type(c_ptr), intent(in) :: handle, path
       type(field_type), pointer, intent(out) :: field
       integer(c_int), intent(out) :: status
+      logical, intent(in), optional :: whole
       type(handle_type), pointer :: self
       type(error_type), allocatable :: error
 
       nullify (field)
       call c_f_pointer(handle, self)
-      status = MFV_COMPLETE
-      if (.not. c_associated(path)) then
-         status = refused(self, 'the path is null')
-         return
-      end if
-      call self%contact%find_field(text_in(path), field, error)
+      status = expected(self, c_associated(path), 'the path is null')
+      if (status /= MFV_COMPLETE) return
+      call self%contact%find_field(text_in(path), field, error, whole)
       status = failed(self, error)
-   end subroutine field_at
+   end subroutine find_field
 
-   !> A number through a pointer that may be null.
-   subroutine integer_out(value, pointer_to_integer)
-      integer, intent(in) :: value
-      type(c_ptr), intent(in) :: pointer_to_integer
-      integer(c_int), pointer :: place
+   !> The same, to be copied to where there are `count` places (`has_places`: the pointer to them is not null).
+   subroutine find_field_to_copy(handle, path, whole, has_places, count, field, status)
+      type(c_ptr), intent(in) :: handle, path
+      logical, intent(in) :: whole, has_places
+      integer(c_size_t), intent(in) :: count
+      type(field_type), pointer, intent(out) :: field
+      integer(c_int), intent(out) :: status
+      type(handle_type), pointer :: self
 
-      if (.not. c_associated(pointer_to_integer)) return
-      call c_f_pointer(pointer_to_integer, place)
-      place = value
-   end subroutine integer_out
+      call find_field(handle, path, field, status, whole)
+      if (status /= MFV_COMPLETE) return
+      call c_f_pointer(handle, self)
+      if (.not. has_places) then
+         status = refused(self, text_in(path)//': values is null')
+      else if (count /= values_of(field)) then
+         status = refused(self, text_in(path)//' has '//to_text(int(values_of(field)))//' values, count is another number')
+      end if
+   end subroutine find_field_to_copy
 
-   !> A size through a pointer that may be null.
-   subroutine size_out(value, pointer_to_size)
-      integer(c_size_t), intent(in) :: value
-      type(c_ptr), intent(in) :: pointer_to_size
-      integer(c_size_t), pointer :: place
-
-      if (.not. c_associated(pointer_to_size)) return
-      call c_f_pointer(pointer_to_size, place)
-      place = value
-   end subroutine size_out
-
+   !> How many values a field has.
    pure integer(c_size_t) function values_of(field)
       type(field_type), intent(in) :: field
 
@@ -1131,6 +863,137 @@ contains
          values_of = size(field%values, kind=c_size_t)
       end if
    end function values_of
+
+   integer(c_int) function mfv_stress_unguarded(handle, body, step, count, x, y, stresses) result(status) bind(C)
+      type(c_ptr), value :: handle
+      integer(c_int), value :: body, step
+      integer(c_size_t), value :: count
+      real(c_double), intent(in), optional :: x(count), y(count)
+      real(c_double), intent(inout), optional :: stresses(stress_count, count)
+      type(handle_type), pointer :: self
+      type(error_type), allocatable :: error
+
+      call c_f_pointer(handle, self)
+      status = MFV_COMPLETE
+      if (count == 0) return
+      status = expected_points(self, count, present(x) .and. present(y) .and. present(stresses))
+      if (status /= MFV_COMPLETE) return
+      call self%contact%get_stresses(int(body), x, y, stresses, error, int(step))
+      status = failed(self, error)
+   end function mfv_stress_unguarded
+
+   !> MFV_BAD_ARGUMENT unless there are arrays for that many points.
+   integer(c_int) function expected_points(self, count, has_arrays) result(status)
+      type(handle_type), intent(inout) :: self
+      integer(c_size_t), intent(in) :: count
+      logical, intent(in) :: has_arrays
+
+      status = expected(self, has_arrays, 'an array is null')
+      if (status /= MFV_COMPLETE) return
+      status = expected(self, count == 0 .or. is_size(count), 'count is too large: there must be that many points')
+   end function expected_points
+
+   integer(c_int) function mfv_largest_von_mises_unguarded(handle, body, step, place) result(status) bind(C)
+      type(c_ptr), value :: handle
+      integer(c_int), value :: body, step
+      real(c_double), intent(inout), optional :: place(3)
+      type(handle_type), pointer :: self
+      type(error_type), allocatable :: error
+      type(largest_type) :: largest
+
+      call c_f_pointer(handle, self)
+      status = expected(self, present(place), 'place is null')
+      if (status /= MFV_COMPLETE) return
+      call self%contact%get_largest_von_mises(int(body), largest, error, int(step))
+      status = failed(self, error)
+      if (status == MFV_COMPLETE) place = place_of(largest)
+   end function mfv_largest_von_mises_unguarded
+
+   integer(c_int) function mfv_largest_tension_unguarded(handle, body, step, place) result(status) bind(C)
+      type(c_ptr), value :: handle
+      integer(c_int), value :: body, step
+      real(c_double), intent(inout), optional :: place(3)
+      type(handle_type), pointer :: self
+      type(error_type), allocatable :: error
+      type(largest_type) :: largest
+
+      call c_f_pointer(handle, self)
+      status = expected(self, present(place), 'place is null')
+      if (status /= MFV_COMPLETE) return
+      call self%contact%get_largest_tension(int(body), largest, error, int(step))
+      status = failed(self, error)
+      if (status == MFV_COMPLETE) place = place_of(largest)
+   end function mfv_largest_tension_unguarded
+
+   !> A largest stress and where it is.
+   pure function place_of(largest) result(place)
+      type(largest_type), intent(in) :: largest
+      real(c_double) :: place(3)
+
+      place = [largest%value, largest%x, largest%y]
+   end function place_of
+
+   integer(c_int) function mfv_stress_under_unguarded(handle, body, nodes, arc, width, pressure, shear, contact_edge, stick_edge, &
+                                                      count, x, y, stresses, place, tension) result(status) bind(C)
+      type(c_ptr), value :: handle
+      integer(c_int), value :: body
+      integer(c_size_t), value :: nodes, count
+      real(c_double), intent(in), optional, dimension(nodes) :: arc, width, pressure, shear, contact_edge, stick_edge
+      real(c_double), intent(in), optional :: x(count), y(count)
+      real(c_double), intent(inout), optional :: stresses(stress_count, count), place(3), tension(3)
+      type(handle_type), pointer :: self
+      type(interior_type) :: interior
+      type(error_type), allocatable :: error
+      integer(c_size_t) :: i
+      logical :: usable
+
+      call c_f_pointer(handle, self)
+      status = expected(self, present(arc) .and. present(width) .and. present(pressure) .and. present(shear), &
+                        'mfv_stress_under: an array is null')
+      if (status /= MFV_COMPLETE) return
+      status = expected(self, is_size(nodes), 'mfv_stress_under: nodes must be at least 1 and the number of tractions')
+      if (status /= MFV_COMPLETE) return
+      usable = all(ieee_is_finite([arc, width, pressure, shear]))
+      if (usable) usable = all(width > 0.0_wp)
+      status = expected(self, usable, 'mfv_stress_under: values must be finite and widths positive')
+      if (status /= MFV_COMPLETE) return
+      call self%contact%make_interior(int(body), arc, width, pressure, shear, edges_or_nan(nodes, contact_edge), &
+                                      edges_or_nan(nodes, stick_edge), interior, error)
+      status = failed(self, error)
+      if (status == MFV_COMPLETE .and. present(stresses)) &
+         status = expected_points(self, count, present(x) .and. present(y))
+      if (status /= MFV_COMPLETE) return
+      if (present(stresses)) then
+         do i = 1, count
+            stresses(:, i) = interior%all_stresses(x(i), y(i))
+         end do
+      end if
+      if (present(place)) place = place_of(largest_von_mises(interior))
+      if (present(tension)) tension = place_of(largest_tension(interior))
+   end function mfv_stress_under_unguarded
+
+   !> Edges of the caller's, or NaN for each node if there are none.
+   pure function edges_or_nan(nodes, given) result(edges)
+      integer(c_size_t), intent(in) :: nodes
+      real(c_double), intent(in), optional :: given(nodes)
+      real(wp) :: edges(nodes)
+
+      edges = ieee_value(1.0_wp, ieee_quiet_nan)
+      if (present(given)) edges = given
+   end function edges_or_nan
+
+   integer(c_int) function mfv_write_unguarded(handle, path) result(status) bind(C)
+      type(c_ptr), value :: handle, path
+      type(handle_type), pointer :: self
+      type(error_type), allocatable :: error
+
+      call c_f_pointer(handle, self)
+      call self%contact%write(text_or(path, ''), error)
+      status = failed(self, error)
+      if (status == MFV_COMPLETE) call self%contact%get_message(self%message)
+   end function mfv_write_unguarded
+
+   ! --- texts ---
 
    !> Text of a C string.
    function text_in(pointer_to_text) result(text)
@@ -1145,28 +1008,30 @@ contains
       end do
    end function text_in
 
-   !> What messages call a text: its name, or 'text' where the pointer is null.
-   function name_in(pointer_to_name) result(name)
-      type(c_ptr), intent(in) :: pointer_to_name
-      character(len=length_of_name(pointer_to_name)) :: name
+   !> Text of a C string, or `default` where the pointer is null.
+   function text_or(pointer_to_text, default) result(text)
+      type(c_ptr), intent(in) :: pointer_to_text
+      character(*), intent(in) :: default
+      character(len=length_or(pointer_to_text, len(default))) :: text
 
-      name = unnamed
-      if (c_associated(pointer_to_name)) name = text_in(pointer_to_name)
-   end function name_in
+      text = default
+      if (c_associated(pointer_to_text)) text = text_in(pointer_to_text)
+   end function text_or
 
-   pure integer function length_of_name(pointer_to_name) result(length)
-      type(c_ptr), intent(in) :: pointer_to_name
+   !> Length of a C string, or `default` where the pointer is null.
+   pure integer function length_or(pointer_to_text, default) result(length)
+      type(c_ptr), intent(in) :: pointer_to_text
+      integer, intent(in) :: default
 
-      length = len(unnamed)
-      if (c_associated(pointer_to_name)) length = int(c_strlen(pointer_to_name))
-   end function length_of_name
+      length = default
+      if (c_associated(pointer_to_text)) length = int(c_strlen(pointer_to_text))
+   end function length_or
 
    !> Text into a caller's buffer; MFV_BAD_ARGUMENT where there is none.
-   function text_out(text, buffer, size) result(status)
+   integer(c_int) function text_out(text, buffer, size) result(status)
       character(*), intent(in) :: text
       type(c_ptr), intent(in) :: buffer
       integer(c_size_t), intent(in) :: size
-      integer(c_int) :: status
       character(kind=c_char), pointer :: characters(:)
 
       status = MFV_BAD_ARGUMENT
