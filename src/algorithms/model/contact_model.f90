@@ -18,7 +18,7 @@ module mfv_contact_model
    use mfv_scene_indenter, only: indenter_of, largest_half_width
    implicit none
    private
-   public :: contact_model_type, new_contact_model, choose_mesh, along_approach, along_shift, along_rotation
+   public :: contact_model_type, new_contact_model, choose_mesh, has_touchable_node, along_approach, along_shift, along_rotation
 
    !> The upper body's motions.
    integer, parameter :: along_approach = 1, along_shift = 2, along_rotation = 3
@@ -128,6 +128,25 @@ contains
          if (by_fourier(scene)) interval = 2.0_wp*pi*scene%arc_radius()/circle_intervals(scene%arc_radius(), interval)
       end if
    end subroutine choose_mesh
+
+   !> Whether the mesh of a scene has a node where both bodies have a surface.
+   logical function has_touchable_node(scene)
+      type(scene_type), intent(in) :: scene
+      real(wp) :: interval
+      integer :: i, nodes
+      logical :: growing
+
+      if (scene%lower%shape == shape_matrix) then
+         has_touchable_node = any(scene%touchable(scene%lower%position))
+         return
+      end if
+      call choose_mesh(scene, nodes, interval, growing)
+      has_touchable_node = .false.
+      do i = 1, nodes
+         has_touchable_node = scene%touchable(0.5_wp*interval*(2*i - nodes - 1))
+         if (has_touchable_node) return
+      end do
+   end function has_touchable_node
 
    !> Whether a body's kernel needs a whole number of intervals on its circle.
    pure logical function by_fourier(scene)

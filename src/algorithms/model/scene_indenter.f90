@@ -6,7 +6,7 @@ module mfv_scene_indenter
    use mfv_scene, only: control_displacement, control_force, scene_type
    implicit none
    private
-   public :: indenter_of, largest_half_width, half_width_of_forces
+   public :: indenter_of, largest_half_width, default_datum
 
 contains
 
@@ -64,5 +64,15 @@ contains
       if (force > 0.0_wp .and. .not. indenter%is_flat() .and. scene%modulus() > 0.0_wp) &
          half_width = indenter%half_width(0.5_wp*force/scene%modulus())
    end function half_width_of_forces
+
+   !> How far from the contact, length, the displacements of a body are measured unless the user says: the radius of a circle; else
+   !> the smaller length of both shapes; else the contact half-width that the closed form expects of the normal forces; else 0.
+   pure real(wp) function default_datum(scene, body, other) result(datum)
+      type(scene_type), intent(in) :: scene
+      type(body_type), intent(in) :: body, other
+
+      datum = merge(body%radius, min(body%size_of_shape(), other%size_of_shape()), body%circular())
+      if (.not. datum < huge(1.0_wp)) datum = half_width_of_forces(scene)
+   end function default_datum
 
 end module mfv_scene_indenter

@@ -44,7 +44,9 @@ contains
       if (place == 0) then
          allocate (longer(size(self%datasets) + 1))
          do i = 1, size(self%datasets)
-            call move_dataset(self%datasets(i), longer(i))
+            call move_alloc(self%datasets(i)%file, longer(i)%file)
+            call move_alloc(self%datasets(i)%name, longer(i)%name)
+            call move_alloc(self%datasets(i)%values, longer(i)%values)
          end do
          call move_alloc(longer, self%datasets)
          place = size(self%datasets)
@@ -53,15 +55,6 @@ contains
       self%datasets(place)%name = name
       self%datasets(place)%values = values
    end subroutine put
-
-   subroutine move_dataset(from, to)
-      type(dataset_type), intent(inout) :: from
-      type(dataset_type), intent(out) :: to
-
-      call move_alloc(from%file, to%file)
-      call move_alloc(from%name, to%name)
-      call move_alloc(from%values, to%values)
-   end subroutine move_dataset
 
    !> Whether there are data for a file.
    pure logical function has_file(self, file)

@@ -80,12 +80,8 @@ contains
       case%length_unit = reader%text_value('scene', 1, 'length_unit')
       case%force_unit = reader%text_value('scene', 1, 'force_unit')
       case%result_path = reader%text_value('output', 1, 'file')
-      case%keep_history = history_events
-      if (reader%text_value('output', 1, 'history') == 'steps') case%keep_history = history_steps
-      if (reader%text_value('output', 1, 'history') == 'none') case%keep_history = history_none
-      case%keep_states = states_reversals
-      if (reader%text_value('output', 1, 'states') == 'steps') case%keep_states = states_steps
-      if (reader%text_value('output', 1, 'states') == 'none') case%keep_states = states_none
+      case%keep_history = reader%constant('output', 1, 'history', [history_events, history_steps, history_none])
+      case%keep_states = reader%constant('output', 1, 'states', [states_reversals, states_steps, states_none])
       case%checkpoint_minutes = reader%real_value('output', 1, 'checkpoint_minutes')
       case%error_estimate = reader%logical_value('output', 1, 'error_estimate')
       case%sensitivity = reader%logical_value('output', 1, 'sensitivity')
@@ -105,15 +101,8 @@ contains
       type(error_type), allocatable, intent(out) :: error
 
       scene%title = reader%text_value('scene', 1, 'title')
-      scene%plane = merge(plane_stress, plane_strain, reader%text_value('scene', 1, 'plane') == 'stress')
-      select case (reader%text_value('scene', 1, 'coupling'))
-      case ('full')
-         scene%coupling = coupling_full
-      case ('goodman')
-         scene%coupling = coupling_goodman
-      case ('none')
-         scene%coupling = coupling_none
-      end select
+      scene%plane = reader%constant('scene', 1, 'plane', [plane_strain, plane_stress])
+      scene%coupling = reader%constant('scene', 1, 'coupling', [coupling_full, coupling_goodman, coupling_none])
       call check_bodies(reader, error)
       if (.not. allocated(error)) call read_body(reader, 1, scene%plane, scene%lower, error)
       if (.not. allocated(error)) call read_body(reader, 2, scene%plane, scene%upper, error)
@@ -168,31 +157,14 @@ contains
       type(reader_type), intent(in) :: reader
       type(method_type), intent(out) :: method
 
-      method%algorithm = merge(algorithm_conventional, algorithm_mfv, &
-                               reader%text_value('solver', 1, 'algorithm') == 'conventional')
-      select case (reader%text_value('solver', 1, 'stepping'))
-      case ('nominal')
-         method%stepping = stepping_nominal
-      case ('leap')
-         method%stepping = stepping_leap
-      case default
-         method%stepping = stepping_event
-      end select
-      select case (reader%text_value('solver', 1, 'linear_solver'))
-      case ('dgesv')
-         method%linear_solver = solver_dgesv
-      case ('reduced')
-         method%linear_solver = solver_reduced
-      case ('fft')
-         method%linear_solver = solver_fft
-      case default
-         method%linear_solver = solver_auto
-      end select
+      method%algorithm = reader%constant('solver', 1, 'algorithm', [algorithm_mfv, algorithm_conventional])
+      method%stepping = reader%constant('solver', 1, 'stepping', [stepping_event, stepping_nominal, stepping_leap])
+      method%linear_solver = reader%constant('solver', 1, 'linear_solver', &
+                                             [solver_auto, solver_dgesv, solver_reduced, solver_fft])
       method%linear_tolerance = reader%real_value('solver', 1, 'linear_tolerance')
       method%event_tolerance = reader%real_value('solver', 1, 'event_tolerance')
       method%leap_tolerance = reader%real_value('solver', 1, 'leap_tolerance')
-      method%integration = merge(integration_explicit, integration_second_order, &
-                                 reader%text_value('solver', 1, 'integration') == 'explicit')
+      method%integration = reader%constant('solver', 1, 'integration', [integration_second_order, integration_explicit])
       method%load_step = reader%real_value('solver', 1, 'load_step')
       method%friction_tolerance = reader%real_value('solver', 1, 'friction_tolerance')
       method%most_iterations = reader%integer_value('solver', 1, 'iterations')
