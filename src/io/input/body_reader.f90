@@ -72,8 +72,8 @@ contains
       keys = reader%catalogue%names('body')
       do i = 1, size(keys)
          if (.not. reader%has('body', body, keys(i)%text) .or. has_word(allowed, keys(i)%text)) cycle
-         call reader%complain('body', body, keys(i)%text, 'means nothing for a '//merge_text(rigid, 'rigid ', '')//shape// &
-                              '; its keys are '//allowed, error)
+         call reader%complain('body', body, keys(i)%text, 'means nothing for a'//trim(merge(' rigid', '      ', rigid))// &
+                              ' '//shape//'; its keys are '//allowed, error)
          return
       end do
    end subroutine check_body_keys

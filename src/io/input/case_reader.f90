@@ -16,7 +16,7 @@ module mfv_case_reader
    use mfv_scene
    use mfv_simulation, only: history_events, history_none, history_steps, states_none, states_reversals, states_steps
    use mfv_strings, only: to_text
-   use mfv_text_file, only: directory_of, read_text, stem_of
+   use mfv_text_file, only: directory_of, read_text
    implicit none
    private
    public :: read_case_file, read_case_text, read_case_groups
@@ -30,12 +30,18 @@ contains
       type(error_type), allocatable, intent(out) :: error
       logical, intent(in), optional :: without_steps
       character(:), allocatable :: text
+      integer :: first, dot
 
       call read_text(path, text, error)
       if (allocated(error)) return
       call read_case_text(text, path, case, error, without_steps)
       if (allocated(error)) return
-      if (case%result_path == '') case%result_path = stem_of(path)//'.h5'
+      if (case%result_path /= '') return
+      ! The file's own name with .h5 in place of what follows its last dot, unless it begins with that.
+      first = index(path, '/', back=.true.) + 1
+      dot = index(path(first:), '.', back=.true.)
+      if (dot < 2) dot = len(path(first:)) + 1
+      case%result_path = path(first:first + dot - 2)//'.h5'
    end subroutine read_case_file
 
    !> The case in a text. `source`: its name for messages; files it names are looked for beside it. `without_steps`:
@@ -114,42 +120,36 @@ contains
       if (.not. allocated(error)) call check_matrix(reader, scene, error)
       if (.not. allocated(error)) call read_mesh(reader, scene, error)
       if (.not. allocated(error)) call check_coefficients_a_node(reader, scene, error)
-      if (.not. allocated(error)) call check_method(reader, error)
+      if (allocated(error)) return
       call read_method(reader, scene%method)
+      call check_method(reader, scene%method, error)
    end subroutine read_scene
 
    !> Choices of the solver that do not go together, or with the friction law.
-   subroutine check_method(reader, error)
+   subroutine check_method(reader, method, error)
       type(reader_type), intent(in) :: reader
+      type(method_type), intent(in) :: method
       type(error_type), allocatable, intent(out) :: error
       character(:), allocatable :: law
+      logical :: is_mfv, is_coulomb
 
       law = reader%text_value('friction', 1, 'law')
-      if (reader%text_value('solver', 1, 'stepping') == 'nominal') then
-         if (reader%text_value('solver', 1, 'algorithm') == 'conventional') &
-            call reader%complain('solver', 1, 'stepping', "means nothing with algorithm='conventional'", error)
-         if (law == 'weakening' .or. law == 'dahl') &
-            call reader%complain('solver', 1, 'stepping', "must be 'event' with law='"//law//"', which is not linear "// &
-                                 'between events', error)
-      end if
-      if (reader%text_value('solver', 1, 'stepping') == 'leap') then
-         if (reader%text_value('solver', 1, 'algorithm') == 'conventional') then
-            call reader%complain('solver', 1, 'stepping', "means nothing with algorithm='conventional'", error)
-         else if (law /= 'coulomb' .and. law /= 'none') then
-            call reader%complain('solver', 1, 'stepping', "'leap' needs law='coulomb' or 'none', not '"//law//"'", error)
-         end if
-      end if
-      if (reader%real_value('solver', 1, 'event_tolerance') > 0.0_wp) then
-         if (reader%text_value('solver', 1, 'algorithm') == 'conventional' .or. &
-             reader%text_value('solver', 1, 'stepping') /= 'event') then
-            call reader%complain('solver', 1, 'event_tolerance', "means nothing without algorithm='mfv' and stepping='event'", &
-                                 error)
-         else if (law /= 'coulomb' .and. law /= 'none') then
-            call reader%complain('solver', 1, 'event_tolerance', "needs law='coulomb' or 'none', not '"//law//"'", error)
-         end if
-      end if
-      if (reader%text_value('solver', 1, 'integration') == 'explicit' .and. law /= 'dahl') &
+      is_mfv = method%algorithm == algorithm_mfv
+      is_coulomb = law == 'coulomb' .or. law == 'none'
+      if (method%integration == integration_explicit .and. law /= 'dahl') then
          call reader%complain('solver', 1, 'integration', "means nothing without law='dahl'", error)
+      else if (method%event_tolerance > 0.0_wp .and. .not. (is_mfv .and. method%stepping == stepping_event)) then
+         call reader%complain('solver', 1, 'event_tolerance', "means nothing without algorithm='mfv' and stepping='event'", error)
+      else if (method%event_tolerance > 0.0_wp .and. .not. is_coulomb) then
+         call reader%complain('solver', 1, 'event_tolerance', "needs law='coulomb' or 'none', not '"//law//"'", error)
+      else if (method%stepping == stepping_nominal .and. (law == 'weakening' .or. law == 'dahl')) then
+         call reader%complain('solver', 1, 'stepping', "must be 'event' with law='"//law//"', which is not linear "// &
+                              'between events', error)
+      else if (method%stepping /= stepping_event .and. .not. is_mfv) then
+         call reader%complain('solver', 1, 'stepping', "means nothing with algorithm='conventional'", error)
+      else if (method%stepping == stepping_leap .and. .not. is_coulomb) then
+         call reader%complain('solver', 1, 'stepping', "'leap' needs law='coulomb' or 'none', not '"//law//"'", error)
+      end if
    end subroutine check_method
 
    !> How the scene is to be solved.

@@ -1,7 +1,7 @@
 !> Names of keys with their groups: `friction%mu`, `body(2)%radius`.
 module mfv_key_path
    use mfv_keys, only: catalogue_type, suggest
-   use mfv_strings, only: lower_case, quoted
+   use mfv_strings, only: has_word, lower_case, quoted
    implicit none
    private
    public :: read_key_name
@@ -17,6 +17,7 @@ contains
       integer, intent(out) :: number
       character(:), allocatable :: text
       integer :: percent, bracket
+      logical :: repeats
 
       why = ''
       text = lower_case(written)
@@ -24,21 +25,22 @@ contains
       bracket = index(text(:max(percent - 1, 0))//'(', '(')
       group = text(:bracket - 1)
       key = text(percent + 1:)
+      repeats = has_word(catalogue%repeated_groups, group)
       number = 1
       if (bracket < percent) number = number_in(text(bracket:percent - 1))
       if (percent == 0) then
          why = "must be 'group%key', 'group(number)%key'"
       else if (number < 0) then
          why = quoted(text(bracket:percent - 1))//' is no number of a group, such as (2)'
-      else if (.not. catalogue%has_group(group)) then
+      else if (.not. has_word(catalogue%group_list, group)) then
          call suggest(group, catalogue%groups(), '', why)
          why = 'unknown group'//why//'; groups are '//catalogue%group_list
       else if (catalogue%place(group, key) == 0) then
          call suggest(key, catalogue%names(group), '', why)
          why = 'unknown key of &'//group//why
-      else if (catalogue%repeats(group) .and. bracket == percent) then
+      else if (repeats .and. bracket == percent) then
          why = 'which &'//group//'? write '//group//'(1)%'//key
-      else if (.not. catalogue%repeats(group) .and. number /= 1) then
+      else if (.not. repeats .and. number /= 1) then
          why = 'there is one &'//group//' only'
       end if
       if (why /= '') why = quoted(written)//': '//why

@@ -11,7 +11,7 @@ module mfv_key_reader
    use mfv_strings, only: has_word, list_of_words, lower_case, shortened, string_type, to_text
    implicit none
    private
-   public :: reader_type, check_groups, check_entries, count_groups, line_of, find_file, merge_text, fail
+   public :: reader_type, check_groups, check_entries, count_groups, line_of, find_file, fail
 
    character(*), parameter :: words_for_true = ' .true. t true .t. ', words_for_false = ' .false. f false .f. '
 
@@ -36,7 +36,6 @@ module mfv_key_reader
       procedure :: constant
       procedure :: complain
       procedure :: need
-      procedure :: entry_of
    end type reader_type
 
 contains
@@ -51,7 +50,7 @@ contains
       allocate (reader%number(size(reader%groups)), source=1)
       do i = 1, size(reader%groups)
          associate (group => reader%groups(i))
-            if (.not. reader%catalogue%has_group(group%name)) then
+            if (.not. has_word(reader%catalogue%group_list, group%name)) then
                call suggest(group%name, reader%catalogue%groups(), '&', why)
                call fail(reader, group%line, '&'//shortened(group%name)//': unknown group'// &
                          why//'; groups are '//reader%catalogue%group_list, error)
@@ -62,7 +61,7 @@ contains
             end do
             if (j == 0) cycle
             reader%number(i) = reader%number(j) + 1
-            if (reader%catalogue%repeats(group%name)) cycle
+            if (has_word(reader%catalogue%repeated_groups, group%name)) cycle
             call fail(reader, group%line, '&'//group%name//': may come only once, and is already in line '// &
                       to_text(reader%groups(j)%line), error)
             return
@@ -166,33 +165,30 @@ contains
       if (.not. in_memory .and. index(path, '/') /= 1) path = reader%directory//path
    end subroutine find_file
 
-   !> The entry of a key in the `number`-th group of a name; `found` false where it is not written.
-   pure subroutine entry_of(self, group, number, name, entry, found)
-      class(reader_type), intent(in) :: self
+   !> Where a key is in the `number`-th group of a name: group and entry; entry 0 where it is not written.
+   pure subroutine find_entry(reader, group, number, name, i, j)
+      class(reader_type), intent(in) :: reader
       character(*), intent(in) :: group, name
       integer, intent(in) :: number
-      type(entry_type), intent(out) :: entry
-      logical, intent(out) :: found
-      integer :: place, i
+      integer, intent(out) :: i, j
 
-      found = .false.
-      place = place_of(self, group, number)
-      if (place == 0) return
-      do i = 1, size(self%groups(place)%entries)
-         found = self%groups(place)%entries(i)%key == name
-         if (found) entry = self%groups(place)%entries(i)
-         if (found) return
+      j = 0
+      i = place_of(reader, group, number)
+      if (i == 0) return
+      do j = size(reader%groups(i)%entries), 1, -1
+         if (reader%groups(i)%entries(j)%key == name) return
       end do
-   end subroutine entry_of
+   end subroutine find_entry
 
    !> Whether a key is written in the `number`-th group of a name.
    pure logical function has(self, group, number, name)
       class(reader_type), intent(in) :: self
       character(*), intent(in) :: group, name
       integer, intent(in) :: number
-      type(entry_type) :: entry
+      integer :: i, j
 
-      call self%entry_of(group, number, name, entry, has)
+      call find_entry(self, group, number, name, i, j)
+      has = j > 0
    end function has
 
    !> The value as written, or the default.
@@ -224,12 +220,11 @@ contains
       character(*), intent(in) :: group, name
       integer, intent(in) :: number
       character(:), allocatable, intent(out) :: value
-      type(entry_type) :: entry
-      logical :: found
+      integer :: i, j
 
-      call reader%entry_of(group, number, name, entry, found)
-      if (found) then
-         value = entry%values(1)%text
+      call find_entry(reader, group, number, name, i, j)
+      if (j > 0) then
+         value = reader%groups(i)%entries(j)%values(1)%text
       else
          value = reader%catalogue%keys(reader%catalogue%place(group, name))%default
       end if
@@ -253,16 +248,17 @@ contains
       character(*), intent(in) :: group, name
       integer, intent(in) :: number
       real(wp), allocatable, intent(out) :: values(:)
-      type(entry_type) :: entry
-      logical :: found, is_right
-      integer :: i
+      logical :: is_right
+      integer :: i, j, k
 
-      call self%entry_of(group, number, name, entry, found)
-      if (.not. found) return
-      allocate (values(size(entry%values)))
-      do i = 1, size(values)
-         call read_real(entry%values(i)%text, values(i), is_right)
-      end do
+      call find_entry(self, group, number, name, i, j)
+      if (j == 0) return
+      associate (texts => self%groups(i)%entries(j)%values)
+         allocate (values(size(texts)))
+         do k = 1, size(values)
+            call read_real(texts(k)%text, values(k), is_right)
+         end do
+      end associate
    end subroutine real_values
 
    !> The value of a key for a whole number.
@@ -319,26 +315,17 @@ contains
       integer, intent(in) :: number
       type(error_type), allocatable, intent(out) :: error
       character(:), allocatable :: written
-      type(entry_type) :: entry
-      logical :: found
-      integer :: line
+      integer :: i, j, line
 
-      call self%entry_of(group, number, name, entry, found)
-      line = merge(entry%line, line_of(self, group, number), found)
+      call find_entry(self, group, number, name, i, j)
+      line = line_of(self, group, number)
       written = name
-      if (found) call show_entry(entry, written)
+      if (j > 0) then
+         line = self%groups(i)%entries(j)%line
+         call show_entry(self%groups(i)%entries(j), written)
+      end if
       call fail(self, line, '&'//group//trim(numbered(self, group, number))//' '//written//': '//why, error)
    end subroutine complain
-
-   !> One of two texts, without the blanks that merge wants.
-   pure function merge_text(condition, yes, no) result(text)
-      logical, intent(in) :: condition
-      character(*), intent(in) :: yes, no
-      character(len=merge(len(yes), len(no), condition)) :: text
-
-      text = no
-      if (condition) text = yes
-   end function merge_text
 
    !> Number of a group that may come more than once, after a blank; padded with blanks.
    pure function numbered(reader, group, number) result(text)
@@ -348,7 +335,7 @@ contains
       character(len=12) :: text
 
       text = ''
-      if (reader%catalogue%repeats(group)) text = ' '//to_text(number)
+      if (has_word(reader%catalogue%repeated_groups, group)) text = ' '//to_text(number)
    end function numbered
 
    !> Number of groups of a name.

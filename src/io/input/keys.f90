@@ -34,9 +34,7 @@ module mfv_keys
       type(key_type), allocatable :: keys(:)
    contains
       procedure :: groups
-      procedure :: repeats
       procedure :: place
-      procedure :: has_group
       procedure :: names
    end type catalogue_type
 
@@ -184,14 +182,6 @@ contains
       groups = list_of_words(self%group_list)
    end function groups
 
-   !> Whether a group may come more than once.
-   pure logical function repeats(self, group)
-      class(catalogue_type), intent(in) :: self
-      character(*), intent(in) :: group
-
-      repeats = has_word(self%repeated_groups, group)
-   end function repeats
-
    !> Place of a key in the list of keys, 0 for none.
    pure integer function place(self, group, name)
       class(catalogue_type), intent(in) :: self
@@ -201,14 +191,6 @@ contains
          if (self%keys(place)%group == group .and. self%keys(place)%name == name) return
       end do
    end function place
-
-   !> Whether there is a group of this name.
-   pure logical function has_group(self, group)
-      class(catalogue_type), intent(in) :: self
-      character(*), intent(in) :: group
-
-      has_group = has_word(self%group_list, group)
-   end function has_group
 
    !> Names of the keys of a group.
    pure function names(self, group)
@@ -234,7 +216,7 @@ contains
       text = ''
       do i = 1, size(groups)
          text = text//'### &'//groups(i)%text
-         if (catalogue%repeats(groups(i)%text)) text = text//' (may come more than once)'
+         if (has_word(catalogue%repeated_groups, groups(i)%text)) text = text//' (may come more than once)'
          text = text//line_feed//line_feed//'| key | value | default | unit | meaning |'//line_feed// &
                 '| --- | --- | --- | --- | --- |'//line_feed
          do j = 1, size(catalogue%keys)

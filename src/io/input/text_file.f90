@@ -7,7 +7,7 @@ module mfv_text_file
    use mfv_strings, only: from_c, to_text
    implicit none
    private
-   public :: read_text, check_is_file, find_fault_of_text, byte_order_mark, directory_of, stem_of, find_working_directory, path_from
+   public :: read_text, check_is_file, find_fault_of_text, byte_order_mark, directory_of, find_working_directory, path_from
 
    interface
       function c_getcwd(buffer, size) bind(C, name='getcwd') result(path)
@@ -147,24 +147,6 @@ contains
 
       directory = path
    end function directory_of
-
-   !> The name of a file without its directory and without what follows its last dot, unless it begins with that.
-   pure function stem_of(path) result(stem)
-      character(*), intent(in) :: path
-      character(len=length_of_stem(path)) :: stem
-
-      stem = path(index(path, '/', back=.true.) + 1:)
-   end function stem_of
-
-   pure integer function length_of_stem(path) result(length)
-      character(*), intent(in) :: path
-      integer :: first, dot
-
-      first = index(path, '/', back=.true.) + 1
-      dot = index(path(first:), '.', back=.true.)
-      length = len(path) - first + 1
-      if (dot > 1) length = dot - 1
-   end function length_of_stem
 
    !> The directory the process works in, empty where it cannot be told.
    subroutine find_working_directory(path)
