@@ -1,12 +1,12 @@
 !> The gap of a scene as closed forms have it, and the contact that they expect.
 module mfv_scene_indenter
-   use mfv_body, only: body_type, shape_flat_punch, shape_half_plane, shape_power, shape_rounded_punch
+   use mfv_body, only: body_type, shape_flat_punch, shape_half_plane, shape_matrix, shape_power, shape_profile, shape_rounded_punch
    use mfv_kinds, only: wp
    use mfv_reference_indenter, only: flat_indenter, indenter_type, power_indenter, rounded_punch_indenter
    use mfv_scene, only: control_displacement, control_force, scene_type
    implicit none
    private
-   public :: indenter_of, largest_half_width, default_datum
+   public :: indenter_of, touches_everywhere, largest_half_width, default_datum
 
 contains
 
@@ -21,6 +21,18 @@ contains
       call add_body(indenter, scene%lower)
       call add_body(indenter, scene%upper)
    end function indenter_of
+
+   !> Whether neither body has an edge, a curvature or another shape by which they would be apart somewhere.
+   pure logical function touches_everywhere(scene)
+      type(scene_type), intent(in) :: scene
+      type(indenter_type) :: indenter
+      integer :: shapes(2)
+
+      shapes = [scene%lower%shape, scene%upper%shape]
+      indenter = indenter_of(scene)
+      touches_everywhere = .not. (any(shapes == shape_flat_punch .or. shapes == shape_profile .or. shapes == shape_matrix) .or. &
+                                  scene%curvature() > 0.0_wp) .and. indenter%is_flat()
+   end function touches_everywhere
 
    !> Whether a body's shape is one of which there are closed forms.
    pure logical function has_form(body)

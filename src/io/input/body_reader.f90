@@ -9,9 +9,8 @@ module mfv_body_reader
    use mfv_matrix_file, only: read_matrix_body
    use mfv_profile, only: level_line, level_mean, level_none, trace_type
    use mfv_profile_file, only: read_profile
-   use mfv_reference_indenter, only: indenter_type
    use mfv_scene, only: scene_type
-   use mfv_scene_indenter, only: default_datum, indenter_of
+   use mfv_scene_indenter, only: default_datum, touches_everywhere
    use mfv_strings, only: has_word, list_of_words, string_type, to_text
    implicit none
    private
@@ -240,18 +239,14 @@ contains
       type(reader_type), intent(in) :: reader
       type(scene_type), intent(in) :: scene
       type(error_type), allocatable, intent(out) :: error
-      type(indenter_type) :: indenter
-      integer :: number
+      integer :: shapes(2)
 
-      indenter = indenter_of(scene)
-      if (any([scene%lower%shape, scene%upper%shape] == shape_profile) .or. scene%lower%shape == shape_matrix) return
-      number = 2
-      if (scene%lower%shape == shape_hole) number = 1
-      if (scene%lower%shape == shape_hole .or. scene%upper%shape == shape_hole) then
-         if (.not. scene%curvature() > 0.0_wp) &
-            call reader%complain('body', number, 'radius', 'a hole needs a disk of a smaller radius in it', error)
-      else if (.not. scene%curvature() > 0.0_wp .and. &
-               .not. any([scene%lower%shape, scene%upper%shape] == shape_flat_punch) .and. indenter%is_flat()) then
+      shapes = [scene%lower%shape, scene%upper%shape]
+      if (any(shapes == shape_profile .or. shapes == shape_matrix)) return
+      if (any(shapes == shape_hole)) then
+         if (.not. scene%curvature() > 0.0_wp) call reader%complain('body', findloc(shapes, shape_hole, dim=1), 'radius', &
+                                                                    'a hole needs a disk of a smaller radius in it', error)
+      else if (touches_everywhere(scene)) then
          call reader%complain('body', 2, 'shape', 'two half-planes touch everywhere; one body must have another shape', error)
       end if
    end subroutine check_pair

@@ -131,7 +131,7 @@ contains
             call set_error(error, MFV_INPUT_ERROR, list(1)%text//' must increase; it does not at row '// &
                            to_text(findloc(table(1, 2:) <= table(1, :rows - 1), .true., dim=1) + 1))
       end if
-      call name_data(file, error)
+      if (allocated(error)) error%message = "the data '"//file//"': "//error%message
    end subroutine read_columns
 
    !> A body given by a matrix, see mfv_matrix_body. Error MFV_INPUT_ERROR.
@@ -144,16 +144,8 @@ contains
 
       call self%gather_matrix(file, data, error)
       if (.not. allocated(error)) call data%make_body(body, error)
-      call name_data(file, error)
-   end subroutine read_matrix_body
-
-   !> Say in which data an error was found.
-   subroutine name_data(file, error)
-      character(*), intent(in) :: file
-      type(error_type), allocatable, intent(inout) :: error
-
       if (allocated(error)) error%message = "the data '"//file//"': "//error%message
-   end subroutine name_data
+   end subroutine read_matrix_body
 
    !> The datasets of a matrix body. Error MFV_INPUT_ERROR.
    subroutine gather_matrix(self, file, data, error)

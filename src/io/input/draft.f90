@@ -425,32 +425,25 @@ contains
       type(group_type), intent(in) :: groups(:)
       character(*), intent(in) :: source
       type(error_type), allocatable, intent(out) :: error
-      integer :: i
+      logical :: is_named
+      integer :: i, j, k
 
       if (.not. allocated(data%datasets)) return
       do i = 1, size(data%datasets)
-         if (is_named(data%datasets(i)%file, groups)) cycle
+         is_named = .false.
+         do j = 1, size(groups)
+            do k = 1, size(groups(j)%entries)
+               associate (entry => groups(j)%entries(k))
+                  if (.not. has_word('file mu_file', entry%key) .or. size(entry%values) == 0) cycle
+                  is_named = is_named .or. entry%values(1)%text == data%datasets(i)%file
+               end associate
+            end do
+         end do
+         if (is_named) cycle
          call set_error(error, MFV_INPUT_ERROR, source//": no key names the data '"//data%datasets(i)%file//"'; a body has "// &
                         'file, &friction has mu_file')
          return
       end do
    end subroutine check_data
-
-   !> Whether a key names a file.
-   pure logical function is_named(file, groups)
-      character(*), intent(in) :: file
-      type(group_type), intent(in) :: groups(:)
-      integer :: i, j
-
-      is_named = .false.
-      do i = 1, size(groups)
-         do j = 1, size(groups(i)%entries)
-            associate (entry => groups(i)%entries(j))
-               if (.not. has_word('file mu_file', entry%key) .or. size(entry%values) /= 1) cycle
-               is_named = is_named .or. entry%values(1)%text == file
-            end associate
-         end do
-      end do
-   end function is_named
 
 end module mfv_draft

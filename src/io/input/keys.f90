@@ -75,14 +75,16 @@ contains
       keys(size(keys))%upper = upper
    end subroutine add_integer_key
 
-   !> A real without a default, from `lower` (itself allowed unless `lower_open`) to `upper`, each where present.
-   subroutine add_real_key(keys, group, name, unit, meaning, lower, lower_open, upper)
+   !> A real from `lower` (itself allowed unless `lower_open`) to `upper`, and with a default, each where present.
+   subroutine add_real_key(keys, group, name, unit, meaning, lower, lower_open, upper, default)
       type(key_type), allocatable, intent(inout) :: keys(:)
       character(*), intent(in) :: group, name, unit, meaning
       real(wp), intent(in), optional :: lower, upper
       logical, intent(in), optional :: lower_open
+      character(*), intent(in), optional :: default
 
       call add_key(keys, group, name, kind_real, '', unit, meaning)
+      if (present(default)) keys(size(keys))%default = default
       if (present(lower)) keys(size(keys))%lower = lower
       if (present(lower_open)) keys(size(keys))%lower_open = lower_open
       if (present(upper)) keys(size(keys))%upper = upper
@@ -133,10 +135,16 @@ contains
    subroutine describe_allowed(key, text)
       type(key_type), intent(in) :: key
       character(:), allocatable, intent(out) :: text
+      type(string_type), allocatable :: words(:)
+      integer :: i
 
       select case (key%kind)
       case (kind_choice)
-         call join_alternatives(list_of_words(key%choices), text)
+         words = list_of_words(key%choices)
+         text = quoted(words(1)%text)
+         do i = 2, size(words)
+            text = text//trim(merge(' or', ',  ', i == size(words)))//' '//quoted(words(i)%text)
+         end do
       case (kind_logical)
          text = '.true. or .false.'
       case (kind_text)
@@ -150,19 +158,6 @@ contains
          if (key%upper < huge(1.0_wp)) text = text//' and at most '//to_text(key%upper)
       end select
    end subroutine describe_allowed
-
-   !> 'a', 'b' or 'c'
-   subroutine join_alternatives(words, text)
-      type(string_type), intent(in) :: words(:)
-      character(:), allocatable, intent(out) :: text
-      integer :: i
-
-      text = quoted(words(1)%text)
-      do i = 2, size(words)
-         if (i < size(words)) text = text//', '//quoted(words(i)%text)
-         if (i == size(words)) text = text//' or '//quoted(words(i)%text)
-      end do
-   end subroutine join_alternatives
 
    !> '; did you mean ...?' where a known name is near, else empty.
    pure subroutine suggest(name, names, prefix, text)

@@ -2,12 +2,11 @@
 module mfv_mesh_reader
    use mfv_body
    use mfv_circle, only: kernel_fourier
-   use mfv_contact_model, only: choose_mesh, has_touchable_node
+   use mfv_contact_model, only: can_choose_mesh, choose_mesh, has_touchable_node, intervals_round
    use mfv_error, only: error_type
    use mfv_key_reader
    use mfv_kinds, only: pi, wp
    use mfv_scene, only: scene_type
-   use mfv_scene_indenter, only: largest_half_width
    use mfv_strings, only: list_of_words, string_type, to_text
    implicit none
    private
@@ -50,17 +49,15 @@ contains
                               error)
          return
       end if
-      call check_length(reader, scene, error)
-      if (allocated(error)) return
-      if (.not. has_touchable_node(scene)) then
-         if (scene%lower%shape == shape_matrix) then
-            call reader%complain('body', 1, 'file', 'no node of this body is under the indenter', error)
-         else
-            call reader%complain('mesh', 1, trim(mesh_key(reader)), 'no node of this mesh is under the indenter', error)
-         end if
-         return
+      if (.not. can_choose_mesh(scene)) then
+         call reader%complain('mesh', 1, 'half_width', 'is needed: no step has a normal_force or approach to choose it from', &
+                              error)
+      else if (.not. has_touchable_node(scene) .and. scene%lower%shape == shape_matrix) then
+         call reader%complain('body', 1, 'file', 'no node of this body is under the indenter', error)
+      else if (.not. has_touchable_node(scene)) then
+         call reader%complain('mesh', 1, trim(mesh_key(reader)), 'no node of this mesh is under the indenter', error)
       end if
-      call check_circle(reader, 1, scene, scene%lower, error)
+      if (.not. allocated(error)) call check_circle(reader, 1, scene, scene%lower, error)
       if (.not. allocated(error)) call check_circle(reader, 2, scene, scene%upper, error)
    end subroutine read_mesh
 
@@ -82,18 +79,6 @@ contains
          if (.not. scene%mesh%whole_circle) scene%mesh%half_width = scene%arc_radius()*pi*half_angle/half_turn
       end if
    end subroutine read_half_angle
-
-   !> A mesh that is to be chosen needs a length: shapes without one have it by their load alone.
-   subroutine check_length(reader, scene, error)
-      type(reader_type), intent(in) :: reader
-      type(scene_type), intent(in) :: scene
-      type(error_type), allocatable, intent(out) :: error
-
-      if (scene%lower%shape == shape_matrix .or. scene%mesh%half_width > 0.0_wp .or. scene%mesh%whole_circle) return
-      if (min(scene%lower%half_extent(), scene%upper%half_extent()) < huge(1.0_wp)) return
-      if (largest_half_width(scene, huge(1.0_wp)) > 0.0_wp) return
-      call reader%complain('mesh', 1, 'half_width', 'is needed: no step has a normal_force or approach to choose it from', error)
-   end subroutine check_length
 
    !> The key of the mesh to complain about; padded with blanks.
    pure function mesh_key(reader) result(key)
@@ -120,7 +105,7 @@ contains
 
       if (body%rigid .or. .not. body%circular()) return
       call choose_mesh(scene, nodes, interval, growing)
-      intervals = 2.0_wp*pi*merge(scene%arc_radius(), body%radius, scene%mesh%radial)/interval
+      intervals = intervals_round(scene, body, interval)
       if (nodes > intervals*(1.0_wp + whole)) then
          call reader%complain('mesh', 1, trim(mesh_key(reader)), &
                               'goes more than once round body '//to_text(number), error)

@@ -162,17 +162,10 @@ contains
    !> A path that was given in another directory.
    pure function path_from(directory, path) result(whole)
       character(*), intent(in) :: directory, path
-      character(len=len(path) + merge(len(directory) + 1, 0, given_within(directory, path))) :: whole
+      character(len=len(path) + merge(len(directory) + 1, 0, directory /= '' .and. index(path, '/') /= 1)) :: whole
 
       whole = path
-      if (given_within(directory, path)) whole = directory//'/'//path
+      if (len(whole) > len(path)) whole = directory//'/'//path
    end function path_from
-
-   !> Whether a path has to be looked for in a directory: there is one, and the path does not begin at the root.
-   pure logical function given_within(directory, path)
-      character(*), intent(in) :: directory, path
-
-      given_within = directory /= '' .and. path(1:min(1, len(path))) /= '/'
-   end function given_within
 
 end module mfv_text_file
