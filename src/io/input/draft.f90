@@ -72,6 +72,7 @@ contains
       draft%source = source
       draft%directory = directory_of(source)
       call parse_namelists(text, source, draft%groups, error)
+      if (allocated(error)) deallocate (draft%groups)
    end subroutine read_draft
 
    !> Place of the group that a name of a key has, which comes to be with those before it, and the key. Error MFV_INPUT_ERROR.
