@@ -52,10 +52,10 @@ contains
       shear_modulus = youngs_modulus/(2.0_wp*(1.0_wp + poisson_ratio))
    end function shear_modulus_of
 
-   !> The flexibilities 1/G_1 and 1/G_2 of a lower and an upper body of Poisson's ratio 0 with Dundurs' parameter `beta`, from -1/2 to
-   !> 1/2, positive where the lower body couples more, and the mutual compliance A, length^2/force, the sum of (kappa + 1)/(4 G).
-   !> Poisson's ratio 0 is kappa = 3 in plane strain and plane stress: 1/G_1 = A (1 + 2 beta)/2 and 1/G_2 = A (1 - 2 beta)/2
-   !> (dissertation eq. 6.1). One of them is 0 for beta = -1/2 or 1/2: the body is rigid.
+   !> The flexibilities 1/G_1 and 1/G_2, length^2/force, of a lower and an upper body of Poisson's ratio 0 with Dundurs' parameter
+   !> `beta`, from -1/2 to 1/2, positive where the lower body couples more, and the mutual compliance A, length^2/force, the sum of
+   !> (kappa + 1)/(4 G). Poisson's ratio 0 is kappa = 3 in plane strain and plane stress: 1/G_1 = A (1 + 2 beta)/2 and
+   !> 1/G_2 = A (1 - 2 beta)/2 (dissertation eq. 6.1). For beta = -1/2 or 1/2 one of them is 0: that body is rigid.
    pure function flexibilities(beta, compliance)
       real(wp), intent(in) :: beta, compliance
       real(wp) :: flexibilities(2)

@@ -28,8 +28,8 @@ module mfv_profile
 
 contains
 
-   !> The profile through some points: their positions, increasing, and how far the surface recedes there, as measured; shape (points).
-   !> Error MFV_INPUT_ERROR for fewer than 3 points, and where they are beyond reason, or at one place, when they are scaled.
+   !> The profile through measured points: their increasing positions, and how far the surface recedes there; shape (points).
+   !> Error MFV_INPUT_ERROR for fewer than 3 points, and for scales that make them too large or put two in one place.
    subroutine profile_of_points(positions, heights, trace, body, error)
       real(wp), intent(in) :: positions(:), heights(:)
       type(trace_type), intent(in) :: trace

@@ -130,8 +130,8 @@ contains
       end if
    end subroutine choose_mesh
 
-   !> Whether there is a length that a mesh can be chosen by: the user's, that of a shape or of the contact that the targets of the steps
-   !> make.
+   !> Whether there is a length that a mesh can be chosen by: the user's, that of a shape, or that of the contact which the targets
+   !> of the steps make.
    pure logical function can_choose_mesh(scene)
       type(scene_type), intent(in) :: scene
 
@@ -140,8 +140,8 @@ contains
       if (.not. can_choose_mesh) can_choose_mesh = largest_half_width(scene, huge(1.0_wp)) > 0.0_wp
    end function can_choose_mesh
 
-   !> Intervals of the width `interval` (length) that fit on the circle of a disk or hole; with radial normals, of which all have the same
-   !> angles, on the one that the nodes are on.
+   !> Intervals of the width `interval` (length) that fit on the circle of a disk or hole; with radial normals on the circle of the
+   !> nodes, whose angles both bodies have.
    pure real(wp) function intervals_round(scene, body, interval)
       type(scene_type), intent(in) :: scene
       type(body_type), intent(in) :: body

@@ -1,6 +1,7 @@
 !> The gap of a scene as closed forms have it, and the contact that they expect.
 module mfv_scene_indenter
-   use mfv_body, only: body_type, shape_flat_punch, shape_half_plane, shape_matrix, shape_power, shape_profile, shape_rounded_punch
+   use mfv_body, only: body_type, shape_flat_punch, shape_half_plane, shape_matrix, shape_power, shape_profile, &
+                       shape_rounded_punch
    use mfv_kinds, only: wp
    use mfv_reference_indenter, only: flat_indenter, indenter_type, power_indenter, rounded_punch_indenter
    use mfv_scene, only: control_displacement, control_force, scene_type
@@ -30,8 +31,8 @@ contains
 
       shapes = [scene%lower%shape, scene%upper%shape]
       indenter = indenter_of(scene)
-      touches_everywhere = .not. (any(shapes == shape_flat_punch .or. shapes == shape_profile .or. shapes == shape_matrix) .or. &
-                                  scene%curvature() > 0.0_wp) .and. indenter%is_flat()
+      touches_everywhere = indenter%is_flat() .and. .not. scene%curvature() > 0.0_wp .and. &
+                           .not. any(shapes == shape_flat_punch .or. shapes == shape_profile .or. shapes == shape_matrix)
    end function touches_everywhere
 
    !> Whether a body's shape is one of which there are closed forms.

@@ -263,8 +263,8 @@ contains
                            error)
    end subroutine check_matrix
 
-   !> Where the displacements of the elastic bodies are measured: as the user says, or by default, for which the half-width of the mesh
-   !> may be needed.
+   !> Where the displacements of the elastic bodies are measured: at the user's datum, by default at that of mfv_scene_indenter or,
+   !> where there is none, at the half-width of the mesh.
    subroutine read_datums(reader, scene, error)
       type(reader_type), intent(in) :: reader
       type(scene_type), intent(inout) :: scene

@@ -201,8 +201,8 @@ contains
       call resize_entries(group%entries, n)
    end subroutine remove_keys
 
-   !> Keep a fault with a key for make_case to tell, and tell it at once to a caller who wants to know. Without one, the call for the
-   !> key went well: that mends what was wrong with it.
+   !> Keep a fault with a key for make_case to report, in place of an earlier one with that key, and report it in `error`, too.
+   !> Without `fault`, a call for the key went well: the earlier fault is forgotten.
    subroutine keep_fault(self, name, fault, error)
       class(draft_type), intent(inout) :: self
       character(*), intent(in) :: name

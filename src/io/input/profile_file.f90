@@ -18,9 +18,8 @@ module mfv_profile_file
 
 contains
 
-   !> The profile in the file `path`: x and recess in every line, x increasing, to be treated as `trace` says; what read_table passes
-   !> over does not count. `data`: where its datasets x and height are, if they are in memory. Error MFV_INPUT_ERROR with the line
-   !> and what is right.
+   !> The profile in the file `path`, see read_table: x and recess in every line, x increasing, to be treated as `trace` says.
+   !> `data`: where its datasets x and height are, if they are in memory. Error MFV_INPUT_ERROR with the line and what is right.
    subroutine read_profile(path, trace, body, error, data)
       character(*), intent(in) :: path
       type(trace_type), intent(in) :: trace
