@@ -1,14 +1,17 @@
-!> Reading one number from a text. Fortran's own reading takes more than anybody means: 1.5+3 for 1500, 1e400 for infinity.
+!> Numbers as texts: reading one, writing one, and the sizes that are taken.
 module mfv_numbers
    use, intrinsic :: ieee_arithmetic, only: ieee_is_finite
    use, intrinsic :: ieee_exceptions, only: ieee_flag_type, ieee_get_flag, ieee_get_halting_mode, ieee_inexact, ieee_overflow, &
                                             ieee_set_flag, ieee_set_halting_mode, ieee_underflow
    use mfv_kinds, only: wp
+   use mfv_strings, only: to_text
    implicit none
    private
-   public :: read_real, read_whole
+   public :: read_real, write_real, is_reasonable, largest_size, reasonable_sizes
 
-   character(*), parameter :: digits = '0123456789'
+   !> Sizes of reals that are taken, whatever the unit; beyond them squares and products overflow, or vanish.
+   real(wp), parameter :: smallest_size = 1.0e-100_wp, largest_size = 1.0e100_wp
+   character(*), parameter :: reasonable_sizes = 'a number other than 0 must be of a size from 1e-100 to 1e100'
 
 contains
 
@@ -19,12 +22,10 @@ contains
       logical, intent(out) :: is_right
       type(ieee_flag_type), parameter :: of_reading(3) = [ieee_overflow, ieee_underflow, ieee_inexact]
       logical :: halts(3), flags(3)
-      integer :: mark, code
+      integer :: code
 
       value = 0.0_wp
-      mark = scan(text//'e', 'eEdD')
-      is_right = is_decimal(text(:mark - 1))
-      if (is_right .and. mark <= len(text)) is_right = is_signed(text(mark + 1:))
+      is_right = is_plain(text)
       if (.not. is_right) return
       ! 1e400 raises an overflow, which must not end a program that traps it.
       call ieee_get_halting_mode(of_reading, halts)
@@ -38,39 +39,40 @@ contains
       if (.not. is_right) value = 0.0_wp
    end subroutine read_real
 
-   !> A whole number that a default integer holds; the rest as above.
-   pure subroutine read_whole(text, value, is_right)
+   !> Whether a text has nothing but the characters of a number, with signs only at its start and after the letter of its exponent.
+   !> Fortran's own reading takes more than anybody means: 2*3 for two numbers, 1.5+3 for 1500.
+   pure logical function is_plain(text)
       character(*), intent(in) :: text
-      integer, intent(out) :: value
-      logical, intent(out) :: is_right
-      integer :: code
+      character(*), parameter :: letters = 'eEdD', signs = '+-'
+      integer :: i
 
-      value = 0
-      is_right = is_signed(text)
-      if (.not. is_right) return
-      read (text, *, iostat=code) value
-      is_right = code == 0
-      if (.not. is_right) value = 0
-   end subroutine read_whole
+      is_plain = verify(text, '0123456789.'//signs//letters) == 0
+      do i = 2, len(text)
+         if (scan(text(i:i), signs) > 0) is_plain = is_plain .and. scan(text(i - 1:i - 1), letters) > 0
+      end do
+   end function is_plain
 
-   !> Digits with a point before, between or after them, or none, and perhaps a sign before them.
-   pure logical function is_decimal(text)
-      character(*), intent(in) :: text
-      integer :: point
+   !> The shortest text that is read as this finite number; of 15 digits where these are enough, less the zeros at their end.
+   pure subroutine write_real(value, text)
+      real(wp), intent(in) :: value
+      character(:), allocatable, intent(out) :: text
+      integer, parameter :: enough = 17
+      real(wp) :: again
+      logical :: is_right
+      integer :: digits
 
-      point = index(text//'.', '.')
-      is_decimal = scan(text, digits) > 0 .and. verify(text(point + 1:), digits) == 0
-      if (is_decimal) is_decimal = is_signed(text(:point - 1)//'0')
-   end function is_decimal
+      do digits = precision(value), enough
+         text = to_text(value, digits)
+         call read_real(text, again, is_right)
+         if (is_right .and. .not. abs(again - value) > 0.0_wp) return
+      end do
+   end subroutine write_real
 
-   !> Digits, and perhaps a sign before them.
-   pure logical function is_signed(text)
-      character(*), intent(in) :: text
-      integer :: first
+   !> Whether a real is of a size that is taken.
+   elemental logical function is_reasonable(value)
+      real(wp), intent(in) :: value
 
-      first = 1
-      if (scan(text, '+-') == 1) first = 2
-      is_signed = len(text) >= first .and. verify(text(min(first, len(text) + 1):), digits) == 0
-   end function is_signed
+      is_reasonable = .not. abs(value) > 0.0_wp .or. (abs(value) >= smallest_size .and. abs(value) <= largest_size)
+   end function is_reasonable
 
 end module mfv_numbers

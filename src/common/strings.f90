@@ -8,7 +8,8 @@ module mfv_strings
    use mfv_kinds, only: wp
    implicit none
    private
-   public :: string_type, to_text, lower_case, nearest_name, from_c, copy_to_c, quoted, shortened, add_text, list_of_words
+   public :: string_type, to_text, lower_case, nearest_name, from_c, copy_to_c, quoted, shortened, add_text, &
+             list_of_words, has_word
 
    !> A text of any length, for arrays of texts.
    type :: string_type
@@ -195,6 +196,13 @@ contains
          first = first + length + 1
       end do
    end function list_of_words
+
+   !> Whether a word is one of those of a text that are separated by blanks.
+   pure logical function has_word(words, word)
+      character(*), intent(in) :: words, word
+
+      has_word = word /= '' .and. index(trim(word), ' ') == 0 .and. index(' '//words//' ', ' '//trim(word)//' ') > 0
+   end function has_word
 
    !> `text` between apostrophes.
    pure function quoted(text) result(with_quotes)

@@ -3,7 +3,7 @@ module mfv_material
    use mfv_kinds, only: wp
    implicit none
    private
-   public :: material_type, new_material, kolosov_constant, plane_strain, plane_stress
+   public :: material_type, new_material, kolosov_constant, shear_modulus_of, flexibilities, plane_strain, plane_stress
 
    !> The two plane states.
    integer, parameter :: plane_strain = 1, plane_stress = 2
@@ -44,6 +44,24 @@ contains
          kolosov = 3.0_wp - 4.0_wp*poisson_ratio
       end if
    end function kolosov_constant
+
+   !> Shear modulus from Young's modulus (both force/length^2) and Poisson's ratio: G = E/(2 (1 + nu)).
+   elemental real(wp) function shear_modulus_of(youngs_modulus, poisson_ratio) result(shear_modulus)
+      real(wp), intent(in) :: youngs_modulus, poisson_ratio
+
+      shear_modulus = youngs_modulus/(2.0_wp*(1.0_wp + poisson_ratio))
+   end function shear_modulus_of
+
+   !> The flexibilities 1/G_1 and 1/G_2, length^2/force, of a lower and an upper body of Poisson's ratio 0 with Dundurs' parameter
+   !> `beta`, from -1/2 to 1/2, positive where the lower body couples more, and the mutual compliance A, length^2/force, the sum of
+   !> (kappa + 1)/(4 G). Poisson's ratio 0 is kappa = 3 in plane strain and plane stress: 1/G_1 = A (1 + 2 beta)/2 and
+   !> 1/G_2 = A (1 - 2 beta)/2 (dissertation eq. 6.1). For beta = -1/2 or 1/2 one of them is 0: that body is rigid.
+   pure function flexibilities(beta, compliance)
+      real(wp), intent(in) :: beta, compliance
+      real(wp) :: flexibilities(2)
+
+      flexibilities = 0.5_wp*compliance*[1.0_wp + 2.0_wp*beta, 1.0_wp - 2.0_wp*beta]
+   end function flexibilities
 
    !> 4 G/(kappa + 1) = E/(2 (1 - nu^2)) in plane strain, force/length^2: half the contact modulus against a rigid body.
    pure real(wp) function plane_modulus(self)

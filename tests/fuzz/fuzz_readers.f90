@@ -6,7 +6,8 @@ module fuzz_readers
    use mfv_error, only: error_type
    use mfv_kinds, only: wp
    use mfv_matrix_file, only: read_matrix_body
-   use mfv_profile_file, only: read_profile, read_table, trace_type
+   use mfv_profile, only: trace_type
+   use mfv_profile_file, only: read_profile, read_table
    use mfv_status, only: MFV_COMPLETE
    use mfv_stress_file, only: add_stresses, stress_request_type, stress_result_type
    use mfv_strings, only: copy_to_c, from_c

@@ -5,7 +5,7 @@
 !> nodes at other x, off by the third power of the angle. With radial normals, for a disk in a hole, nodes are at equal
 !> angles on both bodies, gaps are along the radii of the hole, and tractions are per unit of its arc.
 module mfv_contact_model
-   use mfv_body, only: gap_between, radial_gap_between, shape_matrix
+   use mfv_body, only: body_type, gap_between, radial_gap_between, shape_matrix
    use mfv_body_pair, only: body_pair_type, new_body_pair
    use mfv_circle, only: circle_intervals, kernel_fourier
    use mfv_compliance, only: compliance_type
@@ -18,7 +18,8 @@ module mfv_contact_model
    use mfv_scene_indenter, only: indenter_of, largest_half_width
    implicit none
    private
-   public :: contact_model_type, new_contact_model, choose_mesh, along_approach, along_shift, along_rotation
+   public :: contact_model_type, new_contact_model, choose_mesh, can_choose_mesh, has_touchable_node, intervals_round, &
+             along_approach, along_shift, along_rotation
 
    !> The upper body's motions.
    integer, parameter :: along_approach = 1, along_shift = 2, along_rotation = 3
@@ -128,6 +129,45 @@ contains
          if (by_fourier(scene)) interval = 2.0_wp*pi*scene%arc_radius()/circle_intervals(scene%arc_radius(), interval)
       end if
    end subroutine choose_mesh
+
+   !> Whether there is a length that a mesh can be chosen by: the user's, that of a shape, or that of the contact which the targets
+   !> of the steps make.
+   pure logical function can_choose_mesh(scene)
+      type(scene_type), intent(in) :: scene
+
+      can_choose_mesh = scene%lower%shape == shape_matrix .or. scene%mesh%half_width > 0.0_wp .or. scene%mesh%whole_circle .or. &
+                        min(scene%lower%half_extent(), scene%upper%half_extent()) < huge(1.0_wp)
+      if (.not. can_choose_mesh) can_choose_mesh = largest_half_width(scene, huge(1.0_wp)) > 0.0_wp
+   end function can_choose_mesh
+
+   !> Intervals of the width `interval` (length) that fit on the circle of a disk or hole; with radial normals on the circle of the
+   !> nodes, whose angles both bodies have.
+   pure real(wp) function intervals_round(scene, body, interval)
+      type(scene_type), intent(in) :: scene
+      type(body_type), intent(in) :: body
+      real(wp), intent(in) :: interval
+
+      intervals_round = 2.0_wp*pi*merge(scene%arc_radius(), body%radius, scene%mesh%radial)/interval
+   end function intervals_round
+
+   !> Whether the mesh of a scene has a node where both bodies have a surface.
+   logical function has_touchable_node(scene)
+      type(scene_type), intent(in) :: scene
+      real(wp) :: interval
+      integer :: i, nodes
+      logical :: growing
+
+      if (scene%lower%shape == shape_matrix) then
+         has_touchable_node = any(scene%touchable(scene%lower%position))
+         return
+      end if
+      call choose_mesh(scene, nodes, interval, growing)
+      has_touchable_node = .false.
+      do i = 1, nodes
+         has_touchable_node = scene%touchable(0.5_wp*interval*(2*i - nodes - 1))
+         if (has_touchable_node) return
+      end do
+   end function has_touchable_node
 
    !> Whether a body's kernel needs a whole number of intervals on its circle.
    pure logical function by_fourier(scene)

@@ -1,12 +1,13 @@
 !> The gap of a scene as closed forms have it, and the contact that they expect.
 module mfv_scene_indenter
-   use mfv_body, only: body_type, shape_flat_punch, shape_half_plane, shape_power, shape_rounded_punch
+   use mfv_body, only: body_type, shape_flat_punch, shape_half_plane, shape_matrix, shape_power, shape_profile, &
+                       shape_rounded_punch
    use mfv_kinds, only: wp
    use mfv_reference_indenter, only: flat_indenter, indenter_type, power_indenter, rounded_punch_indenter
    use mfv_scene, only: control_displacement, control_force, scene_type
    implicit none
    private
-   public :: indenter_of, largest_half_width, half_width_of_forces
+   public :: indenter_of, touches_everywhere, largest_half_width, default_datum
 
 contains
 
@@ -21,6 +22,18 @@ contains
       call add_body(indenter, scene%lower)
       call add_body(indenter, scene%upper)
    end function indenter_of
+
+   !> Whether neither body has an edge, a curvature or another shape by which they would be apart somewhere.
+   pure logical function touches_everywhere(scene)
+      type(scene_type), intent(in) :: scene
+      type(indenter_type) :: indenter
+      integer :: shapes(2)
+
+      shapes = [scene%lower%shape, scene%upper%shape]
+      indenter = indenter_of(scene)
+      touches_everywhere = indenter%is_flat() .and. .not. scene%curvature() > 0.0_wp .and. &
+                           .not. any(shapes == shape_flat_punch .or. shapes == shape_profile .or. shapes == shape_matrix)
+   end function touches_everywhere
 
    !> Whether a body's shape is one of which there are closed forms.
    pure logical function has_form(body)
@@ -64,5 +77,15 @@ contains
       if (force > 0.0_wp .and. .not. indenter%is_flat() .and. scene%modulus() > 0.0_wp) &
          half_width = indenter%half_width(0.5_wp*force/scene%modulus())
    end function half_width_of_forces
+
+   !> How far from the contact, length, the displacements of a body are measured unless the user says: the radius of a circle; else
+   !> the smaller length of both shapes; else the contact half-width that the closed form expects of the normal forces; else 0.
+   pure real(wp) function default_datum(scene, body, other) result(datum)
+      type(scene_type), intent(in) :: scene
+      type(body_type), intent(in) :: body, other
+
+      datum = merge(body%radius, min(body%size_of_shape(), other%size_of_shape()), body%circular())
+      if (.not. datum < huge(1.0_wp)) datum = half_width_of_forces(scene)
+   end function default_datum
 
 end module mfv_scene_indenter

@@ -5,13 +5,13 @@ module mfv_body_reader
    use mfv_error, only: error_type
    use mfv_key_reader
    use mfv_kinds, only: pi, wp
-   use mfv_material, only: new_material
+   use mfv_material, only: new_material, shear_modulus_of
    use mfv_matrix_file, only: read_matrix_body
-   use mfv_profile_file, only: level_line, level_mean, profile_of_data, read_profile, trace_type
-   use mfv_reference_indenter, only: indenter_type
+   use mfv_profile, only: level_line, level_mean, level_none, trace_type
+   use mfv_profile_file, only: read_profile
    use mfv_scene, only: scene_type
-   use mfv_scene_indenter, only: half_width_of_forces, indenter_of
-   use mfv_strings, only: list_of_words, string_type, to_text
+   use mfv_scene_indenter, only: default_datum, touches_everywhere
+   use mfv_strings, only: has_word, list_of_words, string_type, to_text
    implicit none
    private
    public :: check_bodies, read_body, check_pair, check_matrix, read_datums
@@ -70,71 +70,12 @@ contains
       if ((shape == 'disk' .or. shape == 'hole') .and. .not. rigid) allowed = allowed//' kernel harmonics'
       keys = reader%catalogue%names('body')
       do i = 1, size(keys)
-         if (.not. reader%has('body', body, keys(i)%text)) cycle
-         if (index(' '//allowed//' ', ' '//keys(i)%text//' ') > 0) cycle
-         call reader%complain('body', body, keys(i)%text, 'means nothing for a '//merge_text(rigid, 'rigid ', '')//shape// &
-                              '; its keys are '//allowed, error)
+         if (.not. reader%has('body', body, keys(i)%text) .or. has_word(allowed, keys(i)%text)) cycle
+         call reader%complain('body', body, keys(i)%text, 'means nothing for a'//trim(merge(' rigid', '      ', rigid))// &
+                              ' '//shape//'; its keys are '//allowed, error)
          return
       end do
    end subroutine check_body_keys
-
-   !> One body: shape, then what it is made of.
-   subroutine read_body(reader, number, plane, body, error)
-      type(reader_type), intent(in) :: reader
-      integer, intent(in) :: number, plane
-      type(body_type), intent(out) :: body
-      type(error_type), allocatable, intent(out) :: error
-
-      call read_shape(reader, number, body, error)
-      if (allocated(error)) return
-      body%rigid = reader%logical_value('body', number, 'rigid')
-      if (body%rigid .or. body%shape == shape_matrix) return
-      call read_material(reader, number, plane, body, error)
-      if (allocated(error)) return
-      if (reader%has('body', number, 'yield_strength')) &
-         body%yield_strength = reader%real_value('body', number, 'yield_strength')
-      body%kernel = merge(kernel_fourier, kernel_exact, reader%text_value('body', number, 'kernel') == 'fourier')
-      if (.not. reader%has('body', number, 'harmonics')) return
-      body%harmonics = reader%integer_value('body', number, 'harmonics')
-      if (body%kernel /= kernel_fourier) call reader%complain('body', number, 'harmonics', &
-                                                              "means nothing without kernel='fourier'", error)
-   end subroutine read_body
-
-   subroutine read_shape(reader, number, body, error)
-      type(reader_type), intent(in) :: reader
-      integer, intent(in) :: number
-      type(body_type), intent(out) :: body
-      type(error_type), allocatable, intent(out) :: error
-      character(:), allocatable :: shape
-      type(string_type), allocatable :: needed(:)
-      real(wp), parameter :: degree = pi/180.0_wp
-      integer :: i
-
-      shape = reader%text_value('body', number, 'shape')
-      needed = list_of_words(needed_keys(shape))
-      do i = 1, size(needed)
-         call reader%need('body', number, needed(i)%text, error)
-         if (allocated(error)) return
-      end do
-      select case (shape)
-      case ('half_plane')
-         body = new_half_plane_body()
-      case ('disk')
-         body = new_disk(reader%real_value('body', number, 'radius'))
-      case ('hole')
-         body = new_hole(reader%real_value('body', number, 'radius'))
-      case ('flat_punch')
-         body = new_flat_punch(reader%real_value('body', number, 'half_width'))
-      case ('rounded_punch')
-         body = new_rounded_punch(reader%real_value('body', number, 'half_width'), reader%real_value('body', number, 'edge_radius'))
-      case ('wedge')
-         body = new_power(tan(degree*reader%real_value('body', number, 'angle')), 1.0_wp)
-      case ('power')
-         body = new_power(reader%real_value('body', number, 'coefficient'), reader%real_value('body', number, 'exponent'))
-      case default
-         call read_body_file(reader, number, body, error)
-      end select
-   end subroutine read_shape
 
    !> The keys that a shape cannot do without, separated by blanks and padded with them.
    pure function needed_keys(shape) result(keys)
@@ -159,37 +100,99 @@ contains
       end select
    end function needed_keys
 
-   !> The file of a profile or a matrix, beside the case.
+   !> One body: shape, then what it is made of.
+   subroutine read_body(reader, number, plane, body, error)
+      type(reader_type), intent(in) :: reader
+      integer, intent(in) :: number, plane
+      type(body_type), intent(out) :: body
+      type(error_type), allocatable, intent(out) :: error
+
+      call read_shape(reader, number, body, error)
+      if (allocated(error)) return
+      body%rigid = reader%logical_value('body', number, 'rigid')
+      if (body%rigid .or. body%shape == shape_matrix) return
+      call read_material(reader, number, plane, body, error)
+      if (allocated(error)) return
+      body%yield_strength = reader%real_value('body', number, 'yield_strength')
+      body%kernel = reader%constant('body', number, 'kernel', [kernel_exact, kernel_fourier])
+      body%harmonics = reader%integer_value('body', number, 'harmonics')
+      if (body%harmonics > 0 .and. body%kernel /= kernel_fourier) &
+         call reader%complain('body', number, 'harmonics', "means nothing without kernel='fourier'", error)
+   end subroutine read_body
+
+   subroutine read_shape(reader, number, body, error)
+      type(reader_type), intent(in) :: reader
+      integer, intent(in) :: number
+      type(body_type), intent(out) :: body
+      type(error_type), allocatable, intent(out) :: error
+      character(:), allocatable :: shape
+      type(string_type), allocatable :: needed(:)
+      real(wp), parameter :: degree = pi/180.0_wp
+      integer :: i
+
+      shape = reader%text_value('body', number, 'shape')
+      needed = list_of_words(needed_keys(shape))
+      do i = 1, size(needed)
+         call reader%need('body', number, needed(i)%text, error)
+         if (allocated(error)) return
+      end do
+      select case (shape)
+      case ('half_plane')
+         body = new_half_plane_body()
+      case ('disk')
+         body = new_disk(value('radius'))
+      case ('hole')
+         body = new_hole(value('radius'))
+      case ('flat_punch')
+         body = new_flat_punch(value('half_width'))
+      case ('rounded_punch')
+         body = new_rounded_punch(value('half_width'), value('edge_radius'))
+      case ('wedge')
+         body = new_power(tan(degree*value('angle')), 1.0_wp)
+      case ('power')
+         body = new_power(value('coefficient'), value('exponent'))
+      case default
+         call read_body_file(reader, number, body, error)
+      end select
+
+   contains
+
+      pure real(wp) function value(name)
+         character(*), intent(in) :: name
+
+         value = reader%real_value('body', number, name)
+      end function value
+   end subroutine read_shape
+
+   !> The file of a profile or a matrix, or the data in its place.
    subroutine read_body_file(reader, number, body, error)
       type(reader_type), intent(in) :: reader
       integer, intent(in) :: number
       type(body_type), intent(out) :: body
       type(error_type), allocatable, intent(out) :: error
-      type(error_type), allocatable :: file_error
+      type(error_type), allocatable :: fault
       character(:), allocatable :: path
       type(trace_type) :: trace
-      logical :: is_profile
+      logical :: in_memory
 
-      is_profile = reader%text_value('body', number, 'shape') == 'profile'
-      if (is_profile) call read_trace(reader, number, trace, error)
-      if (allocated(error)) return
-      call find_file(reader, 'body', number, 'file', path)
-      if (reader%data%has_file(reader%text_value('body', number, 'file'))) then
-         path = reader%text_value('body', number, 'file')
-         if (is_profile) then
-            call profile_of_data(reader%data, path, trace, body, file_error)
+      call find_file(reader, 'body', number, 'file', path, in_memory)
+      if (reader%text_value('body', number, 'shape') == 'profile') then
+         call read_trace(reader, number, trace, error)
+         if (allocated(error)) return
+         if (in_memory) then
+            call read_profile(path, trace, body, fault, reader%data)
          else
-            call reader%data%read_matrix_body(path, body, file_error)
+            call read_profile(path, trace, body, fault)
          end if
-      else if (is_profile) then
-         call read_profile(path, trace, body, file_error)
+      else if (in_memory) then
+         call reader%data%read_matrix_body(path, body, fault)
       else
-         call read_matrix_body(path, body, file_error)
+         call read_matrix_body(path, body, fault)
       end if
-      if (allocated(file_error)) call reader%complain('body', number, 'file', file_error%message, error)
+      if (allocated(fault)) call reader%complain('body', number, 'file', fault%message, error)
    end subroutine read_body_file
 
-   !> How the file of a profile is to be taken.
+   !> How the points of a profile are to be taken.
    subroutine read_trace(reader, number, trace, error)
       type(reader_type), intent(in) :: reader
       integer, intent(in) :: number
@@ -199,15 +202,9 @@ contains
       trace%position_scale = reader%real_value('body', number, 'position_scale')
       trace%height_scale = reader%real_value('body', number, 'height_scale')
       trace%centred = reader%logical_value('body', number, 'centred')
-      select case (reader%text_value('body', number, 'level'))
-      case ('mean')
-         trace%level = level_mean
-      case ('line')
-         trace%level = level_line
-      end select
+      trace%level = reader%constant('body', number, 'level', [level_none, level_mean, level_line])
       if (reader%has('body', number, 'interpolation')) &
-         trace%interpolation = merge(interpolation_cubic, interpolation_linear, &
-                                     reader%text_value('body', number, 'interpolation') == 'monotone_cubic')
+         trace%interpolation = reader%constant('body', number, 'interpolation', [interpolation_linear, interpolation_cubic])
       if (.not. abs(trace%height_scale) > 0.0_wp) &
          call reader%complain('body', number, 'height_scale', 'must not be 0', error)
    end subroutine read_trace
@@ -228,7 +225,7 @@ contains
             call reader%complain('body', number, 'youngs_modulus', 'shear_modulus is there too; give one of them', error)
             return
          end if
-         modulus = reader%real_value('body', number, 'youngs_modulus')/(2.0_wp*(1.0_wp + ratio))
+         modulus = shear_modulus_of(reader%real_value('body', number, 'youngs_modulus'), ratio)
       else
          call reader%need('body', number, 'shear_modulus', error)
          if (allocated(error)) return
@@ -242,18 +239,14 @@ contains
       type(reader_type), intent(in) :: reader
       type(scene_type), intent(in) :: scene
       type(error_type), allocatable, intent(out) :: error
-      type(indenter_type) :: indenter
-      integer :: number
+      integer :: shapes(2)
 
-      indenter = indenter_of(scene)
-      if (any([scene%lower%shape, scene%upper%shape] == shape_profile) .or. scene%lower%shape == shape_matrix) return
-      number = 2
-      if (scene%lower%shape == shape_hole) number = 1
-      if (scene%lower%shape == shape_hole .or. scene%upper%shape == shape_hole) then
-         if (.not. scene%curvature() > 0.0_wp) &
-            call reader%complain('body', number, 'radius', 'a hole needs a disk of a smaller radius in it', error)
-      else if (.not. scene%curvature() > 0.0_wp .and. &
-               .not. any([scene%lower%shape, scene%upper%shape] == shape_flat_punch) .and. indenter%is_flat()) then
+      shapes = [scene%lower%shape, scene%upper%shape]
+      if (any(shapes == shape_profile .or. shapes == shape_matrix)) return
+      if (any(shapes == shape_hole)) then
+         if (.not. scene%curvature() > 0.0_wp) call reader%complain('body', findloc(shapes, shape_hole, dim=1), 'radius', &
+                                                                    'a hole needs a disk of a smaller radius in it', error)
+      else if (touches_everywhere(scene)) then
          call reader%complain('body', 2, 'shape', 'two half-planes touch everywhere; one body must have another shape', error)
       end if
    end subroutine check_pair
@@ -270,33 +263,26 @@ contains
                            error)
    end subroutine check_matrix
 
-   !> Where the displacements of the elastic bodies are measured: by default at a length of the shapes or, where they have none, at the
-   !> half-width of the contact that the closed form expects, else at that of the mesh.
+   !> Where the displacements of the elastic bodies are measured: at the user's datum, by default at that of mfv_scene_indenter or,
+   !> where there is none, at the half-width of the mesh.
    subroutine read_datums(reader, scene, error)
       type(reader_type), intent(in) :: reader
       type(scene_type), intent(inout) :: scene
       type(error_type), allocatable, intent(out) :: error
+      real(wp) :: datum(2)
+      integer :: number
 
-      call read_datum(1, scene%lower, scene%upper)
-      if (.not. allocated(error)) call read_datum(2, scene%upper, scene%lower)
-
-   contains
-
-      subroutine read_datum(number, body, other)
-         integer, intent(in) :: number
-         type(body_type), intent(inout) :: body
-         type(body_type), intent(in) :: other
-
-         body%datum = merge(body%radius, min(body%size_of_shape(), other%size_of_shape()), body%circular())
-         if (reader%has('body', number, 'datum')) body%datum = reader%real_value('body', number, 'datum')
-         if (body%datum < huge(1.0_wp)) return
-         body%datum = half_width_of_forces(scene)
-         if (.not. body%datum > 0.0_wp .and. reader%has('mesh', 1, 'half_width')) &
-            body%datum = reader%real_value('mesh', 1, 'half_width')
-         if (body%rigid .or. body%datum > 0.0_wp) return
+      datum = [default_datum(scene, scene%lower, scene%upper), default_datum(scene, scene%upper, scene%lower)]
+      do number = 1, 2
+         if (.not. datum(number) > 0.0_wp) datum(number) = reader%real_value('mesh', 1, 'half_width')
+         if (reader%has('body', number, 'datum')) datum(number) = reader%real_value('body', number, 'datum')
+         if (datum(number) > 0.0_wp .or. reader%logical_value('body', number, 'rigid')) cycle
          call reader%complain('body', number, 'datum', 'is needed: the shapes have no length, and there is neither a '// &
                               'normal_force nor the half_width of a &mesh to take it from', error)
-      end subroutine read_datum
+         return
+      end do
+      scene%lower%datum = datum(1)
+      scene%upper%datum = datum(2)
    end subroutine read_datums
 
 end module mfv_body_reader

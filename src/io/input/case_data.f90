@@ -44,7 +44,9 @@ contains
       if (place == 0) then
          allocate (longer(size(self%datasets) + 1))
          do i = 1, size(self%datasets)
-            call move_dataset(self%datasets(i), longer(i))
+            call move_alloc(self%datasets(i)%file, longer(i)%file)
+            call move_alloc(self%datasets(i)%name, longer(i)%name)
+            call move_alloc(self%datasets(i)%values, longer(i)%values)
          end do
          call move_alloc(longer, self%datasets)
          place = size(self%datasets)
@@ -53,15 +55,6 @@ contains
       self%datasets(place)%name = name
       self%datasets(place)%values = values
    end subroutine put
-
-   subroutine move_dataset(from, to)
-      type(dataset_type), intent(inout) :: from
-      type(dataset_type), intent(out) :: to
-
-      call move_alloc(from%file, to%file)
-      call move_alloc(from%name, to%name)
-      call move_alloc(from%values, to%values)
-   end subroutine move_dataset
 
    !> Whether there are data for a file.
    pure logical function has_file(self, file)
@@ -138,7 +131,7 @@ contains
             call set_error(error, MFV_INPUT_ERROR, list(1)%text//' must increase; it does not at row '// &
                            to_text(findloc(table(1, 2:) <= table(1, :rows - 1), .true., dim=1) + 1))
       end if
-      call name_data(file, error)
+      if (allocated(error)) error%message = "the data '"//file//"': "//error%message
    end subroutine read_columns
 
    !> A body given by a matrix, see mfv_matrix_body. Error MFV_INPUT_ERROR.
@@ -151,16 +144,8 @@ contains
 
       call self%gather_matrix(file, data, error)
       if (.not. allocated(error)) call data%make_body(body, error)
-      call name_data(file, error)
-   end subroutine read_matrix_body
-
-   !> Say in which data an error was found.
-   subroutine name_data(file, error)
-      character(*), intent(in) :: file
-      type(error_type), allocatable, intent(inout) :: error
-
       if (allocated(error)) error%message = "the data '"//file//"': "//error%message
-   end subroutine name_data
+   end subroutine read_matrix_body
 
    !> The datasets of a matrix body. Error MFV_INPUT_ERROR.
    subroutine gather_matrix(self, file, data, error)

@@ -86,11 +86,10 @@ contains
                         'below; beside the case file; needed')
       call add_choice_key(keys, 'body', 'interpolation', 'linear', 'linear monotone_cubic', 'profile: straight lines '// &
                           'between its points, which keep corners, or a smooth curve without overshoot')
-      call add_positive_key(keys, 'body', 'position_scale', '', 'profile: x of the file is multiplied by it')
-      keys(size(keys))%default = '1'
+      call add_real_key(keys, 'body', 'position_scale', '', 'profile: x of the file is multiplied by it', lower=0.0_wp, &
+                        lower_open=.true., default='1')
       call add_real_key(keys, 'body', 'height_scale', '', 'profile: heights of the file are multiplied by it; they are how far '// &
-                        'the surface recedes from the other body: negative where the file counts them outwards')
-      keys(size(keys))%default = '1'
+                        'the surface recedes from the other body: negative where the file counts them outwards', default='1')
       call add_choice_key(keys, 'body', 'level', 'none', 'none mean line', 'profile: subtracted from its heights: nothing, '// &
                           'their mean, or their least-squares line')
       call add_logical_key(keys, 'body', 'centred', '.false.', 'profile: whether the middle of its positions is moved to x = 0')
@@ -177,8 +176,7 @@ contains
                         'traction, and of the dissipation of each load segment, relative to that')
       call add_real_key(keys, 'solver', 'event_tolerance', '', 'mfv: events closer to each other than this part of the '// &
                         'load so far in the load segment are taken together: fewer solves, less accuracy '// &
-                        '(coulomb)', lower=0.0_wp, upper=0.1_wp)
-      keys(size(keys))%default = '0'
+                        '(coulomb)', lower=0.0_wp, upper=0.1_wp, default='0')
       call add_part_key(keys, 'load_step', '0.05', 'nominal load step, part of each load segment: for '// &
                         "algorithm='conventional', stepping='nominal', integration='explicit'")
       call add_choice_key(keys, 'solver', 'integration', 'second_order', 'second_order explicit', 'dahl: second order with '// &
@@ -198,8 +196,7 @@ contains
       type(key_type), allocatable, intent(inout) :: keys(:)
       character(*), intent(in) :: name, default, meaning
 
-      call add_real_key(keys, 'solver', name, '', meaning, lower=1.0e-12_wp, upper=1.0_wp)
-      keys(size(keys))%default = default
+      call add_real_key(keys, 'solver', name, '', meaning, lower=1.0e-12_wp, upper=1.0_wp, default=default)
    end subroutine add_part_key
 
    subroutine add_output_keys(keys)
@@ -217,8 +214,8 @@ contains
                            'coefficients of friction times 1 + 1e-12, to report how much that changes tractions, '// &
                            'dissipation and stick ratio')
       call add_real_key(keys, 'output', 'checkpoint_minutes', 'minutes', 'mfv_run: least time between two checkpoints, '// &
-                        'from which mfv_run --resume continues; 0: only when the run is interrupted', lower=0.0_wp, upper=1.0e6_wp)
-      keys(size(keys))%default = '10'
+                        'from which mfv_run --resume continues; 0: only when the run is interrupted', lower=0.0_wp, &
+                        upper=1.0e6_wp, default='10')
    end subroutine add_output_keys
 
 end module mfv_case_keys

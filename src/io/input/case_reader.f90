@@ -16,7 +16,7 @@ module mfv_case_reader
    use mfv_scene
    use mfv_simulation, only: history_events, history_none, history_steps, states_none, states_reversals, states_steps
    use mfv_strings, only: to_text
-   use mfv_text_file, only: directory_of, read_text, stem_of
+   use mfv_text_file, only: directory_of, read_text
    implicit none
    private
    public :: read_case_file, read_case_text, read_case_groups
@@ -30,12 +30,18 @@ contains
       type(error_type), allocatable, intent(out) :: error
       logical, intent(in), optional :: without_steps
       character(:), allocatable :: text
+      integer :: first, dot
 
       call read_text(path, text, error)
       if (allocated(error)) return
       call read_case_text(text, path, case, error, without_steps)
       if (allocated(error)) return
-      if (case%result_path == '') case%result_path = stem_of(path)//'.h5'
+      if (case%result_path /= '') return
+      ! The file's own name with .h5 in place of what follows its last dot, unless it begins with that.
+      first = index(path, '/', back=.true.) + 1
+      dot = index(path(first:), '.', back=.true.)
+      if (dot < 2) dot = len(path(first:)) + 1
+      case%result_path = path(first:first + dot - 2)//'.h5'
    end subroutine read_case_file
 
    !> The case in a text. `source`: its name for messages; files it names are looked for beside it. `without_steps`:
@@ -80,12 +86,8 @@ contains
       case%length_unit = reader%text_value('scene', 1, 'length_unit')
       case%force_unit = reader%text_value('scene', 1, 'force_unit')
       case%result_path = reader%text_value('output', 1, 'file')
-      case%keep_history = history_events
-      if (reader%text_value('output', 1, 'history') == 'steps') case%keep_history = history_steps
-      if (reader%text_value('output', 1, 'history') == 'none') case%keep_history = history_none
-      case%keep_states = states_reversals
-      if (reader%text_value('output', 1, 'states') == 'steps') case%keep_states = states_steps
-      if (reader%text_value('output', 1, 'states') == 'none') case%keep_states = states_none
+      case%keep_history = reader%constant('output', 1, 'history', [history_events, history_steps, history_none])
+      case%keep_states = reader%constant('output', 1, 'states', [states_reversals, states_steps, states_none])
       case%checkpoint_minutes = reader%real_value('output', 1, 'checkpoint_minutes')
       case%error_estimate = reader%logical_value('output', 1, 'error_estimate')
       case%sensitivity = reader%logical_value('output', 1, 'sensitivity')
@@ -105,15 +107,8 @@ contains
       type(error_type), allocatable, intent(out) :: error
 
       scene%title = reader%text_value('scene', 1, 'title')
-      scene%plane = merge(plane_stress, plane_strain, reader%text_value('scene', 1, 'plane') == 'stress')
-      select case (reader%text_value('scene', 1, 'coupling'))
-      case ('full')
-         scene%coupling = coupling_full
-      case ('goodman')
-         scene%coupling = coupling_goodman
-      case ('none')
-         scene%coupling = coupling_none
-      end select
+      scene%plane = reader%constant('scene', 1, 'plane', [plane_strain, plane_stress])
+      scene%coupling = reader%constant('scene', 1, 'coupling', [coupling_full, coupling_goodman, coupling_none])
       call check_bodies(reader, error)
       if (.not. allocated(error)) call read_body(reader, 1, scene%plane, scene%lower, error)
       if (.not. allocated(error)) call read_body(reader, 2, scene%plane, scene%upper, error)
@@ -125,42 +120,36 @@ contains
       if (.not. allocated(error)) call check_matrix(reader, scene, error)
       if (.not. allocated(error)) call read_mesh(reader, scene, error)
       if (.not. allocated(error)) call check_coefficients_a_node(reader, scene, error)
-      if (.not. allocated(error)) call check_method(reader, error)
+      if (allocated(error)) return
       call read_method(reader, scene%method)
+      call check_method(reader, scene%method, error)
    end subroutine read_scene
 
    !> Choices of the solver that do not go together, or with the friction law.
-   subroutine check_method(reader, error)
+   subroutine check_method(reader, method, error)
       type(reader_type), intent(in) :: reader
+      type(method_type), intent(in) :: method
       type(error_type), allocatable, intent(out) :: error
       character(:), allocatable :: law
+      logical :: is_mfv, is_coulomb
 
       law = reader%text_value('friction', 1, 'law')
-      if (reader%text_value('solver', 1, 'stepping') == 'nominal') then
-         if (reader%text_value('solver', 1, 'algorithm') == 'conventional') &
-            call reader%complain('solver', 1, 'stepping', "means nothing with algorithm='conventional'", error)
-         if (law == 'weakening' .or. law == 'dahl') &
-            call reader%complain('solver', 1, 'stepping', "must be 'event' with law='"//law//"', which is not linear "// &
-                                 'between events', error)
-      end if
-      if (reader%text_value('solver', 1, 'stepping') == 'leap') then
-         if (reader%text_value('solver', 1, 'algorithm') == 'conventional') then
-            call reader%complain('solver', 1, 'stepping', "means nothing with algorithm='conventional'", error)
-         else if (law /= 'coulomb' .and. law /= 'none') then
-            call reader%complain('solver', 1, 'stepping', "'leap' needs law='coulomb' or 'none', not '"//law//"'", error)
-         end if
-      end if
-      if (reader%real_value('solver', 1, 'event_tolerance') > 0.0_wp) then
-         if (reader%text_value('solver', 1, 'algorithm') == 'conventional' .or. &
-             reader%text_value('solver', 1, 'stepping') /= 'event') then
-            call reader%complain('solver', 1, 'event_tolerance', "means nothing without algorithm='mfv' and stepping='event'", &
-                                 error)
-         else if (law /= 'coulomb' .and. law /= 'none') then
-            call reader%complain('solver', 1, 'event_tolerance', "needs law='coulomb' or 'none', not '"//law//"'", error)
-         end if
-      end if
-      if (reader%text_value('solver', 1, 'integration') == 'explicit' .and. law /= 'dahl') &
+      is_mfv = method%algorithm == algorithm_mfv
+      is_coulomb = law == 'coulomb' .or. law == 'none'
+      if (method%integration == integration_explicit .and. law /= 'dahl') then
          call reader%complain('solver', 1, 'integration', "means nothing without law='dahl'", error)
+      else if (method%event_tolerance > 0.0_wp .and. .not. (is_mfv .and. method%stepping == stepping_event)) then
+         call reader%complain('solver', 1, 'event_tolerance', "means nothing without algorithm='mfv' and stepping='event'", error)
+      else if (method%event_tolerance > 0.0_wp .and. .not. is_coulomb) then
+         call reader%complain('solver', 1, 'event_tolerance', "needs law='coulomb' or 'none', not '"//law//"'", error)
+      else if (method%stepping == stepping_nominal .and. (law == 'weakening' .or. law == 'dahl')) then
+         call reader%complain('solver', 1, 'stepping', "must be 'event' with law='"//law//"', which is not linear "// &
+                              'between events', error)
+      else if (method%stepping /= stepping_event .and. .not. is_mfv) then
+         call reader%complain('solver', 1, 'stepping', "means nothing with algorithm='conventional'", error)
+      else if (method%stepping == stepping_leap .and. .not. is_coulomb) then
+         call reader%complain('solver', 1, 'stepping', "'leap' needs law='coulomb' or 'none', not '"//law//"'", error)
+      end if
    end subroutine check_method
 
    !> How the scene is to be solved.
@@ -168,31 +157,14 @@ contains
       type(reader_type), intent(in) :: reader
       type(method_type), intent(out) :: method
 
-      method%algorithm = merge(algorithm_conventional, algorithm_mfv, &
-                               reader%text_value('solver', 1, 'algorithm') == 'conventional')
-      select case (reader%text_value('solver', 1, 'stepping'))
-      case ('nominal')
-         method%stepping = stepping_nominal
-      case ('leap')
-         method%stepping = stepping_leap
-      case default
-         method%stepping = stepping_event
-      end select
-      select case (reader%text_value('solver', 1, 'linear_solver'))
-      case ('dgesv')
-         method%linear_solver = solver_dgesv
-      case ('reduced')
-         method%linear_solver = solver_reduced
-      case ('fft')
-         method%linear_solver = solver_fft
-      case default
-         method%linear_solver = solver_auto
-      end select
+      method%algorithm = reader%constant('solver', 1, 'algorithm', [algorithm_mfv, algorithm_conventional])
+      method%stepping = reader%constant('solver', 1, 'stepping', [stepping_event, stepping_nominal, stepping_leap])
+      method%linear_solver = reader%constant('solver', 1, 'linear_solver', &
+                                             [solver_auto, solver_dgesv, solver_reduced, solver_fft])
       method%linear_tolerance = reader%real_value('solver', 1, 'linear_tolerance')
       method%event_tolerance = reader%real_value('solver', 1, 'event_tolerance')
       method%leap_tolerance = reader%real_value('solver', 1, 'leap_tolerance')
-      method%integration = merge(integration_explicit, integration_second_order, &
-                                 reader%text_value('solver', 1, 'integration') == 'explicit')
+      method%integration = reader%constant('solver', 1, 'integration', [integration_second_order, integration_explicit])
       method%load_step = reader%real_value('solver', 1, 'load_step')
       method%friction_tolerance = reader%real_value('solver', 1, 'friction_tolerance')
       method%most_iterations = reader%integer_value('solver', 1, 'iterations')

@@ -3,7 +3,6 @@
 module mfv_draft
    use, intrinsic :: ieee_arithmetic, only: ieee_is_finite
    use mfv_case, only: case_type
-   use mfv_case_changes, only: put_entry, remove_alternatives, remove_keys, set_dundurs_beta, write_number
    use mfv_case_data, only: case_data_type
    use mfv_case_keys, only: case_catalogue
    use mfv_case_reader, only: read_case_groups
@@ -11,11 +10,12 @@ module mfv_draft
    use mfv_key_path, only: read_key_name
    use mfv_keys, only: catalogue_type
    use mfv_kinds, only: wp
-   use mfv_namelist, only: append_group, entry_type, group_type, groups_of_name, parse_namelists, write_namelists
+   use mfv_material, only: flexibilities
+   use mfv_namelist, only: entry_type, group_type, parse_namelists, resize_entries, resize_groups, write_namelists
+   use mfv_numbers, only: write_real
    use mfv_status, only: MFV_INPUT_ERROR
-   use mfv_strings, only: lower_case, quoted, string_type, to_text
-   use mfv_text_file, only: directory_of
-   use mfv_utf8, only: find_fault_of_text
+   use mfv_strings, only: has_word, lower_case, quoted, string_type, to_text
+   use mfv_text_file, only: directory_of, find_fault_of_text
    implicit none
    private
    public :: draft_type, read_draft
@@ -24,6 +24,10 @@ module mfv_draft
    character(*), parameter :: dundurs_key = 'dundurs_beta', dundurs_values = 'must be a number from -0.5 to 0.5'
    real(wp), parameter :: largest_beta = 0.5_wp
    character(*), parameter :: line_ends = achar(10)//achar(13)
+   !> Keys of one group of which a case has one at most.
+   character(*), parameter :: alternatives_of(5) = [character(40) :: 'tangential_force force_ratio shift', &
+                                                    'normal_force approach', 'moment rotation', &
+                                                    'shear_modulus youngs_modulus', 'half_width half_angle']
 
    !> A fault, and the key that was named: a value for that mends it.
    type :: fault_type
@@ -44,7 +48,7 @@ module mfv_draft
    contains
       !> Give a key a value: `call draft%set('body(2)%radius', 0.25_wp)`. Keys: docs/namelist.md. Faults are told by make_case, the
       !> first of those that no later call for the same key has mended; and by `error` (MFV_INPUT_ERROR) where it is there.
-      !> 'dundurs_beta', a number, replaces the materials of both bodies, see set_dundurs_beta of mfv_case_changes.
+      !> 'dundurs_beta', a number, replaces the materials of both bodies, see flexibilities of mfv_material.
       generic :: set => set_real, set_reals, set_integer, set_logical, set_text
       !> Data in memory in place of a file that a key names, see mfv_case_data: values of shape (rows) or (rows, columns).
       generic :: set_data => set_column, set_matrix
@@ -52,8 +56,8 @@ module mfv_draft
       procedure :: keep_fault
       procedure :: write_text
       procedure :: make_case
-      procedure, private :: set_real, set_reals, set_integer, set_logical, set_text, set_column, set_matrix, set_written, &
-                            set_materials, find_group
+      procedure, private :: set_real, set_reals, set_integer, set_logical, set_text, set_column, set_matrix, set_value, &
+                            set_values, set_materials, write_materials, find_group
    end type draft_type
 
 contains
@@ -68,24 +72,29 @@ contains
       draft%source = source
       draft%directory = directory_of(source)
       call parse_namelists(text, source, draft%groups, error)
+      if (allocated(error)) deallocate (draft%groups)
    end subroutine read_draft
 
-   !> The group and key of a name; the groups of that name up to its number come to be. Error MFV_INPUT_ERROR.
-   subroutine find_group(self, name, group, number, key, error)
+   !> Place of the group that a name of a key has, which comes to be with those before it, and the key. Error MFV_INPUT_ERROR.
+   subroutine find_group(self, name, place, key, error)
       class(draft_type), intent(inout) :: self
       character(*), intent(in) :: name
-      character(:), allocatable, intent(out) :: group, key
-      integer, intent(out) :: number
+      integer, intent(out) :: place
+      character(:), allocatable, intent(out) :: key
       type(error_type), allocatable, intent(out) :: error
-      type(group_type) :: new
-      character(:), allocatable :: why
-      integer :: there
+      character(:), allocatable :: group, why
+      integer :: number, there
 
       if (.not. allocated(self%groups)) allocate (self%groups(0))
       if (.not. allocated(self%catalogue)) self%catalogue = case_catalogue()
       call read_key_name(name, self%catalogue, group, number, key, why)
       if (lower_case(name) == dundurs_key) why = quoted(name)//': '//dundurs_values
-      there = groups_of_name(self%groups, group)
+      there = 0
+      do place = 1, size(self%groups)
+         if (self%groups(place)%name /= group) cycle
+         there = there + 1
+         if (there == number) exit
+      end do
       if (why == '' .and. (number < 1 .or. number > max(2, there + 1))) &
          why = quoted(name)//': there are '//to_text(there)//' of &'//group//' so far; the next one is '//group//'('// &
                to_text(there + 1)//')'
@@ -94,33 +103,63 @@ contains
          return
       end if
       do there = there + 1, number
-         new%name = group
-         allocate (new%entries(0))
-         call append_group(self%groups, new)
+         place = size(self%groups) + 1
+         call resize_groups(self%groups, place)
+         self%groups(place)%name = group
+         allocate (self%groups(place)%entries(0))
       end do
    end subroutine find_group
 
-   !> Keep a value as it would be written, or the fault with it (`why`, where it is not empty).
-   subroutine set_written(self, name, value, is_quoted, why, error)
+   !> Give a key values as they would be written, or keep the fault with them (`why`, where it is not empty).
+   subroutine set_values(self, name, values, is_quoted, why, error)
       class(draft_type), intent(inout) :: self
-      character(*), intent(in) :: name, value, why
+      character(*), intent(in) :: name, why
+      type(string_type), intent(in) :: values(:)
       logical, intent(in) :: is_quoted
       type(error_type), allocatable, intent(out), optional :: error
       type(error_type), allocatable :: fault
       type(entry_type) :: entry
-      character(:), allocatable :: group
-      integer :: number
+      integer :: place
 
-      call self%find_group(name, group, number, entry%key, fault)
+      call self%find_group(name, place, entry%key, fault)
       if (.not. allocated(fault) .and. why /= '') call set_error(fault, MFV_INPUT_ERROR, quoted(name)//': '//why)
       if (.not. allocated(fault)) then
-         allocate (entry%values(1))
-         entry%values(1)%text = value
-         entry%is_quoted = [is_quoted]
-         call put_entry(self%groups, group, number, entry)
+         entry%values = values
+         allocate (entry%is_quoted(size(values)), source=is_quoted)
+         call put_entry(self%groups(place), entry)
       end if
-      call tell(self, name, fault, error)
-   end subroutine set_written
+      call self%keep_fault(name, fault, error)
+   end subroutine set_values
+
+   !> The same for one value.
+   subroutine set_value(self, name, value, is_quoted, why, error)
+      class(draft_type), intent(inout) :: self
+      character(*), intent(in) :: name, value, why
+      logical, intent(in) :: is_quoted
+      type(error_type), allocatable, intent(out), optional :: error
+      type(string_type) :: values(1)
+
+      values(1)%text = value
+      call self%set_values(name, values, is_quoted, why, error)
+   end subroutine set_value
+
+   !> Put an entry in place of the one with its key, whose line it takes, or at the end.
+   subroutine put_entry(group, entry)
+      type(group_type), intent(inout) :: group
+      type(entry_type), intent(inout) :: entry
+      integer :: i
+
+      do i = 1, size(group%entries)
+         if (group%entries(i)%key == entry%key) exit
+      end do
+      entry%line = group%line
+      if (i <= size(group%entries)) then
+         entry%line = group%entries(i)%line
+      else
+         call resize_entries(group%entries, i)
+      end if
+      group%entries(i) = entry
+   end subroutine put_entry
 
    !> Take a key out, as if it had never been given a value; no harm where it has none. `alternatives`: take out, too, those that it
    !> is an alternative to, such as tangential_force and force_ratio for shift, so that it can be given a value. Fault and `error`
@@ -131,68 +170,62 @@ contains
       type(error_type), allocatable, intent(out), optional :: error
       logical, intent(in), optional :: alternatives
       type(error_type), allocatable :: fault
-      character(:), allocatable :: group, key
-      integer :: number
-      logical :: is_alone
+      character(:), allocatable :: key, keys
+      integer :: place, i
 
-      is_alone = .true.
-      if (present(alternatives)) is_alone = .not. alternatives
-      call self%find_group(name, group, number, key, fault)
+      call self%find_group(name, place, key, fault)
       if (.not. allocated(fault)) then
-         if (is_alone) then
-            call remove_keys(self%groups, group, number, key)
-         else
-            call remove_alternatives(self%groups, group, number, key)
+         keys = key
+         if (present(alternatives)) then
+            do i = 1, size(alternatives_of)
+               if (alternatives .and. has_word(alternatives_of(i), key)) keys = alternatives_of(i)
+            end do
          end if
+         call remove_keys(self%groups(place), keys)
       end if
-      call tell(self, name, fault, error)
+      call self%keep_fault(name, fault, error)
    end subroutine remove
 
-   !> Keep a fault, and tell it to a caller who wants to know. A call for the same key that goes well mends it.
-   subroutine tell(self, name, fault, error)
-      class(draft_type), intent(inout) :: self
-      character(*), intent(in) :: name
-      type(error_type), allocatable, intent(in) :: fault
-      type(error_type), allocatable, intent(out), optional :: error
-
-      call mend(self, name)
-      if (.not. allocated(fault)) return
-      call self%keep_fault(name, fault)
-      if (present(error)) error = fault
-   end subroutine tell
-
-   !> Keep a fault with a key for make_case to tell.
-   subroutine keep_fault(self, name, fault)
-      class(draft_type), intent(inout) :: self
-      character(*), intent(in) :: name
-      type(error_type), intent(in) :: fault
-      type(fault_type), allocatable :: longer(:)
+   !> Take keys, separated by blanks, out of a group.
+   subroutine remove_keys(group, keys)
+      type(group_type), intent(inout) :: group
+      character(*), intent(in) :: keys
       integer :: i, n
 
       n = 0
-      if (allocated(self%faults)) n = size(self%faults)
-      allocate (longer(n + 1))
-      do i = 1, n
-         longer(i) = self%faults(i)
+      do i = 1, size(group%entries)
+         if (has_word(keys, group%entries(i)%key)) cycle
+         n = n + 1
+         if (n < i) group%entries(n) = group%entries(i)
       end do
-      longer(n + 1)%name = name
-      longer(n + 1)%error = fault
-      call move_alloc(longer, self%faults)
-   end subroutine keep_fault
+      call resize_entries(group%entries, n)
+   end subroutine remove_keys
 
-   !> Drop the faults with a key.
-   subroutine mend(self, name)
+   !> Keep a fault with a key for make_case to report, in place of an earlier one with that key, and report it in `error`, too.
+   !> Without `fault`, a call for the key went well: the earlier fault is forgotten.
+   subroutine keep_fault(self, name, fault, error)
       class(draft_type), intent(inout) :: self
       character(*), intent(in) :: name
+      type(error_type), intent(in), optional :: fault
+      type(error_type), allocatable, intent(out), optional :: error
       type(fault_type), allocatable :: old(:)
-      integer :: i
+      integer :: i, n
 
-      if (.not. allocated(self%faults)) return
+      if (.not. allocated(self%faults)) allocate (self%faults(0))
       call move_alloc(self%faults, old)
+      n = count([(old(i)%name /= name, i=1, size(old))])
+      allocate (self%faults(n + merge(1, 0, present(fault))))
+      n = 0
       do i = 1, size(old)
-         if (old(i)%name /= name) call self%keep_fault(old(i)%name, old(i)%error)
+         if (old(i)%name == name) cycle
+         n = n + 1
+         self%faults(n) = old(i)
       end do
-   end subroutine mend
+      if (.not. present(fault)) return
+      self%faults(n + 1)%name = name
+      self%faults(n + 1)%error = fault
+      if (present(error)) error = fault
+   end subroutine keep_fault
 
    subroutine set_real(self, name, value, error)
       class(draft_type), intent(inout) :: self
@@ -204,10 +237,10 @@ contains
       if (lower_case(name) == dundurs_key) then
          call self%set_materials(value, error)
       else if (ieee_is_finite(value)) then
-         call write_number(value, text)
-         call self%set_written(name, text, .false., '', error)
+         call write_real(value, text)
+         call self%set_value(name, text, .false., '', error)
       else
-         call self%set_written(name, '', .false., 'the value is not finite', error)
+         call self%set_value(name, '', .false., 'the value is not finite', error)
       end if
    end subroutine set_real
 
@@ -223,46 +256,62 @@ contains
       if (.not. (ieee_is_finite(beta) .and. abs(beta) <= largest_beta)) then
          call set_error(fault, MFV_INPUT_ERROR, dundurs_key//'='//to_text(beta)//': '//dundurs_values)
       else
-         call mend(self, dundurs_key)
+         call self%keep_fault(dundurs_key)
          call self%make_case(case, fault)
          if (allocated(fault)) fault%message = quoted(dundurs_key)//': '//fault%message
       end if
       if (.not. allocated(fault)) then
          if (case%scene%modulus() > 0.0_wp) then
-            call set_dundurs_beta(self%groups, beta, 1.0_wp/case%scene%modulus())
+            call self%write_materials(flexibilities(beta, 1.0_wp/case%scene%modulus()))
          else
             call set_error(fault, MFV_INPUT_ERROR, dundurs_key//" needs bodies with materials, not shape='matrix'")
          end if
       end if
-      call tell(self, dundurs_key, fault, error)
+      call self%keep_fault(dundurs_key, fault, error)
    end subroutine set_materials
+
+   !> Give both bodies a flexibility 1/G each, length^2/force, and Poisson's ratio 0. One without flexibility becomes rigid.
+   subroutine write_materials(self, flexibility)
+      class(draft_type), intent(inout) :: self
+      real(wp), intent(in) :: flexibility(2)
+      type(error_type), allocatable :: error
+      character(:), allocatable :: key
+      character(len=*), parameter :: groups(2) = ['body(1)%', 'body(2)%']
+      integer :: body, place
+
+      do body = 1, 2
+         call self%find_group(groups(body)//'rigid', place, key, error)
+         call remove_keys(self%groups(place), 'shear_modulus youngs_modulus poisson_ratio rigid')
+         if (flexibility(body) > 0.0_wp) then
+            call self%set(groups(body)//'shear_modulus', 1.0_wp/flexibility(body))
+            call self%set(groups(body)//'poisson_ratio', 0.0_wp)
+         else
+            call remove_keys(self%groups(place), 'yield_strength datum kernel harmonics')
+            call self%set(groups(body)//'rigid', .true.)
+         end if
+      end do
+   end subroutine write_materials
 
    subroutine set_reals(self, name, values, error)
       class(draft_type), intent(inout) :: self
       character(*), intent(in) :: name
       real(wp), intent(in) :: values(:)
       type(error_type), allocatable, intent(out), optional :: error
-      type(error_type), allocatable :: fault
-      type(entry_type) :: entry
-      character(:), allocatable :: group, key
-      integer :: number, i
+      type(string_type), allocatable :: texts(:)
+      character(:), allocatable :: why
+      integer :: i
 
-      call self%find_group(name, group, number, key, fault)
-      if (.not. allocated(fault) .and. size(values) == 0) &
-         call set_error(fault, MFV_INPUT_ERROR, quoted(name)//': there are no values')
-      if (.not. allocated(fault) .and. .not. all(ieee_is_finite(values))) &
-         call set_error(fault, MFV_INPUT_ERROR, quoted(name)//': value '// &
-                        to_text(findloc(ieee_is_finite(values), .false., dim=1))//' is not finite')
-      if (.not. allocated(fault)) then
-         entry%key = key
-         allocate (entry%values(size(values)), entry%is_quoted(size(values)))
-         entry%is_quoted = .false.
-         do i = 1, size(values)
-            call write_number(values(i), entry%values(i)%text)
-         end do
-         call put_entry(self%groups, group, number, entry)
-      end if
-      call tell(self, name, fault, error)
+      allocate (texts(size(values)))
+      why = ''
+      if (size(values) == 0) why = 'there are no values'
+      do i = 1, size(values)
+         if (ieee_is_finite(values(i))) then
+            call write_real(values(i), texts(i)%text)
+         else if (why == '') then
+            why = 'value '//to_text(i)//' is not finite'
+         end if
+      end do
+      call self%set_values(name, texts, .false., why, error)
    end subroutine set_reals
 
    subroutine set_integer(self, name, value, error)
@@ -274,7 +323,7 @@ contains
       if (lower_case(name) == dundurs_key) then
          call self%set_materials(real(value, wp), error)
       else
-         call self%set_written(name, to_text(value), .false., '', error)
+         call self%set_value(name, to_text(value), .false., '', error)
       end if
    end subroutine set_integer
 
@@ -284,7 +333,7 @@ contains
       logical, intent(in) :: value
       type(error_type), allocatable, intent(out), optional :: error
 
-      call self%set_written(name, trim(merge('.true. ', '.false.', value)), .false., '', error)
+      call self%set_value(name, trim(merge('.true. ', '.false.', value)), .false., '', error)
    end subroutine set_logical
 
    subroutine set_text(self, name, value, error)
@@ -296,11 +345,7 @@ contains
 
       call find_fault_of_text(value, line, why)
       if (scan(value, line_ends) > 0) why = 'a text must be of one line'
-      if (why /= '') then
-         call self%set_written(name, '', .true., why, error)
-      else
-         call self%set_written(name, value, .true., '', error)
-      end if
+      call self%set_value(name, value, .true., why, error)
    end subroutine set_text
 
    subroutine set_column(self, file, name, values, error)
@@ -322,12 +367,12 @@ contains
 
       if (scan(file, line_ends) > 0) then
          call set_error(fault, MFV_INPUT_ERROR, 'the name of data must be of one line')
-      else if (index(' '//known//' ', ' '//name//' ') == 0 .or. name == '') then
+      else if (.not. has_word(known, name)) then
          call set_error(fault, MFV_INPUT_ERROR, "the data '"//file//"': unknown dataset '"//name//"'; datasets are "//known)
       else
          call self%data%put(file, name, values)
       end if
-      call tell(self, file, fault, error)
+      call self%keep_fault(file, fault, error)
    end subroutine set_matrix
 
    !> The scene as a text of namelist groups; comments say which data were in memory.
@@ -361,8 +406,9 @@ contains
       if (allocated(self%source)) source = self%source
       if (allocated(self%directory)) directory = self%directory
       if (allocated(self%faults)) then
-         call set_error(error, self%faults(1)%error%status, source//': '//self%faults(1)%error%message)
-         return
+         if (size(self%faults) > 0) &
+            call set_error(error, self%faults(1)%error%status, source//': '//self%faults(1)%error%message)
+         if (allocated(error)) return
       end if
       allocate (groups(0))
       if (allocated(self%groups)) groups = self%groups
@@ -380,38 +426,25 @@ contains
       type(group_type), intent(in) :: groups(:)
       character(*), intent(in) :: source
       type(error_type), allocatable, intent(out) :: error
-      integer :: i
+      logical :: is_named
+      integer :: i, j, k
 
       if (.not. allocated(data%datasets)) return
       do i = 1, size(data%datasets)
-         if (is_named(data%datasets(i)%file, groups)) cycle
+         is_named = .false.
+         do j = 1, size(groups)
+            do k = 1, size(groups(j)%entries)
+               associate (entry => groups(j)%entries(k))
+                  if (.not. has_word('file mu_file', entry%key) .or. size(entry%values) == 0) cycle
+                  is_named = is_named .or. entry%values(1)%text == data%datasets(i)%file
+               end associate
+            end do
+         end do
+         if (is_named) cycle
          call set_error(error, MFV_INPUT_ERROR, source//": no key names the data '"//data%datasets(i)%file//"'; a body has "// &
                         'file, &friction has mu_file')
          return
       end do
    end subroutine check_data
-
-   !> Whether a key names a file.
-   pure logical function is_named(file, groups)
-      character(*), intent(in) :: file
-      type(group_type), intent(in) :: groups(:)
-      integer :: i, j
-
-      is_named = .false.
-      do i = 1, size(groups)
-         do j = 1, size(groups(i)%entries)
-            if (groups(i)%entries(j)%key /= 'file' .and. groups(i)%entries(j)%key /= 'mu_file') cycle
-            is_named = is_named .or. any(same(groups(i)%entries(j)%values, file))
-         end do
-      end do
-   end function is_named
-
-   !> Whether texts are this one.
-   elemental logical function same(one, other)
-      type(string_type), intent(in) :: one
-      character(*), intent(in) :: other
-
-      same = one%text == other
-   end function same
 
 end module mfv_draft

@@ -128,13 +128,13 @@ contains
       type(error_type), allocatable :: file_error
       character(:), allocatable :: path
       real(wp), allocatable :: table(:, :)
-      logical :: two
+      logical :: two, in_memory
 
       two = has_two_coefficients(reader%text_value('friction', 1, 'law'))
-      call find_file(reader, 'friction', 1, 'mu_file', path)
-      if (reader%data%has_file(reader%text_value('friction', 1, 'mu_file'))) then
-         path = reader%text_value('friction', 1, 'mu_file')
-         call reader%data%read_columns(path, merge_text(two, 'x mu_static mu_kinetic', 'x mu'), table, file_error)
+      call find_file(reader, 'friction', 1, 'mu_file', path, in_memory)
+      if (in_memory) then
+         call reader%data%read_columns(path, trim(merge('x mu_static mu_kinetic', 'x mu                  ', two)), table, &
+                                       file_error)
       else if (two) then
          call read_table(path, 'x, mu_static and mu_kinetic', 3, .true., table, file_error)
       else

@@ -5,29 +5,24 @@ module mfv_key_reader
    use mfv_error, only: error_type, set_error
    use mfv_keys
    use mfv_kinds, only: wp
-   use mfv_namelist, only: entry_type, group_type, groups_of_name, show_entry
-   use mfv_numbers, only: read_real, read_whole
+   use mfv_namelist, only: entry_type, group_type, show_entry
+   use mfv_numbers, only: is_reasonable, read_real, reasonable_sizes
    use mfv_status, only: MFV_INPUT_ERROR
-   use mfv_strings, only: list_of_words, lower_case, nearest_name, shortened, string_type, to_text
-   use mfv_text_file, only: path_beside
+   use mfv_strings, only: has_word, list_of_words, lower_case, shortened, string_type, to_text
    implicit none
    private
-   public :: reader_type, check_groups, check_entries, count_groups, line_of, find_file, merge_text, suggest, fail
+   public :: reader_type, check_groups, check_entries, count_groups, line_of, find_file, fail
 
-   !> Places of the groups of one name.
-   type :: places_type
-      character(:), allocatable :: name
-      integer, allocatable :: place(:)
-   end type places_type
+   character(*), parameter :: words_for_true = ' .true. t true .t. ', words_for_false = ' .false. f false .f. '
 
    !> A text taken apart, with the list of keys to read it by.
    type :: reader_type
       !> Name of the text for messages, and the directory, with its final slash, in which the files that it names are.
       character(:), allocatable :: source, directory
       type(group_type), allocatable :: groups(:)
+      !> Which of the groups of its name each of them is, from 1.
+      integer, allocatable :: number(:)
       type(catalogue_type) :: catalogue
-      !> Where the groups of each name are, in the order of the catalogue's groups: a load history may have many steps.
-      type(places_type), allocatable :: places(:)
       logical :: without_steps = .false.
       !> Data in memory in place of files.
       type(case_data_type) :: data
@@ -38,9 +33,9 @@ module mfv_key_reader
       procedure :: integer_value
       procedure :: logical_value
       procedure :: text_value
+      procedure :: constant
       procedure :: complain
       procedure :: need
-      procedure :: entry_of
    end type reader_type
 
 contains
@@ -52,76 +47,62 @@ contains
       character(:), allocatable :: why
       integer :: i, j
 
+      allocate (reader%number(size(reader%groups)), source=1)
       do i = 1, size(reader%groups)
          associate (group => reader%groups(i))
-            if (.not. reader%catalogue%has_group(group%name)) then
+            if (.not. has_word(reader%catalogue%group_list, group%name)) then
                call suggest(group%name, reader%catalogue%groups(), '&', why)
                call fail(reader, group%line, '&'//shortened(group%name)//': unknown group'// &
                          why//'; groups are '//reader%catalogue%group_list, error)
                return
             end if
-            if (reader%catalogue%repeats(group%name)) cycle
-            do j = 1, i - 1
-               if (reader%groups(j)%name /= group%name) cycle
-               call fail(reader, group%line, '&'//group%name//': may come only once, and is already in line '// &
-                         to_text(reader%groups(j)%line), error)
-               return
+            do j = i - 1, 1, -1
+               if (reader%groups(j)%name == group%name) exit
             end do
+            if (j == 0) cycle
+            reader%number(i) = reader%number(j) + 1
+            if (has_word(reader%catalogue%repeated_groups, group%name)) cycle
+            call fail(reader, group%line, '&'//group%name//': may come only once, and is already in line '// &
+                      to_text(reader%groups(j)%line), error)
+            return
          end associate
       end do
-      call find_places(reader)
    end subroutine check_groups
-
-   !> Find the groups of every name.
-   subroutine find_places(reader)
-      type(reader_type), intent(inout) :: reader
-      type(string_type), allocatable :: names(:)
-      integer :: i, j
-
-      names = reader%catalogue%groups()
-      allocate (reader%places(size(names)))
-      do i = 1, size(names)
-         reader%places(i)%name = names(i)%text
-         reader%places(i)%place = pack([(j, j=1, size(reader%groups))], &
-                                       [(reader%groups(j)%name == names(i)%text, j=1, size(reader%groups))])
-      end do
-   end subroutine find_places
 
    !> Place of the `number`-th group of a name, 0 for none.
    pure integer function place_of(reader, name, number) result(place)
       type(reader_type), intent(in) :: reader
       character(*), intent(in) :: name
       integer, intent(in) :: number
-      integer :: i
 
-      place = 0
-      do i = 1, size(reader%places)
-         if (reader%places(i)%name /= name) cycle
-         if (number <= size(reader%places(i)%place)) place = reader%places(i)%place(number)
-         return
+      ! Not from the first group on: a load history may have many steps.
+      do place = number, size(reader%groups)
+         if (reader%number(place) == number .and. reader%groups(place)%name == name) return
       end do
+      place = 0
    end function place_of
 
    !> Every key known, there once, with one value of the right kind in the right range.
    subroutine check_entries(reader, error)
       type(reader_type), intent(in) :: reader
       type(error_type), allocatable, intent(out) :: error
-      character(:), allocatable :: why, written, other
-      integer :: i, j, k
+      character(:), allocatable :: why, written
+      integer :: i, j, k, place
 
       do i = 1, size(reader%groups)
          do j = 1, size(reader%groups(i)%entries)
             associate (group => reader%groups(i)%name, entry => reader%groups(i)%entries(j))
-               k = reader%catalogue%place(group, entry%key)
-               if (k == 0) then
+               place = reader%catalogue%place(group, entry%key)
+               if (place == 0) then
                   call suggest(entry%key, reader%catalogue%names(group), '', why)
-                  call find_group_of(reader%catalogue, entry%key, other)
-                  if (other /= '') why = '; it is one of &'//other
+                  do k = size(reader%catalogue%keys), 1, -1
+                     if (reader%catalogue%keys(k)%name == entry%key) why = '; it is one of &'//reader%catalogue%keys(k)%group
+                  end do
                   why = 'unknown key'//why
                else if (any([(reader%groups(i)%entries(k)%key == entry%key, k=1, j - 1)])) then
                   why = 'the key is there twice'
                else
-                  call find_fault(reader%catalogue%keys(reader%catalogue%place(group, entry%key)), entry, why)
+                  call find_fault(reader%catalogue%keys(place), entry, why)
                end if
                if (why /= '') then
                   call show_entry(entry, written)
@@ -133,47 +114,35 @@ contains
       end do
    end subroutine check_entries
 
-   !> The first group that has a key of this name, empty for none.
-   pure subroutine find_group_of(catalogue, name, group)
-      type(catalogue_type), intent(in) :: catalogue
-      character(*), intent(in) :: name
-      character(:), allocatable, intent(out) :: group
-      integer :: i
-
-      group = ''
-      do i = 1, size(catalogue%keys)
-         if (catalogue%keys(i)%name == name .and. group == '') group = catalogue%keys(i)%group
-      end do
-   end subroutine find_group_of
-
    !> What is wrong with the value of an entry; empty when nothing is.
    subroutine find_fault(key, entry, why)
       type(key_type), intent(in) :: key
       type(entry_type), intent(in) :: entry
       character(:), allocatable, intent(out) :: why
       real(wp) :: value
-      integer :: code
       logical :: right, reasonable
       integer :: i
 
       reasonable = .true.
       right = size(entry%values) == 1 .or. (key%is_list .and. size(entry%values) > 1)
       do i = 1, size(entry%values)
+         if (right) right = entry%is_quoted(i) .eqv. (key%kind == kind_text .or. key%kind == kind_choice)
          if (.not. right) exit
-         right = entry%is_quoted(i) .eqv. (key%kind == kind_text .or. key%kind == kind_choice)
-         if (.not. right) exit
-         select case (key%kind)
-         case (kind_choice)
-            right = any_equal(list_of_words(key%choices), entry%values(i)%text)
-         case (kind_logical)
-            right = logical_code(entry%values(i)%text) >= 0
-         case (kind_integer, kind_real)
-            call read_number(entry%values(i)%text, key%kind, value, code)
-            right = code == 0 .and. value >= key%lower .and. value <= key%upper
-            if (right .and. key%lower_open) right = value > key%lower
-            if (right .and. key%kind == kind_real) reasonable = is_reasonable(value)
-            right = right .and. reasonable
-         end select
+         associate (text => entry%values(i)%text)
+            select case (key%kind)
+            case (kind_choice)
+               right = has_word(key%choices, text)
+            case (kind_logical)
+               right = has_word(words_for_true//words_for_false, lower_case(text))
+            case (kind_integer, kind_real)
+               call read_real(text, value, right)
+               if (key%kind == kind_integer) right = right .and. verify(text, '+-0123456789') == 0
+               right = right .and. value >= key%lower .and. value <= key%upper
+               if (key%lower_open) right = right .and. value > key%lower
+               reasonable = .not. right .or. is_reasonable(value)
+               right = right .and. reasonable
+            end select
+         end associate
       end do
       why = ''
       if (right) return
@@ -183,76 +152,43 @@ contains
       if (.not. reasonable) why = why//'; '//reasonable_sizes
    end subroutine find_fault
 
-   !> A finite number; `code` is not 0 where the text is none.
-   pure subroutine read_number(text, kind, value, code)
-      character(*), intent(in) :: text
-      integer, intent(in) :: kind
-      real(wp), intent(out) :: value
-      integer, intent(out) :: code
-      integer :: whole
-      logical :: is_right
-
-      if (kind == kind_integer) then
-         call read_whole(text, whole, is_right)
-         value = whole
-      else
-         call read_real(text, value, is_right)
-      end if
-      code = merge(0, 1, is_right)
-   end subroutine read_number
-
-   !> 1 for true, 0 for false, -1 for neither.
-   pure integer function logical_code(text)
-      character(*), intent(in) :: text
-
-      select case (lower_case(text))
-      case ('.true.', 't', 'true', '.t.')
-         logical_code = 1
-      case ('.false.', 'f', 'false', '.f.')
-         logical_code = 0
-      case default
-         logical_code = -1
-      end select
-   end function logical_code
-
-   !> Path of a file that a key names, beside the case.
-   subroutine find_file(reader, group, number, name, path)
+   !> Path of the file that a key names: `in_memory` for the name of data that stand for it, else beside the case.
+   subroutine find_file(reader, group, number, name, path, in_memory)
       type(reader_type), intent(in) :: reader
       character(*), intent(in) :: group, name
       integer, intent(in) :: number
       character(:), allocatable, intent(out) :: path
+      logical, intent(out) :: in_memory
 
       path = reader%text_value(group, number, name)
-      path = path_beside(reader%directory, path)
+      in_memory = reader%data%has_file(path)
+      if (.not. in_memory .and. index(path, '/') /= 1) path = reader%directory//path
    end subroutine find_file
 
-   !> The entry of a key in the `number`-th group of a name; `found` false where it is not written.
-   pure subroutine entry_of(self, group, number, name, entry, found)
-      class(reader_type), intent(in) :: self
+   !> Where a key is in the `number`-th group of a name: group and entry; entry 0 where it is not written.
+   pure subroutine find_entry(reader, group, number, name, i, j)
+      class(reader_type), intent(in) :: reader
       character(*), intent(in) :: group, name
       integer, intent(in) :: number
-      type(entry_type), intent(out) :: entry
-      logical, intent(out) :: found
-      integer :: place, i
+      integer, intent(out) :: i, j
 
-      found = .false.
-      place = place_of(self, group, number)
-      if (place == 0) return
-      do i = 1, size(self%groups(place)%entries)
-         found = self%groups(place)%entries(i)%key == name
-         if (found) entry = self%groups(place)%entries(i)
-         if (found) return
+      j = 0
+      i = place_of(reader, group, number)
+      if (i == 0) return
+      do j = size(reader%groups(i)%entries), 1, -1
+         if (reader%groups(i)%entries(j)%key == name) return
       end do
-   end subroutine entry_of
+   end subroutine find_entry
 
    !> Whether a key is written in the `number`-th group of a name.
    pure logical function has(self, group, number, name)
       class(reader_type), intent(in) :: self
       character(*), intent(in) :: group, name
       integer, intent(in) :: number
-      type(entry_type) :: entry
+      integer :: i, j
 
-      call self%entry_of(group, number, name, entry, has)
+      call find_entry(self, group, number, name, i, j)
+      has = j > 0
    end function has
 
    !> The value as written, or the default.
@@ -284,12 +220,11 @@ contains
       character(*), intent(in) :: group, name
       integer, intent(in) :: number
       character(:), allocatable, intent(out) :: value
-      type(entry_type) :: entry
-      logical :: found
+      integer :: i, j
 
-      call reader%entry_of(group, number, name, entry, found)
-      if (found) then
-         value = entry%values(1)%text
+      call find_entry(reader, group, number, name, i, j)
+      if (j > 0) then
+         value = reader%groups(i)%entries(j)%values(1)%text
       else
          value = reader%catalogue%keys(reader%catalogue%place(group, name))%default
       end if
@@ -301,10 +236,10 @@ contains
       character(*), intent(in) :: group, name
       integer, intent(in) :: number
       character(:), allocatable :: text
-      integer :: code
+      logical :: is_right
 
       call find_value(self, group, number, name, text)
-      call read_number(text, kind_real, real_value, code)
+      call read_real(text, real_value, is_right)
    end function real_value
 
    !> All values of a key that is written, as numbers.
@@ -313,16 +248,17 @@ contains
       character(*), intent(in) :: group, name
       integer, intent(in) :: number
       real(wp), allocatable, intent(out) :: values(:)
-      type(entry_type) :: entry
-      logical :: found
-      integer :: i, code
+      logical :: is_right
+      integer :: i, j, k
 
-      call self%entry_of(group, number, name, entry, found)
-      if (.not. found) return
-      allocate (values(size(entry%values)))
-      do i = 1, size(values)
-         call read_number(entry%values(i)%text, kind_real, values(i), code)
-      end do
+      call find_entry(self, group, number, name, i, j)
+      if (j == 0) return
+      associate (texts => self%groups(i)%entries(j)%values)
+         allocate (values(size(texts)))
+         do k = 1, size(values)
+            call read_real(texts(k)%text, values(k), is_right)
+         end do
+      end associate
    end subroutine real_values
 
    !> The value of a key for a whole number.
@@ -330,13 +266,8 @@ contains
       class(reader_type), intent(in) :: self
       character(*), intent(in) :: group, name
       integer, intent(in) :: number
-      character(:), allocatable :: text
-      real(wp) :: value
-      integer :: code
 
-      call find_value(self, group, number, name, text)
-      call read_number(text, kind_integer, value, code)
-      integer_value = nint(value)
+      integer_value = nint(self%real_value(group, number, name))
    end function integer_value
 
    !> The value of a key for .true. or .false.
@@ -344,11 +275,24 @@ contains
       class(reader_type), intent(in) :: self
       character(*), intent(in) :: group, name
       integer, intent(in) :: number
-      character(:), allocatable :: text
 
-      call find_value(self, group, number, name, text)
-      logical_value = logical_code(text) == 1
+      logical_value = has_word(words_for_true, lower_case(self%text_value(group, number, name)))
    end function logical_value
+
+   !> The one of some constants that a choice stands for: they are in the order of the key's choices (mfv_case_keys).
+   pure integer function constant(self, group, number, name, constants)
+      class(reader_type), intent(in) :: self
+      character(*), intent(in) :: group, name
+      integer, intent(in) :: number, constants(:)
+      type(string_type), allocatable :: choices(:)
+      integer :: i
+
+      constant = constants(1)
+      choices = list_of_words(self%catalogue%keys(self%catalogue%place(group, name))%choices)
+      do i = 2, size(choices)
+         if (choices(i)%text == self%text_value(group, number, name)) constant = constants(i)
+      end do
+   end function constant
 
    !> Error where a key is not written.
    subroutine need(self, group, number, name, error)
@@ -369,28 +313,19 @@ contains
       class(reader_type), intent(in) :: self
       character(*), intent(in) :: group, name, why
       integer, intent(in) :: number
-      type(error_type), allocatable, intent(inout) :: error
+      type(error_type), allocatable, intent(out) :: error
       character(:), allocatable :: written
-      type(entry_type) :: entry
-      logical :: found
-      integer :: line
+      integer :: i, j, line
 
-      call self%entry_of(group, number, name, entry, found)
-      line = merge(entry%line, line_of(self, group, number), found)
+      call find_entry(self, group, number, name, i, j)
+      line = line_of(self, group, number)
       written = name
-      if (found) call show_entry(entry, written)
+      if (j > 0) then
+         line = self%groups(i)%entries(j)%line
+         call show_entry(self%groups(i)%entries(j), written)
+      end if
       call fail(self, line, '&'//group//trim(numbered(self, group, number))//' '//written//': '//why, error)
    end subroutine complain
-
-   !> One of two texts, without the blanks that merge wants.
-   pure function merge_text(condition, yes, no) result(text)
-      logical, intent(in) :: condition
-      character(*), intent(in) :: yes, no
-      character(len=merge(len(yes), len(no), condition)) :: text
-
-      text = no
-      if (condition) text = yes
-   end function merge_text
 
    !> Number of a group that may come more than once, after a blank; padded with blanks.
    pure function numbered(reader, group, number) result(text)
@@ -400,15 +335,16 @@ contains
       character(len=12) :: text
 
       text = ''
-      if (reader%catalogue%repeats(group)) text = ' '//to_text(number)
+      if (has_word(reader%catalogue%repeated_groups, group)) text = ' '//to_text(number)
    end function numbered
 
    !> Number of groups of a name.
    pure integer function count_groups(reader, name)
       type(reader_type), intent(in) :: reader
       character(*), intent(in) :: name
+      integer :: i
 
-      count_groups = groups_of_name(reader%groups, name)
+      count_groups = count([(reader%groups(i)%name == name, i=1, size(reader%groups))])
    end function count_groups
 
    !> Line of the `number`-th group of a name, 0 for none.
@@ -423,37 +359,15 @@ contains
       if (place > 0) line_of = reader%groups(place)%line
    end function line_of
 
-   pure logical function any_equal(words, text)
-      type(string_type), intent(in) :: words(:)
-      character(*), intent(in) :: text
-      integer :: i
-
-      any_equal = .false.
-      do i = 1, size(words)
-         any_equal = any_equal .or. words(i)%text == text
-      end do
-   end function any_equal
-
-   !> '; did you mean ...?' where a known name is near, else empty.
-   pure subroutine suggest(name, names, prefix, text)
-      character(*), intent(in) :: name, prefix
-      type(string_type), intent(in) :: names(:)
-      character(:), allocatable, intent(out) :: text
-
-      text = nearest_name(name, names)
-      if (text /= '') text = '; did you mean '//prefix//text//'?'
-   end subroutine suggest
-
    subroutine fail(reader, line, message, error)
       type(reader_type), intent(in) :: reader
       integer, intent(in) :: line
       character(*), intent(in) :: message
-      type(error_type), allocatable, intent(inout) :: error
+      type(error_type), allocatable, intent(out) :: error
       character(:), allocatable :: place
 
       place = reader%source//':'
       if (line > 0) place = place//to_text(line)//':'
-      if (allocated(error)) deallocate (error)
       call set_error(error, MFV_INPUT_ERROR, place//' '//message)
    end subroutine fail
 

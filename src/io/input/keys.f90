@@ -2,18 +2,14 @@
 !> (mfv_key_reader), and the reference is printed from it.
 module mfv_keys
    use mfv_kinds, only: wp
-   use mfv_strings, only: add_text, list_of_words, quoted, string_type, to_text
+   use mfv_strings, only: add_text, has_word, list_of_words, nearest_name, quoted, string_type, to_text
    implicit none
    private
    public :: key_type, catalogue_type, kind_real, kind_integer, kind_logical, kind_text, kind_choice, &
              add_text_key, add_logical_key, add_choice_key, add_integer_key, add_real_key, add_positive_key, &
-             list_keys_as_markdown, describe_allowed, is_reasonable, largest_size, reasonable_sizes
+             list_keys_as_markdown, describe_allowed, suggest
 
    integer, parameter :: kind_real = 1, kind_integer = 2, kind_logical = 3, kind_text = 4, kind_choice = 5
-
-   !> Sizes of reals that are taken, whatever the unit; beyond them squares and products overflow, or vanish.
-   real(wp), parameter :: smallest_size = 1.0e-100_wp, largest_size = 1.0e100_wp
-   character(*), parameter :: reasonable_sizes = 'a number other than 0 must be of a size from 1e-100 to 1e100'
 
    !> One key.
    type :: key_type
@@ -38,9 +34,7 @@ module mfv_keys
       type(key_type), allocatable :: keys(:)
    contains
       procedure :: groups
-      procedure :: repeats
       procedure :: place
-      procedure :: has_group
       procedure :: names
    end type catalogue_type
 
@@ -81,14 +75,16 @@ contains
       keys(size(keys))%upper = upper
    end subroutine add_integer_key
 
-   !> A real without a default, from `lower` (itself allowed unless `lower_open`) to `upper`, each where present.
-   subroutine add_real_key(keys, group, name, unit, meaning, lower, lower_open, upper)
+   !> A real from `lower` (itself allowed unless `lower_open`) to `upper`, and with a default, each where present.
+   subroutine add_real_key(keys, group, name, unit, meaning, lower, lower_open, upper, default)
       type(key_type), allocatable, intent(inout) :: keys(:)
       character(*), intent(in) :: group, name, unit, meaning
       real(wp), intent(in), optional :: lower, upper
       logical, intent(in), optional :: lower_open
+      character(*), intent(in), optional :: default
 
       call add_key(keys, group, name, kind_real, '', unit, meaning)
+      if (present(default)) keys(size(keys))%default = default
       if (present(lower)) keys(size(keys))%lower = lower
       if (present(lower_open)) keys(size(keys))%lower_open = lower_open
       if (present(upper)) keys(size(keys))%upper = upper
@@ -113,7 +109,17 @@ contains
       n = size(keys)
       allocate (longer(n + 1))
       do i = 1, n
-         call move_key(keys(i), longer(i))
+         call move_alloc(keys(i)%group, longer(i)%group)
+         call move_alloc(keys(i)%name, longer(i)%name)
+         call move_alloc(keys(i)%default, longer(i)%default)
+         call move_alloc(keys(i)%choices, longer(i)%choices)
+         call move_alloc(keys(i)%unit, longer(i)%unit)
+         call move_alloc(keys(i)%meaning, longer(i)%meaning)
+         longer(i)%kind = keys(i)%kind
+         longer(i)%lower = keys(i)%lower
+         longer(i)%upper = keys(i)%upper
+         longer(i)%lower_open = keys(i)%lower_open
+         longer(i)%is_list = keys(i)%is_list
       end do
       longer(n + 1)%group = group
       longer(n + 1)%name = name
@@ -129,10 +135,16 @@ contains
    subroutine describe_allowed(key, text)
       type(key_type), intent(in) :: key
       character(:), allocatable, intent(out) :: text
+      type(string_type), allocatable :: words(:)
+      integer :: i
 
       select case (key%kind)
       case (kind_choice)
-         call join_alternatives(list_of_words(key%choices), text)
+         words = list_of_words(key%choices)
+         text = quoted(words(1)%text)
+         do i = 2, size(words)
+            text = text//trim(merge(' or', ',  ', i == size(words)))//' '//quoted(words(i)%text)
+         end do
       case (kind_logical)
          text = '.true. or .false.'
       case (kind_text)
@@ -141,56 +153,21 @@ contains
          text = 'a whole number from '//to_text(nint(key%lower))//' to '//to_text(nint(key%upper))
       case default
          text = 'a number'
-         call add_range(key, text)
+         if (key%lower > -huge(1.0_wp)) &
+            text = text//trim(merge(' above   ', ' at least', key%lower_open))//' '//to_text(key%lower)
+         if (key%upper < huge(1.0_wp)) text = text//' and at most '//to_text(key%upper)
       end select
    end subroutine describe_allowed
 
-   !> Whether a real is of a size that is taken.
-   elemental logical function is_reasonable(value)
-      real(wp), intent(in) :: value
-
-      is_reasonable = .not. abs(value) > 0.0_wp .or. (abs(value) >= smallest_size .and. abs(value) <= largest_size)
-   end function is_reasonable
-
-   !> Append the range of a key to a text.
-   subroutine add_range(key, text)
-      type(key_type), intent(in) :: key
-      character(:), allocatable, intent(inout) :: text
-
-      if (key%lower > -huge(1.0_wp)) &
-         text = text//trim(merge(' above   ', ' at least', key%lower_open))//' '//to_text(key%lower)
-      if (key%upper < huge(1.0_wp)) text = text//' and at most '//to_text(key%upper)
-   end subroutine add_range
-
-   !> 'a', 'b' or 'c'
-   subroutine join_alternatives(words, text)
-      type(string_type), intent(in) :: words(:)
+   !> '; did you mean ...?' where a known name is near, else empty.
+   pure subroutine suggest(name, names, prefix, text)
+      character(*), intent(in) :: name, prefix
+      type(string_type), intent(in) :: names(:)
       character(:), allocatable, intent(out) :: text
-      integer :: i
 
-      text = quoted(words(1)%text)
-      do i = 2, size(words)
-         if (i < size(words)) text = text//', '//quoted(words(i)%text)
-         if (i == size(words)) text = text//' or '//quoted(words(i)%text)
-      end do
-   end subroutine join_alternatives
-
-   subroutine move_key(from, to)
-      type(key_type), intent(inout) :: from
-      type(key_type), intent(out) :: to
-
-      call move_alloc(from%group, to%group)
-      call move_alloc(from%name, to%name)
-      call move_alloc(from%default, to%default)
-      call move_alloc(from%choices, to%choices)
-      call move_alloc(from%unit, to%unit)
-      call move_alloc(from%meaning, to%meaning)
-      to%kind = from%kind
-      to%lower = from%lower
-      to%upper = from%upper
-      to%lower_open = from%lower_open
-      to%is_list = from%is_list
-   end subroutine move_key
+      text = nearest_name(name, names)
+      if (text /= '') text = '; did you mean '//prefix//text//'?'
+   end subroutine suggest
 
    !> Names of the groups.
    pure function groups(self)
@@ -199,14 +176,6 @@ contains
 
       groups = list_of_words(self%group_list)
    end function groups
-
-   !> Whether a group may come more than once.
-   pure logical function repeats(self, group)
-      class(catalogue_type), intent(in) :: self
-      character(*), intent(in) :: group
-
-      repeats = index(' '//self%repeated_groups//' ', ' '//group//' ') > 0
-   end function repeats
 
    !> Place of a key in the list of keys, 0 for none.
    pure integer function place(self, group, name)
@@ -217,14 +186,6 @@ contains
          if (self%keys(place)%group == group .and. self%keys(place)%name == name) return
       end do
    end function place
-
-   !> Whether there is a group of this name.
-   pure logical function has_group(self, group)
-      class(catalogue_type), intent(in) :: self
-      character(*), intent(in) :: group
-
-      has_group = index(' '//self%group_list//' ', ' '//group//' ') > 0 .and. group /= ''
-   end function has_group
 
    !> Names of the keys of a group.
    pure function names(self, group)
@@ -250,7 +211,7 @@ contains
       text = ''
       do i = 1, size(groups)
          text = text//'### &'//groups(i)%text
-         if (catalogue%repeats(groups(i)%text)) text = text//' (may come more than once)'
+         if (has_word(catalogue%repeated_groups, groups(i)%text)) text = text//' (may come more than once)'
          text = text//line_feed//line_feed//'| key | value | default | unit | meaning |'//line_feed// &
                 '| --- | --- | --- | --- | --- |'//line_feed
          do j = 1, size(catalogue%keys)

@@ -2,13 +2,12 @@
 module mfv_mesh_reader
    use mfv_body
    use mfv_circle, only: kernel_fourier
-   use mfv_contact_model, only: choose_mesh
+   use mfv_contact_model, only: can_choose_mesh, choose_mesh, has_touchable_node, intervals_round
    use mfv_error, only: error_type
    use mfv_key_reader
    use mfv_kinds, only: pi, wp
    use mfv_scene, only: scene_type
-   use mfv_scene_indenter, only: largest_half_width
-   use mfv_strings, only: to_text
+   use mfv_strings, only: list_of_words, string_type, to_text
    implicit none
    private
    public :: read_mesh
@@ -20,30 +19,29 @@ contains
       type(reader_type), intent(in) :: reader
       type(scene_type), intent(inout) :: scene
       type(error_type), allocatable, intent(out) :: error
-      character(*), parameter :: keys(3) = [character(10) :: 'nodes', 'half_width', 'half_angle']
+      type(string_type), allocatable :: keys(:)
       integer, parameter :: most_carried = 1000000
       integer :: i
 
       scene%mesh%nodes = reader%integer_value('mesh', 1, 'nodes')
+      scene%mesh%half_width = reader%real_value('mesh', 1, 'half_width')
       scene%mesh%parabolic = reader%text_value('mesh', 1, 'gap') == 'parabolic'
+      scene%mesh%radial = reader%text_value('mesh', 1, 'normals') == 'radial'
       if (reader%has('mesh', 1, 'gap') .and. .not. (scene%lower%circular() .or. scene%upper%circular())) then
          call reader%complain('mesh', 1, 'gap', 'means nothing without a disk', error)
-         return
-      end if
-      scene%mesh%radial = reader%text_value('mesh', 1, 'normals') == 'radial'
-      if (scene%mesh%radial .and. .not. (scene%lower%circular() .and. scene%upper%circular() .and. &
-                                         scene%lower%shape /= scene%upper%shape)) then
+      else if (scene%mesh%radial .and. .not. (scene%lower%circular() .and. scene%upper%circular() .and. &
+                                              scene%lower%shape /= scene%upper%shape)) then
          call reader%complain('mesh', 1, 'normals', 'means nothing without a disk in a hole', error)
       else if (scene%mesh%radial .and. scene%mesh%parabolic) then
          call reader%complain('mesh', 1, 'normals', "must be 'vertical' with gap='parabolic'", error)
       end if
       if (allocated(error)) return
+      keys = list_of_words('nodes half_width half_angle')
       do i = 1, size(keys)
-         if (scene%lower%shape /= shape_matrix .or. .not. reader%has('mesh', 1, trim(keys(i)))) cycle
-         call reader%complain('mesh', 1, trim(keys(i)), 'means nothing for a matrix, which has its own nodes', error)
+         if (scene%lower%shape /= shape_matrix .or. .not. reader%has('mesh', 1, keys(i)%text)) cycle
+         call reader%complain('mesh', 1, keys(i)%text, 'means nothing for a matrix, which has its own nodes', error)
          return
       end do
-      if (reader%has('mesh', 1, 'half_width')) scene%mesh%half_width = reader%real_value('mesh', 1, 'half_width')
       if (reader%has('mesh', 1, 'half_angle')) call read_half_angle(reader, scene, error)
       if (allocated(error)) return
       if (scene%mesh%nodes > most_carried .and. .not. scene%mesh%whole_circle) then
@@ -51,8 +49,14 @@ contains
                               error)
          return
       end if
-      call check_length(reader, scene, error)
-      if (.not. allocated(error)) call check_mesh_is_under(reader, scene, error)
+      if (.not. can_choose_mesh(scene)) then
+         call reader%complain('mesh', 1, 'half_width', 'is needed: no step has a normal_force or approach to choose it from', &
+                              error)
+      else if (.not. has_touchable_node(scene) .and. scene%lower%shape == shape_matrix) then
+         call reader%complain('body', 1, 'file', 'no node of this body is under the indenter', error)
+      else if (.not. has_touchable_node(scene)) then
+         call reader%complain('mesh', 1, trim(mesh_key(reader)), 'no node of this mesh is under the indenter', error)
+      end if
       if (.not. allocated(error)) call check_circle(reader, 1, scene, scene%lower, error)
       if (.not. allocated(error)) call check_circle(reader, 2, scene, scene%upper, error)
    end subroutine read_mesh
@@ -75,39 +79,6 @@ contains
          if (.not. scene%mesh%whole_circle) scene%mesh%half_width = scene%arc_radius()*pi*half_angle/half_turn
       end if
    end subroutine read_half_angle
-
-   !> A mesh that is to be chosen needs a length: shapes without one have it by their load alone.
-   subroutine check_length(reader, scene, error)
-      type(reader_type), intent(in) :: reader
-      type(scene_type), intent(in) :: scene
-      type(error_type), allocatable, intent(out) :: error
-
-      if (scene%lower%shape == shape_matrix .or. scene%mesh%half_width > 0.0_wp .or. scene%mesh%whole_circle) return
-      if (min(scene%lower%half_extent(), scene%upper%half_extent()) < huge(1.0_wp)) return
-      if (largest_half_width(scene, huge(1.0_wp)) > 0.0_wp) return
-      call reader%complain('mesh', 1, 'half_width', 'is needed: no step has a normal_force or approach to choose it from', error)
-   end subroutine check_length
-
-   !> A node at least that both bodies can touch.
-   subroutine check_mesh_is_under(reader, scene, error)
-      type(reader_type), intent(in) :: reader
-      type(scene_type), intent(in) :: scene
-      type(error_type), allocatable, intent(out) :: error
-      real(wp) :: interval
-      integer :: i, nodes
-      logical :: growing
-
-      if (scene%lower%shape == shape_matrix) then
-         if (any(scene%touchable(scene%lower%position))) return
-         call reader%complain('body', 1, 'file', 'no node of this body is under the indenter', error)
-         return
-      end if
-      call choose_mesh(scene, nodes, interval, growing)
-      do i = 1, nodes
-         if (scene%touchable(0.5_wp*interval*(2*i - nodes - 1))) return
-      end do
-      call reader%complain('mesh', 1, trim(mesh_key(reader)), 'no node of this mesh is under the indenter', error)
-   end subroutine check_mesh_is_under
 
    !> The key of the mesh to complain about; padded with blanks.
    pure function mesh_key(reader) result(key)
@@ -134,7 +105,7 @@ contains
 
       if (body%rigid .or. .not. body%circular()) return
       call choose_mesh(scene, nodes, interval, growing)
-      intervals = 2.0_wp*pi*merge(scene%arc_radius(), body%radius, scene%mesh%radial)/interval
+      intervals = intervals_round(scene, body, interval)
       if (nodes > intervals*(1.0_wp + whole)) then
          call reader%complain('mesh', 1, trim(mesh_key(reader)), &
                               'goes more than once round body '//to_text(number), error)

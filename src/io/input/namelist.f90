@@ -8,11 +8,10 @@ module mfv_namelist
    use mfv_error, only: error_type, set_error
    use mfv_status, only: MFV_INPUT_ERROR
    use mfv_strings, only: lower_case, shortened, string_type, to_text
-   use mfv_utf8, only: byte_order_mark, find_fault_of_text
+   use mfv_text_file, only: byte_order_mark, find_fault_of_text
    implicit none
    private
-   public :: entry_type, group_type, parse_namelists, write_entry, show_entry, write_namelists, append_group, append_entry, &
-             place_of_group, groups_of_name
+   public :: entry_type, group_type, parse_namelists, write_entry, show_entry, write_namelists, resize_groups, resize_entries
 
    !> One key with its value as written.
    type :: entry_type
@@ -54,7 +53,6 @@ contains
       type(group_type), allocatable, intent(out) :: groups(:)
       type(error_type), allocatable, intent(out) :: error
       type(cursor_type) :: cursor
-      type(group_type) :: group
       character(:), allocatable :: why
       integer :: n
 
@@ -80,13 +78,12 @@ contains
             call complain(cursor, 'there are more than '//to_text(most_groups)//' groups', error)
             return
          end if
-         call read_group(cursor, group, error)
-         if (allocated(error)) return
          if (n == size(groups)) call resize_groups(groups, 2*n + 1)
          n = n + 1
-         call move_group(group, groups(n))
+         call read_group(cursor, groups(n), error)
+         if (allocated(error)) return
       end do
-      if (n < size(groups)) call resize_groups(groups, n)
+      call resize_groups(groups, n)
    end subroutine parse_namelists
 
    !> One group; the cursor is at its &.
@@ -94,7 +91,6 @@ contains
       type(cursor_type), intent(inout) :: cursor
       type(group_type), intent(out) :: group
       type(error_type), allocatable, intent(out) :: error
-      type(entry_type) :: entry
       integer :: n
 
       group%line = cursor%line
@@ -113,105 +109,50 @@ contains
             return
          end if
          if (next(cursor) == '/') exit
-         call read_entry(cursor, group%name, entry, error)
-         if (allocated(error)) return
          if (n == size(group%entries)) call resize_entries(group%entries, 2*n + 1)
          n = n + 1
-         call move_entry(entry, group%entries(n))
+         call read_entry(cursor, group%name, group%entries(n), error)
+         if (allocated(error)) return
       end do
       cursor%at = cursor%at + 1
-      if (n < size(group%entries)) call resize_entries(group%entries, n)
+      call resize_entries(group%entries, n)
    end subroutine read_group
 
-   subroutine append_group(groups, group)
-      type(group_type), allocatable, intent(inout) :: groups(:)
-      type(group_type), intent(inout) :: group
-
-      call resize_groups(groups, size(groups) + 1)
-      call move_group(group, groups(size(groups)))
-   end subroutine append_group
-
-   !> Make a list shorter or longer. By move_alloc: gfortran leaks the components of arrays that a constructor joins.
+   !> Make a list of groups shorter or longer. By move_alloc, here and below: gfortran leaks the components of arrays that a
+   !> constructor joins.
    subroutine resize_groups(groups, length)
       type(group_type), allocatable, intent(inout) :: groups(:)
       integer, intent(in) :: length
       type(group_type), allocatable :: resized(:)
       integer :: i
 
+      if (length == size(groups)) return
       allocate (resized(length))
       do i = 1, min(length, size(groups))
-         call move_group(groups(i), resized(i))
+         call move_alloc(groups(i)%name, resized(i)%name)
+         call move_alloc(groups(i)%entries, resized(i)%entries)
+         resized(i)%line = groups(i)%line
       end do
       call move_alloc(resized, groups)
    end subroutine resize_groups
 
-   subroutine move_group(from, to)
-      type(group_type), intent(inout) :: from
-      type(group_type), intent(out) :: to
-
-      call move_alloc(from%name, to%name)
-      call move_alloc(from%entries, to%entries)
-      to%line = from%line
-   end subroutine move_group
-
-   subroutine append_entry(entries, entry)
-      type(entry_type), allocatable, intent(inout) :: entries(:)
-      type(entry_type), intent(inout) :: entry
-
-      call resize_entries(entries, size(entries) + 1)
-      call move_entry(entry, entries(size(entries)))
-   end subroutine append_entry
-
-   !> Make a list shorter or longer.
+   !> Make a list of entries shorter or longer.
    subroutine resize_entries(entries, length)
       type(entry_type), allocatable, intent(inout) :: entries(:)
       integer, intent(in) :: length
       type(entry_type), allocatable :: resized(:)
       integer :: i
 
+      if (length == size(entries)) return
       allocate (resized(length))
       do i = 1, min(length, size(entries))
-         call move_entry(entries(i), resized(i))
+         call move_alloc(entries(i)%key, resized(i)%key)
+         call move_alloc(entries(i)%values, resized(i)%values)
+         call move_alloc(entries(i)%is_quoted, resized(i)%is_quoted)
+         resized(i)%line = entries(i)%line
       end do
       call move_alloc(resized, entries)
    end subroutine resize_entries
-
-   subroutine move_entry(from, to)
-      type(entry_type), intent(inout) :: from
-      type(entry_type), intent(out) :: to
-
-      call move_alloc(from%key, to%key)
-      call move_alloc(from%values, to%values)
-      call move_alloc(from%is_quoted, to%is_quoted)
-      to%line = from%line
-   end subroutine move_entry
-
-   !> Place of the `number`-th group of a name, 0 for none.
-   pure integer function place_of_group(groups, name, number) result(place)
-      type(group_type), intent(in) :: groups(:)
-      character(*), intent(in) :: name
-      integer, intent(in) :: number
-      integer :: seen
-
-      seen = 0
-      do place = 1, size(groups)
-         if (groups(place)%name == name) seen = seen + 1
-         if (groups(place)%name == name .and. seen == number) return
-      end do
-      place = 0
-   end function place_of_group
-
-   !> Number of groups of a name.
-   pure integer function groups_of_name(groups, name)
-      type(group_type), intent(in) :: groups(:)
-      character(*), intent(in) :: name
-      integer :: i
-
-      groups_of_name = 0
-      do i = 1, size(groups)
-         if (groups(i)%name == name) groups_of_name = groups_of_name + 1
-      end do
-   end function groups_of_name
 
    !> One key=value.
    subroutine read_entry(cursor, group, entry, error)
@@ -247,6 +188,7 @@ contains
       type(error_type), allocatable, intent(out) :: error
       character(:), allocatable :: value, place
       character(len=1) :: mark
+      logical :: at_end, is_quoted, is_closed
       integer :: i, n, repeats
 
       allocate (entry%values(0))
@@ -255,13 +197,8 @@ contains
       place = '&'//shortened(group)//' '//shortened(entry%key)
       do
          call skip_separators(cursor)
-         mark = next(cursor)
-         if (cursor%at > len(cursor%text) .or. mark == '/' .or. mark == '&' .or. mark == '=') exit
-         if (key_follows(cursor)) exit
-         if (cursor%commas > min(n, 1)) then
-            call complain(cursor, place//': a value is missing beside a comma', error)
-            return
-         end if
+         at_end = values_end(cursor)
+         if (at_end .or. cursor%commas > min(n, 1)) exit
          call read_repeats(cursor, repeats)
          if (repeats < 1 .or. repeats > most_values - n) then
             call complain(cursor, place//": '"//rest_of_line(cursor)//"': the number before * must be a whole number from "// &
@@ -269,16 +206,17 @@ contains
             return
          end if
          mark = next(cursor)
-         if (mark == "'" .or. mark == '"') then
-            call read_quoted(cursor, mark, value, error)
-            if (allocated(error)) then
-               error%message = cursor%source//':'//to_text(entry%line)//': '//place//': the text has no closing '//mark
-               return
-            end if
+         is_quoted = mark == "'" .or. mark == '"'
+         if (is_quoted) then
+            call read_quoted(cursor, mark, value, is_closed)
          else
             call read_bare(cursor, value)
          end if
-         if (value == '' .and. mark /= "'" .and. mark /= '"') then
+         if (is_quoted .and. .not. is_closed) then
+            cursor%line = entry%line
+            call complain(cursor, place//': the text has no closing '//mark, error)
+            return
+         else if (value == '' .and. .not. is_quoted) then
             call complain(cursor, place//': a value is missing after *', error)
             return
          end if
@@ -286,15 +224,20 @@ contains
          do i = n + 1, n + repeats
             entry%values(i)%text = value
          end do
-         entry%is_quoted(n + 1:n + repeats) = mark == "'" .or. mark == '"'
+         entry%is_quoted(n + 1:n + repeats) = is_quoted
          n = n + repeats
       end do
-      if (cursor%commas > 1) then
+      if (cursor%commas > merge(1, min(n, 1), at_end)) &
          call complain(cursor, place//': a value is missing beside a comma', error)
-         return
-      end if
-      if (n < size(entry%values)) call resize_values(entry, n)
+      call resize_values(entry, n)
    end subroutine read_values
+
+   !> Whether the values of a key end at the cursor: there is the next key, or the end of the group or of the text.
+   pure logical function values_end(cursor)
+      type(cursor_type), intent(in) :: cursor
+
+      values_end = cursor%at > len(cursor%text) .or. scan(next(cursor), '/&=') == 1 .or. key_follows(cursor)
+   end function values_end
 
    !> Make the list of values shorter or longer.
    subroutine resize_values(entry, length)
@@ -304,9 +247,10 @@ contains
       logical, allocatable :: is_quoted(:)
       integer :: i, n
 
-      n = min(length, size(entry%values))
+      if (length == size(entry%values)) return
       allocate (values(length))
       allocate (is_quoted(length), source=.false.)
+      n = min(length, size(entry%values))
       do i = 1, n
          call move_alloc(entry%values(i)%text, values(i)%text)
       end do
@@ -331,22 +275,21 @@ contains
       if (repeats > 0) cursor%at = cursor%at + length + 1
    end subroutine read_repeats
 
-   !> A text between quotes; a doubled quote stands for one.
-   subroutine read_quoted(cursor, mark, text, error)
+   !> A text between quotes; a doubled quote stands for one. `is_closed`: whether there is a quote at its end.
+   subroutine read_quoted(cursor, mark, text, is_closed)
       type(cursor_type), intent(inout) :: cursor
       character(len=1), intent(in) :: mark
       character(:), allocatable, intent(out) :: text
-      type(error_type), allocatable, intent(out) :: error
+      logical, intent(out) :: is_closed
       integer :: length
 
       text = ''
       cursor%at = cursor%at + 1
       do
          length = index(cursor%text(cursor%at:), mark) - 1
-         if (length < 0 .or. index(cursor%text(cursor%at:cursor%at + max(length, 0) - 1), line_feed) > 0) then
-            call set_error(error, MFV_INPUT_ERROR, 'no closing quote')
-            return
-         end if
+         is_closed = length >= 0
+         if (is_closed) is_closed = index(cursor%text(cursor%at:cursor%at + length - 1), line_feed) == 0
+         if (.not. is_closed) return
          text = text//cursor%text(cursor%at:cursor%at + length - 1)
          cursor%at = cursor%at + length + 1
          if (next(cursor) /= mark) return

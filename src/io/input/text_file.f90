@@ -1,14 +1,13 @@
-!> Reading whole files, and the names of files.
+!> Text files: reading them whole, whether their bytes are a text, and the names of files.
 module mfv_text_file
    use, intrinsic :: iso_c_binding, only: c_associated, c_char, c_int, c_null_char, c_ptr, c_size_t
    use, intrinsic :: iso_fortran_env, only: int64
    use mfv_error, only: error_type, set_error
    use mfv_status, only: MFV_INPUT_ERROR
-   use mfv_strings, only: from_c, string_type, to_text
+   use mfv_strings, only: from_c, to_text
    implicit none
    private
-   public :: read_text, read_bytes, check_is_file, split_lines, directory_of, stem_of, find_working_directory, path_from, &
-             path_beside
+   public :: read_text, check_is_file, find_fault_of_text, byte_order_mark, directory_of, find_working_directory, path_from
 
    interface
       function c_getcwd(buffer, size) bind(C, name='getcwd') result(path)
@@ -27,6 +26,9 @@ module mfv_text_file
    !> Bytes that a text file can have; coefficients of a million nodes take a quarter of it.
    integer(int64), parameter :: most_bytes = 100000000_int64
 
+   !> What some editors put before a text.
+   character(*), parameter :: byte_order_mark = char(239)//char(187)//char(191)
+
 contains
 
    !> The bytes of a text file. Error MFV_INPUT_ERROR, naming the file, where it cannot be read or is too long for a text.
@@ -34,16 +36,6 @@ contains
       character(*), intent(in) :: path
       character(:), allocatable, intent(out) :: text
       type(error_type), allocatable, intent(out) :: error
-
-      call read_bytes(path, text, error, most_bytes)
-   end subroutine read_text
-
-   !> The bytes of a file, of `most` bytes at most unless that is left out. Error MFV_INPUT_ERROR, naming the file.
-   subroutine read_bytes(path, bytes, error, most)
-      character(*), intent(in) :: path
-      character(:), allocatable, intent(out) :: bytes
-      type(error_type), allocatable, intent(out) :: error
-      integer(int64), intent(in), optional :: most
       character(len=256) :: why
       integer :: code, unit
       integer(int64) :: length
@@ -55,22 +47,18 @@ contains
       if (code == 0) then
          inquire (unit, size=length)
          length = max(length, 0_int64)
-         if (present(most)) then
-            if (length > most) call set_error(error, MFV_INPUT_ERROR, path//': is too long for a text: it has more than '// &
-                                              to_text(int(most))//' bytes')
-         end if
-         if (.not. allocated(error)) then
-            allocate (character(len=length) :: bytes, stat=code)
-            if (code == 0) then
-               read (unit, iostat=code, iomsg=why) bytes
-            else
-               why = 'there is no memory for it'
-            end if
+         if (length > most_bytes) then
+            call set_error(error, MFV_INPUT_ERROR, path//': is too long for a text: it has more than '// &
+                           to_text(int(most_bytes))//' bytes')
+         else
+            allocate (character(len=length) :: text, stat=code)
+            why = 'there is no memory for it'
+            if (code == 0) read (unit, iostat=code, iomsg=why) text
          end if
          close (unit)
       end if
       if (code /= 0) call set_error(error, MFV_INPUT_ERROR, path//': cannot be read: '//trim(why))
-   end subroutine read_bytes
+   end subroutine read_text
 
    !> Whether a path leads to a regular file, or to none, which opening it then tells: a pipe would keep the program waiting,
    !> a device may have no end. Error MFV_INPUT_ERROR, naming the path.
@@ -91,30 +79,66 @@ contains
       end select
    end subroutine check_is_file
 
-   !> The lines of a text, without their ends (LF or CR LF).
-   pure function split_lines(text) result(lines)
+   !> What keeps `text` from being a text: UTF-8 (RFC 3629) without control characters, in lines that end with LF or CR LF. Empty
+   !> where nothing does. `line`: the line that it is in.
+   pure subroutine find_fault_of_text(text, line, why)
       character(*), intent(in) :: text
-      type(string_type), allocatable :: lines(:)
-      character(*), parameter :: line_feed = achar(10), carriage_return = achar(13)
-      integer :: i, first, length, n
+      integer, intent(out) :: line
+      character(:), allocatable, intent(out) :: why
+      integer, parameter :: tab = 9, line_feed = 10, carriage_return = 13, blank = 32, delete = 127
+      integer :: i, code, length
 
-      n = 0
-      do i = 1, len(text)
-         if (text(i:i) == line_feed) n = n + 1
-      end do
-      allocate (lines(n + 1))
-      first = 1
-      do i = 1, n + 1
-         length = index(text(first:), line_feed) - 1
-         if (length < 0) length = len(text) - first + 1
-         lines(i)%text = text(first:first + length - 1)
-         first = first + length + 1
-         length = len(lines(i)%text)
-         if (length > 0) then
-            if (lines(i)%text(length:length) == carriage_return) lines(i)%text = lines(i)%text(:length - 1)
+      why = ''
+      line = 1
+      i = 1
+      do while (i <= len(text))
+         code = ichar(text(i:i))
+         length = 1
+         if (code == carriage_return) then
+            if (text(i + 1:min(i + 1, len(text))) /= achar(line_feed)) &
+               why = 'a carriage return without a line feed; lines must end with LF or CR LF'
+         else if (code == line_feed) then
+            line = line + 1
+         else if ((code < blank .and. code /= tab) .or. code == delete) then
+            why = 'the control character '//to_text(code)//': this is no text'
+         else if (code > delete) then
+            length = length_of_character(text(i:min(i + 3, len(text))))
+            if (length == 0) why = 'the byte '//to_text(code)//' is not UTF-8: save the text as UTF-8'
          end if
+         if (why /= '') return
+         i = i + length
       end do
-   end function split_lines
+   end subroutine find_fault_of_text
+
+   !> Bytes of the character of more than one byte at the start of `bytes`; 0 where that is none.
+   pure integer function length_of_character(bytes) result(length)
+      character(*), intent(in) :: bytes
+      integer :: lowest, highest, i
+
+      ! What may follow a first byte: no longer form than is needed, no surrogates, nothing above U+10FFFF.
+      lowest = 128
+      highest = 191
+      select case (ichar(bytes(1:1)))
+      case (194:223)
+         length = 2
+      case (224:239)
+         length = 3
+         if (bytes(1:1) == char(224)) lowest = 160
+         if (bytes(1:1) == char(237)) highest = 159
+      case (240:244)
+         length = 4
+         if (bytes(1:1) == char(240)) lowest = 144
+         if (bytes(1:1) == char(244)) highest = 143
+      case default
+         length = 0
+      end select
+      if (length > len(bytes)) length = 0
+      do i = 2, length
+         if (ichar(bytes(i:i)) < lowest .or. ichar(bytes(i:i)) > highest) length = 0
+         lowest = 128
+         highest = 191
+      end do
+   end function length_of_character
 
    !> The directory part of a path with its final slash; empty for a bare name.
    pure function directory_of(path) result(directory)
@@ -123,24 +147,6 @@ contains
 
       directory = path
    end function directory_of
-
-   !> The name of a file without its directory and without what follows its last dot, unless it begins with that.
-   pure function stem_of(path) result(stem)
-      character(*), intent(in) :: path
-      character(len=length_of_stem(path)) :: stem
-
-      stem = path(index(path, '/', back=.true.) + 1:)
-   end function stem_of
-
-   pure integer function length_of_stem(path) result(length)
-      character(*), intent(in) :: path
-      integer :: first, dot
-
-      first = index(path, '/', back=.true.) + 1
-      dot = index(path(first:), '.', back=.true.)
-      length = len(path) - first + 1
-      if (dot > 1) length = dot - 1
-   end function length_of_stem
 
    !> The directory the process works in, empty where it cannot be told.
    subroutine find_working_directory(path)
@@ -156,26 +162,10 @@ contains
    !> A path that was given in another directory.
    pure function path_from(directory, path) result(whole)
       character(*), intent(in) :: directory, path
-      character(len=len(path) + merge(len(directory) + 1, 0, given_within(directory, path))) :: whole
+      character(len=len(path) + merge(len(directory) + 1, 0, directory /= '' .and. index(path, '/') /= 1)) :: whole
 
       whole = path
-      if (given_within(directory, path)) whole = directory//'/'//path
+      if (len(whole) > len(path)) whole = directory//'/'//path
    end function path_from
-
-   !> A path that a text in `directory` names; the directory with its final slash, or empty, as directory_of gives it.
-   pure function path_beside(directory, path) result(whole)
-      character(*), intent(in) :: directory, path
-      character(len=len(path) + merge(len(directory), 0, given_within(directory, path))) :: whole
-
-      whole = path
-      if (given_within(directory, path)) whole = directory//path
-   end function path_beside
-
-   !> Whether a path has to be looked for in a directory: there is one, and the path does not begin at the root.
-   pure logical function given_within(directory, path)
-      character(*), intent(in) :: directory, path
-
-      given_within = directory /= '' .and. path(1:min(1, len(path))) /= '/'
-   end function given_within
 
 end module mfv_text_file
