@@ -28,7 +28,6 @@ KNOBS: dict[str, list[dict[str, Any]]] = {
     "linear_tolerance": [
         {"linear_solver": "fft", "linear_tolerance": value} for value in (1e-3, 1e-5, 1e-7, 1e-9, 1e-11)
     ],
-    "event_tolerance": [{"event_tolerance": value} for value in (1e-3, 1e-2, 3e-2, 1e-1)],
     "nominal": [{"stepping": "nominal", "load_step": value} for value in (0.2, 0.05, 0.0125)],
     "conventional": [{"algorithm": "conventional", "load_step": value} for value in (0.2, 0.0125, 0.003)],
 }
@@ -221,7 +220,7 @@ def section(data: dict[str, Any], pictures: Path) -> str:
         key=lambda entry: entry["label"],
         default=tight,
     )
-    together, nominal = knobs["event_tolerance"][-1], knobs["nominal"][1]
+    nominal = knobs["nominal"][1]
     conventional = [entry for entry in knobs["conventional"] if entry["outcome"] == 0]
     goodman, none = data["coupling"]
     few, many = data["harmonics"][2], data["harmonics"][-1]
@@ -253,9 +252,6 @@ scenes of that size most load segments are solved by events ([numbers of solves]
 
 *coupling: physics, not speed.* `goodman` takes {_time(goodman)} in place of {_time(base)} and is wrong by {_knob(goodman, "pressure")} in pressure, {_knob(goodman, "shear")} in shear and {_knob(goodman, "dissipation")} in dissipation; `none`
 {_time(none)}, {_knob(none, "pressure")}, {_knob(none, "shear")} and {_knob(none, "dissipation")}. Those errors are larger than those of all but the coarsest meshes.
-
-*event_tolerance: little.* {together["label"]:g} takes {together["solves"]} solves in place of {base["solves"]} and {_time(together)} in place of {_time(base)}, for {_knob(together, "shear")} in shear and {_knob(together, "dissipation")} in
-dissipation; a coarser mesh gives more for the same error.
 
 *linear_tolerance: with fft only.* From {tight["label"]:g} ({_time(tight)}) {loose_text}; {enough["label"]:g} changes nothing by more than {_worst(enough["knob"]):.0e} and takes {_time(enough)}.
 

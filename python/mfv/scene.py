@@ -350,7 +350,6 @@ class Solver(KeyGroup):
     algorithm: Literal["mfv", "conventional"] | None = None
     stepping: Literal["event", "nominal", "leap"] | None = None
     leap_tolerance: float | None = None
-    event_tolerance: float | None = None
     load_step: float | None = None
     integration: Literal["second_order", "explicit"] | None = None
     friction_tolerance: float | None = None

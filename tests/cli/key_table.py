@@ -228,7 +228,6 @@ CASE: dict[tuple[str, str], Row] = {
     ("solver", "algorithm"): choice("solver", "cylinder", "'mfv'", "mfv conventional"),
     ("solver", "stepping"): choice("solver", "cylinder", "'event'", "event nominal leap"),
     ("solver", "leap_tolerance"): part("solver", "cylinder", "1e-3"),
-    ("solver", "event_tolerance"): real("solver", "cylinder", "0", lower=0.0, upper=0.1),
     ("solver", "load_step"): part("solver", "cylinder", "0.05"),
     ("solver", "integration"): choice("solver", "dahl", "'explicit'", "second_order explicit"),
     ("solver", "friction_tolerance"): part("solver", "dahl", "1e-4", dear=("1e-12",)),

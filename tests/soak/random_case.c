@@ -9,8 +9,8 @@
 static const double pi = 3.14159265358979323846;
 
 const char *const law_names[LAWS] = {"none", "coulomb", "static_kinetic", "weakening", "dahl"};
-const char *const way_names[WAYS] = {"auto", "dgesv", "reduced", "fft", "tolerant", "nominal", "leap", "explicit", "conventional"};
-enum { AUTO, DGESV, REDUCED, FFT, TOLERANT, NOMINAL, LEAP, EXPLICIT, CONVENTIONAL };
+const char *const way_names[WAYS] = {"auto", "dgesv", "reduced", "fft", "nominal", "leap", "explicit", "conventional"};
+enum { AUTO, DGESV, REDUCED, FFT, NOMINAL, LEAP, EXPLICIT, CONVENTIONAL };
 enum { NO_FRICTION, COULOMB, STATIC_KINETIC, WEAKENING, DAHL };
 
 static uint64_t next_bits(generator *random) {
@@ -171,7 +171,7 @@ static void choose_friction(generator *random, random_case *self) {
 
 static void choose_way(generator *random, random_case *self) {
   int way = chance(random, 0.5) ? AUTO : one_of(random, WAYS), linear = self->law <= STATIC_KINETIC;
-  if ((way == TOLERANT || way == LEAP) && self->law > COULOMB) way = REDUCED;
+  if (way == LEAP && self->law > COULOMB) way = REDUCED;
   if ((way == NOMINAL || way == CONVENTIONAL) && !linear) way = DGESV;
   if (way == EXPLICIT && self->law != DAHL) way = AUTO;
   self->way = way;
@@ -179,11 +179,6 @@ static void choose_way(generator *random, random_case *self) {
      increment.f90). */
   self->limit = way == FFT || self->law >= WEAKENING ? 1e-8 : 1e-9;
   if (way == DGESV || way == REDUCED || way == FFT) put_text(self, "solver", 0, "linear_solver", way_names[way]);
-  if (way == TOLERANT) {
-    double tolerance = pow(10, between(random, -6, -2));
-    put_real(self, "solver", 0, "event_tolerance", tolerance);
-    self->limit = 100 * tolerance; /* beyond it the library ends the run (allowed in first_violation.f90) */
-  }
   if (way == NOMINAL || way == LEAP) put_text(self, "solver", 0, "stepping", way_names[way]);
   if (way == EXPLICIT) put_text(self, "solver", 0, "integration", "explicit");
   if (way == CONVENTIONAL) put_text(self, "solver", 0, "algorithm", "conventional");

@@ -16,7 +16,7 @@ double between(generator *random, double low, double high);
 int one_of(generator *random, int count); /* 0 .. count - 1 */
 int chance(generator *random, double probability);
 
-enum { LAWS = 5, WAYS = 9, LONGEST_TEXT = 1 << 16, MOST_ENTRIES = 160, MOST_STEPS = 8, PROFILE_POINTS = 61 };
+enum { LAWS = 5, WAYS = 8, LONGEST_TEXT = 1 << 16, MOST_ENTRIES = 160, MOST_STEPS = 8, PROFILE_POINTS = 61 };
 extern const char *const law_names[LAWS];
 /* Algorithms and solvers, each a way to the solution. */
 extern const char *const way_names[WAYS];

@@ -228,7 +228,7 @@ contains
       type(simulation_type) :: simulation
 
       if (scene%method%algorithm /= algorithm_mfv .or. scene%method%stepping /= stepping_event) return
-      if (scene%friction%name /= 'coulomb' .or. .not. scene%tangential()) return
+      if (.not. scene%friction%is_proportional() .or. .not. scene%tangential()) return
       leaping = scene
       leaping%method%stepping = stepping_leap
       leaping%method%leap_tolerance = min(leap_tolerance_part*advice%wanted_error, scene%method%leap_tolerance)

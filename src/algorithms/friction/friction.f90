@@ -1,31 +1,55 @@
 !> The friction of a scene: a law (each is a file of its own, see mfv_friction_law) and its coefficients along the surface.
+!> This is the one place that lists the laws.
 module mfv_friction
    use mfv_friction_coefficient, only: friction_coefficient_type, uniform_coefficient
    use mfv_friction_coulomb, only: coulomb_law_type
-   use mfv_friction_dahl, only: new_dahl_law
+   use mfv_friction_dahl, only: dahl_law_type
    use mfv_friction_law, only: friction_law_type
-   use mfv_friction_static_kinetic, only: new_static_kinetic_law
-   use mfv_friction_weakening, only: new_weakening_law
+   use mfv_friction_static_kinetic, only: static_kinetic_law_type
+   use mfv_friction_weakening, only: weakening_law_type
    use mfv_kinds, only: wp
    implicit none
    private
    public :: friction_type, friction_coefficient_type, uniform_coefficient, no_friction, coulomb_friction, &
-             static_kinetic_friction, weakening_friction, dahl_friction
+             static_kinetic_friction, weakening_friction, dahl_friction, friction_law_names, new_friction_law
+
+   !> Names of all laws, as in a case.
+   character(*), parameter :: friction_law_names = 'coulomb static_kinetic weakening dahl'
 
    type :: friction_type
       !> Static and kinetic coefficient of friction (the same where the law knows only one).
       type(friction_coefficient_type) :: static, kinetic
       !> Not there: no friction.
       class(friction_law_type), allocatable :: law
-      !> Name of the law, as in a case.
-      character(len=16) :: name = 'none'
    contains
+      procedure :: name
       procedure :: acts
       procedure :: is_coulomb
+      procedure :: is_proportional
+      procedure :: is_linear
+      procedure :: sticks
+      procedure :: converges
       procedure :: simplify
    end type friction_type
 
 contains
+
+   !> The law of a name, with parameters that are still to be set; not allocated for 'none' and for names of no law.
+   subroutine new_friction_law(name, law)
+      character(*), intent(in) :: name
+      class(friction_law_type), allocatable, intent(out) :: law
+
+      select case (name)
+      case ('coulomb')
+         allocate (coulomb_law_type :: law)
+      case ('static_kinetic')
+         allocate (static_kinetic_law_type :: law)
+      case ('weakening')
+         allocate (weakening_law_type :: law)
+      case ('dahl')
+         allocate (dahl_law_type :: law)
+      end select
+   end subroutine new_friction_law
 
    function no_friction() result(friction)
       type(friction_type) :: friction
@@ -34,16 +58,24 @@ contains
       friction%kinetic = friction%static
    end function no_friction
 
+   !> A law with uniform coefficients.
+   function uniform_friction(name, mu_static, mu_kinetic) result(friction)
+      character(*), intent(in) :: name
+      real(wp), intent(in) :: mu_static, mu_kinetic
+      type(friction_type) :: friction
+
+      friction%static = uniform_coefficient(mu_static)
+      friction%kinetic = uniform_coefficient(mu_kinetic)
+      call new_friction_law(name, friction%law)
+   end function uniform_friction
+
    !> Coulomb's law with the coefficient of friction mu >= 0. mu = 0 is no friction and costs no more: the tangential problem
    !> is then not modelled.
    function coulomb_friction(mu) result(friction)
       real(wp), intent(in) :: mu
       type(friction_type) :: friction
 
-      friction%static = uniform_coefficient(mu)
-      friction%kinetic = friction%static
-      allocate (coulomb_law_type :: friction%law)
-      friction%name = 'coulomb'
+      friction = uniform_friction('coulomb', mu, mu)
    end function coulomb_friction
 
    !> mu_static >= mu_kinetic >= 0.
@@ -51,10 +83,7 @@ contains
       real(wp), intent(in) :: mu_static, mu_kinetic
       type(friction_type) :: friction
 
-      friction%static = uniform_coefficient(mu_static)
-      friction%kinetic = uniform_coefficient(mu_kinetic)
-      allocate (friction%law, source=new_static_kinetic_law())
-      friction%name = 'static_kinetic'
+      friction = uniform_friction('static_kinetic', mu_static, mu_kinetic)
    end function static_kinetic_friction
 
    !> mu_static >= mu_kinetic >= 0; `distance` of the slip between them, length, > 0.
@@ -62,10 +91,8 @@ contains
       real(wp), intent(in) :: mu_static, mu_kinetic, distance
       type(friction_type) :: friction
 
-      friction%static = uniform_coefficient(mu_static)
-      friction%kinetic = uniform_coefficient(mu_kinetic)
-      allocate (friction%law, source=new_weakening_law(distance))
-      friction%name = 'weakening'
+      friction = uniform_friction('weakening', mu_static, mu_kinetic)
+      call friction%law%set_parameter('weakening_distance', distance)
    end function weakening_friction
 
    !> Dahl's law with the limit mu p, `stiffness` sigma > 0 (force/length^3) and `exponent` gamma >= 0.
@@ -73,23 +100,29 @@ contains
       real(wp), intent(in) :: mu, stiffness, exponent
       type(friction_type) :: friction
 
-      friction%static = uniform_coefficient(mu)
-      friction%kinetic = friction%static
-      allocate (friction%law, source=new_dahl_law(stiffness, exponent))
-      friction%name = 'dahl'
+      friction = uniform_friction('dahl', mu, mu)
+      call friction%law%set_parameter('stiffness', stiffness)
+      call friction%law%set_parameter('exponent', exponent)
    end function dahl_friction
 
-   !> With equal static and kinetic coefficients everywhere, static and kinetic friction and weakening friction are Coulomb's law.
+   !> Coulomb's law in place of one that it is with equal static and kinetic coefficients everywhere.
    subroutine simplify(self)
       class(friction_type), intent(inout) :: self
 
       if (.not. allocated(self%law)) return
-      if (.not. (self%law%drops .or. self%law%weakening_distance < huge(1.0_wp))) return
+      if (.not. self%law%is_coulomb_if_equal()) return
       if (.not. self%kinetic%equals(self%static)) return
-      deallocate (self%law)
-      allocate (coulomb_law_type :: self%law)
-      self%name = 'coulomb'
+      call new_friction_law('coulomb', self%law)
    end subroutine simplify
+
+   !> Name of the law, as in a case.
+   pure function name(self)
+      class(friction_type), intent(in) :: self
+      character(len=16) :: name
+
+      name = 'none'
+      if (allocated(self%law)) name = self%law%name()
+   end function name
 
    !> Whether there can be any shear traction.
    pure logical function acts(self)
@@ -98,16 +131,43 @@ contains
       acts = allocated(self%law) .and. self%static%largest() > 0.0_wp
    end function acts
 
+   !> Whether |tau| = mu p wherever a node slips.
+   pure logical function is_proportional(self)
+      class(friction_type), intent(in) :: self
+
+      is_proportional = .false.
+      if (allocated(self%law)) is_proportional = self%law%is_proportional()
+   end function is_proportional
+
+   !> See mfv_friction_law; true without friction.
+   pure logical function is_linear(self)
+      class(friction_type), intent(in) :: self
+
+      is_linear = .true.
+      if (allocated(self%law)) is_linear = self%law%is_linear()
+   end function is_linear
+
+   !> See mfv_friction_law; true without friction.
+   pure logical function sticks(self)
+      class(friction_type), intent(in) :: self
+
+      sticks = .true.
+      if (allocated(self%law)) sticks = self%law%sticks()
+   end function sticks
+
+   !> See mfv_friction_law; true without friction.
+   pure logical function converges(self)
+      class(friction_type), intent(in) :: self
+
+      converges = .true.
+      if (allocated(self%law)) converges = self%law%converges()
+   end function converges
+
    !> Whether it is Coulomb's law with one coefficient everywhere (closed forms know no other).
    pure logical function is_coulomb(self)
       class(friction_type), intent(in) :: self
 
-      is_coulomb = .false.
-      if (.not. allocated(self%law)) return
-      select type (law => self%law)
-      type is (coulomb_law_type)
-         is_coulomb = self%static%is_uniform()
-      end select
+      is_coulomb = self%is_proportional() .and. self%static%is_uniform()
    end function is_coulomb
 
 end module mfv_friction

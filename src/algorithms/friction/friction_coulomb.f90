@@ -9,13 +9,29 @@ module mfv_friction_coulomb
 
    type, extends(friction_law_type) :: coulomb_law_type
    contains
+      procedure :: name
+      procedure :: is_proportional
       procedure :: row
       procedure :: strength
    end type coulomb_law_type
 
 contains
 
-   !> See mfv_friction_law: tau = -mu p (slip right) or mu p (slip left).
+   !> See mfv_friction_law, as for all that follow.
+   pure function name(self)
+      class(coulomb_law_type), intent(in) :: self
+      character(len=16) :: name
+
+      name = 'coulomb'
+   end function name
+
+   pure logical function is_proportional(self)
+      class(coulomb_law_type), intent(in) :: self
+
+      is_proportional = .true.
+   end function is_proportional
+
+   !> tau = -mu p (slip right) or mu p (slip left).
    pure function row(self, status, before, after)
       class(coulomb_law_type), intent(in) :: self
       integer, intent(in) :: status
@@ -25,7 +41,6 @@ contains
       row%slope = -slip_sign(status)*before%static
    end function row
 
-   !> See mfv_friction_law.
    pure real(wp) function strength(self, point)
       class(coulomb_law_type), intent(in) :: self
       type(friction_point_type), intent(in) :: point

@@ -12,44 +12,188 @@
 module mfv_friction_dahl
    use mfv_friction_law
    use mfv_kinds, only: wp
-   use mfv_node_status, only: creeps, motion_sign, slip_sign
+   use mfv_node_status
+   use mfv_strings, only: list_of_words, string_type, to_text
    implicit none
    private
-   public :: dahl_law_type, new_dahl_law
+   public :: dahl_law_type
+
+   !> Dahl's traction comes to its limit only after endless slip: this near it is there.
+   real(wp), parameter :: full_part = 1.0_wp - 1.0e-6_wp
+   !> Round-off of the secants, in that of other rates.
+   real(wp), parameter :: secant_noise = 100.0_wp
 
    type, extends(friction_law_type) :: dahl_law_type
-      !> Stiffness sigma of the bristles, force/length^3 (traction over slip), and exponent gamma.
+      !> Stiffness sigma > 0 of the bristles, force/length^3 (traction over slip), and exponent gamma >= 0.
       real(wp) :: stiffness = 0.0_wp, exponent = 1.0_wp
    contains
+      procedure :: name
+      procedure :: parameters
+      procedure :: set_parameter
+      procedure :: is_linear => never
+      procedure :: sticks => never
+      procedure :: bends
+      procedure :: has_events
+      procedure :: limit_part
+      procedure :: has_soft_limit
+      procedure :: holding_status
+      procedure :: over_stress
       procedure :: row
       procedure :: strength
       procedure :: secant
+      procedure :: find_events
+      procedure :: defect
+      procedure :: wrong_motion
+      procedure :: explain_failure
       procedure, private :: creeping_row
+      procedure, private :: turning
    end type dahl_law_type
 
 contains
 
-   !> `stiffness`: sigma > 0, force/length^3; `exponent`: gamma >= 0.
-   pure function new_dahl_law(stiffness, exponent) result(law)
-      real(wp), intent(in) :: stiffness, exponent
-      type(dahl_law_type) :: law
+   !> See mfv_friction_law, as for all that follow.
+   pure function name(self)
+      class(dahl_law_type), intent(in) :: self
+      character(len=16) :: name
 
-      law%is_linear = .false.
-      law%sticks = .false.
-      ! Dahl's traction comes to its limit only after endless slip: this near it is there.
-      law%full_part = 1.0_wp - 1.0e-6_wp
-      law%stiffness = stiffness
-      law%exponent = exponent
-      law%soft_limit = exponent > 0.0_wp
-      law%limit_stiffness = stiffness
-      law%back_stiffness = stiffness
-      if (exponent > 0.0_wp) then
-         law%limit_stiffness = stiffness*(1.0_wp - law%full_part)**exponent
-         law%back_stiffness = stiffness*(1.0_wp + law%full_part)**exponent
+      name = 'dahl'
+   end function name
+
+   pure subroutine parameters(self, needed, optional_ones)
+      class(dahl_law_type), intent(in) :: self
+      type(string_type), allocatable, intent(out) :: needed(:), optional_ones(:)
+
+      needed = list_of_words('stiffness')
+      optional_ones = list_of_words('exponent')
+   end subroutine parameters
+
+   pure subroutine set_parameter(self, key, value)
+      class(dahl_law_type), intent(inout) :: self
+      character(*), intent(in) :: key
+      real(wp), intent(in) :: value
+
+      if (key == 'stiffness') self%stiffness = value
+      if (key == 'exponent') self%exponent = value
+   end subroutine set_parameter
+
+   pure logical function never(self)
+      class(dahl_law_type), intent(in) :: self
+
+      never = .false.
+   end function never
+
+   pure logical function bends(self, status, point)
+      class(dahl_law_type), intent(in) :: self
+      integer, intent(in) :: status
+      type(friction_point_type), intent(in) :: point
+
+      bends = creeps(status)
+   end function bends
+
+   pure logical function has_events(self)
+      class(dahl_law_type), intent(in) :: self
+
+      has_events = .true.
+   end function has_events
+
+   pure real(wp) function limit_part(self)
+      class(dahl_law_type), intent(in) :: self
+
+      limit_part = full_part
+   end function limit_part
+
+   pure logical function has_soft_limit(self)
+      class(dahl_law_type), intent(in) :: self
+
+      has_soft_limit = self%exponent > 0.0_wp
+   end function has_soft_limit
+
+   pure integer function holding_status(self, direction)
+      class(dahl_law_type), intent(in) :: self
+      integer, intent(in) :: direction
+
+      holding_status = merge(node_creep_left, node_creep_right, direction < 0)
+   end function holding_status
+
+   !> Bristles at the limit load with one stiffness on, with another one back.
+   elemental real(wp) function over_stress(self, moved, growth)
+      class(dahl_law_type), intent(in) :: self
+      real(wp), intent(in) :: moved, growth
+      real(wp) :: stiffness
+
+      stiffness = self%stiffness
+      if (self%exponent > 0.0_wp) &
+         stiffness = self%stiffness*merge(1.0_wp - full_part, 1.0_wp + full_part, moved > 0.0_wp)**self%exponent
+      over_stress = stiffness*moved - growth
+   end function over_stress
+
+   !> A creeping node turns round: its stiffness depends on the direction.
+   pure subroutine find_events(self, status, here, there, events)
+      class(dahl_law_type), intent(in) :: self
+      integer, intent(in) :: status
+      type(friction_point_type), intent(in) :: here, there
+      type(friction_event_type), intent(out) :: events(most_events)
+      real(wp) :: turning
+
+      if (.not. creeps(status)) return
+      turning = max(self%turning(here), self%turning(there))
+      if (turning > 0.0_wp) events(1) = friction_event_type(event_reverse, by_motion=turning, noise=secant_noise)
+   end subroutine find_events
+
+   !> By how much the stiffness of a creeping node depends on the direction in which it moves, force/length^3.
+   pure real(wp) function turning(self, point)
+      class(dahl_law_type), intent(in) :: self
+      type(friction_point_type), intent(in) :: point
+      type(friction_row_type) :: right, left
+
+      right = self%row(node_creep_right, point, point)
+      left = self%row(node_creep_left, point, point)
+      turning = abs(right%stiffness - left%stiffness)
+   end function turning
+
+   !> Of a creeping node: the increment from point to point, and what a motion against its direction does to the traction.
+   pure real(wp) function defect(self, status, before, after, explicit)
+      class(dahl_law_type), intent(in) :: self
+      integer, intent(in) :: status
+      type(friction_point_type), intent(in) :: before, after
+      logical, intent(in) :: explicit
+      type(friction_row_type) :: row
+
+      if (.not. creeps(status)) then
+         defect = after%shear + slip_sign(status)*self%strength(after)
+         return
       end if
-   end function new_dahl_law
+      if (explicit) then
+         row = self%row(status, before, before)
+      else
+         row = self%row(status, before, after)
+      end if
+      defect = abs(after%shear - row%slope*after%pressure - row%stiffness*after%slip - row%offset) &
+               + max(self%turning(before), self%turning(after))*max(-motion_sign(status)*(after%slip - before%slip), 0.0_wp)
+   end function defect
 
-   !> See mfv_friction_law.
+   pure real(wp) function wrong_motion(self, moved, growth)
+      class(dahl_law_type), intent(in) :: self
+      real(wp), intent(in) :: moved, growth
+
+      wrong_motion = -self%over_stress(moved, growth)
+   end function wrong_motion
+
+   !> Bristles far stiffer than what one interval of the surface gives way. Such friction differs from Coulomb's by about the ratio of
+   !> these stiffnesses.
+   pure function explain_failure(self, interval_stiffness) result(text)
+      class(dahl_law_type), intent(in) :: self
+      real(wp), intent(in) :: interval_stiffness
+      character(len=260) :: text
+      real(wp), parameter :: largest = 10.0_wp
+
+      text = ''
+      if (self%stiffness > largest*interval_stiffness) &
+         text = '; the bristles are too stiff for this mesh: &friction stiffness='//to_text(self%stiffness)// &
+                ' should be at most '//to_text(largest*interval_stiffness, 2)//', ten times the contact modulus over the '// &
+                "interval; law='coulomb' is the limit of stiff bristles"
+   end function explain_failure
+
    pure function row(self, status, before, after)
       class(dahl_law_type), intent(in) :: self
       integer, intent(in) :: status
@@ -59,11 +203,11 @@ contains
       if (creeps(status)) then
          row = self%creeping_row(motion_sign(status), before, after)
       else
-         row%slope = -slip_sign(status)*before%static*self%full_part
+         row%slope = -slip_sign(status)*before%static*full_part
       end if
    end function row
 
-   !> See mfv_friction_law: tau = tau0 - K (s - s0).
+   !> tau = tau0 - K (s - s0).
    pure function secant(self, status, before, after) result(row)
       class(dahl_law_type), intent(in) :: self
       integer, intent(in) :: status
@@ -103,12 +247,11 @@ contains
                    /(1.0_wp + by_shear)
    end function creeping_row
 
-   !> See mfv_friction_law.
    pure real(wp) function strength(self, point)
       class(dahl_law_type), intent(in) :: self
       type(friction_point_type), intent(in) :: point
 
-      strength = point%static*point%pressure*self%full_part
+      strength = point%static*point%pressure*full_part
    end function strength
 
    !> K of eq. B.2 half way between two points and minus its derivative by f/(mu p), force/length^3; and f and mu p there.

@@ -1,4 +1,5 @@
-!> What every friction law tells the algorithms. Each law is a file of its own that extends `friction_law_type`.
+!> What every friction law tells the algorithms. A law is a file of its own that extends `friction_law_type` and contains all that is
+!> special to it; the algorithms ask it, and never for its name.
 !>
 !> All laws share the friction limit of a node that holds, |tau| <= mu_s p. They differ in what a node does that slips (or
 !> creeps): over an increment of the load its shear traction is the line
@@ -7,12 +8,18 @@
 !>
 !> a row of the augmented system (dissertation eq. 2.2, B.2). Laws that are not linear give a line that is right
 !> where the increment is expected to take the node; the algorithm iterates, and controls the error.
+!>
+!> The defaults below are those of a law without memory whose nodes stick below the limit and slip at it.
 module mfv_friction_law
    use mfv_kinds, only: wp
    use mfv_node_status
+   use mfv_strings, only: string_type
    implicit none
    private
-   public :: friction_law_type, friction_point_type, friction_row_type
+   public :: friction_law_type, friction_point_type, friction_row_type, friction_event_type, memory_size, most_events
+
+   !> Numbers that a law can remember of each node; and events of its own that it can have at a node.
+   integer, parameter :: memory_size = 3, most_events = 3
 
    !> What a law knows of one node.
    type :: friction_point_type
@@ -20,9 +27,8 @@ module mfv_friction_law
       real(wp) :: static = 0.0_wp, kinetic = 0.0_wp
       !> Pressure p and shear traction tau, force/length^2; slip s = u - U, length.
       real(wp) :: pressure = 0.0_wp, shear = 0.0_wp, slip = 0.0_wp
-      !> How far the node has slipped since it last held, length; and by how much its |tau| is still beyond mu_k p while that
-      !> falls at a fixed load, force/length^2.
-      real(wp) :: slipped = 0.0_wp, excess = 0.0_wp
+      !> What the law remembers of the node.
+      real(wp) :: memory(memory_size) = 0.0_wp
    end type friction_point_type
 
    !> The line tau = slope*p + stiffness*s + offset: no unit, force/length^3, force/length^2.
@@ -30,35 +36,65 @@ module mfv_friction_law
       real(wp) :: slope = 0.0_wp, stiffness = 0.0_wp, offset = 0.0_wp
    end type friction_row_type
 
+   !> An event of a law's own at a node: `slack` must not become negative, and changes at the rate
+   !> rate + by_pressure*(rate of p) + by_motion*(rate of slip in the direction of the node's motion).
+   type :: friction_event_type
+      !> See mfv_node_status; event_none: there is none.
+      integer :: kind = event_none
+      real(wp) :: slack = 0.0_wp, rate = 0.0_wp, by_pressure = 0.0_wp, by_motion = 0.0_wp
+      !> Whether `slack` is a length (else force/length^2); and how many times larger than others the rate's round-off is.
+      logical :: is_length = .false.
+      real(wp) :: noise = 1.0_wp
+   end type friction_event_type
+
    type, abstract :: friction_law_type
-      !> Whether the lines are exact over increments of any length.
-      logical :: is_linear = .true.
-      !> Whether a node below its limit does not move at all; else it creeps, held by bristles.
-      logical :: sticks = .true.
-      !> Whether |tau| falls at once where a node begins to slip: the excess is let go at a fixed load, as a path of its own.
-      logical :: drops = .false.
-      !> Slip after which the line has a corner, length.
-      real(wp) :: weakening_distance = huge(1.0_wp)
-      !> Part of the limit mu_s p at which a holding node slips.
-      real(wp) :: full_part = 1.0_wp
-      !> Whether creeping nodes come to the limit without a corner: a node that has just touched then has a part of it.
-      logical :: soft_limit = .false.
-      !> Stiffness that creeping nodes have there, on and back, force/length^3.
-      real(wp) :: limit_stiffness = 0.0_wp, back_stiffness = 0.0_wp
    contains
+      !> Name in a case; its keys there.
+      procedure(name_interface), deferred :: name
+      procedure :: parameters
+      procedure :: set_parameter
+      procedure :: has_two_coefficients
+      procedure :: is_coulomb_if_equal
+      !> Its nature.
+      procedure :: is_proportional
+      procedure :: is_linear
+      procedure :: sticks
+      procedure :: drops
+      procedure :: converges
+      procedure :: bends
+      procedure :: has_memory
+      procedure :: has_events
+      !> Lines and limits.
       procedure(row_interface), deferred :: row
       procedure(strength_interface), deferred :: strength
       procedure :: secant
+      procedure :: limit_part
+      procedure :: has_soft_limit
       procedure :: holding_status
-      procedure :: first_excess
-      procedure :: slipped_after
-      procedure :: lawful_excess
-      procedure :: room
-      procedure :: turning
-      procedure :: yields
+      procedure :: over_stress
+      !> Events and memory.
+      procedure :: find_events
+      procedure :: pass_event
+      procedure :: change_status
+      procedure :: remember
+      procedure :: is_releasing
+      procedure :: release_rate
+      procedure :: can_become_unstable
+      procedure :: release
+      !> Its part of the certificate, and of messages.
+      procedure :: defect
+      procedure :: wrong_motion
+      procedure :: explain_failure
    end type friction_law_type
 
    abstract interface
+      !> What &friction law calls it.
+      pure function name_interface(self) result(name)
+         import :: friction_law_type
+         class(friction_law_type), intent(in) :: self
+         character(len=16) :: name
+      end function name_interface
+
       !> The line of a slipping or creeping node with this `status` over the increment from `before` to `after`; the same
       !> point twice gives the tangent.
       pure function row_interface(self, status, before, after) result(row)
@@ -79,6 +115,93 @@ module mfv_friction_law
 
 contains
 
+   !> Keys of &friction, besides the coefficients, that the law needs; and those that it can have.
+   pure subroutine parameters(self, needed, optional_ones)
+      class(friction_law_type), intent(in) :: self
+      type(string_type), allocatable, intent(out) :: needed(:), optional_ones(:)
+
+      allocate (needed(0), optional_ones(0))
+   end subroutine parameters
+
+   !> Give the parameter `key` its value.
+   pure subroutine set_parameter(self, key, value)
+      class(friction_law_type), intent(inout) :: self
+      character(*), intent(in) :: key
+      real(wp), intent(in) :: value
+   end subroutine set_parameter
+
+   !> Whether it has a static and a kinetic coefficient of friction; else they are one.
+   pure logical function has_two_coefficients(self)
+      class(friction_law_type), intent(in) :: self
+
+      has_two_coefficients = .false.
+   end function has_two_coefficients
+
+   !> Whether it is Coulomb's law where the static and the kinetic coefficient are equal.
+   pure logical function is_coulomb_if_equal(self)
+      class(friction_law_type), intent(in) :: self
+
+      is_coulomb_if_equal = .false.
+   end function is_coulomb_if_equal
+
+   !> Whether |tau| = mu p wherever a node slips, with one coefficient: what closed forms and large increments assume.
+   pure logical function is_proportional(self)
+      class(friction_law_type), intent(in) :: self
+
+      is_proportional = .false.
+   end function is_proportional
+
+   !> Whether the lines are exact over increments of any length.
+   pure logical function is_linear(self)
+      class(friction_law_type), intent(in) :: self
+
+      is_linear = .true.
+   end function is_linear
+
+   !> Whether a node below its limit does not move at all; else it creeps.
+   pure logical function sticks(self)
+      class(friction_law_type), intent(in) :: self
+
+      sticks = .true.
+   end function sticks
+
+   !> Whether |tau| falls at once where a node begins to slip: it relaxes at a fixed load, as a path of its own.
+   pure logical function drops(self)
+      class(friction_law_type), intent(in) :: self
+
+      drops = .false.
+   end function drops
+
+   !> Whether results converge with the mesh.
+   pure logical function converges(self)
+      class(friction_law_type), intent(in) :: self
+
+      converges = .true.
+   end function converges
+
+   !> Whether the line of a node depends on where the increment leads.
+   pure logical function bends(self, status, point)
+      class(friction_law_type), intent(in) :: self
+      integer, intent(in) :: status
+      type(friction_point_type), intent(in) :: point
+
+      bends = .false.
+   end function bends
+
+   !> Whether it remembers anything of a node.
+   pure logical function has_memory(self)
+      class(friction_law_type), intent(in) :: self
+
+      has_memory = .false.
+   end function has_memory
+
+   !> Whether it has events of its own.
+   pure logical function has_events(self)
+      class(friction_law_type), intent(in) :: self
+
+      has_events = .false.
+   end function has_events
+
    !> The line through both ends of an increment at which `after` obeys the law; of a linear law its only line.
    pure function secant(self, status, before, after) result(row)
       class(friction_law_type), intent(in) :: self
@@ -89,80 +212,131 @@ contains
       row = self%row(status, before, before)
    end function secant
 
+   !> Part of the limit mu_s p at which a holding node slips.
+   pure real(wp) function limit_part(self)
+      class(friction_law_type), intent(in) :: self
+
+      limit_part = 1.0_wp
+   end function limit_part
+
+   !> Whether creeping nodes reach the limit smoothly: a node that has just touched is then at a part of it.
+   pure logical function has_soft_limit(self)
+      class(friction_law_type), intent(in) :: self
+
+      has_soft_limit = .false.
+   end function has_soft_limit
+
    !> Status of a node that holds, and that moves to `direction` (its sign, 0: not known) if it moves at all.
    pure integer function holding_status(self, direction)
       class(friction_law_type), intent(in) :: self
       integer, intent(in) :: direction
 
       holding_status = node_stick
-      if (.not. self%sticks) holding_status = merge(node_creep_left, node_creep_right, direction < 0)
    end function holding_status
 
-   !> The excess of |tau| over mu_k p with which a node begins to slip where the law drops, force/length^2.
-   pure real(wp) function first_excess(self, point)
-      class(friction_law_type), intent(in) :: self
-      type(friction_point_type), intent(in) :: point
-
-      first_excess = 0.0_wp
-      if (point%kinetic < point%static) first_excess = max(abs(point%shear) - point%kinetic*point%pressure, 0.0_wp)
-   end function first_excess
-
-   !> How far a slipping node has slipped after an increment, length; not counted beyond the weakening distance.
-   pure real(wp) function slipped_after(self, before, after) result(slipped)
-      class(friction_law_type), intent(in) :: self
-      type(friction_point_type), intent(in) :: before, after
-
-      slipped = min(before%slipped + abs(after%slip - before%slip), self%weakening_distance)
-   end function slipped_after
-
-   !> What the excess of a falling node is by the law itself, (mu - mu_k) p: where the two meet the fall is over. And how it
-   !> changes with pressure (no unit) and with slip (force/length^3). Zero unless the law weakens with slip.
-   pure subroutine lawful_excess(self, point, excess, by_pressure, by_slip)
-      class(friction_law_type), intent(in) :: self
-      type(friction_point_type), intent(in) :: point
-      real(wp), intent(out) :: excess, by_pressure, by_slip
-      real(wp) :: fall
-
-      fall = 0.0_wp
-      if (self%weakening_distance < huge(1.0_wp)) fall = (point%static - point%kinetic)/self%weakening_distance
-      by_pressure = max(self%weakening_distance - point%slipped, 0.0_wp)*fall
-      excess = by_pressure*point%pressure
-      by_slip = 0.0_wp
-      if (by_pressure > 0.0_wp) by_slip = -fall*point%pressure
-   end subroutine lawful_excess
-
-   !> How much further a slipping node can slip until its line has a corner, length.
-   pure real(wp) function room(self, point)
-      class(friction_law_type), intent(in) :: self
-      type(friction_point_type), intent(in) :: point
-      real(wp), parameter :: round_off = 1.0e-12_wp
-
-      room = huge(1.0_wp)
-      if (self%weakening_distance < huge(1.0_wp) .and. point%kinetic < point%static .and. .not. point%excess > 0.0_wp .and. &
-          point%slipped < self%weakening_distance*(1.0_wp - round_off)) room = self%weakening_distance - point%slipped
-   end function room
-
-   !> By how much the stiffness of a node that holds depends on the direction in which it moves, force/length^3.
-   pure real(wp) function turning(self, point)
-      class(friction_law_type), intent(in) :: self
-      type(friction_point_type), intent(in) :: point
-      type(friction_row_type) :: right, left
-
-      turning = 0.0_wp
-      if (self%sticks) return
-      right = self%row(node_creep_right, point, point)
-      left = self%row(node_creep_left, point, point)
-      turning = abs(right%stiffness - left%stiffness)
-   end function turning
-
-   !> By how much more bristles at the limit would load than it grows, force/length^2: while this is not negative they give way,
-   !> and the node slips. `moved`: motion in the direction of the slip, length; `growth`: of the limit, force/length^2; or
+   !> By how much a node at the limit would load more than the limit grows if it crept on, force/length^2: while this is not negative it
+   !> slips. Of laws whose nodes creep. `moved`: motion in the direction of the slip, length; `growth`: of the limit, force/length^2; or
    !> their rates.
-   elemental real(wp) function yields(self, moved, growth)
+   elemental real(wp) function over_stress(self, moved, growth)
       class(friction_law_type), intent(in) :: self
       real(wp), intent(in) :: moved, growth
 
-      yields = merge(self%limit_stiffness, self%back_stiffness, moved > 0.0_wp)*moved - growth
-   end function yields
+      over_stress = -growth
+      if (moved > 0.0_wp) over_stress = 0.0_wp
+   end function over_stress
+
+   !> Events of the law's own at a node with this `status`, in an increment that is expected to lead from `here` to `there`.
+   pure subroutine find_events(self, status, here, there, events)
+      class(friction_law_type), intent(in) :: self
+      integer, intent(in) :: status
+      type(friction_point_type), intent(in) :: here, there
+      type(friction_event_type), intent(out) :: events(most_events)
+   end subroutine find_events
+
+   !> One of these events has happened: what the node remembers from then on.
+   pure subroutine pass_event(self, kind, memory)
+      class(friction_law_type), intent(in) :: self
+      integer, intent(in) :: kind
+      real(wp), intent(inout) :: memory(:)
+   end subroutine pass_event
+
+   !> A node changes its status `from`, `to`; `point`: at that load, with what it remembered until then.
+   pure subroutine change_status(self, from, to, point, memory)
+      class(friction_law_type), intent(in) :: self
+      integer, intent(in) :: from, to
+      type(friction_point_type), intent(in) :: point
+      real(wp), intent(inout) :: memory(:)
+   end subroutine change_status
+
+   !> What a node with this `status` remembers after an increment. `released`: part of the over-stress that has relaxed in it.
+   pure subroutine remember(self, status, before, after, released, memory)
+      class(friction_law_type), intent(in) :: self
+      integer, intent(in) :: status
+      type(friction_point_type), intent(in) :: before, after
+      real(wp), intent(in) :: released
+      real(wp), intent(inout) :: memory(:)
+   end subroutine remember
+
+   !> Whether a node with this memory has over-stress that must relax before the load goes on.
+   pure logical function is_releasing(self, memory)
+      class(friction_law_type), intent(in) :: self
+      real(wp), intent(in) :: memory(:)
+
+      is_releasing = .false.
+   end function is_releasing
+
+   !> How much |tau| falls while all over-stress relaxes, force/length^2.
+   pure real(wp) function release_rate(self, memory)
+      class(friction_law_type), intent(in) :: self
+      real(wp), intent(in) :: memory(:)
+
+      release_rate = 0.0_wp
+   end function release_rate
+
+   !> Whether a node with this `status` may have no equilibrium nearby once it slips, so that its traction must relax at a fixed load.
+   pure logical function can_become_unstable(self, status, point)
+      class(friction_law_type), intent(in) :: self
+      integer, intent(in) :: status
+      type(friction_point_type), intent(in) :: point
+
+      can_become_unstable = .false.
+   end function can_become_unstable
+
+   !> Such a node, slipping now, begins to relax.
+   pure subroutine release(self, point, memory)
+      class(friction_law_type), intent(in) :: self
+      type(friction_point_type), intent(in) :: point
+      real(wp), intent(inout) :: memory(:)
+   end subroutine release
+
+   !> By how much the traction of a slipping or creeping node fails the law after an increment, force/length^2. `explicit`: lines were
+   !> tangents at the start.
+   pure real(wp) function defect(self, status, before, after, explicit)
+      class(friction_law_type), intent(in) :: self
+      integer, intent(in) :: status
+      type(friction_point_type), intent(in) :: before, after
+      logical, intent(in) :: explicit
+
+      defect = after%shear + slip_sign(status)*self%strength(after)
+   end function defect
+
+   !> By how much a slipping node has moved against its direction: length where nodes stick, else the traction that this makes,
+   !> force/length^2. `growth`: of the limit.
+   pure real(wp) function wrong_motion(self, moved, growth)
+      class(friction_law_type), intent(in) :: self
+      real(wp), intent(in) :: moved, growth
+
+      wrong_motion = -moved
+   end function wrong_motion
+
+   !> What may be wrong with the law's parameters where no solution is found; empty, or begins with '; '. `interval_stiffness`: contact
+   !> modulus over the interval, force/length^3.
+   pure function explain_failure(self, interval_stiffness) result(text)
+      class(friction_law_type), intent(in) :: self
+      real(wp), intent(in) :: interval_stiffness
+      character(len=260) :: text
+
+      text = ''
+   end function explain_failure
 
 end module mfv_friction_law

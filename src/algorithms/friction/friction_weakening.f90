@@ -9,33 +9,76 @@
 !> Where the bodies cannot unload as fast as friction falls, no slip in equilibrium begins: the node snaps. As under static and
 !> kinetic friction its traction then falls at a fixed load, until the law holds again or the node is at mu_k.
 module mfv_friction_weakening
+   use mfv_friction_drop, only: dropping_law_type, find_drop_events, over, pass_drop_event, remember_drop, slipped
    use mfv_friction_law
    use mfv_kinds, only: wp
-   use mfv_node_status, only: slip_sign
+   use mfv_node_status
+   use mfv_strings, only: list_of_words, string_type
    implicit none
    private
-   public :: weakening_law_type, new_weakening_law
+   public :: weakening_law_type
 
-   type, extends(friction_law_type) :: weakening_law_type
+   type, extends(dropping_law_type) :: weakening_law_type
+      !> Slip over which mu falls from its static to its kinetic value, length, > 0.
+      real(wp) :: distance = huge(1.0_wp)
    contains
+      procedure :: name
+      procedure :: parameters
+      procedure :: set_parameter
+      procedure :: is_linear
+      procedure :: bends
       procedure :: row
       procedure :: strength
       procedure :: secant
+      procedure :: find_events
+      procedure :: pass_event
+      procedure :: remember
+      procedure :: can_become_unstable
       procedure, private :: coefficient
+      procedure, private :: slope_of_coefficient
+      procedure, private :: room
    end type weakening_law_type
 
 contains
 
-   !> `distance`: slip over which mu falls from its static to its kinetic value, length, > 0.
-   pure function new_weakening_law(distance) result(law)
-      real(wp), intent(in) :: distance
-      type(weakening_law_type) :: law
+   !> See mfv_friction_law, as for all that follow.
+   pure function name(self)
+      class(weakening_law_type), intent(in) :: self
+      character(len=16) :: name
 
-      law%is_linear = .false.
-      law%weakening_distance = distance
-   end function new_weakening_law
+      name = 'weakening'
+   end function name
 
-   !> See mfv_friction_law.
+   pure subroutine parameters(self, needed, optional_ones)
+      class(weakening_law_type), intent(in) :: self
+      type(string_type), allocatable, intent(out) :: needed(:), optional_ones(:)
+
+      needed = list_of_words('weakening_distance')
+      allocate (optional_ones(0))
+   end subroutine parameters
+
+   pure subroutine set_parameter(self, key, value)
+      class(weakening_law_type), intent(inout) :: self
+      character(*), intent(in) :: key
+      real(wp), intent(in) :: value
+
+      self%distance = value
+   end subroutine set_parameter
+
+   pure logical function is_linear(self)
+      class(weakening_law_type), intent(in) :: self
+
+      is_linear = .false.
+   end function is_linear
+
+   pure logical function bends(self, status, point)
+      class(weakening_law_type), intent(in) :: self
+      integer, intent(in) :: status
+      type(friction_point_type), intent(in) :: point
+
+      bends = slips(status) .and. self%room(point) < huge(1.0_wp)
+   end function bends
+
    pure function row(self, status, before, after)
       class(weakening_law_type), intent(in) :: self
       integer, intent(in) :: status
@@ -44,20 +87,18 @@ contains
       real(wp) :: fall
       integer :: direction
 
-      direction = slip_sign(status)
-      if (before%excess > 0.0_wp) then
-         row%slope = -direction*before%kinetic
-         row%offset = -direction*before%excess
+      if (before%memory(over) > 0.0_wp) then
+         row = self%releasing_row(status, before)
          return
       end if
-      fall = 0.0_wp
-      if (self%room(before) < huge(1.0_wp)) fall = (before%static - before%kinetic)/self%weakening_distance
+      direction = slip_sign(status)
+      fall = self%slope_of_coefficient(before)
       row%slope = -direction*(self%coefficient(before) - fall*direction*(after%slip - before%slip))
       row%stiffness = after%pressure*fall
       row%offset = -row%stiffness*after%slip
    end function row
 
-   !> See mfv_friction_law: the increment of f = mu p is mean(mu) dp + mean(p) dmu, exactly.
+   !> The increment of f = mu p is mean(mu) dp + mean(p) dmu, exactly.
    pure function secant(self, status, before, after) result(row)
       class(weakening_law_type), intent(in) :: self
       integer, intent(in) :: status
@@ -66,18 +107,17 @@ contains
 
       row = self%row(status, before, before)
       if (.not. self%room(before) < huge(1.0_wp)) return
-      row%slope = row%slope + 0.5_wp*(before%static - before%kinetic)/self%weakening_distance*(after%slip - before%slip)
-      row%stiffness = 0.5_wp*(before%pressure + after%pressure)*(before%static - before%kinetic)/self%weakening_distance
+      row%slope = row%slope + 0.5_wp*(before%static - before%kinetic)/self%distance*(after%slip - before%slip)
+      row%stiffness = 0.5_wp*(before%pressure + after%pressure)*(before%static - before%kinetic)/self%distance
       row%offset = -slip_sign(status)*self%strength(before) - row%slope*before%pressure - row%stiffness*before%slip
    end function secant
 
-   !> See mfv_friction_law.
    pure real(wp) function strength(self, point)
       class(weakening_law_type), intent(in) :: self
       type(friction_point_type), intent(in) :: point
 
       strength = self%coefficient(point)*point%pressure
-      if (point%excess > 0.0_wp) strength = point%kinetic*point%pressure + point%excess
+      if (point%memory(over) > 0.0_wp) strength = point%kinetic*point%pressure + point%memory(over)
    end function strength
 
    !> mu after the slip that the point remembers.
@@ -88,8 +128,83 @@ contains
 
       coefficient = point%static
       if (.not. point%kinetic < point%static) return
-      part = min(point%slipped/self%weakening_distance, 1.0_wp)
+      part = min(point%memory(slipped)/self%distance, 1.0_wp)
       coefficient = (1.0_wp - part)*point%static + part*point%kinetic
    end function coefficient
+
+   !> How much mu falls per slip, 1/length; 0 where it no longer does.
+   pure real(wp) function slope_of_coefficient(self, point) result(fall)
+      class(weakening_law_type), intent(in) :: self
+      type(friction_point_type), intent(in) :: point
+
+      fall = 0.0_wp
+      if (self%room(point) < huge(1.0_wp)) fall = (point%static - point%kinetic)/self%distance
+   end function slope_of_coefficient
+
+   !> How much further a slipping node can slip until its friction no longer falls, length; huge: it does not fall.
+   pure real(wp) function room(self, point)
+      class(weakening_law_type), intent(in) :: self
+      type(friction_point_type), intent(in) :: point
+      real(wp), parameter :: round_off = 1.0e-12_wp
+
+      room = huge(1.0_wp)
+      if (point%kinetic < point%static .and. .not. point%memory(over) > 0.0_wp .and. &
+          point%memory(slipped) < self%distance*(1.0_wp - round_off)) room = self%distance - point%memory(slipped)
+   end function room
+
+   !> Friction no longer falls; and a relaxing node is where the law holds again, (mu - mu_k) p beyond kinetic friction.
+   pure subroutine find_events(self, status, here, there, events)
+      class(weakening_law_type), intent(in) :: self
+      integer, intent(in) :: status
+      type(friction_point_type), intent(in) :: here, there
+      type(friction_event_type), intent(out) :: events(most_events)
+      real(wp) :: fall, lawful, by_slip
+
+      if (.not. slips(status)) return
+      call find_drop_events(self, status, here, there, events)
+      if (self%room(here) < huge(1.0_wp)) &
+         events(1) = friction_event_type(event_weakened, slack=self%room(here), by_motion=-1.0_wp, is_length=.true.)
+      if (.not. here%memory(over) > 0.0_wp) return
+      fall = (here%static - here%kinetic)/self%distance
+      lawful = max(self%distance - here%memory(slipped), 0.0_wp)*fall
+      by_slip = 0.0_wp
+      if (lawful > 0.0_wp) by_slip = -fall*here%pressure
+      events(3) = friction_event_type(event_caught, slack=max(here%memory(over) - lawful*here%pressure, 0.0_wp), &
+                                      rate=-self%release_rate(here%memory), by_pressure=-lawful, by_motion=-by_slip)
+   end subroutine find_events
+
+   pure subroutine pass_event(self, kind, memory)
+      class(weakening_law_type), intent(in) :: self
+      integer, intent(in) :: kind
+      real(wp), intent(inout) :: memory(:)
+
+      if (kind == event_weakened) memory(slipped) = self%distance
+      call pass_drop_event(self, kind, memory)
+   end subroutine pass_event
+
+   !> Slip beyond the distance does not count.
+   pure subroutine remember(self, status, before, after, released, memory)
+      class(weakening_law_type), intent(in) :: self
+      integer, intent(in) :: status
+      type(friction_point_type), intent(in) :: before, after
+      real(wp), intent(in) :: released
+      real(wp), intent(inout) :: memory(:)
+
+      call remember_drop(self, status, before, after, released, memory)
+      memory(slipped) = min(memory(slipped), self%distance)
+   end subroutine remember
+
+   !> A node at its static limit, or on its way from static to kinetic friction.
+   pure logical function can_become_unstable(self, status, point)
+      class(weakening_law_type), intent(in) :: self
+      integer, intent(in) :: status
+      type(friction_point_type), intent(in) :: point
+      real(wp), parameter :: at_limit = 1.0e-9_wp
+
+      can_become_unstable = in_contact(status) .and. point%pressure > 0.0_wp .and. .not. point%memory(over) > 0.0_wp .and. &
+                            point%kinetic < point%static .and. &
+                            (abs(point%shear) >= point%static*point%pressure*(1.0_wp - at_limit) .or. &
+                             (slips(status) .and. point%memory(slipped) < self%distance))
+   end function can_become_unstable
 
 end module mfv_friction_weakening

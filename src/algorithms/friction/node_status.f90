@@ -6,7 +6,7 @@ module mfv_node_status
              node_status_names
    public :: event_none, event_close, event_open, event_slip_right, event_slip_left, event_stick, event_step_end, &
              event_stopped, event_reverse, event_weakened, event_caught, event_capped, event_dropped, event_names, &
-             in_contact, slips, creeps, holds, slip_sign, motion_sign, is_among
+             keeps_status, in_contact, slips, creeps, holds, slip_sign, motion_sign, is_among
 
    !> Node statuses. `node_frictionless`: in contact while friction is off or absent. `node_creep_right`, `node_creep_left`:
    !> held by bristles below the friction limit (partial slip of Table B.1), which give way to the right or to the left.
@@ -44,6 +44,13 @@ contains
 
       creeps = status == node_creep_right .or. status == node_creep_left
    end function creeps
+
+   !> Whether an event changes what friction remembers, and no status.
+   elemental logical function keeps_status(event)
+      integer, intent(in) :: event
+
+      keeps_status = event == event_weakened .or. event == event_caught .or. event == event_capped
+   end function keeps_status
 
    !> Whether the node is below the friction limit and resists every motion: stuck, or held by bristles.
    elemental logical function holds(status)

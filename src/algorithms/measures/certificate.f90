@@ -7,7 +7,7 @@ module mfv_certificate
    use mfv_contact_fields, only: contact_fields_type
    use mfv_contact_model, only: along_approach, along_rotation, along_shift, contact_model_type
    use mfv_contact_state, only: contact_state_type
-   use mfv_friction_law, only: friction_point_type, friction_row_type
+   use mfv_friction_law, only: friction_point_type
    use mfv_kinds, only: wp
    use mfv_node_status
    use mfv_scene, only: algorithm_mfv, integration_explicit
@@ -281,68 +281,44 @@ contains
       type(contact_state_type), intent(in) :: before, after
       logical, intent(in) :: leap
       real(wp) :: sliding, law_defect, beyond_limit, wrong_way, slipped, limit
+      type(friction_point_type) :: here, there
+      logical :: explicit
       integer :: i, status
 
       sliding = 0.0_wp
       law_defect = 0.0_wp
       beyond_limit = 0.0_wp
       wrong_way = 0.0_wp
-      do i = 1, size(after%status)
-         status = after%status(i)
-         if (status == node_open) cycle
-         limit = model%static_friction(i)*after%fields%pressure(i)
-         if (status == node_frictionless) limit = 0.0_wp
-         beyond_limit = max(beyond_limit, abs(after%fields%shear(i)) - limit)
-         slipped = after%fields%tangential(i) - after%fields%shift - (before%fields%tangential(i) - before%fields%shift)
-         if (leap .and. .not. before%fields%pressure(i) > 0.0_wp) &
-            slipped = after%fields%tangential(i) - after%fields%shift - before%stuck_slip(i)
-         if (status == node_stick) then
-            sliding = largest_or_nan(sliding, slipped)
-         else if (status == node_frictionless) then
-            law_defect = largest_or_nan(law_defect, after%fields%shear(i))
-         else
-            law_defect = largest_or_nan(law_defect, defect_of_law(model, before, after, i))
-            if (.not. slips(status)) cycle
-            if (model%scene%friction%law%sticks) then
-               wrong_way = max(wrong_way, -slip_sign(status)*slipped)
+      explicit = model%scene%method%integration == integration_explicit .and. model%scene%method%algorithm == algorithm_mfv
+      associate (law => model%scene%friction%law)
+         do i = 1, size(after%status)
+            status = after%status(i)
+            if (status == node_open) cycle
+            limit = model%static_friction(i)*after%fields%pressure(i)
+            if (status == node_frictionless) limit = 0.0_wp
+            beyond_limit = max(beyond_limit, abs(after%fields%shear(i)) - limit)
+            slipped = after%fields%tangential(i) - after%fields%shift - (before%fields%tangential(i) - before%fields%shift)
+            if (leap .and. .not. before%fields%pressure(i) > 0.0_wp) &
+               slipped = after%fields%tangential(i) - after%fields%shift - before%stuck_slip(i)
+            if (status == node_stick) then
+               sliding = largest_or_nan(sliding, slipped)
+            else if (status == node_frictionless) then
+               law_defect = largest_or_nan(law_defect, after%fields%shear(i))
             else
-               wrong_way = max(wrong_way, -model%scene%friction%law%yields( &
-                               slip_sign(status)*slipped, &
-                               model%static_friction(i)*(after%fields%pressure(i) - before%fields%pressure(i)) &
-                               *model%scene%friction%law%full_part))
+               here = before%friction_point(before%fields, i, model%static_friction(i), model%kinetic_friction(i))
+               there = after%friction_point(after%fields, i, model%static_friction(i), model%kinetic_friction(i))
+               law_defect = largest_or_nan(law_defect, law%defect(status, here, there, explicit))
+               if (slips(status)) wrong_way = max(wrong_way, law%wrong_motion( &
+                                                  slip_sign(status)*slipped, model%static_friction(i) &
+                                                  *(after%fields%pressure(i) - before%fields%pressure(i))*law%limit_part()))
             end if
-         end if
-      end do
-      call self%note(stick_slip, sliding, self%tangential)
-      call self%note(slip_traction, law_defect, self%traction)
-      call self%note(friction_limit, beyond_limit, self%traction)
-      call self%note(slip_direction, wrong_way, merge(self%tangential, self%traction, model%scene%friction%law%sticks))
+         end do
+         call self%note(stick_slip, sliding, self%tangential)
+         call self%note(slip_traction, law_defect, self%traction)
+         call self%note(friction_limit, beyond_limit, self%traction)
+         call self%note(slip_direction, wrong_way, merge(self%tangential, self%traction, law%sticks()))
+      end associate
    end subroutine check_friction
-
-   !> By how much the traction of slipping node `i` fails the friction law, and that of a creeping node the law's increment from
-   !> state to state and what a motion against its direction does to it; force/length^2.
-   real(wp) function defect_of_law(model, before, after, i) result(defect)
-      type(contact_model_type), intent(in) :: model
-      type(contact_state_type), intent(in) :: before, after
-      integer, intent(in) :: i
-      type(friction_point_type) :: here, there
-      type(friction_row_type) :: row
-
-      there = after%friction_point(after%fields, i, model%static_friction(i), model%kinetic_friction(i))
-      if (slips(after%status(i))) then
-         defect = there%shear + slip_sign(after%status(i))*model%scene%friction%law%strength(there)
-         return
-      end if
-      here = before%friction_point(before%fields, i, model%static_friction(i), model%kinetic_friction(i))
-      if (model%scene%method%integration == integration_explicit .and. model%scene%method%algorithm == algorithm_mfv) then
-         row = model%scene%friction%law%row(after%status(i), here, here)
-      else
-         row = model%scene%friction%law%row(after%status(i), here, there)
-      end if
-      defect = abs(there%shear - row%slope*there%pressure - row%stiffness*there%slip - row%offset) &
-               + max(model%scene%friction%law%turning(here), model%scene%friction%law%turning(there)) &
-               *max(-motion_sign(after%status(i))*(there%slip - here%slip), 0.0_wp)
-   end function defect_of_law
 
    !> Work of the loads = stored + dissipated energy; between events everything is linear, so the trapezoid is exact. Over a
    !> large increment (`leap`) the work is not known: it counts as what is stored and dissipated, and nothing is noted.

@@ -1,7 +1,7 @@
 !> A contact state: the fields and what the nodes remember.
 module mfv_contact_state
    use mfv_contact_fields, only: contact_fields_type, new_contact_fields
-   use mfv_friction_law, only: friction_point_type
+   use mfv_friction_law, only: friction_point_type, memory_size
    use mfv_kinds, only: wp
    use mfv_node_status
    implicit none
@@ -16,11 +16,8 @@ module mfv_contact_state
       real(wp), allocatable :: stuck_slip(:)
       !> Sign of the last slip rate, 0 when there was none, shape (nodes).
       integer, allocatable :: slip_direction(:)
-      !> Slip of the nodes since they last held, length, and excess of their |tau| over mu_k p, force/length^2: see
-      !> friction_point_type; shape (nodes).
-      real(wp), allocatable :: slipped(:), excess(:)
-      !> Whether the excess is all that the static limit allows and falls with it, shape (nodes).
-      logical, allocatable :: capped(:)
+      !> What the friction law remembers of the nodes, shape (memory_size, nodes).
+      real(wp), allocatable :: memory(:, :)
       !> Work dissipated by friction so far, force (energy per unit thickness).
       real(wp) :: dissipation = 0.0_wp
       !> The same per unit of surface, force/length, shape (nodes).
@@ -46,8 +43,8 @@ contains
       state%fields = new_contact_fields(nodes)
       allocate (state%status(nodes), source=node_open)
       allocate (state%slip_direction(nodes), source=0)
-      allocate (state%capped(nodes), source=.false.)
-      allocate (state%stuck_slip(nodes), state%slipped(nodes), state%excess(nodes), state%friction_work(nodes), source=0.0_wp)
+      allocate (state%memory(memory_size, nodes), source=0.0_wp)
+      allocate (state%stuck_slip(nodes), state%friction_work(nodes), source=0.0_wp)
    end function new_contact_state
 
    !> Give the nodes of `mask` the new statuses; a node that sticks holds at the slip it has, one that slips as it touches has held
@@ -77,9 +74,7 @@ contains
       self%status = other%status
       self%stuck_slip = other%stuck_slip
       self%slip_direction = other%slip_direction
-      self%slipped = other%slipped
-      self%excess = other%excess
-      self%capped = other%capped
+      self%memory = other%memory
       self%dissipation = other%dissipation
       self%friction_work = other%friction_work
    end subroutine take
@@ -94,7 +89,7 @@ contains
       type(friction_point_type) :: point
 
       point = friction_point_type(static, kinetic, fields%pressure(node), fields%shear(node), &
-                                  fields%tangential(node) - fields%shift, self%slipped(node), self%excess(node))
+                                  fields%tangential(node) - fields%shift, self%memory(:, node))
    end function friction_point
 
    !> Add `extra` open nodes at either end; the caller fills in their displacements.
@@ -107,9 +102,8 @@ contains
       self%status = [(node_open, i=1, extra), self%status, (node_open, i=1, extra)]
       self%slip_direction = [(0, i=1, extra), self%slip_direction, (0, i=1, extra)]
       self%stuck_slip = [(0.0_wp, i=1, extra), self%stuck_slip, (0.0_wp, i=1, extra)]
-      self%slipped = [(0.0_wp, i=1, extra), self%slipped, (0.0_wp, i=1, extra)]
-      self%excess = [(0.0_wp, i=1, extra), self%excess, (0.0_wp, i=1, extra)]
-      self%capped = [(.false., i=1, extra), self%capped, (.false., i=1, extra)]
+      self%memory = reshape([(0.0_wp, i=1, memory_size*extra), self%memory, (0.0_wp, i=1, memory_size*extra)], &
+                            [memory_size, size(self%status)])
       self%friction_work = [(0.0_wp, i=1, extra), self%friction_work, (0.0_wp, i=1, extra)]
    end subroutine widen
 

@@ -61,8 +61,6 @@ module mfv_scene
       integer :: linear_solver = solver_auto
       !> Relative residual to which an iterative linear solver goes.
       real(wp) :: linear_tolerance = 1.0e-12_wp
-      !> Events closer to each other than this part of what is done of a straight part of the load history are taken together.
-      real(wp) :: event_tolerance = 0.0_wp
       !> Largest error of large increments: of tractions, in parts of the largest; of what a segment dissipates, in parts of that.
       real(wp) :: leap_tolerance = 1.0e-3_wp
    end type method_type

@@ -58,7 +58,7 @@ contains
                     scene%method%stepping == stepping_event .and. .not. model%tangential)
          if (any([scene%lower%shape, scene%upper%shape] == shape_profile)) then
             most = most_coupled
-         else if (scene%friction%name == 'dahl' .or. (at_once .and. (coupled .or. one_way))) then
+         else if (.not. scene%friction%sticks() .or. (at_once .and. (coupled .or. one_way))) then
             most = most_bristles
          else if (at_once) then
             most = most_at_once

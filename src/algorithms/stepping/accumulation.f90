@@ -38,7 +38,7 @@ contains
 
       passed = .false.
       if (.not. path%model%scene%friction%acts()) return
-      if (.not. path%model%scene%friction%law%drops .or. path%dropping()) return
+      if (.not. path%model%scene%friction%law%drops() .or. path%dropping()) return
       call find_increment(path, constraints, left, .false., round_off, increment)
       if (increment%singular) return
       alternates = vanish(path, increment, near)

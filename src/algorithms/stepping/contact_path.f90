@@ -8,9 +8,8 @@ module mfv_contact_path
    use mfv_contact_state, only: contact_state_type, new_contact_state
    use mfv_contact_system
    use mfv_error, only: error_type, set_error
-   use mfv_event_search, only: corners_type, status_after
-   use mfv_friction_dahl, only: dahl_law_type
-   use mfv_friction_law, only: friction_point_type, friction_row_type
+   use mfv_event_search, only: status_after
+   use mfv_friction_law, only: friction_event_type, friction_point_type, most_events
    use mfv_history, only: history_type
    use mfv_kinds, only: wp
    use mfv_linear_solvers, only: new_contact_system
@@ -81,10 +80,12 @@ module mfv_contact_path
       procedure :: settle_loads
       procedure :: loads_at
       procedure :: dropping
+      procedure :: is_releasing
       procedure :: point
-      procedure :: has_corners
       procedure, private :: has_memory
-      procedure :: find_corners
+      procedure :: find_events
+      procedure :: can_become_unstable
+      procedure :: remember_status
       procedure :: snap
       procedure :: set_rows
       procedure :: set_status
@@ -147,7 +148,7 @@ contains
 
       copy%model = self%model
       copy%path_position_type = self%path_position_type
-      copy%system = self%system
+      allocate (copy%system, source=self%system)
       copy%record_events = .false.
    end subroutine copy_without_history
 
@@ -157,7 +158,9 @@ contains
       type(kept_path_type), intent(inout) :: kept
 
       kept%position = self%path_position_type
-      kept%system = self%system
+      ! By hand: gfortran 12 leaks what a polymorphic component held before an assignment.
+      if (allocated(kept%system)) deallocate (kept%system)
+      allocate (kept%system, source=self%system)
       kept%records = self%history%records
       kept%added = self%model%added
       kept%tangential = self%model%tangential
@@ -173,7 +176,8 @@ contains
       call self%history%move_nodes(kept%added - self%model%added)
       call self%model_as(kept%added, kept%tangential, kept%rotational)
       self%path_position_type = kept%position
-      self%system = kept%system
+      deallocate (self%system)
+      allocate (self%system, source=kept%system)
       self%history%records = min(kept%records, self%history%records)
    end subroutine come_back
 
@@ -469,13 +473,25 @@ contains
       call self%set_status(touching, status)
    end subroutine close_nearest
 
-   !> Whether shear tractions in excess of their limit have to be let go before the load goes on.
+   !> Whether over-stress of some node must relax before the load goes on.
    pure logical function dropping(self)
       class(contact_path_type), intent(in) :: self
 
-      dropping = self%has_memory()
-      if (dropping) dropping = any(self%state%excess > 0.0_wp)
+      dropping = any(self%is_releasing())
    end function dropping
+
+   !> Nodes whose over-stress must relax.
+   pure function is_releasing(self)
+      class(contact_path_type), intent(in) :: self
+      logical :: is_releasing(size(self%state%status))
+      integer :: i
+
+      is_releasing = .false.
+      if (.not. self%has_memory()) return
+      do i = 1, size(is_releasing)
+         is_releasing(i) = self%model%scene%friction%law%is_releasing(self%state%memory(:, i))
+      end do
+   end function is_releasing
 
    !> What the friction law knows of node `node` where the fields are `fields`.
    pure function point(self, node, fields)
@@ -487,99 +503,67 @@ contains
       point = self%state%friction_point(fields, node, self%model%static_friction(node), self%model%kinetic_friction(node))
    end function point
 
-   !> Whether friction may have corners of its own now.
-   pure logical function has_corners(self)
-      class(contact_path_type), intent(in) :: self
-
-      has_corners = self%model%scene%friction%acts()
-      if (has_corners) has_corners = .not. self%model%scene%friction%law%sticks .or. self%has_memory()
-   end function has_corners
-
-   !> Whether the law remembers how far a node has slipped, or from where its traction falls.
+   !> Whether the friction law remembers anything.
    pure logical function has_memory(self)
       class(contact_path_type), intent(in) :: self
 
       has_memory = .false.
-      if (allocated(self%model%scene%friction%law)) &
-         has_memory = self%model%scene%friction%law%drops .or. &
-                      self%model%scene%friction%law%weakening_distance < huge(1.0_wp)
+      if (allocated(self%model%scene%friction%law)) has_memory = self%model%scene%friction%law%has_memory()
    end function has_memory
 
-   !> Where friction has corners of its own, in an increment that is expected to lead to the fields `after`.
-   subroutine find_corners(self, after, corners)
+   !> Events of the friction law's own in an increment that is expected to lead to the fields `after`, shape (most_events, nodes); not
+   !> allocated where it has none.
+   subroutine find_events(self, after, events)
       class(contact_path_type), intent(in) :: self
       type(contact_fields_type), intent(in) :: after
-      type(corners_type), intent(out) :: corners
-      type(friction_point_type) :: here
-      real(wp) :: excess, by_pressure, by_slip
-      integer :: i, n
+      type(friction_event_type), allocatable, intent(out) :: events(:, :)
+      integer :: i
 
-      if (.not. self%has_corners()) return
-      n = size(self%state%status)
-      allocate (corners%room(n), source=huge(1.0_wp))
-      allocate (corners%turning(n), corners%surplus_rate(n), corners%by_pressure(n), corners%by_slip(n), &
-                corners%head_by_pressure(n), source=0.0_wp)
-      allocate (corners%surplus(n), corners%headroom(n), source=-1.0_wp)
+      if (.not. self%model%scene%friction%acts()) return
       associate (law => self%model%scene%friction%law)
-         do i = 1, n
-            here = self%point(i, self%state%fields)
-            if (creeps(self%state%status(i))) &
-               corners%turning(i) = max(law%turning(here), law%turning(self%point(i, after)))
-            if (.not. slips(self%state%status(i))) cycle
-            corners%room(i) = law%room(here)
-            if (.not. here%excess > 0.0_wp) cycle
-            corners%surplus_rate(i) = -here%excess
-            if (.not. self%state%capped(i)) then
-               corners%head_by_pressure(i) = here%static - here%kinetic
-               corners%headroom(i) = max(corners%head_by_pressure(i)*here%pressure - here%excess, 0.0_wp)
-            end if
-            if (.not. law%weakening_distance < huge(1.0_wp)) cycle
-            call law%lawful_excess(here, excess, by_pressure, by_slip)
-            corners%surplus(i) = max(here%excess - excess, 0.0_wp)
-            if (self%state%capped(i)) corners%surplus_rate(i) = 0.0_wp
-            corners%by_pressure(i) = -by_pressure
-            corners%by_slip(i) = -by_slip
+         if (.not. law%has_events()) return
+         allocate (events(most_events, size(self%state%status)))
+         do i = 1, size(self%state%status)
+            call law%find_events(self%state%status(i), self%point(i, self%state%fields), self%point(i, after), events(:, i))
          end do
       end associate
-   end subroutine find_corners
+   end subroutine find_events
 
-   !> Nodes at their static limit, and those on their way from static to kinetic friction: where they can neither hold nor slip
-   !> on in equilibrium, let them snap. `snapped`: whether there are any; the first of them is then what changes at this load,
-   !> unless something else has changed before.
+   !> Nodes that may have no equilibrium nearby once they slip.
+   pure function can_become_unstable(self) result(unstable)
+      class(contact_path_type), intent(in) :: self
+      logical :: unstable(size(self%state%status))
+      integer :: i
+
+      unstable = .false.
+      if (.not. self%model%scene%friction%acts()) return
+      do i = 1, size(unstable)
+         unstable(i) = self%model%scene%friction%law%can_become_unstable(self%state%status(i), self%point(i, self%state%fields))
+      end do
+   end function can_become_unstable
+
+   !> Where nodes can neither hold nor slip on in equilibrium, have them slip and their traction relax. `snapped`: whether there are any;
+   !> the first of them is then what changes at this load, unless something else has changed before.
    subroutine snap(self, moment, snapped)
       class(contact_path_type), intent(inout) :: self
       type(moment_type), intent(inout) :: moment
       logical, intent(out) :: snapped
-      real(wp), parameter :: at_limit = 1.0e-9_wp
-      type(friction_point_type) :: here
       logical :: mask(size(self%state%status))
       integer :: status(size(self%state%status)), i
 
-      snapped = .false.
-      if (.not. self%model%scene%friction%acts()) return
-      associate (law => self%model%scene%friction%law)
-         if (.not. law%weakening_distance < huge(1.0_wp)) return
-         do i = 1, size(mask)
-            here = self%point(i, self%state%fields)
-            mask(i) = in_contact(self%state%status(i)) .and. here%pressure > 0.0_wp .and. .not. here%excess > 0.0_wp .and. &
-                      here%kinetic < here%static .and. &
-                      (abs(here%shear) >= here%static*here%pressure*(1.0_wp - at_limit) .or. &
-                       (slips(self%state%status(i)) .and. here%slipped < law%weakening_distance))
-            status(i) = merge(node_slip_left, node_slip_right, here%shear > 0.0_wp)
-         end do
-         snapped = any(mask)
-         if (.not. snapped) return
-         call note_change(moment, merge(event_slip_left, event_slip_right, status(first_true(mask)) == node_slip_left), mask)
-         call self%set_status(mask, status)
-         do i = 1, size(mask)
-            if (mask(i)) self%state%excess(i) = law%first_excess(self%point(i, self%state%fields))
-         end do
-      end associate
+      mask = self%can_become_unstable()
+      snapped = any(mask)
+      if (.not. snapped) return
+      status = merge(node_slip_left, node_slip_right, self%state%fields%shear > 0.0_wp)
+      call note_change(moment, merge(event_slip_left, event_slip_right, status(first_true(mask)) == node_slip_left), mask)
+      call self%set_status(mask, status)
+      do i = 1, size(mask)
+         if (mask(i)) call self%model%scene%friction%law%release(self%point(i, self%state%fields), self%state%memory(:, i))
+      end do
    end subroutine snap
 
    !> Statuses and lines of friction as constraints: tangents, or lines for where the fields are expected to be `after` an
-   !> increment; with `straight` the secants to there. `drop`: whether excess tractions are let go, all of them per unit of
-   !> load.
+   !> increment; with `straight` the secants to there. `drop`: whether over-stress relaxes, all of it per unit of load.
    subroutine set_rows(self, constraints, drop, after, straight)
       class(contact_path_type), intent(in) :: self
       type(constraints_type), intent(inout) :: constraints
@@ -608,11 +592,8 @@ contains
          else
             constraints%row(i) = self%model%scene%friction%law%row(self%state%status(i), here, there)
          end if
-         if (self%state%capped(i)) then
-            constraints%row(i) = friction_row_type(slope=-slip_sign(self%state%status(i))*here%static)
-         else if (drop) then
-            constraints%offset_rate(i) = slip_sign(self%state%status(i))*self%state%excess(i)
-         end if
+         if (drop) constraints%offset_rate(i) = slip_sign(self%state%status(i)) &
+                                                *self%model%scene%friction%law%release_rate(self%state%memory(:, i))
       end do
    end subroutine set_rows
 
@@ -621,24 +602,29 @@ contains
       class(contact_path_type), intent(inout) :: self
       logical, intent(in) :: mask(:)
       integer, intent(in) :: status(:)
-      logical :: begins
       integer :: i
 
       if (self%has_memory()) then
          do i = 1, size(mask)
-            if (.not. mask(i)) cycle
-            begins = slips(status(i)) .and. status(i) /= self%state%status(i)
-            if (begins .or. .not. slips(status(i))) then
-               self%state%slipped(i) = 0.0_wp
-               self%state%excess(i) = 0.0_wp
-               self%state%capped(i) = .false.
-            end if
-            if (begins .and. self%model%scene%friction%law%drops) &
-               self%state%excess(i) = self%model%scene%friction%law%first_excess(self%point(i, self%state%fields))
+            if (mask(i)) call self%model%scene%friction%law%change_status(self%state%status(i), status(i), &
+                                                                         self%point(i, self%state%fields), self%state%memory(:, i))
          end do
       end if
       call self%state%set_status(mask, status)
    end subroutine set_status
+
+   !> What the law remembers of the nodes of `mask` as if they had slipped until they got their statuses.
+   subroutine remember_status(self, mask)
+      class(contact_path_type), intent(inout) :: self
+      logical, intent(in) :: mask(:)
+      integer :: i
+
+      if (.not. self%has_memory()) return
+      do i = 1, size(mask)
+         if (mask(i)) call self%model%scene%friction%law%change_status(node_slip_right, self%state%status(i), &
+                                                                      self%point(i, self%state%fields), self%state%memory(:, i))
+      end do
+   end subroutine remember_status
 
    !> The status that each node has if it holds; `slip_rate`: with which rates it moves, any unit, shape (nodes).
    pure function holding(self, slip_rate) result(status)
@@ -649,14 +635,14 @@ contains
 
       status = node_stick
       if (.not. allocated(self%model%scene%friction%law)) return
-      if (self%model%scene%friction%law%sticks) return
+      if (self%model%scene%friction%law%sticks()) return
       do i = 1, size(status)
          status(i) = self%model%scene%friction%law%holding_status(merge(-1, 1, slip_rate(i) < 0.0_wp))
       end do
    end function holding
 
    !> Go to the fields `after`: memories, dissipation, directions and the certificate go along. `slip_rate`: rates of slip on
-   !> the way, any unit, shape (nodes); `dropped`: part of the excess tractions that has been let go. `friction_work`: what
+   !> the way, any unit, shape (nodes); `dropped`: part of the over-stress that has relaxed. `friction_work`: what
    !> friction dissipates over a large increment, whose path is not known (force/length, shape (nodes)); else everything is linear
    !> on the way.
    subroutine take_increment(self, after, slip_rate, dropped, friction_work)
@@ -732,16 +718,9 @@ contains
 
       if (.not. self%has_memory()) return
       do i = 1, size(self%state%status)
-         if (slips(self%state%status(i))) &
-            self%state%slipped(i) = self%model%scene%friction%law%slipped_after(self%point(i, self%state%fields), &
-                                                                                self%point(i, after))
+         call self%model%scene%friction%law%remember(self%state%status(i), self%point(i, self%state%fields), self%point(i, after), &
+                                                     dropped, self%state%memory(:, i))
       end do
-      where (self%state%capped)
-         self%state%excess = (self%model%static_friction - self%model%kinetic_friction)*max(after%pressure, 0.0_wp)
-      elsewhere
-         self%state%excess = self%state%excess*(1.0_wp - dropped)
-      end where
-      if (dropped >= 1.0_wp) self%state%capped = .false.
    end subroutine remember_slip
 
    !> Where the contact has reached an end of the mesh, lengthen it. Error MFV_MESH_EXCEEDED: it may not grow.
@@ -843,28 +822,13 @@ contains
       character(*), intent(in) :: why
       type(error_type), allocatable, intent(out) :: error
 
-      call self%end_here(MFV_NO_CONTINUATION, 'no admissible continuation: '//why//trim(too_stiff(self)), error)
+      character(:), allocatable :: hint
+
+      hint = ''
+      if (self%model%scene%friction%acts()) &
+         hint = trim(self%model%scene%friction%law%explain_failure(self%model%compliance%modulus/self%model%interval()))
+      call self%end_here(MFV_NO_CONTINUATION, 'no admissible continuation: '//why//hint, error)
    end subroutine no_continuation
-
-   !> Bristles (Dahl) far stiffer than what one interval of the surface gives way: that they are too stiff, and what would be
-   !> right; padded with blanks. Such friction differs from Coulomb's by about the ratio of these stiffnesses.
-   function too_stiff(self) result(text)
-      class(contact_path_type), intent(in) :: self
-      character(len=260) :: text
-      real(wp), parameter :: largest = 10.0_wp
-      real(wp) :: interval_stiffness
-
-      text = ''
-      if (.not. self%model%scene%friction%acts()) return
-      interval_stiffness = self%model%compliance%modulus/self%model%interval()
-      select type (law => self%model%scene%friction%law)
-      type is (dahl_law_type)
-         if (law%stiffness > largest*interval_stiffness) &
-            text = '; the bristles are too stiff for this mesh: &friction stiffness='//to_text(law%stiffness)// &
-                   ' should be at most '//to_text(largest*interval_stiffness, 2)//', ten times the contact modulus over the '// &
-                   "interval; law='coulomb' is the limit of stiff bristles"
-      end select
-   end function too_stiff
 
    !> An early end: why, and the load and contact now.
    subroutine end_here(self, status, why, error)

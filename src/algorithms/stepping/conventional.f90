@@ -11,6 +11,7 @@ module mfv_conventional
    use mfv_contact_system
    use mfv_error, only: error_type
    use mfv_event_search, only: status_after
+   use mfv_friction_law, only: memory_size
    use mfv_kinds, only: wp
    use mfv_node_status
    use mfv_observer, only: observer_type
@@ -41,7 +42,7 @@ contains
       type(error_type), allocatable, intent(out) :: error
       real(wp), parameter :: whole = 1.0e-9_wp
       integer, allocatable :: converged(:)
-      real(wp), allocatable :: slipped(:)
+      real(wp), allocatable :: memory(:, :)
       real(wp) :: done
       logical :: again
 
@@ -53,11 +54,11 @@ contains
          again = .true.
          do while (again)
             converged = path%state%status
-            slipped = path%state%slipped
+            memory = path%state%memory
             call solve_load(path, segment, done, again, error)
             if (.not. allocated(error)) cycle
             path%state%status = converged
-            path%state%slipped = slipped
+            path%state%memory = memory
             return
          end do
          call path%notify(segment, done, observer, error)
@@ -147,17 +148,16 @@ contains
       call change(path, slips(path%state%status), status)
    end subroutine stick_all
 
-   !> Change statuses; how far a node has slipped is remembered through the repairs, and no excess is carried.
+   !> Change statuses; what friction remembers stays through the repairs.
    subroutine change(path, mask, status)
       class(contact_path_type), intent(inout) :: path
       logical, intent(in) :: mask(:)
       integer, intent(in) :: status(:)
-      real(wp) :: slipped(size(mask))
+      real(wp) :: memory(memory_size, size(mask))
 
-      slipped = path%state%slipped
+      memory = path%state%memory
       call path%set_status(mask, status)
-      path%state%slipped = slipped
-      path%state%excess = 0.0_wp
+      path%state%memory = memory
    end subroutine change
 
    !> Whether friction that is not linear is right at the end of the load step: its lines were made for `expected`.
@@ -167,7 +167,7 @@ contains
 
       agrees = .true.
       if (.not. path%model%tangential) return
-      if (path%model%scene%friction%law%is_linear) return
+      if (path%model%scene%friction%law%is_linear()) return
       agrees = max(maxval(abs(fields%shear - expected%shear)), maxval(abs(fields%pressure - expected%pressure))) &
                <= 0.1_wp*round_off*maxval(abs(fields%pressure))
    end function agrees
@@ -238,8 +238,8 @@ contains
       real(wp), dimension(size(slipped)) :: yields
 
       associate (law => path%model%scene%friction%law, status => path%state%status)
-         if (law%sticks) return
-         yields = law%yields(motion_sign(status)*slipped, law%full_part*path%model%static_friction &
+         if (law%sticks()) return
+         yields = law%over_stress(motion_sign(status)*slipped, law%limit_part()*path%model%static_friction &
                              *(trial%pressure - path%state%fields%pressure))
          repair = worst(event_stick, -yields, slips(status), allowed)
          where (slips(status)) slipped = 0.0_wp
@@ -283,7 +283,7 @@ contains
       type(moment_type), intent(in) :: moment
 
       call path%take_increment(fields, fields%slip() - path%state%fields%slip(), 0.0_wp)
-      where (.not. slips(path%state%status)) path%state%slipped = 0.0_wp
+      call path%remember_status(.not. slips(path%state%status))
       call path%keep_settled(segment, moment)
    end subroutine accept
 

@@ -4,26 +4,13 @@
 module mfv_event_search
    use mfv_contact_fields, only: contact_fields_type
    use mfv_contact_model, only: contact_model_type
+   use mfv_friction_law, only: friction_event_type, most_events
    use mfv_kinds, only: wp
    use mfv_node_status
    use mfv_scene, only: integration_explicit
    implicit none
    private
-   public :: violations_type, corners_type, find_violations, status_after
-
-   !> Where friction has corners of its own, shape (nodes) each; not allocated: nowhere.
-   type :: corners_type
-      !> How far slipping nodes can slip until their friction has a corner, length; huge: no corner.
-      real(wp), allocatable :: room(:)
-      !> How much stiffer creeping nodes are in one direction than in the other, force/length^3.
-      real(wp), allocatable :: turning(:)
-      !> Excess of snapping nodes over what their law says, force/length^2 (negative: none snaps), its rate while excess falls
-      !> (per unit of the fall), and how it changes with pressure (no unit) and with slip (force/length^3).
-      real(wp), allocatable :: surplus(:), surplus_rate(:), by_pressure(:), by_slip(:)
-      !> How much more excess the static limit allows, force/length^2 (negative: no excess), and how much more it allows with
-      !> pressure (no unit).
-      real(wp), allocatable :: headroom(:), head_by_pressure(:)
-   end type corners_type
+   public :: violations_type, find_violations, status_after
 
    !> For every node the first inequality that breaks.
    type :: violations_type
@@ -38,18 +25,18 @@ module mfv_event_search
 contains
 
    !> All violations that the rates lead to.
-   !> `status`: shape (nodes). `corners`: what friction adds to them.
+   !> `status`: shape (nodes). `events`: what the friction law adds to them, shape (most_events, nodes); none if not allocated.
    !> `state`, `rate`: fields now and their rates per unit of the load parameter. Rates below the part `round_off` of the
    !> largest one of their sort count as zero. `violations`: their storage is used again.
-   subroutine find_violations(model, status, corners, state, rate, round_off, violations)
+   subroutine find_violations(model, status, events, state, rate, round_off, violations)
       type(contact_model_type), intent(in) :: model
       integer, intent(in) :: status(:)
-      type(corners_type), intent(in) :: corners
+      type(friction_event_type), allocatable, intent(in) :: events(:, :)
       type(contact_fields_type), intent(in) :: state, rate
       real(wp), intent(in) :: round_off
       type(violations_type), intent(inout) :: violations
       real(wp) :: traction_scale, motion_scale, mu, full, gap_rate, slip_rate, noise
-      logical :: soft_limit, sticks, has_corners
+      logical :: soft_limit, sticks
       real(wp), parameter :: secant_noise = 100.0_wp
       integer :: i, n
 
@@ -65,12 +52,11 @@ contains
       sticks = .true.
       soft_limit = .false.
       if (allocated(model%scene%friction%law)) then
-         full = model%scene%friction%law%full_part
+         full = model%scene%friction%law%limit_part()
          ! Of a node that has just touched, explicit tangents say nothing about its limit; the corrector's rates do.
-         soft_limit = model%scene%friction%law%soft_limit .and. model%scene%method%integration == integration_explicit
-         sticks = model%scene%friction%law%sticks
+         soft_limit = model%scene%friction%law%has_soft_limit() .and. model%scene%method%integration == integration_explicit
+         sticks = model%scene%friction%law%sticks()
       end if
-      has_corners = allocated(corners%room)
       call find_scales(rate, traction_scale, motion_scale)
       noise = round_off*traction_scale
       do i = 1, n
@@ -91,43 +77,37 @@ contains
                                 mu*rate%pressure(i) - rate%shear(i), max(mu, 1.0_wp)*traction_scale)
                end if
             end if
-            ! What a wrong direction does to the traction counts; and the secants' own noise is larger than round-off.
-            if (has_corners) then
-               if (corners%turning(i) > 0.0_wp) &
-                  call consider(event_reverse, 0.0_wp, motion_sign(status(i))*corners%turning(i)*slip_rate, &
-                                secant_noise*traction_scale)
-            end if
          case (node_slip_right, node_slip_left)
             if (sticks) then
                if (merge(slip_rate, -slip_rate, status(i) == node_slip_right) < 0.0_wp) &
                   call consider(event_stick, 0.0_wp, -abs(slip_rate), motion_scale)
             else
                call consider(event_stick, 0.0_wp, &
-                             model%scene%friction%law%yields(slip_sign(status(i))*slip_rate, &
-                                                             full*model%static_friction(i)*rate%pressure(i)), &
+                             model%scene%friction%law%over_stress(slip_sign(status(i))*slip_rate, &
+                                                                  full*model%static_friction(i)*rate%pressure(i)), &
                              secant_noise*traction_scale)
             end if
-            if (has_corners) call consider_corners(i)
          end select
+         if (allocated(events)) call consider_events(i)
          if (rate%pressure(i) < 0.0_wp) call consider(event_open, state%pressure(i), rate%pressure(i), traction_scale)
       end do
 
    contains
 
-      !> Corners of the friction of slipping node `i`.
-      subroutine consider_corners(i)
+      !> Events of the friction law's own at node `i`.
+      subroutine consider_events(i)
          integer, intent(in) :: i
+         integer :: k
 
-         if (corners%room(i) < huge(1.0_wp)) &
-            call consider(event_weakened, corners%room(i), -slip_sign(status(i))*slip_rate, motion_scale)
-         if (corners%headroom(i) >= 0.0_wp) &
-            call consider(event_capped, corners%headroom(i), corners%head_by_pressure(i)*rate%pressure(i) &
-                          - corners%surplus_rate(i), traction_scale)
-         if (corners%surplus(i) >= 0.0_wp) &
-            call consider(event_caught, corners%surplus(i), corners%surplus_rate(i) &
-                          + corners%by_pressure(i)*rate%pressure(i) &
-                          + corners%by_slip(i)*slip_sign(status(i))*slip_rate, traction_scale)
-      end subroutine consider_corners
+         do k = 1, most_events
+            associate (event => events(k, i))
+               if (event%kind == event_none) cycle
+               call consider(event%kind, event%slack, event%rate + event%by_pressure*rate%pressure(i) &
+                             + event%by_motion*(motion_sign(status(i))*slip_rate), &
+                             event%noise*merge(motion_scale, traction_scale, event%is_length))
+            end associate
+         end do
+      end subroutine consider_events
 
       !> Note that `slack`, which must stay >= 0 and changes at `slack_rate`, ends earlier than what was found so far.
       subroutine consider(kind, slack, slack_rate, scale)

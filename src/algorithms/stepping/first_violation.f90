@@ -18,7 +18,7 @@ module mfv_first_violation
    use mfv_contact_path
    use mfv_contact_system
    use mfv_error, only: error_type
-   use mfv_event_search, only: corners_type, status_after, violations_type
+   use mfv_event_search, only: status_after, violations_type
    use mfv_increment
    use mfv_kinds, only: wp
    use mfv_node_status
@@ -142,7 +142,7 @@ contains
          progress%at_end = .not. drop .and. step*(1.0_wp + tie_of(path)) + last_step(path, segment) >= 1.0_wp - progress%done
          if (progress%at_end) step = 1.0_wp - progress%done
          if (drop .and. step*(1.0_wp + tie_of(path)) + no_step_of(path) >= 1.0_wp) step = 1.0_wp
-         dropping = path%state%excess > 0.0_wp
+         dropping = path%is_releasing()
          call advance(path, progress%increment, drop, error)
          if (allocated(error)) return
          if (drop .and. .not. path%dropping() .and. path%record_events) &
@@ -217,7 +217,7 @@ contains
             jump = max(jump, abs(response%state%pressure(i) - before%pressure(i)), &
                        abs(response%state%shear(i) - before%shear(i)))
          end do
-         if (jump > max(largest_jump, allowed(path), noises*path%system%noise)*scale) then
+         if (jump > max(largest_jump, noises*path%system%noise)*scale) then
             call path%no_continuation('the tractions would have to jump', error)
             return
          end if
@@ -225,18 +225,10 @@ contains
          call response%state%move(increment%step, response%rate)
       end associate
       call path%take_increment(increment%response%state, increment%response%rate%slip(), merge(increment%step, 0.0_wp, drop))
-      if (path%certificate%largest() > max(failed_certificate, allowed(path), noises*path%system%noise)) &
+      if (path%certificate%largest() > max(failed_certificate, noises*path%system%noise)) &
          call path%no_continuation('the equations are no longer satisfied (certificate '// &
                                    to_text(path%certificate%largest())//')', error)
    end subroutine advance
-
-   !> By how much inequalities may be broken where events close to each other are taken together: rates near an edge are large.
-   pure real(wp) function allowed(path)
-      class(contact_path_type), intent(in) :: path
-      real(wp), parameter :: magnification = 100.0_wp
-
-      allowed = magnification*path%model%scene%method%event_tolerance
-   end function allowed
 
    !> Change the statuses of the nodes whose inequalities break first, together.
    !> Errors MFV_NO_CONTINUATION: every way out has been tried at this load; MFV_MESH_EXCEEDED.
@@ -247,7 +239,7 @@ contains
       type(increment_type), intent(in) :: increment
       type(moment_type), intent(inout) :: moment
       type(error_type), allocatable, intent(out) :: error
-      logical :: changing(size(path%state%status)), snapped
+      logical :: changing(size(path%state%status)), snapped, passed
       integer :: fastest
 
       call snap_if_unstable(path, increment, moment, snapped)
@@ -295,17 +287,29 @@ contains
          call path%set_status(changing, status_after(violations%kind, path%state%status, segment%friction .and. &
                                                      path%model%tangential, path%state%slip_direction, &
                                                      path%holding(increment%response%rate%slip())))
-         where (changing .and. violations%kind == event_weakened) &
-            path%state%slipped = path%model%scene%friction%law%weakening_distance
-         where (changing .and. violations%kind == event_caught) path%state%excess = 0.0_wp
-         ! These change what friction remembers, not the statuses: what was tried says nothing any more.
-         if (any(changing .and. (violations%kind == event_weakened .or. violations%kind == event_caught .or. &
-                                 violations%kind == event_capped))) moment%tries = 0
-         path%state%capped = (path%state%capped .or. (changing .and. violations%kind == event_capped)) .and. &
-                             path%state%excess > 0.0_wp
+         call pass_law_events(path, violations%kind, changing, passed)
+         ! Friction remembers something else, statuses are as they were: what was tried says nothing any more.
+         if (passed) moment%tries = 0
       end associate
       call path%keep_on_mesh(moment, error)
    end subroutine change_statuses
+
+   !> Events of the friction law's own at the nodes of `changing`. `passed`: whether there are any that change no status.
+   subroutine pass_law_events(path, kind, changing, passed)
+      class(contact_path_type), intent(inout) :: path
+      integer, intent(in) :: kind(:)
+      logical, intent(in) :: changing(:)
+      logical, intent(out) :: passed
+      integer :: i
+
+      passed = .false.
+      if (.not. path%model%scene%friction%acts()) return
+      do i = 1, size(kind)
+         if (.not. changing(i)) cycle
+         call path%model%scene%friction%law%pass_event(kind(i), path%state%memory(:, i))
+         passed = passed .or. keeps_status(kind(i))
+      end do
+   end subroutine pass_law_events
 
    !> Statuses of all undecided nodes at once. `settled`: whether they were found.
    subroutine settle_at_once(path, segment, done, settled)
@@ -320,21 +324,18 @@ contains
       call settle_by_rates(path, constraints, settled)
    end subroutine settle_at_once
 
-   !> Where a node that is still weakening would turn back, it either comes to rest or the bodies can no longer unload as fast
+   !> Where a slipping node that may become unstable would turn back, it either comes to rest or the bodies can no longer unload as fast
    !> as its friction falls. Let it snap, once at each load: one that need not is caught again at once, and comes to rest.
    subroutine snap_if_unstable(path, increment, moment, snapped)
       class(contact_path_type), intent(inout) :: path
       type(increment_type), intent(in) :: increment
       type(moment_type), intent(inout) :: moment
       logical, intent(out) :: snapped
-      type(corners_type) :: corners
 
       snapped = .false.
       if (moment%snapped .or. .not. any(increment%violations%kind == event_stick)) return
-      if (.not. path%has_corners()) return
-      call path%find_corners(path%state%fields, corners)
       if (.not. any(increment%violations%kind == event_stick .and. increment%violations%step <= no_step_of(path) .and. &
-                    corners%room < huge(1.0_wp))) return
+                    path%can_become_unstable())) return
       call path%snap(moment, snapped)
       if (.not. snapped) return
       call renew(moment, moment%event, moment%node, moment%count)

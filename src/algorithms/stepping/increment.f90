@@ -13,10 +13,11 @@ module mfv_increment
    use mfv_contact_fields, only: contact_fields_type
    use mfv_contact_path, only: contact_path_type
    use mfv_contact_system
-   use mfv_event_search, only: corners_type, find_violations, violations_type
+   use mfv_event_search, only: find_violations, violations_type
+   use mfv_friction_law, only: friction_event_type
    use mfv_kinds, only: wp
    use mfv_node_status
-   use mfv_scene, only: integration_explicit, stepping_event, stepping_nominal
+   use mfv_scene, only: integration_explicit, stepping_nominal
    implicit none
    private
    public :: increment_type, find_increment, no_step_of, tie_of
@@ -75,7 +76,6 @@ contains
                                 increment%singular)
          if (increment%singular) return
          call search(path, round_off, left, increment)
-         if (grouping(path)) call take_together(path, left, increment)
          if (bends(path)) call follow_friction(path, constraints, left, drop, round_off, increment)
       end if
    end subroutine find_increment
@@ -83,14 +83,17 @@ contains
    !> Whether the line of some node's friction depends on where it leads.
    logical function bends(path)
       class(contact_path_type), intent(in) :: path
-      type(corners_type) :: corners
+      integer :: i
 
       bends = .false.
       if (.not. path%model%tangential) return
-      if (path%model%scene%friction%law%is_linear) return
-      call path%find_corners(path%state%fields, corners)
-      bends = any(creeps(path%state%status))
-      if (allocated(corners%room)) bends = bends .or. any(corners%room < huge(1.0_wp))
+      associate (law => path%model%scene%friction%law)
+         if (law%is_linear()) return
+         do i = 1, size(path%state%status)
+            bends = law%bends(path%state%status(i), path%point(i, path%state%fields))
+            if (bends) return
+         end do
+      end associate
    end function bends
 
    !> Violations by the rates, and the step to the first of them but no further than `longest`.
@@ -100,51 +103,17 @@ contains
       type(increment_type), intent(inout) :: increment
       ! What nothing leads to is this far away, in units of the load parameter: twice as far is a number still.
       real(wp), parameter :: never = 0.25_wp*huge(1.0_wp)
-      type(corners_type) :: corners
+      type(friction_event_type), allocatable :: events(:, :)
       real(wp) :: first
 
-      if (path%has_corners()) call path%find_corners(path%state%fields%plus(longest, increment%response%rate), corners)
-      if (grouping(path)) then
-         ! Inequalities that were broken hold again in the state that the new statuses make.
-         call find_violations(path%model, path%state%status, corners, increment%response%state, increment%response%rate, &
-                              max(round_off, path%system%noise), increment%violations)
-      else
-         call find_violations(path%model, path%state%status, corners, path%state%fields, increment%response%rate, &
-                              max(round_off, path%system%noise), increment%violations)
-      end if
+      call path%find_events(path%state%fields%plus(longest, increment%response%rate), events)
+      call find_violations(path%model, path%state%status, events, path%state%fields, increment%response%rate, &
+                           max(round_off, path%system%noise), increment%violations)
       first = min(minval(increment%violations%step), never)
       increment%step = min(first, longest)
       increment%reach = first*(1.0_wp + tie_of(path)) + no_step_of(path)
       increment%ends_in_event = first*(1.0_wp - tie_of(path)) - no_step_of(path) <= longest
    end subroutine search
-
-   !> Whether events close to each other are taken together: asked for, and friction is Coulomb's or none.
-   pure logical function grouping(path)
-      class(contact_path_type), intent(in) :: path
-
-      grouping = path%model%scene%method%event_tolerance > 0.0_wp .and. path%model%scene%method%stepping == stepping_event
-      if (.not. (grouping .and. path%model%scene%friction%acts())) return
-      grouping = path%model%scene%friction%law%is_linear .and. .not. path%model%scene%friction%law%drops
-   end function grouping
-
-   !> Violations that follow the first one within `event_tolerance`, in parts of what is then done of the segment, happen
-   !> together with the last of them. Until then inequalities are broken, by what the rates do over that part of the load;
-   !> measured, this errs less than to change the nodes too early. (What is violated already at the start has no time.) `left`:
-   !> what is left of the segment.
-   subroutine take_together(path, left, increment)
-      class(contact_path_type), intent(in) :: path
-      real(wp), intent(in) :: left
-      type(increment_type), intent(inout) :: increment
-      real(wp) :: furthest, window
-
-      if (increment%step <= no_step_of(path) .or. .not. increment%ends_in_event) return
-      window = path%model%scene%method%event_tolerance*(1.0_wp - left + increment%step)
-      furthest = min(increment%step + window, left)
-      furthest = maxval(increment%violations%step, mask=increment%violations%step <= furthest)
-      if (.not. furthest > increment%step) return
-      increment%step = furthest
-      increment%reach = max(increment%reach, furthest)
-   end subroutine take_together
 
    !> Lead friction that is not linear over an increment with a controlled error, or explicitly.
    subroutine follow_friction(path, constraints, left, drop, round_off, increment)
@@ -163,7 +132,7 @@ contains
       integer :: attempt
 
       if (path%model%scene%method%integration == integration_explicit .and. &
-          .not. path%model%scene%friction%law%sticks) then
+          .not. path%model%scene%friction%law%sticks()) then
          call search(path, round_off, min(left, path%model%scene%method%load_step), increment)
          return
       end if

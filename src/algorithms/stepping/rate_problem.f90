@@ -36,7 +36,7 @@ contains
       settled = .false.
       if (path%dropping()) return
       if (path%model%scene%friction%acts()) then
-         if (.not. path%model%scene%friction%law%is_linear .or. path%model%scene%friction%law%drops) return
+         if (.not. path%model%scene%friction%law%is_linear() .or. path%model%scene%friction%law%drops()) return
       end if
       call find_undecided(path, node, sort)
       if (size(node) == 0) return

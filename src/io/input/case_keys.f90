@@ -2,6 +2,7 @@
 !> reference in docs/namelist.md and `mfv_run --keys` are printed from it.
 module mfv_case_keys
    use mfv_body, only: shape_names
+   use mfv_friction, only: friction_law_names
    use mfv_keys
    use mfv_kinds, only: wp
    use mfv_scene, only: most_cycles
@@ -115,7 +116,7 @@ contains
    subroutine add_friction_keys(keys)
       type(key_type), allocatable, intent(inout) :: keys(:)
 
-      call add_choice_key(keys, 'friction', 'law', 'none', 'none coulomb static_kinetic weakening dahl', 'friction law')
+      call add_choice_key(keys, 'friction', 'law', 'none', 'none '//friction_law_names, 'friction law')
       call add_coefficient_key(keys, 'mu', 'coulomb, dahl: coefficient of friction')
       call add_coefficient_key(keys, 'mu_static', 'static_kinetic, weakening: coefficient up to which a node sticks')
       call add_coefficient_key(keys, 'mu_kinetic', 'static_kinetic, weakening: coefficient with which it slips, at the end; '// &
@@ -174,9 +175,6 @@ contains
                           'large increments, events where these would cost more (coulomb)')
       call add_part_key(keys, 'leap_tolerance', '1e-3', "stepping='leap': tolerance of the tractions, relative to the largest "// &
                         'traction, and of the dissipation of each load segment, relative to that')
-      call add_real_key(keys, 'solver', 'event_tolerance', '', 'mfv: events closer to each other than this part of the '// &
-                        'load so far in the load segment are taken together: fewer solves, less accuracy '// &
-                        '(coulomb)', lower=0.0_wp, upper=0.1_wp, default='0')
       call add_part_key(keys, 'load_step', '0.05', 'nominal load step, part of each load segment: for '// &
                         "algorithm='conventional', stepping='nominal', integration='explicit'")
       call add_choice_key(keys, 'solver', 'integration', 'second_order', 'second_order explicit', 'dahl: second order with '// &

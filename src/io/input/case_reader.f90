@@ -7,6 +7,7 @@ module mfv_case_reader
    use mfv_compliance, only: coupling_full, coupling_goodman, coupling_none
    use mfv_discretisation_error, only: has_coarser_meshes
    use mfv_error, only: error_type
+   use mfv_friction, only: friction_type, new_friction_law
    use mfv_friction_reader
    use mfv_key_reader
    use mfv_kinds, only: wp
@@ -131,23 +132,20 @@ contains
       type(method_type), intent(in) :: method
       type(error_type), allocatable, intent(out) :: error
       character(:), allocatable :: law
-      logical :: is_mfv, is_coulomb
+      type(friction_type) :: friction
+      logical :: is_mfv
 
       law = reader%text_value('friction', 1, 'law')
+      call new_friction_law(law, friction%law)
       is_mfv = method%algorithm == algorithm_mfv
-      is_coulomb = law == 'coulomb' .or. law == 'none'
-      if (method%integration == integration_explicit .and. law /= 'dahl') then
+      if (method%integration == integration_explicit .and. friction%sticks()) then
          call reader%complain('solver', 1, 'integration', "means nothing without law='dahl'", error)
-      else if (method%event_tolerance > 0.0_wp .and. .not. (is_mfv .and. method%stepping == stepping_event)) then
-         call reader%complain('solver', 1, 'event_tolerance', "means nothing without algorithm='mfv' and stepping='event'", error)
-      else if (method%event_tolerance > 0.0_wp .and. .not. is_coulomb) then
-         call reader%complain('solver', 1, 'event_tolerance', "needs law='coulomb' or 'none', not '"//law//"'", error)
-      else if (method%stepping == stepping_nominal .and. (law == 'weakening' .or. law == 'dahl')) then
+      else if (method%stepping == stepping_nominal .and. .not. friction%is_linear()) then
          call reader%complain('solver', 1, 'stepping', "must be 'event' with law='"//law//"', which is not linear "// &
                               'between events', error)
       else if (method%stepping /= stepping_event .and. .not. is_mfv) then
          call reader%complain('solver', 1, 'stepping', "means nothing with algorithm='conventional'", error)
-      else if (method%stepping == stepping_leap .and. .not. is_coulomb) then
+      else if (method%stepping == stepping_leap .and. allocated(friction%law) .and. .not. friction%is_proportional()) then
          call reader%complain('solver', 1, 'stepping', "'leap' needs law='coulomb' or 'none', not '"//law//"'", error)
       end if
    end subroutine check_method
@@ -162,7 +160,6 @@ contains
       method%linear_solver = reader%constant('solver', 1, 'linear_solver', &
                                              [solver_auto, solver_dgesv, solver_reduced, solver_fft])
       method%linear_tolerance = reader%real_value('solver', 1, 'linear_tolerance')
-      method%event_tolerance = reader%real_value('solver', 1, 'event_tolerance')
       method%leap_tolerance = reader%real_value('solver', 1, 'leap_tolerance')
       method%integration = reader%constant('solver', 1, 'integration', [integration_second_order, integration_explicit])
       method%load_step = reader%real_value('solver', 1, 'load_step')

@@ -3,11 +3,12 @@ module mfv_friction_reader
    use mfv_body, only: shape_matrix
    use mfv_error, only: error_type
    use mfv_friction
+   use mfv_friction_law, only: friction_law_type
    use mfv_key_reader
    use mfv_kinds, only: wp
    use mfv_profile_file, only: read_table
    use mfv_scene, only: scene_type
-   use mfv_strings, only: list_of_words, string_type, to_text
+   use mfv_strings, only: has_word, list_of_words, string_type, to_text
    implicit none
    private
    public :: read_friction, check_friction_keys, check_coefficients_a_node, check_friction_of_steps
@@ -19,23 +20,22 @@ contains
       type(reader_type), intent(in) :: reader
       type(scene_type), intent(inout) :: scene
       type(error_type), allocatable, intent(out) :: error
-      real(wp) :: exponent
+      type(string_type), allocatable :: needed(:), optional_ones(:)
+      integer :: i
 
-      select case (reader%text_value('friction', 1, 'law'))
-      case ('coulomb')
-         scene%friction = coulomb_friction(0.0_wp)
-      case ('static_kinetic')
-         scene%friction = static_kinetic_friction(0.0_wp, 0.0_wp)
-      case ('weakening')
-         scene%friction = weakening_friction(0.0_wp, 0.0_wp, reader%real_value('friction', 1, 'weakening_distance'))
-      case ('dahl')
-         exponent = 1.0_wp
-         if (reader%has('friction', 1, 'exponent')) exponent = reader%real_value('friction', 1, 'exponent')
-         scene%friction = dahl_friction(0.0_wp, reader%real_value('friction', 1, 'stiffness'), exponent)
-      case default
-         scene%friction = no_friction()
-         return
-      end select
+      scene%friction = no_friction()
+      call new_friction_law(reader%text_value('friction', 1, 'law'), scene%friction%law)
+      if (.not. allocated(scene%friction%law)) return
+      associate (law => scene%friction%law)
+         call law%parameters(needed, optional_ones)
+         do i = 1, size(needed)
+            call law%set_parameter(needed(i)%text, reader%real_value('friction', 1, needed(i)%text))
+         end do
+         do i = 1, size(optional_ones)
+            if (reader%has('friction', 1, optional_ones(i)%text)) &
+               call law%set_parameter(optional_ones(i)%text, reader%real_value('friction', 1, optional_ones(i)%text))
+         end do
+      end associate
       call read_coefficients(reader, scene%friction, error)
       if (.not. allocated(error)) call scene%friction%simplify()
    end subroutine read_friction
@@ -44,19 +44,18 @@ contains
    subroutine check_friction_keys(reader, error)
       type(reader_type), intent(in) :: reader
       type(error_type), allocatable, intent(out) :: error
-      character(:), allocatable :: law, coefficients, needed
+      character(:), allocatable :: coefficients, needed, known
       type(string_type), allocatable :: keys(:)
       integer :: i
 
-      law = reader%text_value('friction', 1, 'law')
-      call keys_of_law(law, coefficients, needed)
+      call find_keys_of_law(reader%text_value('friction', 1, 'law'), coefficients, needed, known)
       keys = reader%catalogue%names('friction')
       do i = 1, size(keys)
          if (.not. reader%has('friction', 1, keys(i)%text)) cycle
-         if (index(' law '//coefficients//' '//needed//' exponent mu_file ', ' '//keys(i)%text//' ') == 0 .or. &
-             (keys(i)%text == 'exponent' .and. law /= 'dahl') .or. (keys(i)%text == 'mu_file' .and. law == 'none')) then
-            call reader%complain('friction', 1, keys(i)%text, "means nothing with law='"//law//"'", error)
-         else if (index(' '//coefficients//' ', ' '//keys(i)%text//' ') > 0 .and. reader%has('friction', 1, 'mu_file')) then
+         if (.not. has_word('law '//coefficients//' '//known, keys(i)%text)) then
+            call reader%complain('friction', 1, keys(i)%text, &
+                                 "means nothing with law='"//reader%text_value('friction', 1, 'law')//"'", error)
+         else if (has_word(coefficients, keys(i)%text) .and. reader%has('friction', 1, 'mu_file')) then
             call reader%complain('friction', 1, keys(i)%text, 'mu_file is there too; give one of them', error)
          end if
          if (allocated(error)) return
@@ -69,24 +68,30 @@ contains
       end do
    end subroutine check_friction_keys
 
-   !> Keys of a law's coefficients, and what else it needs; separated by blanks.
-   subroutine keys_of_law(law, coefficients, needed)
-      character(*), intent(in) :: law
-      character(:), allocatable, intent(out) :: coefficients, needed
+   !> Keys of a law's coefficients, what else it needs, and all besides its coefficients that it knows; separated by blanks.
+   subroutine find_keys_of_law(name, coefficients, needed, known)
+      character(*), intent(in) :: name
+      character(:), allocatable, intent(out) :: coefficients, needed, known
+      class(friction_law_type), allocatable :: law
+      type(string_type), allocatable :: needed_ones(:), optional_ones(:)
+      integer :: i
 
       coefficients = ''
       needed = ''
-      if (law == 'coulomb' .or. law == 'dahl') coefficients = 'mu'
-      if (has_two_coefficients(law)) coefficients = 'mu_static mu_kinetic'
-      if (law == 'weakening') needed = 'weakening_distance'
-      if (law == 'dahl') needed = 'stiffness'
-   end subroutine keys_of_law
-
-   pure logical function has_two_coefficients(law)
-      character(*), intent(in) :: law
-
-      has_two_coefficients = law == 'static_kinetic' .or. law == 'weakening'
-   end function has_two_coefficients
+      known = ''
+      call new_friction_law(name, law)
+      if (.not. allocated(law)) return
+      coefficients = 'mu'
+      if (law%has_two_coefficients()) coefficients = 'mu_static mu_kinetic'
+      call law%parameters(needed_ones, optional_ones)
+      do i = 1, size(needed_ones)
+         needed = needed//' '//needed_ones(i)%text
+      end do
+      known = 'mu_file '//needed
+      do i = 1, size(optional_ones)
+         known = known//' '//optional_ones(i)%text
+      end do
+   end subroutine find_keys_of_law
 
    !> Coefficients of friction: numbers, one number a node, or a file.
    subroutine read_coefficients(reader, friction, error)
@@ -130,7 +135,7 @@ contains
       real(wp), allocatable :: table(:, :)
       logical :: two, in_memory
 
-      two = has_two_coefficients(reader%text_value('friction', 1, 'law'))
+      two = friction%law%has_two_coefficients()
       call find_file(reader, 'friction', 1, 'mu_file', path, in_memory)
       if (in_memory) then
          call reader%data%read_columns(path, trim(merge('x mu_static mu_kinetic', 'x mu                  ', two)), table, &

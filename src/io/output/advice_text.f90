@@ -100,7 +100,7 @@ contains
          needed = to_text(ceiling(advice%needed_nodes(i)*advice%nodes/max(advice%contact_nodes, 1)))
          call add_line(text, ' '//name//present//trim(needed))
       end do
-      if (case%scene%friction%name == 'static_kinetic') &
+      if (.not. case%scene%friction%converges()) &
          call add_line(text, 'Static and kinetic friction depends on every mesh: there is no limit to be near to.')
       call add_line(text, 'Then about '//to_text(advice%contact_nodes)//' nodes in contact, '//to_text(advice%solves, 2)// &
                     ' linear solves, '//to_text(advice%seconds, 1)//' s by laws of cost (mfv_advice).')
@@ -130,7 +130,7 @@ contains
       case default
          values = "linear_solver='auto'"
       end select
-      if (case%scene%friction%name == 'dahl' .or. case%scene%friction%name == 'weakening') then
+      if (.not. case%scene%friction%is_linear()) then
          keys = keys//' friction_tolerance'
          values = values//', friction_tolerance='//to_text(advice%friction_tolerance, 2)
       end if

@@ -8,6 +8,7 @@ module mfv_hdf5_restart
    use mfv_contact_model, only: contact_model_type
    use mfv_contact_state, only: contact_state_type, new_contact_state
    use mfv_error, only: error_type, set_error
+   use mfv_friction_law, only: memory_size
    use mfv_hdf5_reader, only: read_vector
    use mfv_history, only: history_record_type, history_type
    use mfv_kinds, only: wp
@@ -244,7 +245,7 @@ contains
       character(*), intent(in) :: prefix
       integer, intent(in) :: nodes
       type(contact_state_type), intent(inout) :: state
-      integer :: capped(nodes)
+      integer :: i
 
       if (allocated(self%error)) return
       if (self%reading) state = new_contact_state(nodes)
@@ -257,11 +258,9 @@ contains
       call self%exchange('tangential', state%fields%tangential, 'how far the lower surface moves to the right of the upper one')
       call self%exchange('stuck_slip', state%stuck_slip, 'slip at which a stuck node holds')
       call self%exchange('slip_direction', state%slip_direction, 'sign of the last slip rate')
-      call self%exchange('slipped', state%slipped, 'slip since the node last held')
-      call self%exchange('excess', state%excess, 'shear traction beyond kinetic friction')
-      capped = merge(1, 0, state%capped)
-      call self%exchange('capped', capped, 'whether that is all that the static limit allows')
-      state%capped = capped /= 0
+      do i = 1, memory_size
+         call self%exchange('memory_'//to_text(i), state%memory(i, :), 'what the friction law remembers')
+      end do
       self%prefix = ''
    end subroutine exchange_state
 

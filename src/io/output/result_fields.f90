@@ -212,7 +212,7 @@ contains
       call add('force_unit', case%force_unit)
       call add('plane', trim(word(planes, case%scene%plane)))
       call add('coupling', trim(word(couplings, case%scene%coupling)))
-      call add('friction_law', trim(case%scene%friction%name))
+      call add('friction_law', trim(case%scene%friction%name()))
       call add('algorithm', trim(word(algorithms, case%scene%method%algorithm)))
       call add('stepping', trim(word(steppings, case%scene%method%stepping)))
       call add('linear_solver', trim(simulation%contact%system%name))

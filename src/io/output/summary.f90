@@ -206,7 +206,7 @@ contains
       end do
       call add_line(text, 'error estimate', 'from meshes with '//meshes//' nodes in place of '// &
                     to_text(simulation%estimate%nodes))
-      if (case%scene%friction%name == 'static_kinetic') &
+      if (.not. case%scene%friction%converges()) &
          call add_line(text, 'error estimate', 'static and kinetic friction depends on every mesh: '// &
                        'there is no limit that the bars could be from')
    end subroutine add_estimate
