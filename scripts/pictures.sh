@@ -30,3 +30,6 @@ PYTHONPATH=$root/python MPLBACKEND=Agg MFV_LIBRARY=$library/libmfv.so OPENBLAS_N
   "$venv/bin/python" "$root/examples/hosts/draw_newmark.py" newmark -o "$pictures/newmark_decay.png"
 # Figures of the dissertation, into examples/dissertation/pictures.
 PYTHONPATH=$root/python MPLBACKEND=Agg MFV_LIBRARY=$root/build/release/lib/libmfv.so "$venv/bin/python" "$root/examples/dissertation/draw.py"
+
+# How the folders of the sources depend on each other.
+python3 "$root/scripts/dependencies.py" "$pictures/dependencies.svg"

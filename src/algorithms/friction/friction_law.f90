@@ -1,7 +1,7 @@
 !> What every friction law tells the algorithms. A law is a file of its own that extends `friction_law_type` and contains all that is
 !> special to it; the algorithms ask it, and never for its name.
 !>
-!> All laws share the friction limit of a node that holds, |tau| <= mu_s p. They differ in what a node does that slips (or
+!> A node holds up to a limit, |tau| <= mu_s p unless the law says otherwise. Laws differ in what a node does that slips (or
 !> creeps): over an increment of the load its shear traction is the line
 !>
 !>     tau = slope*p + stiffness*s + offset,
@@ -69,6 +69,8 @@ module mfv_friction_law
       procedure(strength_interface), deferred :: strength
       procedure :: secant
       procedure :: limit_part
+      procedure :: limit_varies
+      procedure :: limit
       procedure :: has_soft_limit
       procedure :: holding_status
       procedure :: over_stress
@@ -212,12 +214,27 @@ contains
       row = self%row(status, before, before)
    end function secant
 
-   !> Part of the limit mu_s p at which a holding node slips.
+   !> Part of the limit at which a holding node slips.
    pure real(wp) function limit_part(self)
       class(friction_law_type), intent(in) :: self
 
       limit_part = 1.0_wp
    end function limit_part
+
+   !> Whether the coefficient of the limit depends on what the node remembers.
+   pure logical function limit_varies(self)
+      class(friction_law_type), intent(in) :: self
+
+      limit_varies = .false.
+   end function limit_varies
+
+   !> The coefficient of the limit up to which a node holds.
+   pure real(wp) function limit(self, point)
+      class(friction_law_type), intent(in) :: self
+      type(friction_point_type), intent(in) :: point
+
+      limit = point%static
+   end function limit
 
    !> Whether creeping nodes reach the limit smoothly: a node that has just touched is then at a part of it.
    pure logical function has_soft_limit(self)

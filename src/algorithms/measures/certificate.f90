@@ -294,7 +294,10 @@ contains
          do i = 1, size(after%status)
             status = after%status(i)
             if (status == node_open) cycle
-            limit = model%static_friction(i)*after%fields%pressure(i)
+            there = after%friction_point(after%fields, i, model%static_friction(i), model%kinetic_friction(i))
+            limit = model%static_friction(i)
+            if (law%limit_varies()) limit = law%limit(there)
+            limit = limit*after%fields%pressure(i)
             if (status == node_frictionless) limit = 0.0_wp
             beyond_limit = max(beyond_limit, abs(after%fields%shear(i)) - limit)
             slipped = after%fields%tangential(i) - after%fields%shift - (before%fields%tangential(i) - before%fields%shift)
@@ -306,7 +309,6 @@ contains
                law_defect = largest_or_nan(law_defect, after%fields%shear(i))
             else
                here = before%friction_point(before%fields, i, model%static_friction(i), model%kinetic_friction(i))
-               there = after%friction_point(after%fields, i, model%static_friction(i), model%kinetic_friction(i))
                law_defect = largest_or_nan(law_defect, law%defect(status, here, there, explicit))
                if (slips(status)) wrong_way = max(wrong_way, law%wrong_motion( &
                                                   slip_sign(status)*slipped, model%static_friction(i) &

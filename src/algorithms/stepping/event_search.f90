@@ -25,12 +25,14 @@ module mfv_event_search
 contains
 
    !> All violations that the rates lead to.
-   !> `status`: shape (nodes). `events`: what the friction law adds to them, shape (most_events, nodes); none if not allocated.
+   !> `status`: shape (nodes). `limit`: coefficients of the friction limit, shape (nodes). `events`: what the friction
+   !> law adds, shape (most_events, nodes); none if not allocated.
    !> `state`, `rate`: fields now and their rates per unit of the load parameter. Rates below the part `round_off` of the
    !> largest one of their sort count as zero. `violations`: their storage is used again.
-   subroutine find_violations(model, status, events, state, rate, round_off, violations)
+   subroutine find_violations(model, status, limit, events, state, rate, round_off, violations)
       type(contact_model_type), intent(in) :: model
       integer, intent(in) :: status(:)
+      real(wp), intent(in) :: limit(:)
       type(friction_event_type), allocatable, intent(in) :: events(:, :)
       type(contact_fields_type), intent(in) :: state, rate
       real(wp), intent(in) :: round_off
@@ -52,9 +54,9 @@ contains
       sticks = .true.
       soft_limit = .false.
       if (allocated(model%scene%friction%law)) then
-         full = model%scene%friction%law%limit_part()
          ! Of a node that has just touched, explicit tangents say nothing about its limit; the corrector's rates do.
          soft_limit = model%scene%friction%law%has_soft_limit() .and. model%scene%method%integration == integration_explicit
+         full = model%scene%friction%law%limit_part()
          sticks = model%scene%friction%law%sticks()
       end if
       call find_scales(rate, traction_scale, motion_scale)
@@ -68,7 +70,7 @@ contains
                call consider(event_close, model%initial_gap(i) - state%approach + state%normal(i), gap_rate, motion_scale)
             cycle
          case (node_stick, node_creep_right, node_creep_left)
-            mu = full*model%static_friction(i)
+            mu = full*limit(i)
             if (mu*rate%pressure(i) - abs(rate%shear(i)) < 0.0_wp) then
                if (.not. (soft_limit .and. .not. state%pressure(i) > 0.0_wp .and. rate%pressure(i) > noise)) then
                   call consider(event_slip_right, mu*state%pressure(i) + state%shear(i), &
@@ -84,7 +86,7 @@ contains
             else
                call consider(event_stick, 0.0_wp, &
                              model%scene%friction%law%over_stress(slip_sign(status(i))*slip_rate, &
-                                                                  full*model%static_friction(i)*rate%pressure(i)), &
+                                                                  full*limit(i)*rate%pressure(i)), &
                              secant_noise*traction_scale)
             end if
          end select

@@ -107,8 +107,8 @@ contains
       real(wp) :: first
 
       call path%find_events(path%state%fields%plus(longest, increment%response%rate), events)
-      call find_violations(path%model, path%state%status, events, path%state%fields, increment%response%rate, &
-                           max(round_off, path%system%noise), increment%violations)
+      call find_violations(path%model, path%state%status, path%friction_limits(), events, path%state%fields, &
+                           increment%response%rate, max(round_off, path%system%noise), increment%violations)
       first = min(minval(increment%violations%step), never)
       increment%step = min(first, longest)
       increment%reach = first*(1.0_wp + tie_of(path)) + no_step_of(path)
