@@ -6,6 +6,7 @@ module mfv_summary
    use mfv_error_bar
    use mfv_interior, only: has_interior
    use mfv_kinds, only: wp
+   use mfv_motions, only: motion_rotation
    use mfv_result_fields, only: field_named, field_type, group_fields
    use mfv_simulation, only: simulation_type
    use mfv_status, only: status_outcome
@@ -46,7 +47,7 @@ contains
          end if
          call group_fields(case, simulation, 'observables', seen)
          if (simulation%cycle_count > 0) call add_last_cycle(text, seen)
-         if (model%rotational) then
+         if (model%moves(motion_rotation)) then
             call add_line(text, 'moment', amount(fields, 'moment')//', rotation '//amount(fields, 'rotation'))
             call add_creepage(text, seen)
          end if
