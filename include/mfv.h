@@ -59,8 +59,9 @@ typedef struct mfv_step {
   int friction;               /* 0: friction off during this step */
   int cycles;                 /* 0: go to the targets; n: go there and back n times */
   int relative;               /* 1: targets are increments, added to the loads now */
+  int unused[2];              /* 0 */
 } mfv_step;
-#define MFV_STEP_INIT {sizeof(mfv_step), {0.0, 0.0, 0.0}, 0.0, {MFV_KEEP, MFV_KEEP, MFV_KEEP}, 1, 0, 0}
+#define MFV_STEP_INIT {sizeof(mfv_step), {0.0, 0.0, 0.0}, 0.0, {MFV_KEEP, MFV_KEEP, MFV_KEEP}, 1, 0, 0, {0, 0}}
 
 /* Version of the library, such as "0.1.0". Since 0.1.0. */
 int mfv_version(char *buffer, size_t size);

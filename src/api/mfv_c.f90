@@ -53,7 +53,7 @@ module mfv_c
    type, bind(C) :: c_step
       integer(c_size_t) :: size
       real(c_double) :: target(motion_count), steady_tolerance
-      integer(c_int) :: control(motion_count), friction, cycles, relative
+      integer(c_int) :: control(motion_count), friction, cycles, relative, unused(2)
    end type c_step
 
    !> mfv_loads of the header.

@@ -56,9 +56,9 @@ static int watch(const mfv_progress *progress, void *user) {
 static mfv_loads loads_now(story *self) {
   mfv_loads loads = MFV_LOADS_INIT;
   if (mfv_get_loads(self->handle, &loads) != MFV_COMPLETE) wrong(self, "mfv_get_loads failed");
-  if (!isfinite(loads.force[MFV_APPROACH] + loads.force[MFV_SHIFT] + loads.force[MFV_ROTATION] + loads.motion[MFV_APPROACH] + loads.motion[MFV_SHIFT] + loads.motion[MFV_ROTATION] +
-                loads.dissipation))
-    wrong(self, "a load is not finite");
+  double sum = loads.dissipation;
+  for (int i = 0; i < MFV_MOTIONS; ++i) sum += loads.force[i] + loads.motion[i];
+  if (!isfinite(sum)) wrong(self, "a load is not finite");
   return loads;
 }
 
@@ -161,16 +161,14 @@ static void lead(story *self, const mfv_step *step) {
   be_patient(self);
   if (parts > 1) {
     part.relative = 1;
-    part.target[MFV_APPROACH] = (step->target[MFV_APPROACH] - (step->control[MFV_APPROACH] == MFV_FORCE ? now.force[MFV_APPROACH] : now.motion[MFV_APPROACH])) / parts;
-    part.target[MFV_SHIFT] =
-        (step->target[MFV_SHIFT] - (step->control[MFV_SHIFT] == MFV_FORCE ? now.force[MFV_SHIFT] : now.motion[MFV_SHIFT])) / parts;
-    part.target[MFV_ROTATION] = (step->target[MFV_ROTATION] - now.force[MFV_ROTATION]) / parts;
+    for (int i = 0; i < MFV_MOTIONS; ++i)
+      part.target[i] = (step->target[i] - (step->control[i] == MFV_FORCE ? now.force[i] : now.motion[i])) / parts;
   }
   for (int i = 0; i < parts; ++i) {
     if (i + 1 == parts && parts > 1) part = *step; /* round-off must not make the force negative */
     note(self, "advance normal %d %.17g tangential %d %.17g rotational %d %.17g friction %d cycles %d steady %g relative %d",
-         part.control[MFV_APPROACH], part.target[MFV_APPROACH], part.control[MFV_SHIFT], part.target[MFV_SHIFT], part.control[MFV_ROTATION],
-         part.target[MFV_ROTATION], part.friction, part.cycles, part.steady_tolerance, part.relative);
+         part.control[MFV_APPROACH], part.target[MFV_APPROACH], part.control[MFV_SHIFT], part.target[MFV_SHIFT],
+         part.control[MFV_ROTATION], part.target[MFV_ROTATION], part.friction, part.cycles, part.steady_tolerance, part.relative);
     led(self, mfv_advance(self->handle, &part));
     if (self->out.status != MFV_COMPLETE) return;
   }

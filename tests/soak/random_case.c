@@ -224,11 +224,10 @@ static mfv_step random_step(generator *random, const random_case *self, int is_f
 }
 
 static void put_step(random_case *self, int number, const mfv_step *step) {
-  if (step->control[MFV_APPROACH] != MFV_KEEP)
-    put_real(self, "step", number, step->control[MFV_APPROACH] == MFV_FORCE ? "normal_force" : "approach", step->target[MFV_APPROACH]);
-  if (step->control[MFV_SHIFT] != MFV_KEEP)
-    put_real(self, "step", number, step->control[MFV_SHIFT] == MFV_FORCE ? "tangential_force" : "shift", step->target[MFV_SHIFT]);
-  if (step->control[MFV_ROTATION] != MFV_KEEP) put_real(self, "step", number, "moment", step->target[MFV_ROTATION]);
+  static const char *keys[][MFV_MOTIONS] = {[MFV_FORCE] = {"normal_force", "tangential_force", "moment"},
+                                            [MFV_DISPLACEMENT] = {"approach", "shift", "rotation"}};
+  for (int i = 0; i < MFV_MOTIONS; ++i)
+    if (step->control[i] != MFV_KEEP) put_real(self, "step", number, keys[step->control[i]][i], step->target[i]);
   if (self->law != NO_FRICTION) put_logical(self, "step", number, "friction", step->friction);
   if (step->cycles > 0) put_integer(self, "step", number, "cycles", step->cycles);
   if (step->steady_tolerance > 0) put_real(self, "step", number, "steady_tolerance", step->steady_tolerance);

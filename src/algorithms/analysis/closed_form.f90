@@ -48,6 +48,7 @@ contains
                  force => simulation%contact%state%fields%force(motion_approach))
          if (.not. (force > 0.0_wp .and. scene%modulus() > 0.0_wp)) return
          if (model%compliance%elastic_block(block_wt) .and. model%tangential .and. .not. alike(scene)) return
+         if (any(simulation%way%controlled(motion_rotation + 1:))) return
          if (simulation%way%controlled(motion_rotation) .and. .not. (is_hertz(scene) .and. model%rolls())) return
          form%indenter = indenter_of(scene)
          if (.not. form%indenter%is_flat() .and. .not. any([scene%lower%shape, scene%upper%shape] == shape_flat_punch)) then

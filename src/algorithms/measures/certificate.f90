@@ -19,30 +19,26 @@ module mfv_certificate
    integer, parameter :: elasticity_normal = 1, elasticity_tangential = 2, normal_force_balance = 3, &
                          tangential_force_balance = 4, contact_gap = 5, open_traction = 6, stick_slip = 7, &
                          slip_traction = 8, pressure_sign = 9, gap_sign = 10, friction_limit = 11, &
-                         slip_direction = 12, continuity = 13, energy_balance = 14, moment_balance = 15
-   !> Number of residuals.
-   integer, parameter :: residual_count = 15
+                         slip_direction = 12, continuity = 13, energy_balance = 14
+   integer :: motion
+   !> Number of residuals: the balances of the forces of optional motions, which come after approach and shift, are the last.
+   integer, parameter :: residual_count = energy_balance + motion_count - motion_shift
    !> The balance of the force of every motion with the tractions.
-   integer, parameter :: force_balance(motion_count) = [normal_force_balance, tangential_force_balance, moment_balance]
+   integer, parameter :: force_balance(motion_count) = [normal_force_balance, tangential_force_balance, &
+                                                        (energy_balance + motion - motion_shift, &
+                                                         motion=motion_shift + 1, motion_count)]
 
-   character(*), parameter :: names(residual_count) = [character(24) :: &
-                                                       'elasticity_normal', 'elasticity_tangential', &
-                                                       'normal_force_balance', 'tangential_force_balance', &
-                                                       'contact_gap', 'open_traction', 'stick_slip', 'slip_traction', &
-                                                       'pressure_sign', 'gap_sign', 'friction_limit', &
-                                                       'slip_direction', 'continuity', 'energy_balance', 'moment_balance']
-   character(*), parameter :: descriptions(residual_count) = [character(80) :: &
-                                                              'w - C_wp p - C_wt tau', 'u - C_up p - C_ut tau', &
-                                                              'P - sum(p) dx', 'Q - sum(tau) dx', &
-                                                              'gap of nodes in contact', &
-                                                              'tractions of open nodes', 'slip of stuck nodes', &
-                                                              'distance of slipping nodes from the friction limit', &
-                                                              'negative pressure', 'negative gap', &
-                                                              'shear traction beyond the friction limit', &
-                                                              'slip with the traction instead of against it', &
-                                                              'jump of the tractions where statuses change', &
-                                                              'work of the loads - stored - dissipated energy', &
-                                                              'M - moment of the tractions']
+   character(*), parameter :: names(residual_count) = &
+      [character(24) :: 'elasticity_normal', 'elasticity_tangential', motions(:motion_shift)%balance, &
+       'contact_gap', 'open_traction', 'stick_slip', 'slip_traction', 'pressure_sign', 'gap_sign', 'friction_limit', &
+       'slip_direction', 'continuity', 'energy_balance', motions(motion_shift + 1:)%balance]
+   character(*), parameter :: descriptions(residual_count) = &
+      [character(80) :: 'w - C_wp p - C_wt tau', 'u - C_up p - C_ut tau', motions(:motion_shift)%balance_meaning, &
+       'gap of nodes in contact', 'tractions of open nodes', 'slip of stuck nodes', &
+       'distance of slipping nodes from the friction limit', 'negative pressure', 'negative gap', &
+       'shear traction beyond the friction limit', 'slip with the traction instead of against it', &
+       'jump of the tractions where statuses change', 'work of the loads - stored - dissipated energy', &
+       motions(motion_shift + 1:)%balance_meaning]
 
    type :: certificate_type
       !> Largest relative residuals over all increments, by kind.

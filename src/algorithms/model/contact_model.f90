@@ -61,6 +61,7 @@ module mfv_contact_model
       procedure :: relative_displacements
       procedure :: displace
       procedure :: has_rigid_parts
+      procedure :: lifts
       procedure :: rigid_normal
       procedure :: rigid_tangential
       procedure :: nearest_approach
@@ -285,6 +286,14 @@ contains
 
       has_rigid_parts = any(self%moves .and. motions%optional) .or. .not. self%upright
    end function has_rigid_parts
+
+   !> Whether a motion lessens gaps; if not, it only slides.
+   pure logical function lifts(self, motion)
+      class(contact_model_type), intent(in) :: self
+      integer, intent(in) :: motion
+
+      lifts = any(abs(self%normal_arm(:, motion)) > 0.0_wp)
+   end function lifts
 
    !> By how much the upper body's motion lessens the gaps, but for the approach itself; shape (nodes), length.
    pure function rigid_normal(self, fields)

@@ -1,6 +1,7 @@
 !> The motions of the upper body against the lower one, and the force that works on each: a table with a row for each. Whatever
 !> has a value for every motion (loads, controls, arms, records, tangents, keys, fields) is an array in the order of the rows.
-!> docs/architecture.md says what a new motion needs.
+!> A new motion needs a row here and its arms (place_arms of mfv_contact_model), and its names for users: in mfv, step_to of
+!> mfv_contact, include/mfv.h, python/mfv/loads.py and Step of python/mfv/scene.py.
 module mfv_motions
    use mfv_kinds, only: wp
    implicit none
@@ -30,11 +31,14 @@ module mfv_motions
       !> What the keys of a &step prescribe.
       character(len=96) :: target
       character(len=144) :: force_target
+      !> The residual of its balance with the tractions, and what that is.
+      character(len=24) :: balance
+      character(len=32) :: balance_meaning
       !> Whether the force cannot be negative.
       logical :: pushes = .false.
       !> Whether its arms are lengths, so that its force is one times a length.
       logical :: turns = .false.
-      !> Whether it is modelled only when a step controls it. Until then it is held.
+      !> Whether it is modelled only when a step controls it (until then it is held); approach and shift always are.
       logical :: optional = .false.
    end type motion_type
 
@@ -43,12 +47,14 @@ module mfv_motions
          key='approach', force_key='normal_force', force_name='normal force', unit='length', force_unit='force/length', &
          meaning='approach of the upper body', force_meaning='normal force P per unit thickness', &
          target='target of the approach of the upper body, in place of normal_force', &
-         force_target='target of the normal force P', pushes=.true.), &
+         force_target='target of the normal force P', balance='normal_force_balance', balance_meaning='P - sum(p) dx', &
+         pushes=.true.), &
       motion_type( &
          key='shift', force_key='tangential_force', force_name='tangential force', unit='length', force_unit='force/length', &
          meaning='shift of the upper body to the right', force_meaning='tangential force Q per unit thickness', &
          target='target of the shift of the upper body to the right, in place of tangential_force', &
-         force_target='target of the tangential force Q, positive to the right'), &
+         force_target='target of the tangential force Q, positive to the right', &
+         balance='tangential_force_balance', balance_meaning='Q - sum(tau) dx'), &
       motion_type( &
          key='rotation', force_key='moment', force_name='moment', unit='radians', force_unit='force', &
          meaning='rotation of the upper body, counterclockwise, in radians', &
@@ -56,7 +62,7 @@ module mfv_motions
          target='target of the rotation of the upper body about the same point, in place of moment', &
          force_target='target of the moment M about the centre of the upper disk or hole, else of the lower one, else about '// &
                       'the pole; counterclockwise', &
-         turns=.true., optional=.true.)]
+         balance='moment_balance', balance_meaning='M - moment of the tractions', turns=.true., optional=.true.)]
 
 contains
 

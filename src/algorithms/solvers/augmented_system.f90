@@ -4,7 +4,7 @@
 !> tractions tau, w - delta, s = u - U, and delta, U, P, Q; 4m + 4 in all (4n + 12 for one patch of n contact nodes).
 !> Rows: elasticity, force balance (eq. 2.1), one normal and one tangential constraint a node (Table 2.1), and the two
 !> controlled loads. While no node can carry shear (friction off or absent), tau, s, U and Q are left out: 2m + 2.
-!> Where rotation is modelled it and the moment come as well (eq. 4.24): w and s then contain what it does.
+!> Where rotation (or another motion) is modelled it and the moment come as well (eq. 4.24): w and s then contain what it does.
 !>
 !> The unknowns are scaled by the compliance's modulus and the mesh's length, so that units do not matter, and shear also
 !> by mu where that is small. One
@@ -17,7 +17,7 @@ module mfv_augmented_system
    use mfv_contact_system
    use mfv_kinds, only: wp
    use mfv_lapack, only: dgesv
-   use mfv_motions, only: motion_count, motion_approach, motion_shift, motion_rotation, control_force
+   use mfv_motions, only: motions, motion_count, motion_approach, motion_shift, motion_rotation, control_force, arm_unit
    use mfv_node_status
    implicit none
    private
@@ -57,12 +57,14 @@ contains
       logical, intent(out) :: singular
       type(assembly_type) :: assembly
       integer, allocatable :: pivots(:)
-      integer :: info, n
+      integer :: i, info, n
 
       assembly = new_assembly(model, constraints%status)
       call add_elasticity(assembly, model, constraints%load(motion_shift))
       call add_force_balance(assembly, model)
-      if (model%moves(motion_rotation)) call add_rotation(assembly, model)
+      do i = 1, motion_count
+         if (motions(i)%optional .and. model%moves(i)) call add_motion(assembly, model, i)
+      end do
       call add_normal_constraints(assembly, model, constraints)
       if (assembly%tangential) call add_tangential_constraints(assembly, model, constraints)
       call add_loads(assembly, constraints)
@@ -128,12 +130,13 @@ contains
          assembly%force(motion_shift) = n + 2*m + 2
          n = n + 2*m + 2
       end if
-      if (model%moves(motion_rotation)) then
-         if (assembly%tangential .and. model%upright) assembly%height = model%centre_height()
-         assembly%motion(motion_rotation) = n + 1
-         assembly%force(motion_rotation) = n + 2
+      if (model%moves(motion_rotation) .and. assembly%tangential .and. model%upright) assembly%height = model%centre_height()
+      do i = 1, motion_count
+         if (.not. (motions(i)%optional .and. model%moves(i))) cycle
+         assembly%motion(i) = n + 1
+         assembly%force(i) = n + 2
          n = n + 2
-      end if
+      end do
       allocate (assembly%matrix(n, n), assembly%right(n, 2), source=0.0_wp)
    end function new_assembly
 
@@ -196,27 +199,29 @@ contains
       if (assembly%tangential) call add_resultant(assembly, model, motion_shift, assembly%shear_stress, 1.0_wp)
    end subroutine add_force_balance
 
-   !> The rotation in the elasticity rows, the balance of moments in its own (eq. 4.24): with vertical normals the moment of the
-   !> shear is h Q.
-   subroutine add_rotation(assembly, model)
+   !> A motion besides approach and shift in the elasticity rows, the balance of its force in its own (eq. 4.24 of the rotation:
+   !> with vertical normals the moment of the shear is h Q).
+   subroutine add_motion(assembly, model, motion)
       type(assembly_type), intent(inout) :: assembly
       type(contact_model_type), intent(in) :: model
+      integer, intent(in) :: motion
+      real(wp) :: arm
       integer :: m
 
       m = size(assembly%nodes)
-      call add_resultant(assembly, model, motion_rotation, assembly%stress, assembly%length)
-      assembly%matrix(assembly%pressure + 1:assembly%pressure + m, assembly%motion(motion_rotation)) = &
-         model%normal_arm(assembly%nodes, motion_rotation)/assembly%length
-      if (.not. assembly%tangential) return
-      if (model%upright) then
-         assembly%matrix(assembly%motion(motion_rotation), assembly%shear + 1:assembly%shear + m) = 0.0_wp
-         assembly%matrix(assembly%motion(motion_rotation), assembly%force(motion_shift)) = &
-            assembly%height*assembly%shear_stress/(assembly%stress*assembly%length)
-      else
-         assembly%matrix(assembly%shear + 1:assembly%shear + m, assembly%motion(motion_rotation)) = &
-            model%tangential_arm(assembly%nodes, motion_rotation)/assembly%length
-      end if
-   end subroutine add_rotation
+      arm = arm_unit(motion, assembly%length)
+      call add_resultant(assembly, model, motion, assembly%stress, arm)
+      associate (row => assembly%motion(motion), pressure => assembly%pressure, shear => assembly%shear)
+         assembly%matrix(pressure + 1:pressure + m, row) = model%normal_arm(assembly%nodes, motion)/arm
+         if (.not. assembly%tangential) return
+         if (motion == motion_rotation .and. model%upright) then
+            assembly%matrix(row, shear + 1:shear + m) = 0.0_wp
+            assembly%matrix(row, assembly%force(motion_shift)) = assembly%height*assembly%shear_stress/(assembly%stress*arm)
+         else
+            assembly%matrix(shear + 1:shear + m, row) = model%tangential_arm(assembly%nodes, motion)/arm
+         end if
+      end associate
+   end subroutine add_motion
 
    !> The row of a motion sums up the tractions to its force; `stress`: its unit of stress, `arm`: of arms.
    subroutine add_resultant(assembly, model, motion, stress, arm)
@@ -293,14 +298,17 @@ contains
    subroutine add_loads(assembly, constraints)
       type(assembly_type), intent(inout) :: assembly
       type(constraints_type), intent(in) :: constraints
+      integer :: i
 
       associate (length => assembly%length)
          call add_load(assembly, constraints, motion_approach, assembly%stress*length, length)
          if (assembly%tangential) call add_load(assembly, constraints, motion_shift, assembly%shear_stress*length, length)
-         if (assembly%motion(motion_rotation) == 0) return
-         if (assembly%tangential .and. constraints%load(motion_shift)%control /= control_force) &
+         if (abs(assembly%height) > 0.0_wp .and. constraints%load(motion_shift)%control /= control_force) &
             assembly%matrix(assembly%force(motion_shift), assembly%motion(motion_rotation)) = -assembly%height/length
-         call add_load(assembly, constraints, motion_rotation, assembly%stress*length**2, 1.0_wp)
+         do i = 1, motion_count
+            if (motions(i)%optional .and. assembly%motion(i) > 0) &
+               call add_load(assembly, constraints, i, assembly%stress*(length*arm_unit(i, length)), length/arm_unit(i, length))
+         end do
       end associate
    end subroutine add_loads
 
@@ -330,7 +338,7 @@ contains
       integer, intent(in) :: status(:)
       real(wp), intent(in) :: solution(:)
       type(contact_fields_type) :: fields
-      integer :: m
+      integer :: i, m
 
       m = size(assembly%nodes)
       fields = new_contact_fields(size(status))
@@ -340,10 +348,11 @@ contains
          fields%pressure(nodes) = stress*solution(assembly%pressure + 1:assembly%pressure + m)
          fields%normal(nodes) = length*solution(assembly%normal + 1:assembly%normal + m) + fields%motion(motion_approach)
          where (.not. in_contact(status)) fields%pressure = 0.0_wp
-         if (assembly%motion(motion_rotation) > 0) then
-            fields%motion(motion_rotation) = solution(assembly%motion(motion_rotation))
-            fields%force(motion_rotation) = stress*length**2*solution(assembly%force(motion_rotation))
-         end if
+         do i = 1, motion_count
+            if (.not. motions(i)%optional .or. assembly%motion(i) == 0) cycle
+            fields%motion(i) = length/arm_unit(i, length)*solution(assembly%motion(i))
+            fields%force(i) = stress*(length*arm_unit(i, length))*solution(assembly%force(i))
+         end do
          if (.not. assembly%tangential) return
          fields%motion(motion_shift) = length*solution(assembly%motion(motion_shift)) &
                                        - assembly%height*fields%motion(motion_rotation)

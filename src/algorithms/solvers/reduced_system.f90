@@ -107,7 +107,7 @@ contains
       logical, intent(out) :: singular
 
       self%solves = self%solves + 1
-      if (model%compliance%one_way() .and. (model%moves(motion_rotation) .or. model%scene%mesh%radial)) then
+      if (model%compliance%one_way() .and. model%has_rigid_parts()) then
          self%name = self%augmented%name
          call self%augmented%solve(model, constraints, start, response, singular)
          return
@@ -145,17 +145,13 @@ contains
       class(reduced_system_type), intent(in) :: self
       type(contact_model_type), intent(in) :: model
       type(constraints_type), intent(in) :: constraints
+      integer :: i
 
-      undetermined = without_answer(motion_approach)
-      if (model%moves(motion_rotation)) undetermined = undetermined .or. without_answer(motion_rotation)
-
-   contains
-
-      pure logical function without_answer(motion)
-         integer, intent(in) :: motion
-
-         without_answer = self%motion_place(motion) == 0 .and. .not. is_held(constraints, motion)
-      end function without_answer
+      undetermined = .false.
+      do i = 1, motion_count
+         if (i == motion_shift .or. .not. model%moves(i)) cycle
+         undetermined = undetermined .or. (self%motion_place(i) == 0 .and. .not. is_held(constraints, i))
+      end do
    end function undetermined
 
    !> Forget what belongs to other blocks, or to a scene without rotation; follow the nodes where the mesh has grown. (An object
@@ -190,7 +186,7 @@ contains
       self%block = model%compliance%has_block
       self%moves = model%moves
       self%length = model%length()
-      self%apart = .not. (self%block(block_wt) .or. any(self%moves .and. motions%optional) .or. model%scene%mesh%radial)
+      self%apart = .not. (self%block(block_wt) .or. model%has_rigid_parts())
       self%motion_place = 0
       self%motion_constraint = 0
       allocate (self%place(n, 2), self%constraint_of(n), source=0)
@@ -223,15 +219,18 @@ contains
       logical, parameter :: touches(0:6) = [.false., .true., .true., .true., .true., .true., .true.], &
                             has_shear(0:6) = [.false., .true., .true., .true., .false., .true., .true.]
       logical :: wanted(size(constraints%status), 2), wanted_motion(motion_count)
+      integer :: i
 
       wanted(:, a_pressure) = touches(constraints%status)
       wanted(:, a_shear) = has_shear(constraints%status)
       wanted_motion = .false.
       wanted_motion(motion_approach) = any(wanted(:, a_pressure))
       wanted_motion(motion_shift) = any(wanted(:, a_shear))
-      ! Where normals are along the radius a rotation only slides: nothing but friction determines it.
-      if (model%moves(motion_rotation)) wanted_motion(motion_rotation) = count(wanted(:, a_pressure)) > 1 .and. &
-                                                            (model%upright .or. any(wanted(:, a_shear)))
+      ! What only slides, a rotation where normals are along the radius, nothing but friction determines.
+      do i = 1, motion_count
+         if (motions(i)%optional .and. model%moves(i)) &
+            wanted_motion(i) = count(wanted(:, a_pressure)) > 1 .and. (wanted_motion(motion_shift) .or. model%lifts(i))
+      end do
       call self%lose_constraints(constraints, wanted, wanted_motion)
       if (anew) then
          call self%rebuild(model, wanted, wanted_motion, singular)

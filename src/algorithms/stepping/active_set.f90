@@ -14,7 +14,7 @@ module mfv_active_set
    use mfv_contact_path, only: contact_path_type, segment_type
    use mfv_contact_system
    use mfv_kinds, only: pi, wp
-   use mfv_motions, only: motion_approach, motion_shift, motion_rotation, control_force, control_displacement
+   use mfv_motions, only: motions, motion_count, motion_approach, motion_shift, control_force, control_displacement
    use mfv_node_status
    implicit none
    private
@@ -86,10 +86,12 @@ contains
       real(wp), dimension(size(contact)) :: gap, normal, tangential
       type(contact_fields_type) :: fields
       real(wp) :: level
+      logical :: turned(motion_count)
 
       fields = path%state%fields
-      if (path%model%moves(motion_rotation) .and. segment%load(motion_rotation)%control == control_displacement) then
-         fields%motion(motion_rotation) = segment%load(motion_rotation)%value + part*segment%load(motion_rotation)%rate
+      turned = motions%optional .and. path%model%moves .and. segment%load%control == control_displacement
+      if (any(turned)) then
+         where (turned) fields%motion = segment%load%value + part*segment%load%rate
          call path%model%relative_displacements(fields, normal, tangential)
          fields%normal = normal
       end if
@@ -114,13 +116,16 @@ contains
       logical, intent(out) :: possible
       real(wp), parameter :: no_force = 1.0e-12_wp
       real(wp) :: scale
+      integer :: i
 
       call path%loads_at(segment, done, constraints)
       constraints%load%rate = 0.0_wp
       call path%set_rows(constraints, .false.)
       possible = any(in_contact(path%state%status)) .or. constraints%load(motion_approach)%control == control_displacement
-      if (path%model%moves(motion_rotation) .and. constraints%load(motion_rotation)%control == control_force) &
-         possible = possible .and. .not. path%model%scene%mesh%radial .and. path%state%contact_nodes() > 1
+      do i = 1, motion_count
+         if (motions(i)%optional .and. path%model%moves(i) .and. constraints%load(i)%control == control_force) &
+            possible = possible .and. path%model%lifts(i) .and. path%state%contact_nodes() > 1
+      end do
       if (any(holds(path%state%status)) .or. constraints%load(motion_shift)%control == control_displacement) return
       scale = max(path%certificate%force_scale(), abs(constraints%load(motion_approach)%value))
       possible = possible .and. .not. any(slips(path%state%status)) .and. &

@@ -317,15 +317,13 @@ contains
       type(constraints_type), intent(inout) :: constraints
       logical, intent(out) :: settled
       type(error_type), allocatable, intent(out) :: error
-      type(load_type) :: load
       logical :: contact, slides, drop
+      integer :: i
 
       settled = .true.
       call self%loads_at(segment, done, constraints)
       drop = self%dropping()
-      if (drop) then
-         constraints%load%rate = 0.0_wp
-      end if
+      if (drop) constraints%load%rate = 0.0_wp
       call self%set_rows(constraints, drop)
       contact = any(in_contact(self%state%status))
       if (.not. contact .and. constraints%load(motion_approach)%control == control_force) then
@@ -342,36 +340,39 @@ contains
          call hold_motion(self, constraints, motion_shift, settled, error)
          if (allocated(error) .or. .not. settled) return
       end if
-      if (self%model%moves(motion_rotation) .and. constraints%load(motion_rotation)%control == control_force) then
-         call settle_moment(self, slides, constraints, settled, error)
+      do i = 1, motion_count
+         if (.not. (motions(i)%optional .and. self%model%moves(i)) .or. constraints%load(i)%control /= control_force) cycle
+         call settle_optional(self, i, slides, constraints, settled, error)
          if (allocated(error) .or. .not. settled) return
-      end if
+      end do
    end subroutine settle_loads
 
-   !> A prescribed moment. While no two nodes are in contact nothing determines the rotation: it is held, which only a moment of
-   !> zero allows (a tangential force at the surface makes another one). The same where normals are along the radius and no node
-   !> sticks: rotation then only slides.
+   !> A prescribed moment, or force of another motion besides approach and shift. While no two nodes are in contact nothing
+   !> determines the rotation: it is held, which only a moment of zero allows (a tangential force at the surface makes another
+   !> one). The same where no node sticks and the motion only slides: a rotation where normals are along the radius.
    !> Errors MFV_NO_CONTINUATION: the moment tips the upper body over; MFV_GROSS_SLIDING.
-   subroutine settle_moment(self, slides, constraints, settled, error)
+   subroutine settle_optional(self, motion, slides, constraints, settled, error)
       class(contact_path_type), intent(inout) :: self
+      integer, intent(in) :: motion
       logical, intent(in) :: slides
       type(constraints_type), intent(inout) :: constraints
       logical, intent(inout) :: settled
       type(error_type), allocatable, intent(out) :: error
       real(wp), parameter :: no_moment = 1.0e-14_wp
-      type(load_type) :: load
       real(wp) :: scale
 
       if (self%state%contact_nodes() < 2) then
-         scale = self%model%compliance%modulus*self%model%length()**2
-         if (max(abs(constraints%load(motion_rotation)%value), abs(constraints%load(motion_rotation)%rate), &
-                 abs(self%state%fields%force(motion_rotation) - constraints%load(motion_rotation)%value)) > no_moment*scale) &
-            call no_continuation(self, 'fewer than two nodes are in contact, and the moment tips the upper body over', error)
-         constraints%load(motion_rotation) = load_type(control_displacement, self%state%fields%motion(motion_rotation), 0.0_wp)
-      else if (slides .and. self%model%scene%mesh%radial) then
-         call hold_motion(self, constraints, motion_rotation, settled, error)
+         associate (load => constraints%load(motion), length => self%model%length())
+            scale = self%model%compliance%modulus*(length*arm_unit(motion, length))
+            if (max(abs(load%value), abs(load%rate), abs(self%state%fields%force(motion) - load%value)) > no_moment*scale) &
+               call no_continuation(self, 'fewer than two nodes are in contact, and the '//trim(motions(motion)%force_name)// &
+                                    ' tips the upper body over', error)
+         end associate
+         constraints%load(motion) = load_type(control_displacement, self%state%fields%motion(motion), 0.0_wp)
+      else if (slides .and. .not. self%model%lifts(motion)) then
+         call hold_motion(self, constraints, motion, settled, error)
       end if
-   end subroutine settle_moment
+   end subroutine settle_optional
 
    !> No node is stuck and the force of a motion that slides (shift, rotation) is prescribed, so that no equation determines the
    !> motion. Hold it where friction balances the force all the same: no friction, no contact, or equal slip to both
@@ -390,6 +391,7 @@ contains
       real(wp) :: wanted, missing, scale, arm, negligible, none
       logical :: pressed
       logical :: yielding(size(self%state%status)), singular
+      integer :: i
 
       wanted = constraints%load(motion)%rate
       none = max(nothing, noises*self%system%noise)
@@ -406,8 +408,10 @@ contains
       ! What is lifted off opens next; its last round-off of pressure slides nothing.
       if (.not. pressed .and. abs(wanted) <= negligible .and. constraints%load(motion_approach)%rate < 0.0_wp) return
       trial = constraints
-      if (motion == motion_shift .and. self%model%scene%mesh%radial .and. trial%load(motion_rotation)%control == control_force) &
-         trial%load(motion_rotation) = load_type(control_displacement, self%state%fields%motion(motion_rotation), 0.0_wp)
+      do i = 1, motion_count
+         if (i /= motion .and. motions(i)%optional .and. trial%load(i)%control == control_force .and. .not. self%model%lifts(i)) &
+            trial%load(i) = load_type(control_displacement, self%state%fields%motion(i), 0.0_wp)
+      end do
       call self%system%solve(self%model, trial, self%state%fields, response, singular)
       missing = wanted
       scale = abs(wanted)

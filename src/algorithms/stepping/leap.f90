@@ -22,7 +22,7 @@ module mfv_leap
    use mfv_error, only: error_type
    use mfv_first_violation, only: lead_by_violations
    use mfv_kinds, only: wp
-   use mfv_motions, only: motion_approach, motion_shift, motion_rotation, control_force
+   use mfv_motions, only: motion_approach, motion_shift, control_force
    use mfv_node_status
    use mfv_observer, only: observer_type
    use mfv_straight, only: before_separation, carries_nothing_yet, close_leap, grow_mesh, lead_straight, part_of, settle_on_mesh
@@ -373,7 +373,7 @@ contains
 
       associate (compliance => path%model%compliance, model => path%model)
          moves_nothing = .not. (compliance%has_block(block_up) .or. compliance%has_block(block_wt) .or. &
-                                model%moves(motion_rotation) .or. model%scene%mesh%radial)
+                                model%has_rigid_parts())
       end associate
       if (.not. moves_nothing) return
       moves_nothing = .not. abs(segment%load(motion_shift)%rate) > 0.0_wp .and. .not. any(slips(path%state%status)) .and. &
