@@ -240,8 +240,8 @@ static void print_line(host *self, double time, int iterations) {
   for (int i = self->first; i < MOTIONS; ++i) kinetic += 0.5 * self->mass * self->velocity[i] * self->velocity[i];
   get_loads(self, &loads);
   printf("%.10g,%.15e,%.15e,%.15e,%.15e,%.15e,%.15e,%.15e,%.15e,%.15e,%d\n", time, loads.motion[MFV_APPROACH],
-         loads.motion[MFV_SHIFT], self->velocity[NORMAL], self->velocity[TANGENTIAL], loads.force[MFV_APPROACH], loads.force[MFV_SHIFT], kinetic,
-         potential_energy(self), loads.dissipation, iterations);
+         loads.motion[MFV_SHIFT], self->velocity[NORMAL], self->velocity[TANGENTIAL], loads.force[MFV_APPROACH],
+         loads.force[MFV_SHIFT], kinetic, potential_energy(self), loads.dissipation, iterations);
 }
 
 static void run(const settings *wanted) {

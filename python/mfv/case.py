@@ -13,7 +13,7 @@ from contextlib import contextmanager
 from ctypes import POINTER, byref, c_int, c_int32, c_size_t, c_void_p
 from operator import index
 from types import TracebackType
-from typing import TYPE_CHECKING, Any, Callable, NoReturn
+from typing import TYPE_CHECKING, Any, Callable, NoReturn, cast
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -266,15 +266,15 @@ class Case:
         Raises BadArgument.
         """
         control, target = [_KEEP] * len(MOTIONS), [0.0] * len(MOTIONS)
-        for name, value in targets.items():
-            if value is None:
-                continue
+        for name, value in cast("dict[str, float | None]", targets).items():
             if name not in _CONTROLLED:
                 raise TypeError(f"advance() got an unexpected keyword argument {name!r}")
+            if value is None:
+                continue
             motion, kind = _CONTROLLED[name]
             if control[motion] != _KEEP:
                 raise TypeError(f"give {MOTIONS[motion].force} or {MOTIONS[motion].displacement}, not both")
-            control[motion], target[motion] = kind, value  # type: ignore[call-overload]
+            control[motion], target[motion] = kind, value
         turns = max(-LARGEST_INTEGER, min(index(cycles), LARGEST_INTEGER)) if cycles else 0
         with self._lock:
             try:  # one call in place of eleven: this is where a host program spends its time with Python
