@@ -12,7 +12,8 @@ module bench_circle
    use mfv_friction, only: coulomb_friction
    use mfv_kinds, only: pi, wp
    use mfv_material, only: new_material, plane_strain
-   use mfv_scene, only: control_force, scene_type, solver_dgesv, step_type
+   use mfv_motions, only: motion_approach, motion_shift, control_force
+   use mfv_scene, only: scene_type, solver_dgesv, step_type
    use mfv_simulation, only: history_none, new_simulation, simulation_type
    implicit none
    private
@@ -83,10 +84,10 @@ contains
       scene%mesh%whole_circle = .true.
       scene%friction = coulomb_friction(0.3_wp)
       scene%method%linear_solver = solver_dgesv
-      step%normal_control = control_force
-      step%normal_target = half_width**2*pi*scene%modulus()/2
-      step%tangential_control = control_force
-      step%tangential_target = 0.1_wp*step%normal_target
+      step%control(motion_approach) = control_force
+      step%target(motion_approach) = half_width**2*pi*scene%modulus()/2
+      step%control(motion_shift) = control_force
+      step%target(motion_shift) = 0.1_wp*step%target(motion_approach)
       scene%steps = [step]
       started = seconds_now()
       simulation = new_simulation(scene, history_none)

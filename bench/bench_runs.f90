@@ -8,6 +8,7 @@ module bench_runs
    use mfv_error, only: error_type
    use mfv_kinds, only: wp
    use mfv_krylov_system, only: krylov_system_type
+   use mfv_motions, only: motion_approach, motion_shift
    use mfv_reduced_system, only: reduced_system_type
    use mfv_simulation, only: history_none, new_simulation, simulation_type, states_steps
    implicit none
@@ -132,8 +133,8 @@ contains
             ', "contact": ', state%contact_nodes(), ', "stuck": ', state%stick_nodes(), &
             ', "refinements": ', refinements, ', "rebuilds": ', rebuilds, ', "memory": ', peak_memory(), &
             ', "certificate": ', contact%certificate%largest(), ', "dissipation": ', state%dissipation, &
-            ', "interval": ', contact%model%interval(), ', "normal_force": ', state%fields%normal_force, &
-            ', "tangential_force": ', state%fields%tangential_force, ', '
+            ', "interval": ', contact%model%interval(), ', "normal_force": ', state%fields%force(motion_approach), &
+            ', "tangential_force": ', state%fields%force(motion_shift), ', '
       end associate
       call write_counts('whole', entry%whole)
       write (output_unit, '(a)', advance='no') ', '

@@ -99,10 +99,10 @@ static double cycle(const scene *which, int way, double taken[], int *contact_no
   mfv_step step = MFV_STEP_INIT;
   mfv_loads loads = MFV_LOADS_INIT;
   double tangent[4];
-  step.tangential_control = MFV_DISPLACEMENT;
+  step.control[MFV_SHIFT] = MFV_DISPLACEMENT;
   step.relative = 1;
   for (int i = 0; i < which->increments; ++i) {
-    step.tangential_target = increment(which, i);
+    step.target[MFV_SHIFT] = increment(which, i);
     double started = seconds();
     int status = mfv_advance(contact, &step);
     if (way == LOADS) status += mfv_get_loads(contact, &loads);
@@ -116,7 +116,7 @@ static double cycle(const scene *which, int way, double taken[], int *contact_no
   *contact_nodes = loads.contact_nodes;
   mfv_state_free(&state);
   mfv_free(&contact);
-  return loads.tangential_force;
+  return loads.force[MFV_SHIFT];
 }
 
 /* A row of the table: microseconds an increment. */

@@ -28,6 +28,7 @@ from numpy.typing import NDArray
 
 import mfv
 from mfv._library import Control, LoadsStructure, StepStructure, library
+from mfv.loads import MOTIONS
 
 #: Increments of a cycle, the smallest steps first, and the shift that they go to and fro between [length].
 INCREMENTS, AMPLITUDE = (400, 80, 40), 2.0e-4
@@ -89,13 +90,11 @@ def by_ctypes(count: int, with_case: bool, loads: bool) -> NDArray[np.float64]:
 
 
 def _step(shift: float) -> StepStructure:
-    return StepStructure(
-        size=sizeof(StepStructure),
-        tangential_control=Control.DISPLACEMENT,
-        tangential_target=shift,
-        friction=1,
-        relative=1,
-    )
+    motions = {motion.displacement: number for number, motion in enumerate(MOTIONS)}
+    step = StepStructure(size=sizeof(StepStructure), friction=1, relative=1)
+    step.control[motions["shift"]] = Control.DISPLACEMENT
+    step.target[motions["shift"]] = shift
+    return step
 
 
 def main() -> None:

@@ -5,7 +5,8 @@ module embedding_direct
    use mfv_case_reader, only: read_case_text
    use mfv_error, only: error_type
    use mfv_kinds, only: wp
-   use mfv_scene, only: control_displacement, step_type
+   use mfv_motions, only: motion_shift, control_displacement
+   use mfv_scene, only: step_type
    use mfv_simulation, only: new_simulation, simulation_type
    implicit none
    private
@@ -37,15 +38,15 @@ contains
       real(c_double), value :: increment
       type(step_type) :: step
 
-      step%tangential_control = control_displacement
-      step%tangential_target = simulation%contact%state%fields%shift + increment
+      step%control(motion_shift) = control_displacement
+      step%target(motion_shift) = simulation%contact%state%fields%motion(motion_shift) + increment
       call simulation%advance(step)
       status = simulation%outcome
    end function direct_advance
 
    !> The tangential force now, force/length.
    real(c_double) function direct_force() bind(C, name='direct_force') result(force)
-      force = simulation%contact%state%fields%tangential_force
+      force = simulation%contact%state%fields%force(motion_shift)
    end function direct_force
 
 end module embedding_direct

@@ -30,7 +30,14 @@ typedef enum mfv_status {
   MFV_STATUS_COUNT
 } mfv_status;
 
-/* What a step does with the normal, the tangential or the rotational load. */
+/* Motions of the upper body, and how many there are: indices of the arrays below. Each has a displacement and a force:
+ *   MFV_APPROACH  approach [length];                      normal force P >= 0 [force/length]
+ *   MFV_SHIFT     shift [length], to the right;           tangential force Q [force/length], on the lower body to the right
+ *   MFV_ROTATION  rotation [radians], counterclockwise;   moment M [force], counterclockwise, about the centre of rotation
+ * Later versions may add motions: arrays have MFV_MOTIONS members, and the size of a structure says how many a program knows. */
+enum { MFV_APPROACH = 0, MFV_SHIFT = 1, MFV_ROTATION = 2, MFV_MOTIONS = 3 };
+
+/* What a step does with a motion: keep its load, or prescribe its force or its displacement. */
 enum { MFV_KEEP = 0, MFV_FORCE = 1, MFV_DISPLACEMENT = 2 };
 
 /* A scene that is being built: bodies, mesh, friction, solver, steps. Opaque. */
@@ -44,20 +51,17 @@ typedef struct mfv_state mfv_state;
 
 /* One step: targets are reached linearly from the loads now. Set every member; start from MFV_STEP_INIT. */
 typedef struct mfv_step {
-  size_t size;              /* sizeof(mfv_step) */
-  double normal_target;     /* normal force P >= 0 [force/length] or approach [length] */
-  double tangential_target; /* tangential force Q [force/length] or shift [length], positive to the right */
-  int normal_control;       /* MFV_KEEP, MFV_FORCE or MFV_DISPLACEMENT */
-  int tangential_control;   /* the same */
-  int friction;             /* 0: friction off during this step */
-  int cycles;               /* 0: go to the targets; n: go there and back n times */
-  double rotational_target; /* moment M [force] or rotation [radians], counterclockwise */
-  int rotational_control;   /* MFV_KEEP, MFV_FORCE (moment) or MFV_DISPLACEMENT (rotation) */
-  int relative;             /* 1: targets are increments, added to the loads now */
-  double steady_tolerance;  /* cycles end early when the state after two in a row is the same to within this part of the
-                               largest traction; 0: never */
+  size_t size;                /* sizeof(mfv_step) */
+  double target[MFV_MOTIONS]; /* force or displacement of each motion, as its control says */
+  double steady_tolerance;    /* cycles end early when the state after two in a row is the same to within this part of the
+                                 largest traction; 0: never */
+  int control[MFV_MOTIONS];   /* MFV_KEEP, MFV_FORCE or MFV_DISPLACEMENT */
+  int friction;               /* 0: friction off during this step */
+  int cycles;                 /* 0: go to the targets; n: go there and back n times */
+  int relative;               /* 1: targets are increments, added to the loads now */
+  int unused[2];              /* 0 */
 } mfv_step;
-#define MFV_STEP_INIT {sizeof(mfv_step), 0.0, 0.0, MFV_KEEP, MFV_KEEP, 1, 0, 0.0, MFV_KEEP, 0, 0.0}
+#define MFV_STEP_INIT {sizeof(mfv_step), {0.0, 0.0, 0.0}, 0.0, {MFV_KEEP, MFV_KEEP, MFV_KEEP}, 1, 0, 0, {0, 0}}
 
 /* Version of the library, such as "0.1.0". Since 0.1.0. */
 int mfv_version(char *buffer, size_t size);
@@ -145,27 +149,23 @@ int mfv_message(const mfv_case *handle, char *buffer, size_t size);
 
 /* Loads and motions of the present state. */
 typedef struct mfv_loads {
-  size_t size;             /* sizeof(mfv_loads) */
-  double normal_force;     /* P [force/length] */
-  double tangential_force; /* Q [force/length], on the lower body to the right */
-  double moment;           /* M [force], counterclockwise, about the centre of rotation */
-  double approach;         /* of the upper body [length] */
-  double shift;            /* of the upper body to the right [length] */
-  double rotation;         /* of the upper body [radians], counterclockwise */
-  double dissipation;      /* energy dissipated by friction so far [force] */
+  size_t size;                /* sizeof(mfv_loads) */
+  double force[MFV_MOTIONS];  /* of every motion: P, Q, M */
+  double motion[MFV_MOTIONS]; /* displacements of the upper body: approach, shift, rotation */
+  double dissipation;         /* energy dissipated by friction so far [force] */
   int contact_nodes, stick_nodes, slip_nodes;
-  int events;              /* loads so far at which nodes changed their status */
-  int linear_solves;       /* so far */
-  int unused;              /* 0 */
+  int events;                 /* loads so far at which nodes changed their status */
+  int linear_solves;          /* so far */
+  int unused;                 /* 0 */
 } mfv_loads;
-#define MFV_LOADS_INIT {sizeof(mfv_loads), 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0, 0, 0, 0, 0, 0}
+#define MFV_LOADS_INIT {sizeof(mfv_loads), {0.0, 0.0, 0.0}, {0.0, 0.0, 0.0}, 0.0, 0, 0, 0, 0, 0, 0}
 
 /* Loads and motions now, without the cost of a field of "summary". Since 0.1.0. */
 int mfv_get_loads(const mfv_case *handle, mfv_loads *loads);
 
-/* Consistent tangent at the present state: tangent[i*motions + j] is the derivative of load i (normal force, tangential force,
- * moment) with respect to motion j (approach, shift, rotation); motions: 2 (the rotation is held, also where a moment is
- * prescribed), or 3. It is exact up to the next node that changes its status. Contact and friction have corners: the tangent
+/* Consistent tangent at the present state: tangent[i*motions + j] is the derivative of the force of motion i with respect to the
+ * displacement of motion j, such as i = MFV_SHIFT, j = MFV_APPROACH; motions: 2 (the rotation is held, also where a moment is
+ * prescribed), or MFV_MOTIONS. It is exact up to the next node that changes its status. Contact and friction have corners: the tangent
  * is the one of motions that go on towards `direction` (motions lengths, such as {0, 1} for a shift to the right; only its
  * direction counts; friction acts, if the scene has any), or, where it is NULL, on the way that led here, every node's status as
  * it is. Across the direction of a step that led two motions at once it differs from the derivative of the step's end by the
@@ -186,12 +186,12 @@ int mfv_state_free(mfv_state **state);
 
 /* What an observer is told after every increment of the load. */
 typedef struct mfv_progress {
-  size_t size;             /* sizeof(mfv_progress) of the library */
-  double fraction;         /* of this load segment */
-  int segment, segments;   /* number of this part, from 1, and how many there are */
+  size_t size;                /* sizeof(mfv_progress) of the library */
+  double fraction;            /* of this load segment */
+  int segment, segments;      /* number of this part, from 1, and how many there are */
   int contact_nodes, stick_nodes;
-  double normal_force, tangential_force; /* [force/length] */
-  double approach, shift;  /* [length] */
+  double force[MFV_MOTIONS];  /* as in mfv_loads */
+  double motion[MFV_MOTIONS]; /* the same */
 } mfv_progress;
 typedef int (*mfv_observer)(const mfv_progress *progress, void *user);
 

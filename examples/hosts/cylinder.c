@@ -33,11 +33,11 @@ int main(void) {
   mfv_scene_free(&scene);
   if (status != MFV_COMPLETE) return fail(message);
 
-  press.normal_control = MFV_FORCE;
-  press.normal_target = 1.0e-3;
+  press.control[MFV_APPROACH] = MFV_FORCE;
+  press.target[MFV_APPROACH] = 1.0e-3;
   press.friction = 0;
-  shear.tangential_control = MFV_FORCE;
-  shear.tangential_target = 2.8e-4;
+  shear.control[MFV_SHIFT] = MFV_FORCE;
+  shear.target[MFV_SHIFT] = 2.8e-4;
   status = mfv_advance(contact, &press);
   if (status == MFV_COMPLETE) status = mfv_advance(contact, &shear);
   if (status == MFV_COMPLETE) status = mfv_get_loads(contact, &loads);
@@ -49,6 +49,6 @@ int main(void) {
   for (int i = 0; i < NODES; ++i)
     if (traction[i] > peak) peak = traction[i];
   printf("nodes in contact %d, stuck %d\n", loads.contact_nodes, loads.stick_nodes);
-  printf("shift %.6E\ndissipation %.6E\npeak shear %.6E\n", loads.shift, loads.dissipation, peak);
+  printf("shift %.6E\ndissipation %.6E\npeak shear %.6E\n", loads.motion[MFV_SHIFT], loads.dissipation, peak);
   return EXIT_SUCCESS;
 }

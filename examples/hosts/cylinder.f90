@@ -29,5 +29,5 @@ program cylinder
 
    loads = contact%loads()
    print '(a, i0, a, i0)', 'nodes in contact ', loads%contact_nodes, ', stuck ', loads%stick_nodes
-   print '(a, es12.6)', 'shift ', loads%shift, 'dissipation ', loads%dissipation, 'peak shear ', maxval(shear)
+   print '(a, es12.6)', 'shift ', loads%motion(motion_shift), 'dissipation ', loads%dissipation, 'peak shear ', maxval(shear)
 end program cylinder

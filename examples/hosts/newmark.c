@@ -90,10 +90,10 @@ static void get_loads(const host *self, mfv_loads *loads) {
 /* Press, and shear by a force. */
 static void load_quasi_statically(host *self, double normal_force, double tangential_force) {
   mfv_step press = MFV_STEP_INIT, shear = MFV_STEP_INIT;
-  press.normal_control = shear.tangential_control = MFV_FORCE;
-  press.normal_target = normal_force;
+  press.control[MFV_APPROACH] = shear.control[MFV_SHIFT] = MFV_FORCE;
+  press.target[MFV_APPROACH] = normal_force;
   press.friction = 0;
-  shear.tangential_target = tangential_force;
+  shear.target[MFV_SHIFT] = tangential_force;
   check(self, mfv_advance(self->contact, &press), "press");
   check(self, mfv_advance(self->contact, &shear), "shear");
 }
@@ -102,16 +102,16 @@ static void load_quasi_statically(host *self, double normal_force, double tangen
 static void lead(host *self, const double position[MOTIONS]) {
   mfv_step step = MFV_STEP_INIT;
   mfv_loads loads = MFV_LOADS_INIT;
-  step.tangential_control = MFV_DISPLACEMENT;
-  step.tangential_target = position[TANGENTIAL];
+  step.control[MFV_SHIFT] = MFV_DISPLACEMENT;
+  step.target[MFV_SHIFT] = position[TANGENTIAL];
   if (self->first == NORMAL) {
-    step.normal_control = MFV_DISPLACEMENT;
-    step.normal_target = position[NORMAL];
+    step.control[MFV_APPROACH] = MFV_DISPLACEMENT;
+    step.target[MFV_APPROACH] = position[NORMAL];
   }
   check(self, mfv_advance(self->contact, &step), "contact");
   get_loads(self, &loads);
-  self->reaction[NORMAL] = loads.normal_force;
-  self->reaction[TANGENTIAL] = loads.tangential_force;
+  self->reaction[NORMAL] = loads.force[MFV_APPROACH];
+  self->reaction[TANGENTIAL] = loads.force[MFV_SHIFT];
 }
 
 /* Derivatives of the reactions by the free motions. Where P is constant the approach follows the shift, by -K_NU/K_NN: Schur's
@@ -137,7 +137,7 @@ static double potential_energy(host *self) {
     energy += 0.5 * field[WIDTH][i] *
               (field[PRESSURE][i] * field[NORMAL_DISPLACEMENT][i] + field[SHEAR][i] * field[TANGENTIAL_DISPLACEMENT][i]);
   get_loads(self, &loads);
-  return energy - self->load[NORMAL] * loads.approach - self->load[TANGENTIAL] * loads.shift;
+  return energy - self->load[NORMAL] * loads.motion[MFV_APPROACH] - self->load[TANGENTIAL] * loads.motion[MFV_SHIFT];
 }
 
 /* ---- the time step ---- */
@@ -225,10 +225,10 @@ static void start(host *self, const settings *wanted) {
   load_quasi_statically(self, wanted->normal ? 1.1 * FORCE : FORCE, wanted->amplitude * MU * FORCE);
   get_tangent(self, back, self->initial); /* where the load turns, all nodes stick */
   get_loads(self, &loads);
-  self->position[NORMAL] = loads.approach;
-  self->position[TANGENTIAL] = loads.shift;
-  self->reaction[NORMAL] = loads.normal_force;
-  self->reaction[TANGENTIAL] = loads.tangential_force;
+  self->position[NORMAL] = loads.motion[MFV_APPROACH];
+  self->position[TANGENTIAL] = loads.motion[MFV_SHIFT];
+  self->reaction[NORMAL] = loads.force[MFV_APPROACH];
+  self->reaction[TANGENTIAL] = loads.force[MFV_SHIFT];
   self->mass = self->initial[TANGENTIAL][TANGENTIAL] / (4.0 * PI * PI);
   self->dt = 1.0 / wanted->steps;
   for (int i = self->first; i < MOTIONS; ++i) self->acceleration[i] = (self->load[i] - self->reaction[i]) / self->mass;
@@ -239,9 +239,9 @@ static void print_line(host *self, double time, int iterations) {
   double kinetic = 0.0;
   for (int i = self->first; i < MOTIONS; ++i) kinetic += 0.5 * self->mass * self->velocity[i] * self->velocity[i];
   get_loads(self, &loads);
-  printf("%.10g,%.15e,%.15e,%.15e,%.15e,%.15e,%.15e,%.15e,%.15e,%.15e,%d\n", time, loads.approach, loads.shift,
-         self->velocity[NORMAL], self->velocity[TANGENTIAL], loads.normal_force, loads.tangential_force, kinetic,
-         potential_energy(self), loads.dissipation, iterations);
+  printf("%.10g,%.15e,%.15e,%.15e,%.15e,%.15e,%.15e,%.15e,%.15e,%.15e,%d\n", time, loads.motion[MFV_APPROACH],
+         loads.motion[MFV_SHIFT], self->velocity[NORMAL], self->velocity[TANGENTIAL], loads.force[MFV_APPROACH],
+         loads.force[MFV_SHIFT], kinetic, potential_energy(self), loads.dissipation, iterations);
 }
 
 static void run(const settings *wanted) {

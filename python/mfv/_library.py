@@ -17,6 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .errors import LibraryNotFound
+from .loads import MOTIONS
 
 #: Room for a text that the library hands out; a longer one is cut.
 TEXT_SIZE = 16384
@@ -31,7 +32,7 @@ HOW_TO_BUILD = (
 
 
 class Control(IntEnum):
-    """What a step does with the normal, the tangential or the rotational load."""
+    """What a step does with a motion: keep its load, or prescribe its force or its displacement."""
 
     KEEP = 0
     FORCE = 1
@@ -49,25 +50,26 @@ class Along(IntEnum):
     PATCHES = 5
 
 
+#: A number for every motion.
+_per_motion = c_double * len(MOTIONS)
+
+
 class StepStructure(ctypes.Structure):
     """`mfv_step` of the header."""
 
     _fields_ = [
         ("size", c_size_t),
-        ("normal_target", c_double),
-        ("tangential_target", c_double),
-        ("normal_control", c_int),
-        ("tangential_control", c_int),
+        ("target", _per_motion),
+        ("steady_tolerance", c_double),
+        ("control", c_int * len(MOTIONS)),
         ("friction", c_int),
         ("cycles", c_int),
-        ("rotational_target", c_double),
-        ("rotational_control", c_int),
         ("relative", c_int),
-        ("steady_tolerance", c_double),
+        ("unused", c_int * 2),
     ]
 
     #: Writes all members at once: `pack(step, 0, size, ...)`.
-    pack = struct.Struct("@N2d4id2id").pack_into
+    pack = struct.Struct(f"@N{len(MOTIONS) + 1}d{len(MOTIONS) + 5}i").pack_into
 
 
 class LoadsStructure(ctypes.Structure):
@@ -75,12 +77,8 @@ class LoadsStructure(ctypes.Structure):
 
     _fields_ = [
         ("size", c_size_t),
-        ("normal_force", c_double),
-        ("tangential_force", c_double),
-        ("moment", c_double),
-        ("approach", c_double),
-        ("shift", c_double),
-        ("rotation", c_double),
+        ("force", _per_motion),
+        ("motion", _per_motion),
         ("dissipation", c_double),
         ("contact_nodes", c_int),
         ("stick_nodes", c_int),
@@ -91,7 +89,7 @@ class LoadsStructure(ctypes.Structure):
     ]
 
     #: Reads all members at once: `unpack(loads)`.
-    unpack = struct.Struct("@N7d6i").unpack_from
+    unpack = struct.Struct(f"@N{2 * len(MOTIONS) + 1}d6i").unpack_from
 
 
 class ProgressStructure(ctypes.Structure):
@@ -104,11 +102,12 @@ class ProgressStructure(ctypes.Structure):
         ("segments", c_int),
         ("contact_nodes", c_int),
         ("stick_nodes", c_int),
-        ("normal_force", c_double),
-        ("tangential_force", c_double),
-        ("approach", c_double),
-        ("shift", c_double),
+        ("force", _per_motion),
+        ("motion", _per_motion),
     ]
+
+    #: Reads all members at once: `unpack(progress)`.
+    unpack = struct.Struct(f"@Nd4i{2 * len(MOTIONS)}d").unpack_from
 
 
 #: `mfv_observer` of the header.

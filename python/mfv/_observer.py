@@ -9,7 +9,7 @@ from contextlib import contextmanager
 from ctypes import c_void_p
 from typing import Any, Callable
 
-from ._library import OBSERVER, library
+from ._library import OBSERVER, ProgressStructure, library
 from .loads import Progress
 
 BAR_FORMAT = "{percentage:3.0f}%|{bar}| {elapsed}<{remaining}{postfix}"
@@ -96,8 +96,7 @@ class Observer:
         if not self.is_wanted:
             return 0
         try:
-            now = progress.contents
-            told = Progress(*(getattr(now, name) for name in Progress._fields))
+            told = Progress._make(ProgressStructure.unpack(progress.contents)[1:])  # without the size
             if self._bar is not None and self._bar.update(told.done - self._bar.n):
                 self._bar.set_postfix_str(f"{told.contact_nodes} in contact, {told.stick_nodes} stuck", refresh=False)
             return int(self._callback is not None and bool(self._callback(told)))

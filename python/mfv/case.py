@@ -13,7 +13,7 @@ from contextlib import contextmanager
 from ctypes import POINTER, byref, c_int, c_int32, c_size_t, c_void_p
 from operator import index
 from types import TracebackType
-from typing import TYPE_CHECKING, Any, Callable, NoReturn
+from typing import TYPE_CHECKING, Any, Callable, NoReturn, cast
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -34,12 +34,12 @@ from ._library import (
     whole_text,
 )
 from ._observer import Observer
-from .loads import Loads, Progress
+from .loads import MOTIONS, Loads, Progress, Targets
 from .result import Field, Result, Values
 from .scene import Scene, created
 
 if TYPE_CHECKING:
-    from typing_extensions import Self
+    from typing_extensions import Self, Unpack
 
 #: HDF5, which writes the result files, is in general not safe to call from two threads at once.
 writing = threading.Lock()
@@ -56,6 +56,12 @@ _DIMENSIONS: tuple[tuple[str, ...], ...] = ((), ("x",), ("record",), ("companion
 #: Plain numbers, which are quicker at hand than members of enumerations.
 _KEEP, _FORCE, _DISPLACEMENT = map(int, Control)
 _SIZE_OF_STEP = ctypes.sizeof(StepStructure)
+
+#: Motion and control by what a target is named.
+_CONTROLLED = {
+    **{motion.force: (number, _FORCE) for number, motion in enumerate(MOTIONS)},
+    **{motion.displacement: (number, _DISPLACEMENT) for number, motion in enumerate(MOTIONS)},
+}
 
 
 def run(
@@ -243,17 +249,12 @@ class Case:
     def advance(
         self,
         *,
-        normal_force: float | None = None,
-        approach: float | None = None,
-        tangential_force: float | None = None,
-        shift: float | None = None,
-        moment: float | None = None,
-        rotation: float | None = None,
         relative: bool = False,
         friction: bool | None = None,
         cycles: int = 0,
         steady_tolerance: float = 0.0,
         check: bool = False,
+        **targets: Unpack[Targets],
     ) -> str:
         """Lead the loads through one more step, whatever the steps of the case are; return the outcome.
 
@@ -264,14 +265,16 @@ class Case:
         tractions to within `steady_tolerance` times the largest one (0: never). `check`: as for `run`.
         Raises BadArgument.
         """
-        normal_control = tangential_control = rotational_control = _KEEP
-        normal_target = tangential_target = rotational_target = 0.0
-        if normal_force is not None or approach is not None:
-            normal_control, normal_target = _control("normal_force", normal_force, "approach", approach)
-        if tangential_force is not None or shift is not None:
-            tangential_control, tangential_target = _control("tangential_force", tangential_force, "shift", shift)
-        if moment is not None or rotation is not None:
-            rotational_control, rotational_target = _control("moment", moment, "rotation", rotation)
+        control, target = [_KEEP] * len(MOTIONS), [0.0] * len(MOTIONS)
+        for name, value in cast("dict[str, float | None]", targets).items():
+            if name not in _CONTROLLED:
+                raise TypeError(f"advance() got an unexpected keyword argument {name!r}")
+            if value is None:
+                continue
+            motion, kind = _CONTROLLED[name]
+            if control[motion] != _KEEP:
+                raise TypeError(f"give {MOTIONS[motion].force} or {MOTIONS[motion].displacement}, not both")
+            control[motion], target[motion] = kind, value
         turns = max(-LARGEST_INTEGER, min(index(cycles), LARGEST_INTEGER)) if cycles else 0
         with self._lock:
             try:  # one call in place of eleven: this is where a host program spends its time with Python
@@ -279,28 +282,18 @@ class Case:
                     self._step,
                     0,
                     _SIZE_OF_STEP,
-                    normal_target,
-                    tangential_target,
-                    normal_control,
-                    tangential_control,
+                    *target,
+                    steady_tolerance,
+                    *control,
                     1 if friction or friction is None else 0,
                     turns,
-                    rotational_target,
-                    rotational_control,
                     1 if relative else 0,
-                    steady_tolerance,
+                    0,
+                    0,
                 )
             except struct.error:
-                targets = {
-                    "normal_force": normal_force,
-                    "approach": approach,
-                    "tangential_force": tangential_force,
-                    "shift": shift,
-                    "moment": moment,
-                    "rotation": rotation,
-                    "steady_tolerance": steady_tolerance,
-                }
-                raise TypeError(f"targets and steady_tolerance must be numbers, not {_not_numbers(targets)}") from None
+                numbers = {**targets, "steady_tolerance": steady_tolerance}
+                raise TypeError(f"targets and steady_tolerance must be numbers, not {_not_numbers(numbers)}") from None
             if turns > 0 or self._is_long or not self._observer.is_idle:
                 watched = turns > 0 or self._is_long
                 return self._lead(check, watched, self._advance, self._handle, self._step_reference)
@@ -544,16 +537,3 @@ def _freed_with(owner: object, free: Callable[..., object], handle: c_void_p) ->
     finalizer = weakref.finalize(owner, free, byref(handle))
     finalizer.atexit = False
     return finalizer
-
-
-def _control(
-    force_name: str, force: float | None, displacement_name: str, displacement: float | None
-) -> tuple[int, float]:
-    """What a step does with a load, and its target."""
-    if force is not None:
-        if displacement is not None:
-            raise TypeError(f"give {force_name} or {displacement_name}, not both")
-        return _FORCE, force
-    if displacement is not None:
-        return _DISPLACEMENT, displacement
-    return _KEEP, 0.0

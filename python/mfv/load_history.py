@@ -11,10 +11,11 @@ import numpy as np
 from .compare import compare
 from .errors import MfvError
 from .inputs import case_of, groups
+from .loads import MOTIONS
 from .result import Field, Group, Result, is_last
 
 #: Loads by the keys of a step that lead them.
-LOADS = ("normal_force", "approach", "tangential_force", "shift", "moment", "rotation")
+LOADS = tuple(key for motion in MOTIONS for key in (motion.force, motion.displacement))
 
 #: Keys of a step that this module knows; a step with any other cannot be divided.
 KNOWN = (*LOADS, "force_ratio", "friction", "cycles", "steady_tolerance")

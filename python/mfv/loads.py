@@ -1,8 +1,30 @@
-"""What a case tells of itself: its loads and motions, and how far a run is."""
+"""The motions of the upper body; what a case tells of its loads and motions, and how far a run is."""
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from typing import NamedTuple, TypedDict
+
+
+class Motion(NamedTuple):
+    """A motion of the upper body, and the force that works on it: the names that keys, fields and attributes have."""
+
+    displacement: str
+    force: str
+
+
+#: The motions in the order of the library (MFV_APPROACH, ...). What follows names the same, with types.
+MOTIONS = (Motion("approach", "normal_force"), Motion("shift", "tangential_force"), Motion("rotation", "moment"))
+
+
+class Targets(TypedDict, total=False):
+    """Targets of a step: of every motion at most one, its force or its displacement."""
+
+    normal_force: float | None  #: P [force/length]
+    approach: float | None  #: of the upper body [length]
+    tangential_force: float | None  #: Q [force/length]
+    shift: float | None  #: of the upper body to the right [length]
+    moment: float | None  #: M [force], counterclockwise
+    rotation: float | None  #: of the upper body [radians], counterclockwise
 
 
 class Loads(NamedTuple):
@@ -30,10 +52,12 @@ class Progress(NamedTuple):
     segments: int  #: how many there are
     contact_nodes: int
     stick_nodes: int
-    normal_force: float  #: [force/length]
-    tangential_force: float  #: [force/length]
-    approach: float  #: [length]
-    shift: float  #: [length]
+    normal_force: float  #: these as of Loads
+    tangential_force: float
+    moment: float
+    approach: float
+    shift: float
+    rotation: float
 
     @property
     def done(self) -> float:

@@ -7,8 +7,11 @@ module mfv_contact
    use mfv_case_checksum, only: find_case_checksum
    use mfv_case_reader, only: read_case_file, read_case_text
    use mfv_clock, only: seconds_now
+   use mfv_contact_fields, only: contact_fields_type
    use mfv_contact_state, only: contact_state_type
    use mfv_discretisation_error, only: estimate_error, has_coarser_meshes
+   use mfv_motions, only: motions, motion_count, motion_approach, motion_shift, motion_rotation, control_keep, control_force, &
+                          control_displacement
    use mfv_sensitivity, only: find_sensitivity
    use mfv_draft, only: draft_type
    use mfv_error, only: error_type, set_error
@@ -20,7 +23,7 @@ module mfv_contact
    use mfv_result_fields, only: field_named, field_type, group_fields, result_attributes, result_groups
    use mfv_result_file, only: check_writable, is_whole_result, resume_result, write_result
    use mfv_safe_file, only: delete_path
-   use mfv_scene, only: control_displacement, control_force, control_keep, most_cycles, step_type
+   use mfv_scene, only: most_cycles, step_type
    use mfv_simulation, only: new_simulation, simulation_type
    use mfv_state_interior, only: state_interior
    use mfv_status
@@ -37,10 +40,10 @@ module mfv_contact
    !> What step_to makes of a force and a displacement for one direction.
    integer, parameter :: control_both = -huge(1)
 
-   !> Loads and motions of a state: forces [force/length], moment and dissipation [force], lengths, radians; and counts.
+   !> Loads and motions of a state, of motion_approach, motion_shift and motion_rotation: forces [force/length], moment [force];
+   !> lengths, radians; dissipation [force]; and counts.
    type :: loads_type
-      real(wp) :: normal_force = 0.0_wp, tangential_force = 0.0_wp, moment = 0.0_wp
-      real(wp) :: approach = 0.0_wp, shift = 0.0_wp, rotation = 0.0_wp, dissipation = 0.0_wp
+      real(wp) :: force(motion_count) = 0.0_wp, motion(motion_count) = 0.0_wp, dissipation = 0.0_wp
       integer :: contact_nodes = 0, stick_nodes = 0, slip_nodes = 0, events = 0, linear_solves = 0
    end type loads_type
 
@@ -324,11 +327,9 @@ contains
       call self%expect_made(error)
       if (allocated(error)) return
       absolute = step
-      if (step%normal_control == control_keep) absolute%normal_target = 0.0_wp
-      if (step%tangential_control == control_keep) absolute%tangential_target = 0.0_wp
-      if (step%rotational_control == control_keep) absolute%rotational_target = 0.0_wp
+      where (step%control == control_keep) absolute%target = 0.0_wp
       if (present(relative)) then
-         if (relative) call add_present(self%simulation%contact%state, absolute)
+         if (relative) call add_present(self%simulation%contact%state%fields, absolute)
       end if
       call check_step(absolute, error)
       if (allocated(error)) return
@@ -351,15 +352,15 @@ contains
       integer, intent(in), optional :: cycles
       type(step_type) :: step
 
-      call choose(normal_force, approach, step%normal_control, step%normal_target)
-      call choose(tangential_force, shift, step%tangential_control, step%tangential_target)
-      call choose(moment, rotation, step%rotational_control, step%rotational_target)
+      call choose(normal_force, approach, step%control(motion_approach), step%target(motion_approach))
+      call choose(tangential_force, shift, step%control(motion_shift), step%target(motion_shift))
+      call choose(moment, rotation, step%control(motion_rotation), step%target(motion_rotation))
       if (present(friction)) step%friction = friction
       if (present(cycles)) step%cycles = cycles
       if (present(steady_tolerance)) step%steady_tolerance = steady_tolerance
    end function step_to
 
-   !> What a step does with one direction.
+   !> What a step does with one motion.
    pure subroutine choose(force, displacement, control, target)
       real(wp), intent(in), optional :: force, displacement
       integer, intent(inout) :: control
@@ -374,44 +375,30 @@ contains
       target = displacement
    end subroutine choose
 
-   !> Add the loads of a state to the targets of a step.
-   pure subroutine add_present(state, step)
-      type(contact_state_type), intent(in) :: state
+   !> Add the forces and motions of a state to the targets of a step.
+   pure subroutine add_present(fields, step)
+      type(contact_fields_type), intent(in) :: fields
       type(step_type), intent(inout) :: step
 
-      associate (f => state%fields)
-         call add_load(f%normal_force, f%approach, step%normal_control, step%normal_target)
-         call add_load(f%tangential_force, f%shift, step%tangential_control, step%tangential_target)
-         call add_load(f%moment, f%rotation, step%rotational_control, step%rotational_target)
-      end associate
+      where (step%control == control_force) step%target = step%target + fields%force
+      where (step%control == control_displacement) step%target = step%target + fields%motion
    end subroutine add_present
-
-   !> Add the load that a step controls to its target.
-   pure subroutine add_load(force, displacement, control, target)
-      real(wp), intent(in) :: force, displacement
-      integer, intent(in) :: control
-      real(wp), intent(inout) :: target
-
-      if (control == control_force) target = target + force
-      if (control == control_displacement) target = target + displacement
-   end subroutine add_load
 
    !> What is wrong with a step: error MFV_BAD_ARGUMENT.
    subroutine check_step(step, error)
       type(step_type), intent(in) :: step
       type(error_type), allocatable, intent(out) :: error
-      integer, parameter :: controls(3) = [control_keep, control_force, control_displacement]
+      integer :: wrong
 
-      if (any([step%normal_control, step%tangential_control, step%rotational_control] == control_both)) then
+      wrong = findloc(motions%pushes .and. step%control == control_force .and. step%target < 0.0_wp, .true., dim=1)
+      if (any(step%control == control_both)) then
          call set_error(error, MFV_BAD_ARGUMENT, 'a step leads the force or the displacement of a direction, not both')
-      else if (.not. any(step%normal_control == controls) .or. .not. any(step%tangential_control == controls) .or. &
-          .not. any(step%rotational_control == controls)) then
+      else if (any(step%control < control_keep .or. step%control > control_displacement)) then
          call set_error(error, MFV_BAD_ARGUMENT, 'a control must be MFV_KEEP, MFV_FORCE or MFV_DISPLACEMENT')
-      else if (.not. (ieee_is_finite(step%normal_target) .and. ieee_is_finite(step%tangential_target) .and. &
-                      ieee_is_finite(step%rotational_target))) then
+      else if (.not. all(ieee_is_finite(step%target))) then
          call set_error(error, MFV_BAD_ARGUMENT, 'a target is not finite')
-      else if (step%normal_control == control_force .and. step%normal_target < 0.0_wp) then
-         call set_error(error, MFV_BAD_ARGUMENT, 'the normal force must not be negative')
+      else if (wrong > 0) then
+         call set_error(error, MFV_BAD_ARGUMENT, 'the '//trim(motions(wrong)%force_name)//' must not be negative')
       else if (.not. ieee_is_finite(step%steady_tolerance) .or. step%steady_tolerance < 0.0_wp) then
          call set_error(error, MFV_BAD_ARGUMENT, 'steady_tolerance must be a number and not negative')
       else if (step%cycles < 0 .or. step%cycles > most_cycles) then
@@ -442,12 +429,8 @@ contains
 
       if (.not. self%is_made) return
       associate (f => self%simulation%contact%state%fields, state => self%simulation%contact%state)
-         loads%normal_force = f%normal_force
-         loads%tangential_force = f%tangential_force
-         loads%moment = f%moment
-         loads%approach = f%approach
-         loads%shift = f%shift
-         loads%rotation = f%rotation
+         loads%force = f%force
+         loads%motion = f%motion
          loads%dissipation = state%dissipation
          call state%count_nodes(loads%contact_nodes, loads%stick_nodes, loads%slip_nodes)
       end associate
@@ -466,7 +449,7 @@ contains
       tangent = 0.0_wp
       call self%expect_made(error)
       if (allocated(error)) return
-      if (size(tangent, 1) /= size(tangent, 2) .or. size(tangent, 1) < 2 .or. size(tangent, 1) > 3) then
+      if (size(tangent, 1) /= size(tangent, 2) .or. size(tangent, 1) < 2 .or. size(tangent, 1) > motion_count) then
          call set_error(error, MFV_BAD_ARGUMENT, 'the tangent is of 2 motions, or of 3 with rotation')
          return
       end if

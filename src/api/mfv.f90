@@ -20,6 +20,8 @@ module mfv
    use mfv_stress_search, only: largest_type
    use mfv_kept_state, only: kept_state_type
    use mfv_kinds, only: wp
+   use mfv_motions, only: motion_count, motion_approach, motion_shift, motion_rotation, control_keep, control_force, &
+                          control_displacement
    use mfv_node_status, only: node_open, node_stick, node_slip_right, node_slip_left, node_frictionless, node_creep_right, &
                               node_creep_left
    use mfv_observer, only: observer_type
@@ -30,7 +32,7 @@ module mfv
    use mfv_reference_persson, only: persson_force
    use mfv_reference_spence, only: spence_cylinder_shear, spence_flat_punch_shear, spence_stick_ratio
    use mfv_reference_yield, only: contact_arc_at_yield
-   use mfv_scene, only: step_type, control_keep, control_force, control_displacement
+   use mfv_scene, only: step_type
    use mfv_status
    use mfv_strings, only: string_type
    use mfv_version, only: library_version

@@ -16,6 +16,7 @@ module mfv_c
    use mfv_key_path, only: read_key_name
    use mfv_keys, only: catalogue_type, kind_integer
    use mfv_kinds, only: wp
+   use mfv_motions, only: motions, motion_count
    use mfv_observables, only: observable_count, observable_meaning, observable_name, observable_unit
    use mfv_observer, only: observer_type
    use mfv_result_fields, only: field_type
@@ -51,17 +52,14 @@ module mfv_c
    !> mfv_step of the header.
    type, bind(C) :: c_step
       integer(c_size_t) :: size
-      real(c_double) :: normal_target, tangential_target
-      integer(c_int) :: normal_control, tangential_control, friction, cycles
-      real(c_double) :: rotational_target
-      integer(c_int) :: rotational_control, relative
-      real(c_double) :: steady_tolerance
+      real(c_double) :: target(motion_count), steady_tolerance
+      integer(c_int) :: control(motion_count), friction, cycles, relative, unused(2)
    end type c_step
 
    !> mfv_loads of the header.
    type, bind(C) :: c_loads
       integer(c_size_t) :: size
-      real(c_double) :: normal_force, tangential_force, moment, approach, shift, rotation, dissipation
+      real(c_double) :: force(motion_count), motion(motion_count), dissipation
       integer(c_int) :: contact_nodes, stick_nodes, slip_nodes, events, linear_solves, unused
    end type c_loads
 
@@ -70,7 +68,7 @@ module mfv_c
       integer(c_size_t) :: size
       real(c_double) :: fraction
       integer(c_int) :: segment, segments, contact_nodes, stick_nodes
-      real(c_double) :: normal_force, tangential_force, approach, shift
+      real(c_double) :: force(motion_count), motion(motion_count)
    end type c_progress
 
    abstract interface
@@ -513,7 +511,7 @@ contains
       stop_wanted = .false.
       if (.not. associated(self%observe)) return
       progress = c_progress(c_sizeof(progress), fraction, segment, segments, state%contact_nodes(), state%stick_nodes(), &
-                            state%fields%normal_force, state%fields%tangential_force, state%fields%approach, state%fields%shift)
+                            state%fields%force, state%fields%motion)
       stop_wanted = self%observe(progress, self%user) /= 0
    end subroutine notify
 
@@ -546,9 +544,7 @@ contains
          status = refused(self, 'mfv_advance: size is not sizeof(mfv_step)')
          return
       end if
-      wanted = step_type(given%normal_control, given%tangential_control, given%normal_target, given%tangential_target, &
-                         given%friction /= 0, given%cycles, given%rotational_control, given%rotational_target, &
-                         given%steady_tolerance)
+      wanted = step_type(given%control, given%target, given%friction /= 0, given%cycles, given%steady_tolerance)
       if (associated(self%observer%observe)) then
          call self%contact%advance(wanted, error, given%relative /= 0, self%observer)
       else
@@ -574,8 +570,8 @@ contains
       status = expected(self, loads%size == c_sizeof(loads), 'mfv_get_loads: size is not sizeof(mfv_loads)')
       if (status /= MFV_COMPLETE) return
       now = self%contact%loads()
-      loads = c_loads(loads%size, now%normal_force, now%tangential_force, now%moment, now%approach, now%shift, now%rotation, &
-                      now%dissipation, now%contact_nodes, now%stick_nodes, now%slip_nodes, now%events, now%linear_solves, 0)
+      loads = c_loads(loads%size, now%force, now%motion, now%dissipation, &
+                      now%contact_nodes, now%stick_nodes, now%slip_nodes, now%events, now%linear_solves, 0)
    end function mfv_get_loads_unguarded
 
    integer(c_int) function mfv_tangent_unguarded(handle, motions, direction, tangent) result(status) bind(C)
@@ -585,10 +581,10 @@ contains
       type(handle_type), pointer :: self
       real(c_double), pointer :: towards(:)
       type(error_type), allocatable :: error
-      real(wp) :: found(3, 3)
+      real(wp) :: found(motion_count, motion_count)
 
       call c_f_pointer(handle, self)
-      status = expected(self, motions == 2 .or. motions == 3, 'mfv_tangent: motions must be 2, or 3 with rotation')
+      status = expected(self, motions >= 2 .and. motions <= motion_count, 'mfv_tangent: motions must be 2, or 3 with rotation')
       if (status /= MFV_COMPLETE) return
       status = expected(self, present(tangent), 'mfv_tangent: tangent is null')
       if (status /= MFV_COMPLETE) return

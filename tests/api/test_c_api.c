@@ -79,11 +79,11 @@ static void step_by_step_equals_run(void) {
   CHECK(mfv_run(whole) == MFV_COMPLETE);
 
   mfv_step press = MFV_STEP_INIT, shear = MFV_STEP_INIT;
-  press.normal_control = MFV_FORCE;
-  press.normal_target = 1.0e-3;
+  press.control[MFV_APPROACH] = MFV_FORCE;
+  press.target[MFV_APPROACH] = 1.0e-3;
   press.friction = 0;
-  shear.tangential_control = MFV_FORCE;
-  shear.tangential_target = 2.8e-4;
+  shear.control[MFV_SHIFT] = MFV_FORCE;
+  shear.target[MFV_SHIFT] = 2.8e-4;
   CHECK(mfv_advance(stepped, &press) == MFV_COMPLETE);
   CHECK(mfv_advance(stepped, &shear) == MFV_COMPLETE);
   double *a = array(whole, "state/shear", &count), *b = array(stepped, "state/shear", &same);
@@ -91,7 +91,7 @@ static void step_by_step_equals_run(void) {
   free(a);
   free(b);
 
-  shear.tangential_target = 8.0e-4;
+  shear.target[MFV_SHIFT] = 8.0e-4;
   CHECK(mfv_advance(stepped, &shear) == MFV_GROSS_SLIDING);
   CHECK(fabs(scalar(stepped, "summary/tangential_force") / 7.0e-4 - 1) < 1e-9);
   CHECK(mfv_advance(stepped, &press) == MFV_GROSS_SLIDING);
@@ -160,12 +160,12 @@ static void misuse_is_told(void) {
   CHECK(mfv_copy_real(handle, NULL, &value, 1) == MFV_BAD_ARGUMENT);
   CHECK(mfv_advance(handle, NULL) == MFV_BAD_ARGUMENT);
   mfv_step step = MFV_STEP_INIT;
-  step.normal_control = 7;
+  step.control[MFV_APPROACH] = 7;
   CHECK(mfv_advance(handle, &step) == MFV_BAD_ARGUMENT);
-  step.normal_control = MFV_FORCE;
-  step.normal_target = -1;
+  step.control[MFV_APPROACH] = MFV_FORCE;
+  step.target[MFV_APPROACH] = -1;
   CHECK(mfv_advance(handle, &step) == MFV_BAD_ARGUMENT);
-  step.normal_target = NAN;
+  step.target[MFV_APPROACH] = NAN;
   CHECK(mfv_advance(handle, &step) == MFV_BAD_ARGUMENT);
   step.size = 3;
   CHECK(mfv_advance(handle, &step) == MFV_BAD_ARGUMENT);
@@ -247,14 +247,14 @@ static void moment_and_rotation(void) {
   mfv_case *handle = NULL;
   mfv_step press = MFV_STEP_INIT, turn = MFV_STEP_INIT;
   CHECK(mfv_create_from_text(without_steps, NULL, &handle, NULL, 0) == MFV_COMPLETE);
-  press.normal_control = MFV_FORCE;
-  press.normal_target = 5.0e-4;
+  press.control[MFV_APPROACH] = MFV_FORCE;
+  press.target[MFV_APPROACH] = 5.0e-4;
   CHECK(mfv_advance(handle, &press) == MFV_COMPLETE);
-  turn.rotational_control = MFV_FORCE;
-  turn.rotational_target = 5.0e-7;
+  turn.control[MFV_ROTATION] = MFV_FORCE;
+  turn.target[MFV_ROTATION] = 5.0e-7;
   CHECK(mfv_advance(handle, &turn) == MFV_COMPLETE);
   CHECK(fabs(scalar(handle, "summary/moment") / 5.0e-7 - 1) < 1e-10 && scalar(handle, "summary/rotation") > 0);
-  turn.rotational_control = 7;
+  turn.control[MFV_ROTATION] = 7;
   CHECK(mfv_advance(handle, &turn) == MFV_BAD_ARGUMENT);
   CHECK(mfv_free(&handle) == MFV_COMPLETE);
 }

@@ -45,10 +45,10 @@ static mfv_case *created(const mfv_scene *scene) {
 static int lead(mfv_case *handle, int normal, double normal_target, int tangential, double tangential_target, int friction,
                 int relative) {
   mfv_step step = MFV_STEP_INIT;
-  step.normal_control = normal;
-  step.normal_target = normal_target;
-  step.tangential_control = tangential;
-  step.tangential_target = tangential_target;
+  step.control[MFV_APPROACH] = normal;
+  step.target[MFV_APPROACH] = normal_target;
+  step.control[MFV_SHIFT] = tangential;
+  step.target[MFV_SHIFT] = tangential_target;
   step.friction = friction;
   step.relative = relative;
   return mfv_advance(handle, &step);
@@ -136,10 +136,10 @@ static void increments(void) {
   CHECK(lead(whole, MFV_KEEP, 0, MFV_DISPLACEMENT, 1e-4, 1, 0) == MFV_COMPLETE);
   for (int i = 0; i < 10; ++i) CHECK(lead(parts, MFV_KEEP, 0, MFV_DISPLACEMENT, 1e-5, 1, 1) == MFV_COMPLETE);
   mfv_loads a = loads_of(whole), b = loads_of(parts);
-  CHECK(fabs(b.shift / 1e-4 - 1) < 1e-14 && fabs(a.tangential_force / b.tangential_force - 1) < 1e-10);
+  CHECK(fabs(b.motion[MFV_SHIFT] / 1e-4 - 1) < 1e-14 && fabs(a.force[MFV_SHIFT] / b.force[MFV_SHIFT] - 1) < 1e-10);
   CHECK(lead(parts, MFV_FORCE, -2e-3, MFV_KEEP, 0, 1, 1) == MFV_BAD_ARGUMENT); /* P would be negative */
   CHECK(lead(parts, MFV_FORCE, -2e-4, MFV_KEEP, 0, 1, 1) == MFV_COMPLETE);
-  CHECK(fabs(loads_of(parts).normal_force / 8e-4 - 1) < 1e-12);
+  CHECK(fabs(loads_of(parts).force[MFV_APPROACH] / 8e-4 - 1) < 1e-12);
   mfv_free(&whole);
   mfv_free(&parts);
   mfv_scene_free(&scene);
@@ -167,11 +167,11 @@ static void newton_by_trial_steps(void) {
     CHECK(mfv_restore(handle, start) == MFV_COMPLETE);
     CHECK(lead(handle, MFV_KEEP, 0, MFV_DISPLACEMENT, shift, 1, 0) == MFV_COMPLETE);
     CHECK(mfv_tangent(handle, 2, NULL, tangent) == MFV_COMPLETE);
-    residual = wanted - loads_of(handle).tangential_force;
+    residual = wanted - loads_of(handle).force[MFV_SHIFT];
   }
   CHECK(iterations > 2 && iterations < 9);
   CHECK(lead(direct, MFV_KEEP, 0, MFV_FORCE, wanted, 1, 0) == MFV_COMPLETE);
-  CHECK(fabs(loads_of(direct).shift / shift - 1) < 1e-10);
+  CHECK(fabs(loads_of(direct).motion[MFV_SHIFT] / shift - 1) < 1e-10);
   CHECK(tangent[1] == 0.0 && tangent[0] > 0); /* Goodman: shear does not press */
 
   /* The storage of a state is used again; a state outlives its case and serves a copy of it. */
@@ -209,9 +209,9 @@ typedef struct {
 static int watch(const mfv_progress *progress, void *user) {
   witness *self = user;
   self->size = progress->size;
-  self->in_order = self->in_order && progress->tangential_force >= self->force && progress->fraction >= 0 &&
+  self->in_order = self->in_order && progress->force[MFV_SHIFT] >= self->force && progress->fraction >= 0 &&
                    progress->fraction <= 1 && progress->segment == 1 && progress->segments == 1;
-  self->force = progress->tangential_force;
+  self->force = progress->force[MFV_SHIFT];
   return ++self->calls == self->stop_at;
 }
 
@@ -236,22 +236,22 @@ static void observers(void) {
   CHECK(mfv_save(handle, &start) == MFV_COMPLETE);
   CHECK(mfv_observe(handle, watch, &seen) == MFV_COMPLETE);
   CHECK(lead(handle, MFV_KEEP, 0, MFV_FORCE, 3.5e-4, 1, 0) == MFV_COMPLETE);
-  CHECK(seen.calls >= loads_of(handle).events && seen.calls > 4 && seen.in_order && seen.force == loads_of(handle).tangential_force);
+  CHECK(seen.calls >= loads_of(handle).events && seen.calls > 4 && seen.in_order && seen.force == loads_of(handle).force[MFV_SHIFT]);
   CHECK(seen.size == sizeof(mfv_progress));
   CHECK(mfv_restore(handle, start) == MFV_COMPLETE);
   witness stopping = {0, 3, 1, 0, 0};
   CHECK(mfv_observe(handle, watch, &stopping) == MFV_COMPLETE);
   CHECK(lead(handle, MFV_KEEP, 0, MFV_FORCE, 3.5e-4, 1, 0) == MFV_INTERRUPTED);
-  CHECK(stopping.calls == 3 && loads_of(handle).tangential_force > 0 && loads_of(handle).tangential_force < 3.5e-4);
+  CHECK(stopping.calls == 3 && loads_of(handle).force[MFV_SHIFT] > 0 && loads_of(handle).force[MFV_SHIFT] < 3.5e-4);
   /* An interrupted step leaves a state to go on from. */
   CHECK(mfv_observe(handle, NULL, NULL) == MFV_COMPLETE);
   CHECK(lead(handle, MFV_KEEP, 0, MFV_FORCE, 3.5e-4, 1, 0) == MFV_COMPLETE);
-  CHECK(fabs(loads_of(handle).tangential_force / 3.5e-4 - 1) < 1e-12);
+  CHECK(fabs(loads_of(handle).force[MFV_SHIFT] / 3.5e-4 - 1) < 1e-12);
   /* Parts of cycles are counted. */
   parts counted = {0, 0};
   mfv_step cycles = MFV_STEP_INIT;
-  cycles.tangential_control = MFV_FORCE;
-  cycles.tangential_target = -3.5e-4;
+  cycles.control[MFV_SHIFT] = MFV_FORCE;
+  cycles.target[MFV_SHIFT] = -3.5e-4;
   cycles.cycles = 3;
   CHECK(mfv_observe(handle, count_parts, &counted) == MFV_COMPLETE);
   CHECK(mfv_advance(handle, &cycles) == MFV_COMPLETE && counted.last == 6 && counted.all == 6);

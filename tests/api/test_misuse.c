@@ -64,7 +64,7 @@ static void still_works(bench *b, const char *after) {
   int before = failures;
   size_t length = 0;
   CHECK(mfv_restore(b->handle, b->state) == MFV_COMPLETE && mfv_get_loads(b->handle, &loads) == MFV_COMPLETE);
-  CHECK(loads.contact_nodes > 5 && fabs(loads.tangential_force - 2.8e-4) < 1e-15);
+  CHECK(loads.contact_nodes > 5 && fabs(loads.force[MFV_SHIFT] - 2.8e-4) < 1e-15);
   CHECK(mfv_scene_text(b->scene, NULL, 0, &length) == MFV_COMPLETE && length > 100);
   if (failures > before) printf("  after %s\n", after);
 }
@@ -474,16 +474,16 @@ static void wrong_numbers(void) {
   for (size_t i = 0; i < sizeof odd / sizeof odd[0]; ++i) {
     mfv_step step = MFV_STEP_INIT;
     double points[2] = {odd[i], -0.01}, down[2] = {-0.01, odd[i]}, stresses[2 * MFV_STRESS_COUNT], direction[3] = {0, odd[i], 0};
-    step.tangential_control = MFV_DISPLACEMENT;
-    step.tangential_target = odd[i];
+    step.control[MFV_SHIFT] = MFV_DISPLACEMENT;
+    step.target[MFV_SHIFT] = odd[i];
     int status = mfv_advance(b.handle, &step);
     CHECK(status != MFV_COMPLETE || fabs(odd[i]) < 1e-300);
     CHECK((status == MFV_BAD_ARGUMENT) == !isfinite(odd[i]));
     CHECK(mfv_restore(b.handle, b.state) == MFV_COMPLETE);
     step = (mfv_step)MFV_STEP_INIT;
     step.cycles = 2;
-    step.tangential_control = MFV_FORCE;
-    step.tangential_target = 1e-4;
+    step.control[MFV_SHIFT] = MFV_FORCE;
+    step.target[MFV_SHIFT] = 1e-4;
     step.steady_tolerance = odd[i];
     status = mfv_advance(b.handle, &step);
     CHECK((status == MFV_BAD_ARGUMENT) == !(isfinite(odd[i]) && odd[i] >= 0));
@@ -526,10 +526,10 @@ static void wrong_numbers(void) {
   }
   for (size_t i = 0; i < sizeof whole / sizeof whole[0]; ++i) {
     mfv_step step = MFV_STEP_INIT;
-    step.normal_control = whole[i];
+    step.control[MFV_APPROACH] = whole[i];
     refused(&b, mfv_advance(b.handle, &step), "control");
     step = (mfv_step)MFV_STEP_INIT;
-    step.rotational_control = whole[i];
+    step.control[MFV_ROTATION] = whole[i];
     refused(&b, mfv_advance(b.handle, &step), "control");
     step = (mfv_step)MFV_STEP_INIT;
     step.cycles = whole[i];
@@ -642,7 +642,7 @@ static void before_and_after(void) {
   size_t fields = 0;
   CHECK(mfv_scene_from_text(text, NULL, &scene, NULL, 0) == MFV_COMPLETE && mfv_create(scene, &handle, NULL, 0) == MFV_COMPLETE);
   /* Asked before anything was solved: the unloaded state. */
-  CHECK(mfv_get_loads(handle, &loads) == MFV_COMPLETE && loads.contact_nodes == 0 && loads.normal_force == 0);
+  CHECK(mfv_get_loads(handle, &loads) == MFV_COMPLETE && loads.contact_nodes == 0 && loads.force[MFV_APPROACH] == 0);
   CHECK(mfv_field_count(handle, &fields) == MFV_COMPLETE && fields > 20);
   CHECK(mfv_copy_real(handle, "state/pressure", numbers, NODES) == MFV_COMPLETE && numbers[7] == 0);
   int status = mfv_tangent(handle, 2, NULL, tangent);
@@ -655,7 +655,7 @@ static void before_and_after(void) {
   /* The scene changes and goes; the case stays as it was made. */
   CHECK(mfv_scene_set_real(scene, "friction%mu", 0.1) == MFV_COMPLETE && mfv_scene_free(&scene) == MFV_COMPLETE);
   CHECK(mfv_observe(handle, NULL, NULL) == MFV_COMPLETE && mfv_run(handle) == MFV_COMPLETE);
-  CHECK(mfv_get_loads(handle, &loads) == MFV_COMPLETE && fabs(loads.tangential_force - 2.8e-4) < 1e-15);
+  CHECK(mfv_get_loads(handle, &loads) == MFV_COMPLETE && fabs(loads.force[MFV_SHIFT] - 2.8e-4) < 1e-15);
   /* Run again: there is nothing left to do. */
   mfv_loads again = MFV_LOADS_INIT;
   CHECK(mfv_run(handle) == MFV_COMPLETE && mfv_get_loads(handle, &again) == MFV_COMPLETE && memcmp(&loads, &again, sizeof again) == 0);
@@ -713,8 +713,8 @@ static int dive(const mfv_progress *progress, void *user) {
 static void inside_callbacks(void) {
   bench b = new_bench(), other = new_bench();
   mfv_step step = MFV_STEP_INIT;
-  step.tangential_control = MFV_FORCE;
-  step.tangential_target = -2.8e-4;
+  step.control[MFV_SHIFT] = MFV_FORCE;
+  step.target[MFV_SHIFT] = -2.8e-4;
   visit seen = {.own = &b, .other = &other};
   CHECK(mfv_observe(b.handle, call_everything, &seen) == MFV_COMPLETE);
   CHECK(mfv_advance(b.handle, &step) == MFV_COMPLETE && seen.calls > 1 && seen.wrong == 0);
@@ -741,8 +741,8 @@ static void ended_at_every_call(void) {
   mfv_step step = MFV_STEP_INIT;
   mfv_loads end = MFV_LOADS_INIT, after = MFV_LOADS_INIT;
   visit all = {.stop_at = -1};
-  step.tangential_control = MFV_FORCE;
-  step.tangential_target = -3.5e-4;
+  step.control[MFV_SHIFT] = MFV_FORCE;
+  step.target[MFV_SHIFT] = -3.5e-4;
   CHECK(mfv_observe(b.handle, stop, &all) == MFV_COMPLETE && mfv_advance(b.handle, &step) == MFV_COMPLETE && all.calls > 2);
   CHECK(mfv_get_loads(b.handle, &end) == MFV_COMPLETE);
   for (int at = 1; at <= all.calls; ++at) {
@@ -752,7 +752,7 @@ static void ended_at_every_call(void) {
     CHECK(mfv_message(b.handle, b.buffer, ROOM) == MFV_COMPLETE && strstr(b.buffer, "stopped on request") != NULL);
     CHECK(mfv_run(b.handle) == MFV_INTERRUPTED && part.calls == at);
     CHECK(mfv_advance(b.handle, &step) == MFV_COMPLETE && mfv_get_loads(b.handle, &after) == MFV_COMPLETE);
-    CHECK(fabs(after.shift / end.shift - 1) < 1e-11 && after.stick_nodes == end.stick_nodes);
+    CHECK(fabs(after.motion[MFV_SHIFT] / end.motion[MFV_SHIFT] - 1) < 1e-11 && after.stick_nodes == end.stick_nodes);
   }
   CHECK(mfv_observe(b.handle, NULL, NULL) == MFV_COMPLETE);
   still_works(&b, "ending runs");
@@ -821,8 +821,8 @@ static void after_fork(void) {
   int status = -1;
   mfv_step step = MFV_STEP_INIT;
   mfv_loads end = MFV_LOADS_INIT;
-  step.tangential_control = MFV_FORCE;
-  step.tangential_target = -2.8e-4;
+  step.control[MFV_SHIFT] = MFV_FORCE;
+  step.target[MFV_SHIFT] = -2.8e-4;
   fflush(stdout);
   pid_t child = fork();
   CHECK(child >= 0);

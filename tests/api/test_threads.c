@@ -163,8 +163,8 @@ static int count_increments(const mfv_progress *progress, void *user) {
 
 static int by(mfv_case *handle, double shift) {
   mfv_step step = MFV_STEP_INIT;
-  step.tangential_control = MFV_DISPLACEMENT;
-  step.tangential_target = shift;
+  step.control[MFV_SHIFT] = MFV_DISPLACEMENT;
+  step.target[MFV_SHIFT] = shift;
   step.relative = 1;
   return mfv_advance(handle, &step);
 }

@@ -10,6 +10,7 @@ import pytest
 
 import mfv
 from mfv import _library
+from mfv.loads import MOTIONS, Targets
 
 HEADER = (Path(__file__).resolve().parents[2] / "include" / "mfv.h").read_text()
 
@@ -23,6 +24,10 @@ STRUCTURES = {
 }
 
 ENUMERATIONS = {
+    "MFV_APPROACH": {
+        **{f"MFV_{motion.displacement.upper()}": number for number, motion in enumerate(MOTIONS)},
+        "MFV_MOTIONS": len(MOTIONS),
+    },
     "MFV_KEEP": {f"MFV_{control.name}": control.value for control in _library.Control},
     "MFV_ALONG_NOTHING": {f"MFV_ALONG_{along.name}": along.value for along in _library.Along},
     "MFV_LOWER": {f"MFV_{name.upper()}": number for number, name in enumerate(mfv.stress.BODIES)},
@@ -65,9 +70,30 @@ def prototypes() -> list[tuple[str, str, str]]:
 
 def members(body: str) -> list[tuple[str, type]]:
     """Names and types of the members of a structure."""
-    lines = [line.strip() for line in body.split(";") if line.strip()]
-    declared = [re.fullmatch(r"(\w+)\s+([\w\s,]+)", line).groups() for line in lines]
-    return [(name.strip(), SCALARS[kind]) for kind, names in declared for name in names.split(",")]
+    lines = [line.strip() for line in body.replace("MFV_MOTIONS", str(len(MOTIONS))).split(";") if line.strip()]
+    declared = [re.fullmatch(r"(\w+)\s+([\w\s,\[\]]+)", line).groups() for line in lines]
+    return [member(kind, name.strip()) for kind, names in declared for name in names.split(",")]
+
+
+def member(kind: str, declared: str) -> tuple[str, type]:
+    """Name and type of a member, which may be an array."""
+    name, length = re.fullmatch(r"(\w+)(?:\[(\d+)\])?", declared).groups()
+    return name, SCALARS[kind] * int(length) if length else SCALARS[kind]
+
+
+def names_of(structure: type[ctypes.Structure]) -> tuple[str, ...]:
+    """Names of the members of a structure after its size, of every motion where there is an array of them."""
+    of_motions = {
+        "force": tuple(motion.force for motion in MOTIONS),
+        "motion": tuple(motion.displacement for motion in MOTIONS),
+    }
+    return tuple(name for member, _ in structure._fields_[1:] for name in of_motions.get(member, (member,)))
+
+
+def flat(structure: ctypes.Structure) -> list[float]:
+    """The values of all members."""
+    values = [getattr(structure, name) for name, _ in structure._fields_]
+    return [one for value in values for one in (value if isinstance(value, ctypes.Array) else (value,))]
 
 
 def test_functions_are_those_of_the_header() -> None:
@@ -82,18 +108,24 @@ def test_structures_are_those_of_the_header() -> None:
     for name, structure in STRUCTURES.items():
         assert structure._fields_ == members(declared[name]), name
         assert structure._fields_[0] == ("size", ctypes.c_size_t)
-    assert tuple(mfv.Loads._fields) == tuple(name for name, _ in members(declared["mfv_loads"]))[1:-1]
-    assert tuple(mfv.Progress._fields) == tuple(name for name, _ in members(declared["mfv_progress"]))[1:]
+    assert tuple(mfv.Loads._fields) == names_of(_library.LoadsStructure)[:-1]
+    assert tuple(mfv.Progress._fields) == names_of(_library.ProgressStructure)
+    assert set(Targets.__annotations__) == {name for motion in MOTIONS for name in motion}
 
 
 def test_structures_are_packed_as_they_are_laid_out() -> None:
-    step, loads = _library.StepStructure(), _library.LoadsStructure()
-    values = list(range(1, len(step._fields_) + 1))
+    step = _library.StepStructure()
+    values = list(range(1, len(flat(step)) + 1))
     step.pack(step, 0, *values)
-    assert [getattr(step, name) for name, _ in step._fields_] == values
-    for number, (name, _) in enumerate(loads._fields_):
-        setattr(loads, name, number)
-    assert list(loads.unpack(loads)) == list(range(len(loads._fields_)))
+    assert flat(step) == values
+    for structure in (_library.LoadsStructure(), _library.ProgressStructure()):
+        numbers = iter(range(len(flat(structure))))
+        for name, kind in structure._fields_:
+            if issubclass(kind, ctypes.Array):
+                getattr(structure, name)[:] = [next(numbers) for _ in range(kind._length_)]
+            else:
+                setattr(structure, name, next(numbers))
+        assert list(structure.unpack(structure)) == list(range(len(flat(structure))))
 
 
 def test_the_size_of_a_structure_is_that_of_the_library() -> None:

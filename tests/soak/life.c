@@ -56,9 +56,9 @@ static int watch(const mfv_progress *progress, void *user) {
 static mfv_loads loads_now(story *self) {
   mfv_loads loads = MFV_LOADS_INIT;
   if (mfv_get_loads(self->handle, &loads) != MFV_COMPLETE) wrong(self, "mfv_get_loads failed");
-  if (!isfinite(loads.normal_force + loads.tangential_force + loads.moment + loads.approach + loads.shift + loads.rotation +
-                loads.dissipation))
-    wrong(self, "a load is not finite");
+  double sum = loads.dissipation;
+  for (int i = 0; i < MFV_MOTIONS; ++i) sum += loads.force[i] + loads.motion[i];
+  if (!isfinite(sum)) wrong(self, "a load is not finite");
   return loads;
 }
 
@@ -155,22 +155,20 @@ static void be_patient(story *self) {
 static void lead(story *self, const mfv_step *step) {
   mfv_step part = *step;
   /* Without force there is no part of it that round-off could not make negative. */
-  int lifts = step->normal_control == MFV_FORCE && step->normal_target == 0;
+  int lifts = step->control[MFV_APPROACH] == MFV_FORCE && step->target[MFV_APPROACH] == 0;
   int parts = step->cycles == 0 && !lifts && chance(&self->random, 0.3) ? 2 + one_of(&self->random, 4) : 1;
   mfv_loads now = loads_now(self);
   be_patient(self);
   if (parts > 1) {
     part.relative = 1;
-    part.normal_target = (step->normal_target - (step->normal_control == MFV_FORCE ? now.normal_force : now.approach)) / parts;
-    part.tangential_target =
-        (step->tangential_target - (step->tangential_control == MFV_FORCE ? now.tangential_force : now.shift)) / parts;
-    part.rotational_target = (step->rotational_target - now.moment) / parts;
+    for (int i = 0; i < MFV_MOTIONS; ++i)
+      part.target[i] = (step->target[i] - (step->control[i] == MFV_FORCE ? now.force[i] : now.motion[i])) / parts;
   }
   for (int i = 0; i < parts; ++i) {
     if (i + 1 == parts && parts > 1) part = *step; /* round-off must not make the force negative */
     note(self, "advance normal %d %.17g tangential %d %.17g rotational %d %.17g friction %d cycles %d steady %g relative %d",
-         part.normal_control, part.normal_target, part.tangential_control, part.tangential_target, part.rotational_control,
-         part.rotational_target, part.friction, part.cycles, part.steady_tolerance, part.relative);
+         part.control[MFV_APPROACH], part.target[MFV_APPROACH], part.control[MFV_SHIFT], part.target[MFV_SHIFT],
+         part.control[MFV_ROTATION], part.target[MFV_ROTATION], part.friction, part.cycles, part.steady_tolerance, part.relative);
     led(self, mfv_advance(self->handle, &part));
     if (self->out.status != MFV_COMPLETE) return;
   }

@@ -198,32 +198,31 @@ static mfv_step random_step(generator *random, const random_case *self, int is_f
   int friction = self->law != NO_FRICTION;
   if (is_first || !friction || chance(random, 0.4)) {
     *normal = is_first ? 1 : chance(random, 0.05) ? 0 : between(random, 0.1, 1.2);
-    step.normal_control = chance(random, 0.8) ? MFV_FORCE : MFV_DISPLACEMENT;
-    step.normal_target = *normal * (step.normal_control == MFV_FORCE ? self->force : self->approach);
+    step.control[MFV_APPROACH] = chance(random, 0.8) ? MFV_FORCE : MFV_DISPLACEMENT;
+    step.target[MFV_APPROACH] = *normal * (step.control[MFV_APPROACH] == MFV_FORCE ? self->force : self->approach);
   }
-  if (friction && (chance(random, is_first ? 0.2 : 0.7) || (!is_first && step.normal_control == MFV_KEEP))) {
-    step.tangential_control = chance(random, 0.8) ? MFV_FORCE : MFV_DISPLACEMENT;
-    step.tangential_target = between(random, -1, 1) * fmin(*normal, 1) *
-                             (step.tangential_control == MFV_FORCE ? self->mu * self->force : self->shift);
+  if (friction && (chance(random, is_first ? 0.2 : 0.7) || (!is_first && step.control[MFV_APPROACH] == MFV_KEEP))) {
+    step.control[MFV_SHIFT] = chance(random, 0.8) ? MFV_FORCE : MFV_DISPLACEMENT;
+    step.target[MFV_SHIFT] = between(random, -1, 1) * fmin(*normal, 1) *
+                             (step.control[MFV_SHIFT] == MFV_FORCE ? self->mu * self->force : self->shift);
   }
-  if (is_first && step.tangential_control == MFV_KEEP) step.friction = chance(random, 0.2);
+  if (is_first && step.control[MFV_SHIFT] == MFV_KEEP) step.friction = chance(random, 0.2);
   if (!is_first && chance(random, 0.3)) {
     step.cycles = 1 + one_of(random, 3);
     if (step.cycles > 1 && chance(random, 0.5)) step.steady_tolerance = 1e-6;
   }
   if (!is_first && friction && self->radius > 0 && chance(random, 0.2)) {
-    step.rotational_control = MFV_FORCE;
-    step.rotational_target = between(random, -0.3, 0.3) * *normal * self->force * self->half_width;
+    step.control[MFV_ROTATION] = MFV_FORCE;
+    step.target[MFV_ROTATION] = between(random, -0.3, 0.3) * *normal * self->force * self->half_width;
   }
   return step;
 }
 
 static void put_step(random_case *self, int number, const mfv_step *step) {
-  if (step->normal_control != MFV_KEEP)
-    put_real(self, "step", number, step->normal_control == MFV_FORCE ? "normal_force" : "approach", step->normal_target);
-  if (step->tangential_control != MFV_KEEP)
-    put_real(self, "step", number, step->tangential_control == MFV_FORCE ? "tangential_force" : "shift", step->tangential_target);
-  if (step->rotational_control != MFV_KEEP) put_real(self, "step", number, "moment", step->rotational_target);
+  static const char *keys[][MFV_MOTIONS] = {[MFV_FORCE] = {"normal_force", "tangential_force", "moment"},
+                                            [MFV_DISPLACEMENT] = {"approach", "shift", "rotation"}};
+  for (int i = 0; i < MFV_MOTIONS; ++i)
+    if (step->control[i] != MFV_KEEP) put_real(self, "step", number, keys[step->control[i]][i], step->target[i]);
   if (self->law != NO_FRICTION) put_logical(self, "step", number, "friction", step->friction);
   if (step->cycles > 0) put_integer(self, "step", number, "cycles", step->cycles);
   if (step->steady_tolerance > 0) put_real(self, "step", number, "steady_tolerance", step->steady_tolerance);

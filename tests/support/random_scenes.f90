@@ -7,6 +7,7 @@ module test_random_scenes_support
    use mfv_contact_state, only: contact_state_type
    use mfv_kinds, only: pi, wp
    use mfv_material, only: new_material, plane_strain, plane_stress
+   use mfv_motions, only: motion_approach, motion_shift, motion_rotation, control_keep, control_force, control_displacement
    use mfv_observer, only: observer_type
    use mfv_scene
    implicit none
@@ -101,17 +102,18 @@ contains
       scene%friction = coulomb_friction(mu)
       force = 0.25_wp*pi*scene%modulus()*scene%curvature()*(random%between(0.2_wp, 0.7_wp)*bore%radius)**2
 
-      press%normal_control = control_force
-      press%normal_target = force
-      shear%tangential_control = control_force
-      shear%tangential_target = random%between(-0.5_wp, 0.5_wp)*mu*force
+      press%control(motion_approach) = control_force
+      press%target(motion_approach) = force
+      shear%control(motion_shift) = control_force
+      shear%target(motion_shift) = random%between(-0.5_wp, 0.5_wp)*mu*force
       shear%cycles = random%one_of([0, 0, 1])
       scene%steps = [press, shear]
-      press%normal_target = random%between(0.4_wp, 1.2_wp)*force
+      press%target(motion_approach) = random%between(0.4_wp, 1.2_wp)*force
       scene%steps = [scene%steps, press]
       if (.not. random%chance(0.5_wp)) return
-      shear = step_type(rotational_control=control_force, &
-                        rotational_target=random%between(-0.2_wp, 0.2_wp)*mu*force*pin%radius)
+      shear = step_type()
+      shear%control(motion_rotation) = control_force
+      shear%target(motion_rotation) = random%between(-0.2_wp, 0.2_wp)*mu*force*pin%radius
       scene%steps = [scene%steps, shear]
    end subroutine random_pin
 
@@ -222,21 +224,21 @@ contains
          if (presses .or. i == 1 .or. .not. friction) then
             if (i > 1) normal = random%between(0.1_wp, 1.2_wp)
             if (random%chance_where(i > 1, 0.05_wp)) normal = 0.0_wp
-            step%normal_control = merge(control_force, control_displacement, random%chance(0.8_wp))
-            step%normal_target = normal*merge(sizes%force, sizes%approach, step%normal_control == control_force)
+            step%control(motion_approach) = merge(control_force, control_displacement, random%chance(0.8_wp))
+            step%target(motion_approach) = normal*merge(sizes%force, sizes%approach, step%control(motion_approach) == control_force)
          end if
          shears = random%chance_where(friction, merge(0.2_wp, 0.7_wp, i == 1))
-         if (shears .or. (friction .and. i > 1 .and. step%normal_control == control_keep)) then
+         if (shears .or. (friction .and. i > 1 .and. step%control(motion_approach) == control_keep)) then
             part = random%between(-1.0_wp, 1.0_wp)
-            step%tangential_control = merge(control_force, control_displacement, random%chance(0.8_wp))
-            step%tangential_target = part*min(normal, 1.0_wp)*merge(sizes%mu*sizes%force, sizes%shift, &
-                                                                    step%tangential_control == control_force)
+            step%control(motion_shift) = merge(control_force, control_displacement, random%chance(0.8_wp))
+            step%target(motion_shift) = part*min(normal, 1.0_wp)*merge(sizes%mu*sizes%force, sizes%shift, &
+                                                                    step%control(motion_shift) == control_force)
          end if
          if (i == 1) step%friction = random%chance_where(friction, 0.8_wp)
          if (random%chance_where(i > 1, 0.3_wp)) step%cycles = random%one_of([1, 2])
          if (random%chance_where(i > 1 .and. friction .and. sizes%radius > 0.0_wp, 0.2_wp)) then
-            step%rotational_control = control_force
-            step%rotational_target = random%between(-0.3_wp, 0.3_wp)*normal*sizes%force*sizes%half_width
+            step%control(motion_rotation) = control_force
+            step%target(motion_rotation) = random%between(-0.3_wp, 0.3_wp)*normal*sizes%force*sizes%half_width
          end if
          scene%steps = [scene%steps, step]
       end do

@@ -5,6 +5,7 @@ module test_scenes
    use mfv_friction, only: coulomb_friction, no_friction
    use mfv_kinds, only: wp
    use mfv_material, only: new_material, plane_strain
+   use mfv_motions, only: motion_approach, motion_shift, control_force
    use mfv_scene
    use mfv_simulation, only: history_events, new_simulation, simulation_type
    implicit none
@@ -103,8 +104,8 @@ contains
       logical, intent(in) :: friction
       type(step_type) :: step
 
-      step%normal_control = control_force
-      step%normal_target = normal_force
+      step%control(motion_approach) = control_force
+      step%target(motion_approach) = normal_force
       step%friction = friction
       scene%steps = [scene%steps, step]
    end subroutine press
@@ -116,8 +117,8 @@ contains
       integer, intent(in), optional :: cycles
       type(step_type) :: step
 
-      step%tangential_control = control_force
-      step%tangential_target = tangential_force
+      step%control(motion_shift) = control_force
+      step%target(motion_shift) = tangential_force
       if (present(cycles)) step%cycles = cycles
       scene%steps = [scene%steps, step]
    end subroutine shear

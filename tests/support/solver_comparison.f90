@@ -6,6 +6,7 @@ module test_solver_comparison
    use mfv_contact_model, only: contact_model_type
    use mfv_contact_system
    use mfv_kinds, only: wp
+   use mfv_motions, only: motion_approach, motion_shift, motion_rotation, control_force, control_displacement
    use mfv_node_status
    use mfv_scene
    use mfv_simulation, only: history_none, new_simulation, simulation_type
@@ -39,9 +40,9 @@ contains
          constraints%offset_rate(i) = 0.3_wp*slip_sign(constraints%status(i))
          constraints%stuck_slip(i) = 1.0e-6_wp*cos(7.0_wp*i/n)
       end do
-      constraints%normal = load_type(control_force, force, 0.7_wp*force)
-      constraints%tangential = load_type(control_force, 0.2_wp*force, 0.4_wp*force)
-      constraints%rotational = load_type(control_displacement)
+      constraints%load(motion_approach) = load_type(control_force, force, 0.7_wp*force)
+      constraints%load(motion_shift) = load_type(control_force, 0.2_wp*force, 0.4_wp*force)
+      constraints%load(motion_rotation) = load_type(control_displacement)
    end subroutine partly_stuck
 
    !> The largest difference of the tractions, displacements and motions of two fields, each in parts of the largest of its kind.
@@ -51,11 +52,12 @@ contains
       difference = max(maxval(abs(one%pressure - other%pressure)), maxval(abs(one%shear - other%shear))) &
                    /max(maxval(abs(one%pressure)), maxval(abs(one%shear)))
       difference = max(difference, max(maxval(abs(one%normal - other%normal)), maxval(abs(one%tangential - other%tangential)), &
-                                       abs(one%approach - other%approach), abs(one%shift - other%shift)) &
-                       /max(maxval(abs(one%normal)), abs(one%approach)))
-      difference = max(difference, max(abs(one%normal_force - other%normal_force), &
-                                       abs(one%tangential_force - other%tangential_force)) &
-                       /max(abs(one%normal_force), abs(one%tangential_force)))
+                                       abs(one%motion(motion_approach) - other%motion(motion_approach)), &
+                                       abs(one%motion(motion_shift) - other%motion(motion_shift))) &
+                       /max(maxval(abs(one%normal)), abs(one%motion(motion_approach))))
+      difference = max(difference, max(abs(one%force(motion_approach) - other%force(motion_approach)), &
+                                       abs(one%force(motion_shift) - other%force(motion_shift))) &
+                       /max(abs(one%force(motion_approach)), abs(one%force(motion_shift))))
    end function difference
 
    !> The difference of a solver's answers from those of the augmented system, from a guess of zero and again from the answer;

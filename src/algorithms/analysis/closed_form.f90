@@ -4,6 +4,7 @@ module mfv_closed_form
    use mfv_body, only: shape_flat_punch, shape_half_plane
    use mfv_compliance, only: block_up, block_wt
    use mfv_kinds, only: wp
+   use mfv_motions, only: motion_approach, motion_shift, motion_rotation
    use mfv_node_status, only: node_stick
    use mfv_reference_carter, only: carter_shear
    use mfv_reference_flat_punch, only: flat_punch_pressure
@@ -44,10 +45,11 @@ contains
       form%pressure_source = ''
       form%shear_source = ''
       associate (model => simulation%contact%model, scene => simulation%contact%model%scene, &
-                 force => simulation%contact%state%fields%normal_force)
+                 force => simulation%contact%state%fields%force(motion_approach))
          if (.not. (force > 0.0_wp .and. scene%modulus() > 0.0_wp)) return
          if (model%compliance%elastic_block(block_wt) .and. model%tangential .and. .not. alike(scene)) return
-         if (simulation%way%rotated .and. .not. (is_hertz(scene) .and. model%rolls())) return
+         if (any(simulation%way%controlled(motion_rotation + 1:))) return
+         if (simulation%way%controlled(motion_rotation) .and. .not. (is_hertz(scene) .and. model%rolls())) return
          form%indenter = indenter_of(scene)
          if (.not. form%indenter%is_flat() .and. .not. any([scene%lower%shape, scene%upper%shape] == shape_flat_punch)) then
             form%half_width = form%indenter%half_width(0.5_wp*force/scene%modulus())
@@ -61,7 +63,7 @@ contains
          else
             return
          end if
-         if (simulation%way%rotated) then
+         if (simulation%way%controlled(motion_rotation)) then
             if (is_carter(simulation, form%half_width)) call add_carter(form, simulation)
             return
          end if
@@ -77,7 +79,7 @@ contains
 
       associate (model => simulation%contact%model)
          position = model%x
-         if (simulation%way%rotated) position = model%arc - model%rolled(simulation%contact%state%fields)
+         if (simulation%way%controlled(motion_rotation)) position = model%arc - model%rolled(simulation%contact%state%fields)
       end associate
    end function middle_at_zero
 
@@ -101,7 +103,7 @@ contains
       position = middle_at_zero(simulation)
       if (.not. simulation%contact%rolling%heads_right()) position = -position
       associate (fields => simulation%contact%state%fields)
-         form%shear = carter_shear(position, fields%tangential_force, fields%normal_force, form%half_width, &
+         form%shear = carter_shear(position, fields%force(motion_shift), fields%force(motion_approach), form%half_width, &
                                    simulation%contact%model%scene%friction%static%largest())
       end associate
       form%shear_source = 'Carter 1926; Johnson 1985, section 8.3'
@@ -168,7 +170,7 @@ contains
       type(simulation_type), intent(in) :: simulation
 
       associate (x => simulation%contact%model%x, scene => simulation%contact%model%scene, &
-                 force => simulation%contact%state%fields%normal_force)
+                 force => simulation%contact%state%fields%force(motion_approach))
          if (is_hertz(scene)) then
             form%shear = spence_cylinder_shear(x, force, form%half_width, scene%friction%static%largest(), &
                                                abs(scene%dundurs_beta()))
@@ -204,12 +206,12 @@ contains
       integer :: i
 
       associate (contact => simulation%contact, scene => simulation%contact%model%scene, &
-                 force => simulation%contact%state%fields%normal_force)
+                 force => simulation%contact%state%fields%force(motion_approach))
          history = new_mindlin_history(force, form%half_width, form%indenter, scene%datum(), scene%friction%static%largest())
          do i = 1, simulation%snapshot_count
-            call history%load(simulation%snapshots(i)%state%fields%tangential_force)
+            call history%load(simulation%snapshots(i)%state%fields%force(motion_shift))
          end do
-         call history%load(contact%state%fields%tangential_force)
+         call history%load(contact%state%fields%force(motion_shift))
          form%shear = history%shear(contact%model%x)
          form%shear_source = 'Jaeger 1998, Ciavarella 1998'
          if (is_hertz(scene)) form%shear_source = 'Cattaneo 1938, Mindlin 1949; dissertation eqs. 3.7, 3.8, corrected'
@@ -217,7 +219,7 @@ contains
          history%turning = [real(wp) ::]
          allocate (form%shift(contact%history%records))
          do i = 1, contact%history%records
-            call history%load(contact%history%record(i)%tangential_force)
+            call history%load(contact%history%record(i)%force(motion_shift))
             form%shift(i) = history%shift()
          end do
       end associate

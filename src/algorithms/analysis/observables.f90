@@ -6,6 +6,7 @@ module mfv_observables
    use mfv_cycle, only: cycle_type
    use mfv_interior, only: interior_type
    use mfv_kinds, only: pi, wp
+   use mfv_motions, only: motions, motion_count, motion_approach
    use mfv_simulation, only: mark_loading, simulation_type
    use mfv_state_interior, only: state_interior
    use mfv_stress_search, only: largest_tension, largest_type
@@ -141,13 +142,15 @@ contains
       real(wp), intent(inout) :: values(:)
       type(zone_edges_type) :: edges
       real(wp) :: mean_peak, limit
+      integer :: i
 
       associate (state => simulation%contact%state, model => simulation%contact%model)
          call find_zone_edges(model, state, edges)
-         call put(values, 'normal_force', state%fields%normal_force)
-         call put(values, 'tangential_force', state%fields%tangential_force)
-         call put(values, 'approach', state%fields%approach)
-         call put(values, 'shift', state%fields%shift)
+         do i = 1, motion_count
+            if (motions(i)%optional) cycle
+            call put(values, trim(motions(i)%force_key), state%fields%force(i))
+            call put(values, trim(motions(i)%key), state%fields%motion(i))
+         end do
          call put(values, 'dissipation', state%dissipation)
          call put(values, 'contact_half_width', edges%half_width())
          call put(values, 'contact_length', edges%contact_length)
@@ -159,8 +162,8 @@ contains
          call put(values, 'half_width_number', edges%half_width()*model%scene%curvature())
          call add_tension(simulation, .false., 'lower', values)
          call add_tension(simulation, .true., 'upper', values)
-         if (.not. (state%fields%normal_force > 0.0_wp .and. edges%contact)) return
-         mean_peak = 2.0_wp*state%fields%normal_force/(pi*edges%half_width())
+         if (.not. (state%fields%force(motion_approach) > 0.0_wp .and. edges%contact)) return
+         mean_peak = 2.0_wp*state%fields%force(motion_approach)/(pi*edges%half_width())
          call put(values, 'pressure_number', maxval(state%fields%pressure)/mean_peak)
          call put(values, 'shear_number', maxval(abs(state%fields%shear))/mean_peak)
          call put(values, 'creepage', simulation%contact%rolling%creepage())
@@ -226,7 +229,7 @@ contains
       real(wp) :: grip, force
 
       associate (scene => simulation%contact%model%scene)
-         force = cycle%return%normal_force
+         force = cycle%return%force(motion_approach)
          grip = scene%friction%static%largest()*force
          if (grip > 0.0_wp) call put(values, 'force_number', cycle%force_amplitude()/grip)
          call put(values, 'shift_number', cycle%shift_amplitude()*scene%curvature())

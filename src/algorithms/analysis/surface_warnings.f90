@@ -5,6 +5,7 @@ module mfv_surface_warnings
                        shape_rounded_punch
    use mfv_contact_state, only: contact_state_type
    use mfv_kinds, only: pi, wp
+   use mfv_motions, only: motion_approach
    use mfv_node_status, only: in_contact
    use mfv_simulation, only: simulation_type
    use mfv_slip_zones, only: needed_mesh, resolved_nodes
@@ -51,7 +52,7 @@ contains
       contact = in_contact(simulation%contact%state%status)
       n = simulation%snapshot_count
       if (n == 0) return
-      i = maxloc([(simulation%snapshots(i)%state%fields%normal_force, i=1, n)], dim=1)
+      i = maxloc([(simulation%snapshots(i)%state%fields%force(motion_approach), i=1, n)], dim=1)
       state = simulation%padded_state(i)
       contact = contact .or. in_contact(state%status)
    end function touched

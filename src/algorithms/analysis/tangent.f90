@@ -4,16 +4,15 @@
 !> derivatives, exact until a node changes its status. At corners of contact and friction (a load that turns, nodes that touch) they
 !> depend on where the motions go on to: then the statuses are first settled in that direction.
 module mfv_tangent
-   use mfv_contact_model, only: along_approach, along_rotation, along_shift
    use mfv_contact_path, only: contact_path_type, segment_type
    use mfv_contact_state, only: contact_state_type
    use mfv_contact_system
    use mfv_error, only: error_type, set_error
    use mfv_first_violation, only: lead_by_violations
    use mfv_kinds, only: wp
+   use mfv_motions, only: motion_count, control_displacement, arm_unit
    use mfv_node_status, only: in_contact
    use mfv_observer, only: observer_type
-   use mfv_scene, only: control_displacement
    use mfv_status, only: MFV_BAD_ARGUMENT, MFV_INTERRUPTED
    implicit none
    private
@@ -28,8 +27,8 @@ module mfv_tangent
 
 contains
 
-   !> tangent(i, j): derivative of load i (normal force and tangential force, force/length; moment, force) with respect to motion j
-   !> (approach and shift, length; rotation), shape (motions, motions), motions 2 or 3 (rotation too; it is held otherwise).
+   !> tangent(i, j): derivative of the force of motion i with respect to motion j (mfv_motions), shape (motions, motions), motions
+   !> from 2 to motion_count; the others are held.
    !> `direction`: of motions to go on with, shape (motions), only its direction counts; friction acts, if the scene has any. Left
    !> out, statuses are as they are.
    !> Errors MFV_BAD_ARGUMENT: the contact does not determine it, or a direction of zeros; others: nothing leads on in this direction.
@@ -40,16 +39,19 @@ contains
       real(wp), intent(in), optional :: direction(:)
       type(contact_path_type) :: copy
       class(contact_system_type), allocatable :: system
+      integer :: i
 
       tangent = 0.0_wp
-      if (.not. present(direction) .and. (size(tangent, 1) < along_rotation .or. path%model%rotational)) then
+      if (.not. present(direction) .and. all(path%model%moves(:size(tangent, 1)))) then
          ! The solver's work is its state: a copy leaves the digits of the original as they are.
          allocate (system, source=path%system)
          call derive(path, system, tangent, error)
          return
       end if
       call path%copy_without_history(copy)
-      if (size(tangent, 1) >= along_rotation) call copy%begin_rotation()
+      do i = 1, size(tangent, 1)
+         call copy%begin_motion(i)
+      end do
       if (present(direction)) call turn(copy, direction, error)
       if (allocated(error)) return
       allocate (system, source=copy%system)
@@ -65,21 +67,18 @@ contains
       real(wp), parameter :: little = 1.0e-9_wp
       type(segment_type) :: segment
       type(settled_type) :: observer
-      real(wp) :: motion(3), largest
+      integer :: i
+      real(wp) :: motion(motion_count), largest
 
       motion = 0.0_wp
       motion(:size(direction)) = direction
-      largest = max(maxval(abs(motion(:along_shift))), abs(motion(along_rotation))*path%model%length())
+      largest = maxval(abs(motion)*[(arm_unit(i, path%model%length()), i=1, motion_count)])
       if (.not. largest > 0.0_wp) then
          call set_error(error, MFV_BAD_ARGUMENT, 'the direction of the tangent has no length')
          return
       end if
       motion = motion/largest*(little*path%model%length())
-      associate (f => path%state%fields)
-         segment%normal = load_type(control_displacement, f%approach, motion(along_approach))
-         segment%tangential = load_type(control_displacement, f%shift, motion(along_shift))
-         segment%rotational = load_type(control_displacement, f%rotation, motion(along_rotation))
-      end associate
+      segment%load = [(load_type(control_displacement, path%state%fields%motion(i), motion(i)), i=1, motion_count)]
       call lead_by_violations(path, segment, observer, error)
       if (.not. allocated(error)) return
       if (error%status == MFV_INTERRUPTED) deallocate (error)
@@ -111,11 +110,8 @@ contains
       if (.not. any(in_contact(path%state%status))) return
       call path%set_rows(constraints, .false.)
       do j = 1, size(tangent, 2)
-         associate (f => path%state%fields)
-            constraints%normal = load_type(control_displacement, f%approach, merge(1.0_wp, 0.0_wp, j == along_approach))
-            constraints%tangential = load_type(control_displacement, f%shift, merge(1.0_wp, 0.0_wp, j == along_shift))
-            constraints%rotational = load_type(control_displacement, f%rotation, merge(1.0_wp, 0.0_wp, j == along_rotation))
-         end associate
+         constraints%load = [(load_type(control_displacement, path%state%fields%motion(i), merge(1.0_wp, 0.0_wp, i == j)), &
+                              i=1, motion_count)]
          call system%solve(path%model, constraints, path%state%fields, response, singular)
          if (singular) then
             call set_error(error, MFV_BAD_ARGUMENT, 'the contact does not determine the tangent: the linear system is singular')

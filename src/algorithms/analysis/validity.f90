@@ -4,8 +4,8 @@ module mfv_validity
    use mfv_contact_state, only: contact_state_type
    use mfv_interior, only: interior_type
    use mfv_kinds, only: pi, wp
+   use mfv_motions, only: motion_approach, motion_shift, motion_rotation, control_displacement
    use mfv_node_status, only: in_contact
-   use mfv_scene, only: control_displacement
    use mfv_simulation, only: simulation_type
    use mfv_slip_zones, only: contact_interval, needed_mesh, resolved_nodes, slip_record_type
    use mfv_state_interior, only: state_interior
@@ -71,8 +71,8 @@ contains
       real(wp) :: rolled, slid, half_width, error
 
       associate (model => simulation%contact%model, state => simulation%contact%state)
-         if (.not. model%rotational .or. state%contact_nodes() == 0) return
-         if (.not. abs(state%fields%rotation) > 0.0_wp) return
+         if (.not. model%moves(motion_rotation) .or. state%contact_nodes() == 0) return
+         if (.not. abs(state%fields%motion(motion_rotation)) > 0.0_wp) return
          half_width = 0.5_wp*sum(model%width, mask=in_contact(state%status))
          rolled = model%rolled(state%fields)
          slid = model%slid(state%fields)
@@ -86,7 +86,7 @@ contains
          call add_text(warnings, 'the upper body has slid by '//to_text(slid, 3)//' along the lower one; '// &
                        'the contact half-width is '//to_text(half_width, 3)//', and the model assumes that opposite nodes '// &
                        'stay opposite each other')
-      if (simulation%normal%control == control_displacement .and. rolled**2 > small_slide**2*half_width**2) &
+      if (simulation%load(motion_approach)%control == control_displacement .and. rolled**2 > small_slide**2*half_width**2) &
          call add_text(warnings, 'the bodies have rolled at a prescribed approach, which is measured at the initial '// &
                        'point of contact, so that the normal force has grown with the distance: prescribe normal_force')
    end subroutine check_rotation
@@ -206,9 +206,9 @@ contains
       where_it_is = 'in the last state'
       n = simulation%snapshot_count
       candidates = 0
-      if (n > 1) candidates = [maxloc([(simulation%snapshots(i)%state%fields%normal_force, i=1, n)]), &
-                               maxloc([(simulation%snapshots(i)%state%fields%tangential_force, i=1, n)]), &
-                               minloc([(simulation%snapshots(i)%state%fields%tangential_force, i=1, n)])]
+      if (n > 1) candidates = [maxloc([(simulation%snapshots(i)%state%fields%force(motion_approach), i=1, n)]), &
+                               maxloc([(simulation%snapshots(i)%state%fields%force(motion_shift), i=1, n)]), &
+                               minloc([(simulation%snapshots(i)%state%fields%force(motion_shift), i=1, n)])]
       do i = 1, size(candidates)
          if (candidates(i) == 0 .or. candidates(i) == n) cycle
          other = largest_below(simulation, upper, simulation%padded_state(candidates(i)))

@@ -5,10 +5,11 @@
 module mfv_certificate
    use, intrinsic :: ieee_arithmetic, only: ieee_is_finite
    use mfv_contact_fields, only: contact_fields_type
-   use mfv_contact_model, only: along_approach, along_rotation, along_shift, contact_model_type
+   use mfv_contact_model, only: contact_model_type
    use mfv_contact_state, only: contact_state_type
    use mfv_friction_law, only: friction_point_type
    use mfv_kinds, only: wp
+   use mfv_motions, only: motions, motion_count, motion_approach, motion_shift, arm_unit
    use mfv_node_status
    use mfv_scene, only: algorithm_mfv, integration_explicit
    implicit none
@@ -18,28 +19,26 @@ module mfv_certificate
    integer, parameter :: elasticity_normal = 1, elasticity_tangential = 2, normal_force_balance = 3, &
                          tangential_force_balance = 4, contact_gap = 5, open_traction = 6, stick_slip = 7, &
                          slip_traction = 8, pressure_sign = 9, gap_sign = 10, friction_limit = 11, &
-                         slip_direction = 12, continuity = 13, energy_balance = 14, moment_balance = 15
-   !> Number of residuals.
-   integer, parameter :: residual_count = 15
+                         slip_direction = 12, continuity = 13, energy_balance = 14
+   integer :: motion
+   !> Number of residuals: the balances of the forces of optional motions, which come after approach and shift, are the last.
+   integer, parameter :: residual_count = energy_balance + motion_count - motion_shift
+   !> The balance of the force of every motion with the tractions.
+   integer, parameter :: force_balance(motion_count) = [normal_force_balance, tangential_force_balance, &
+                                                        (energy_balance + motion - motion_shift, &
+                                                         motion=motion_shift + 1, motion_count)]
 
-   character(*), parameter :: names(residual_count) = [character(24) :: &
-                                                       'elasticity_normal', 'elasticity_tangential', &
-                                                       'normal_force_balance', 'tangential_force_balance', &
-                                                       'contact_gap', 'open_traction', 'stick_slip', 'slip_traction', &
-                                                       'pressure_sign', 'gap_sign', 'friction_limit', &
-                                                       'slip_direction', 'continuity', 'energy_balance', 'moment_balance']
-   character(*), parameter :: descriptions(residual_count) = [character(80) :: &
-                                                              'w - C_wp p - C_wt tau', 'u - C_up p - C_ut tau', &
-                                                              'P - sum(p) dx', 'Q - sum(tau) dx', &
-                                                              'gap of nodes in contact', &
-                                                              'tractions of open nodes', 'slip of stuck nodes', &
-                                                              'distance of slipping nodes from the friction limit', &
-                                                              'negative pressure', 'negative gap', &
-                                                              'shear traction beyond the friction limit', &
-                                                              'slip with the traction instead of against it', &
-                                                              'jump of the tractions where statuses change', &
-                                                              'work of the loads - stored - dissipated energy', &
-                                                              'M - moment of the tractions']
+   character(*), parameter :: names(residual_count) = &
+      [character(24) :: 'elasticity_normal', 'elasticity_tangential', motions(:motion_shift)%balance, &
+       'contact_gap', 'open_traction', 'stick_slip', 'slip_traction', 'pressure_sign', 'gap_sign', 'friction_limit', &
+       'slip_direction', 'continuity', 'energy_balance', motions(motion_shift + 1:)%balance]
+   character(*), parameter :: descriptions(residual_count) = &
+      [character(80) :: 'w - C_wp p - C_wt tau', 'u - C_up p - C_ut tau', motions(:motion_shift)%balance_meaning, &
+       'gap of nodes in contact', 'tractions of open nodes', 'slip of stuck nodes', &
+       'distance of slipping nodes from the friction limit', 'negative pressure', 'negative gap', &
+       'shear traction beyond the friction limit', 'slip with the traction instead of against it', &
+       'jump of the tractions where statuses change', 'work of the loads - stored - dissipated energy', &
+       motions(motion_shift + 1:)%balance_meaning]
 
    type :: certificate_type
       !> Largest relative residuals over all increments, by kind.
@@ -55,8 +54,8 @@ module mfv_certificate
       !> dissipates in an interval, in parts of that.
       real(wp) :: increment_traction_error = 0.0_wp, increment_dissipation_error = 0.0_wp
       !> Largest magnitudes so far.
-      real(wp), private :: traction = 0.0_wp, normal = 0.0_wp, tangential = 0.0_wp, normal_force = 0.0_wp, &
-                           tangential_force = 0.0_wp, moment = 0.0_wp, energy = 0.0_wp
+      real(wp), private :: traction = 0.0_wp, normal = 0.0_wp, tangential = 0.0_wp, energy = 0.0_wp, &
+                           force(motion_count) = 0.0_wp
       !> Work of the loads so far, force (energy per unit thickness); and the sizes of the works of every load on every increment,
       !> summed: where a disk rolls, those of the tangential force and the moment cancel almost wholly.
       real(wp) :: work = 0.0_wp, gross_work = 0.0_wp
@@ -108,7 +107,7 @@ contains
       self%claimed(energy_balance) = self%claimed(continuity) .and. (.not. model%tangential .or. &
                                      .not. model%compliance%one_way())
       if (self%leaps > 0 .and. self%leaps == self%increments) self%claimed([continuity, energy_balance]) = .false.
-      self%claimed(moment_balance) = model%rotational
+      self%claimed(force_balance) = model%moves
       self%claimed([elasticity_tangential, tangential_force_balance, stick_slip, slip_traction, friction_limit, &
                     slip_direction]) = model%tangential
    end subroutine claim
@@ -131,7 +130,7 @@ contains
    pure real(wp) function force_scale(self)
       class(certificate_type), intent(in) :: self
 
-      force_scale = self%normal_force
+      force_scale = self%force(motion_approach)
    end function force_scale
 
    !> Check the increment from `before` to `after`, with the statuses of `after` on the way. `leap`: a large increment, whose
@@ -216,23 +215,21 @@ contains
          tangential_rest = largest_or_nan(tangential_rest, fields%tangential(i) + rigid_tangential(i) &
                                           - tangential_by_pressure(i) - tangential_by_shear(i))
       end do
-      self%tangential = max(self%tangential, model%grip*self%normal, abs(fields%shift))
-      self%normal_force = max(self%normal_force, abs(fields%normal_force), pressure_force)
-      self%tangential_force = max(self%tangential_force, model%grip*self%normal_force, shear_force, abs(fields%tangential_force))
+      self%tangential = max(self%tangential, model%grip*self%normal, abs(fields%motion(motion_shift)))
+      self%force(motion_approach) = max(self%force(motion_approach), abs(fields%force(motion_approach)), pressure_force)
+      self%force(motion_shift) = max(self%force(motion_shift), model%grip*self%force(motion_approach), shear_force, &
+                                     abs(fields%force(motion_shift)))
       call self%note(elasticity_normal, normal_rest, max(self%normal, maxval(abs(rigid_normal))))
       call self%note(elasticity_tangential, tangential_rest, self%tangential)
-      call self%note(normal_force_balance, abs(fields%normal_force - model%resultant(along_approach, fields%pressure, &
-                                                                                     fields%shear)), &
-                     self%normal_force)
-      call self%note(tangential_force_balance, abs(fields%tangential_force - model%resultant(along_shift, fields%pressure, &
-                                                                                             fields%shear)), &
-                     self%tangential_force)
-      if (.not. self%claimed(moment_balance)) return
-      self%moment = max(self%moment, abs(fields%moment), self%normal_force*model%length(), &
-                        model%force(abs(model%normal_arm(:, along_rotation)*fields%pressure)) &
-                        + model%force(abs(model%tangential_arm(:, along_rotation)*fields%shear)))
-      call self%note(moment_balance, abs(fields%moment - model%resultant(along_rotation, fields%pressure, fields%shear)), &
-                     self%moment)
+      do i = 1, motion_count
+         if (motions(i)%optional) then
+            if (.not. self%claimed(force_balance(i))) cycle
+            self%force(i) = max(self%force(i), abs(fields%force(i)), self%force(motion_approach)*arm_unit(i, model%length()), &
+                                model%force(abs(model%normal_arm(:, i)*fields%pressure)) &
+                                + model%force(abs(model%tangential_arm(:, i)*fields%shear)))
+         end if
+         call self%note(force_balance(i), abs(fields%force(i) - model%resultant(i, fields%pressure, fields%shear)), self%force(i))
+      end do
    end subroutine check_equilibrium
 
    !> The larger of a size so far and the size of a number; not a number where that is none.
@@ -256,7 +253,7 @@ contains
       open_traction_size = 0.0_wp
       negative_pressure = 0.0_wp
       do i = 1, size(state%status)
-         gap = model%initial_gap(i) - state%fields%approach + state%fields%normal(i)
+         gap = model%initial_gap(i) - state%fields%motion(motion_approach) + state%fields%normal(i)
          if (state%status(i) /= node_open) then
             closed_gap = largest_or_nan(closed_gap, gap)
             negative_pressure = max(negative_pressure, -state%fields%pressure(i))
@@ -266,7 +263,7 @@ contains
          end if
       end do
       scale = self%normal
-      if (.not. scale > 0.0_wp) scale = max(maxval(abs(model%initial_gap)), abs(state%fields%approach))
+      if (.not. scale > 0.0_wp) scale = max(maxval(abs(model%initial_gap)), abs(state%fields%motion(motion_approach)))
       call self%note(contact_gap, closed_gap, scale)
       call self%note(gap_sign, open_gap, scale)
       call self%note(open_traction, open_traction_size, self%traction)
@@ -300,9 +297,10 @@ contains
             limit = limit*after%fields%pressure(i)
             if (status == node_frictionless) limit = 0.0_wp
             beyond_limit = max(beyond_limit, abs(after%fields%shear(i)) - limit)
-            slipped = after%fields%tangential(i) - after%fields%shift - (before%fields%tangential(i) - before%fields%shift)
+            slipped = after%fields%tangential(i) - after%fields%motion(motion_shift) &
+                      - (before%fields%tangential(i) - before%fields%motion(motion_shift))
             if (leap .and. .not. before%fields%pressure(i) > 0.0_wp) &
-               slipped = after%fields%tangential(i) - after%fields%shift - before%stuck_slip(i)
+               slipped = after%fields%tangential(i) - after%fields%motion(motion_shift) - before%stuck_slip(i)
             if (status == node_stick) then
                sliding = largest_or_nan(sliding, slipped)
             else if (status == node_frictionless) then
@@ -330,13 +328,11 @@ contains
       type(contact_fields_type), intent(in) :: before
       type(contact_state_type), intent(in) :: after
       logical, intent(in) :: leap
-      real(wp) :: stored, works(3)
+      real(wp) :: stored, works(motion_count), own(motion_count)
       integer :: i
 
       associate (now => after%fields)
-         works = 0.5_wp*[(before%normal_force + now%normal_force)*(now%approach - before%approach), &
-                         (before%tangential_force + now%tangential_force)*(now%shift - before%shift), &
-                         (before%moment + now%moment)*(now%rotation - before%rotation)]
+         works = 0.5_wp*((before%force + now%force)*(now%motion - before%motion))
          self%work = self%work + sum(works)
          self%gross_work = self%gross_work + sum(abs(works))
          stored = 0.0_wp
@@ -344,12 +340,14 @@ contains
             stored = stored + model%width(i)*(now%pressure(i)*now%normal(i) + now%shear(i)*now%tangential(i))
          end do
          stored = 0.5_wp*stored
-         if (model%has_rigid_parts()) &
-            stored = stored + 0.5_wp*(now%approach*(model%resultant(along_approach, now%pressure, now%shear) &
-                                                    - model%force(now%pressure)) &
-                                      + now%shift*(model%resultant(along_shift, now%pressure, now%shear) &
-                                                   - model%force(now%shear)) &
-                                      + now%rotation*model%resultant(along_rotation, now%pressure, now%shear))
+         if (model%has_rigid_parts()) then
+            ! Of approach and shift the work of the deformation is in the sum above.
+            own = 0.0_wp
+            own(motion_approach) = model%force(now%pressure)
+            own(motion_shift) = model%force(now%shear)
+            stored = stored + 0.5_wp*sum([(now%motion(i)*(model%resultant(i, now%pressure, now%shear) - own(i)), &
+                                           i=1, motion_count)])
+         end if
       end associate
       if (leap) self%work = stored + after%dissipation
       self%energy = max(self%energy, self%gross_work, abs(stored), after%dissipation)

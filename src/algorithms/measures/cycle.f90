@@ -4,6 +4,7 @@ module mfv_cycle
    use mfv_contact_model, only: contact_model_type
    use mfv_contact_state, only: contact_state_type
    use mfv_kinds, only: pi, wp
+   use mfv_motions, only: motions, motion_count, motion_approach, motion_shift
    use mfv_slip_zones, only: slip_record_type
    use mfv_zone_edges, only: find_zone_edges, zone_edges_type
    implicit none
@@ -12,7 +13,8 @@ module mfv_cycle
 
    !> Where the load turns.
    type :: turning_point_type
-      real(wp) :: normal_force = 0.0_wp, tangential_force = 0.0_wp, approach = 0.0_wp, shift = 0.0_wp, rotation = 0.0_wp
+      !> Forces and motions, as contact_fields_type has them.
+      real(wp) :: force(motion_count) = 0.0_wp, motion(motion_count) = 0.0_wp
       real(wp) :: dissipation = 0.0_wp
       type(zone_edges_type) :: edges
       !> What is known of the slip zones up to there.
@@ -56,11 +58,8 @@ contains
       real(wp), intent(in) :: stiffness
       type(turning_point_type) :: point
 
-      point%normal_force = state%fields%normal_force
-      point%tangential_force = state%fields%tangential_force
-      point%approach = state%fields%approach
-      point%shift = state%fields%shift
-      point%rotation = state%fields%rotation
+      point%force = state%fields%force
+      point%motion = state%fields%motion
       point%largest_stiffness = model%largest_stiffness()
       point%dissipation = state%dissipation
       point%slip = slip
@@ -86,14 +85,14 @@ contains
    elemental real(wp) function force_amplitude(self)
       class(cycle_type), intent(in) :: self
 
-      force_amplitude = 0.5_wp*abs(self%return%tangential_force - self%reversal%tangential_force)
+      force_amplitude = 0.5_wp*abs(self%return%force(motion_shift) - self%reversal%force(motion_shift))
    end function force_amplitude
 
    !> Half of what the shift changes by, length.
    elemental real(wp) function shift_amplitude(self)
       class(cycle_type), intent(in) :: self
 
-      shift_amplitude = 0.5_wp*abs(self%return%shift - self%reversal%shift)
+      shift_amplitude = 0.5_wp*abs(self%return%motion(motion_shift) - self%reversal%motion(motion_shift))
    end function shift_amplitude
 
    !> Whether tangential force and shift both change by more than round-off.
@@ -101,21 +100,27 @@ contains
       class(cycle_type), intent(in) :: self
       real(wp), parameter :: round_off = 1.0e-10_wp
 
-      is_sheared = self%shift_amplitude() > round_off*max(abs(self%return%shift), abs(self%reversal%shift)) .and. &
-                   self%force_amplitude() > round_off*max(self%return%normal_force, self%reversal%normal_force) .and. &
+      is_sheared = self%shift_amplitude() > round_off*max(abs(self%return%motion(motion_shift)), &
+                                                          abs(self%reversal%motion(motion_shift))) .and. &
+                   self%force_amplitude() > round_off*max(self%return%force(motion_approach), &
+                                                          self%reversal%force(motion_approach)) .and. &
                    self%force_amplitude() < self%return%largest_stiffness*self%shift_amplitude()
    end function is_sheared
 
-   !> Whether the tangential force alone works over the loop: neither the normal force nor the rotation changes.
+   !> Whether the tangential force alone works over the loop: neither the normal force nor a motion such as the rotation changes.
    elemental logical function only_sheared(self)
       class(cycle_type), intent(in) :: self
       real(wp), parameter :: round_off = 1.0e-9_wp
-      real(wp) :: forces(3), rotations(3)
+      real(wp) :: force(3), motion(3)
+      integer :: i
 
-      forces = [self%start%normal_force, self%reversal%normal_force, self%return%normal_force]
-      rotations = [self%start%rotation, self%reversal%rotation, self%return%rotation]
-      only_sheared = self%is_sheared() .and. maxval(forces) - minval(forces) <= round_off*maxval(forces) .and. &
-                     maxval(rotations) - minval(rotations) <= round_off*maxval(abs(rotations))
+      force = [self%start%force(motion_approach), self%reversal%force(motion_approach), self%return%force(motion_approach)]
+      only_sheared = self%is_sheared() .and. maxval(force) - minval(force) <= round_off*maxval(force)
+      do i = 1, motion_count
+         if (.not. motions(i)%optional) cycle
+         motion = [self%start%motion(i), self%reversal%motion(i), self%return%motion(i)]
+         only_sheared = only_sheared .and. maxval(motion) - minval(motion) <= round_off*maxval(abs(motion))
+      end do
    end function only_sheared
 
    !> Tangential force over shift from end to end, force/length^2; NaN where one of them does not change.

@@ -13,6 +13,7 @@ module mfv_slip_zones
    use mfv_contact_model, only: contact_model_type
    use mfv_contact_state, only: contact_state_type
    use mfv_kinds, only: pi, wp
+   use mfv_motions, only: motion_count, motion_approach, motion_shift
    use mfv_node_status, only: holds, in_contact, motion_sign, node_frictionless
    use mfv_reference_spence, only: spence_stick_ratio
    use mfv_strings, only: to_text
@@ -40,7 +41,9 @@ module mfv_slip_zones
 
    !> What a leg began from.
    type :: leg_start_type
-      real(wp) :: dissipation = 0.0_wp, normal_force = 0.0_wp, tangential_force = 0.0_wp
+      real(wp) :: dissipation = 0.0_wp
+      !> As contact_fields_type has it.
+      real(wp) :: force(motion_count) = 0.0_wp
       !> Shear traction, force/length^2, shape (nodes).
       real(wp), allocatable :: shear(:)
    end type leg_start_type
@@ -158,7 +161,7 @@ contains
       first = findloc(in_contact(state%status), .true., dim=1)
       last = findloc(in_contact(state%status), .true., dim=1, back=.true.)
       if (last - first + 1 < fewest) return
-      if (.not. start%normal_force > 0.0_wp) then
+      if (.not. start%force(motion_approach) > 0.0_wp) then
          call add_pressing
          return
       end if
@@ -184,7 +187,7 @@ contains
          ratio = spence_stick_ratio(model%scene%friction%static%largest(), model%scene%dundurs_beta())
          width = half_width*(1.0_wp - ratio)
          if (width > negligible_pressing*half_width .and. width <= widest*contact_interval(model, state)) &
-            missing = model%scene%friction%static%largest()**2/model%scene%modulus()*state%fields%normal_force**2 &
+            missing = model%scene%friction%static%largest()**2/model%scene%modulus()*state%fields%force(motion_approach)**2 &
                       *(width/half_width)**3
          if (.not. missing > 0.0_wp) width = 0.0_wp
       end subroutine add_pressing
@@ -199,9 +202,9 @@ contains
       real(wp), parameter :: round_off = 1.0e-9_wp
       real(wp) :: pressed, sheared
 
-      pressed = state%fields%normal_force - start%normal_force
-      sheared = abs(state%fields%tangential_force - start%tangential_force)
-      presses_within_friction = pressed > round_off*state%fields%normal_force .and. &
+      pressed = state%fields%force(motion_approach) - start%force(motion_approach)
+      sheared = abs(state%fields%force(motion_shift) - start%force(motion_shift))
+      presses_within_friction = pressed > round_off*state%fields%force(motion_approach) .and. &
                                 sheared <= model%scene%friction%static%largest()*pressed*(1.0_wp + round_off)
    end function presses_within_friction
 

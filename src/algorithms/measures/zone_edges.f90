@@ -18,6 +18,7 @@ module mfv_zone_edges
    use mfv_contact_state, only: contact_state_type
    use mfv_edge_solutions, only: least_power, most_power, solved_distance
    use mfv_kinds, only: pi, wp
+   use mfv_motions, only: motion_shift
    use mfv_node_status, only: holds, in_contact, slip_sign, slips
    use mfv_surface_tractions, only: root_shift
    implicit none
@@ -202,7 +203,7 @@ contains
       slipped = 0.0_wp
       held = .false.
       if (.not. any(holds(state%status))) return
-      where (slips(state%status)) slipped = abs(state%fields%tangential - state%fields%shift - state%stuck_slip)
+      where (slips(state%status)) slipped = abs(state%fields%tangential - state%fields%motion(motion_shift) - state%stuck_slip)
       held = holds(state%status) .or. (slips(state%status) .and. slipped <= nothing*maxval(slipped))
    end function held
 
@@ -396,7 +397,8 @@ contains
       if (state%status(next + side) /= state%status(next)) return
       do i = 0, 1
          node = next + side*i
-         values(i) = abs(state%fields%tangential(node) - state%fields%shift - state%stuck_slip(node))**(2.0_wp/3.0_wp)
+         values(i) = abs(state%fields%tangential(node) - state%fields%motion(motion_shift) - state%stuck_slip(node)) &
+                     **(2.0_wp/3.0_wp)
       end do
       if (.not. values(1) > values(0)) return
       distance = values(0)/(values(1) - values(0))

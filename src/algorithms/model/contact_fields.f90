@@ -2,6 +2,7 @@
 !> forces.
 module mfv_contact_fields
    use mfv_kinds, only: wp
+   use mfv_motions, only: motion_count, motion_shift
    implicit none
    private
    public :: contact_fields_type, new_contact_fields
@@ -13,11 +14,11 @@ module mfv_contact_fields
       !> surfaces draw apart, w of both bodies into themselves, and how far the lower one moves to the right of the upper
       !> one, u of the lower less u of the upper. What the upper body's rotation does is in them.
       real(wp), allocatable :: normal(:), tangential(:)
-      !> Rigid motion of the upper body: approach (down) and shift (right), length; rotation (counterclockwise), radians.
-      real(wp) :: approach = 0.0_wp, shift = 0.0_wp, rotation = 0.0_wp
-      !> Forces of the upper on the lower body per unit thickness: P (down) and Q (right), force/length; moment M
+      !> Motions of the upper body (mfv_motions): approach (down) and shift (right), length; rotation (counterclockwise), radians.
+      real(wp) :: motion(motion_count) = 0.0_wp
+      !> Their forces, of the upper on the lower body per unit thickness: P (down) and Q (right), force/length; moment M
       !> (counterclockwise) about the centre of rotation, force.
-      real(wp) :: normal_force = 0.0_wp, tangential_force = 0.0_wp, moment = 0.0_wp
+      real(wp) :: force(motion_count) = 0.0_wp
    contains
       procedure :: plus
       procedure :: take
@@ -57,12 +58,8 @@ contains
       self%shear = other%shear
       self%normal = other%normal
       self%tangential = other%tangential
-      self%approach = other%approach
-      self%shift = other%shift
-      self%rotation = other%rotation
-      self%normal_force = other%normal_force
-      self%tangential_force = other%tangential_force
-      self%moment = other%moment
+      self%motion = other%motion
+      self%force = other%force
    end subroutine take
 
    !> Become zero for `nodes` nodes, in the storage there is.
@@ -76,12 +73,8 @@ contains
             self%shear = 0.0_wp
             self%normal = 0.0_wp
             self%tangential = 0.0_wp
-            self%approach = 0.0_wp
-            self%shift = 0.0_wp
-            self%rotation = 0.0_wp
-            self%normal_force = 0.0_wp
-            self%tangential_force = 0.0_wp
-            self%moment = 0.0_wp
+            self%motion = 0.0_wp
+            self%force = 0.0_wp
             return
          end if
       end if
@@ -98,12 +91,8 @@ contains
       self%shear = self%shear + step*rate%shear
       self%normal = self%normal + step*rate%normal
       self%tangential = self%tangential + step*rate%tangential
-      self%approach = self%approach + step*rate%approach
-      self%shift = self%shift + step*rate%shift
-      self%rotation = self%rotation + step*rate%rotation
-      self%normal_force = self%normal_force + step*rate%normal_force
-      self%tangential_force = self%tangential_force + step*rate%tangential_force
-      self%moment = self%moment + step*rate%moment
+      self%motion = self%motion + step*rate%motion
+      self%force = self%force + step*rate%force
    end subroutine move
 
    !> Slip s = u - U of every node, length.
@@ -111,7 +100,7 @@ contains
       class(contact_fields_type), intent(in) :: self
       real(wp) :: slip(size(self%tangential))
 
-      slip = self%tangential - self%shift
+      slip = self%tangential - self%motion(motion_shift)
    end function slip
 
    !> The same fields with `extra` unloaded nodes at either end; their displacements are left at zero.
@@ -127,12 +116,8 @@ contains
       wider%shear(extra + 1:extra + n) = self%shear
       wider%normal(extra + 1:extra + n) = self%normal
       wider%tangential(extra + 1:extra + n) = self%tangential
-      wider%approach = self%approach
-      wider%shift = self%shift
-      wider%rotation = self%rotation
-      wider%normal_force = self%normal_force
-      wider%tangential_force = self%tangential_force
-      wider%moment = self%moment
+      wider%motion = self%motion
+      wider%force = self%force
    end function padded
 
 end module mfv_contact_fields

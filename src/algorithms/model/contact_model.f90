@@ -12,17 +12,14 @@ module mfv_contact_model
    use mfv_contact_fields, only: contact_fields_type
    use mfv_kinds, only: pi, wp
    use mfv_lapack, only: ddot
+   use mfv_motions, only: motions, motion_count, motion_approach, motion_shift, motion_rotation
    use mfv_reference_indenter, only: indenter_type
    use mfv_clock, only: seconds_now
    use mfv_scene, only: scene_type
    use mfv_scene_indenter, only: indenter_of, largest_half_width
    implicit none
    private
-   public :: contact_model_type, new_contact_model, choose_mesh, can_choose_mesh, has_touchable_node, intervals_round, &
-             along_approach, along_shift, along_rotation
-
-   !> The upper body's motions.
-   integer, parameter :: along_approach = 1, along_shift = 2, along_rotation = 3
+   public :: contact_model_type, new_contact_model, choose_mesh, can_choose_mesh, has_touchable_node, intervals_round
 
    type :: contact_model_type
       type(scene_type) :: scene
@@ -34,8 +31,8 @@ module mfv_contact_model
       real(wp), allocatable :: initial_gap(:)
       !> Whether both bodies have a surface at the node, so that it can touch at all.
       logical, allocatable :: can_touch(:)
-      !> By how much a unit of approach, shift and rotation of the upper body lessens the gap, and carries its surface along
-      !> the lower one to the right; shape (nodes, 3), of approach and shift without unit, of rotation lengths.
+      !> By how much a unit of every motion of the upper body (mfv_motions) lessens the gap, and carries its surface along the lower
+      !> one to the right; shape (nodes, motion_count), of approach and shift without unit, of rotation lengths.
       real(wp), allocatable :: normal_arm(:, :), tangential_arm(:, :)
       !> Whether approach does nothing but lessen gaps and shift nothing but slide: normals are vertical.
       logical :: upright = .true.
@@ -44,8 +41,10 @@ module mfv_contact_model
       real(wp), allocatable :: static_friction(:), kinetic_friction(:)
       real(wp) :: grip = 0.0_wp
       type(body_pair_type) :: compliance
-      !> Whether the tangential problem is modelled: friction acts in some step; and whether rotation is.
-      logical :: tangential = .false., rotational = .false.
+      !> Whether the tangential problem is modelled: friction acts in some step.
+      logical :: tangential = .false.
+      !> Which motions are modelled; the others are held.
+      logical :: moves(motion_count) = .not. motions%optional
       !> Whether the mesh may grow with the contact.
       logical :: growing = .false.
       !> How many nodes have been added at either end.
@@ -62,6 +61,7 @@ module mfv_contact_model
       procedure :: relative_displacements
       procedure :: displace
       procedure :: has_rigid_parts
+      procedure :: lifts
       procedure :: rigid_normal
       procedure :: rigid_tangential
       procedure :: nearest_approach
@@ -76,7 +76,7 @@ module mfv_contact_model
       procedure :: spare_nodes
       procedure :: grow
       procedure :: add_tangential
-      procedure :: add_rotation
+      procedure :: add_motion
       procedure, private :: build_compliance
       procedure, private :: place_nodes
    end type contact_model_type
@@ -96,7 +96,7 @@ contains
       model%scene = scene
       call model%scene%friction%simplify()
       model%tangential = scene%tangential()
-      model%rotational = scene%rotational()
+      model%moves = scene%moves()
       call choose_mesh(scene, nodes, interval, model%growing)
       call model%build_compliance(nodes, interval)
       call model%place_nodes()
@@ -193,12 +193,13 @@ contains
       call self%build_compliance(self%nodes(), self%interval())
    end subroutine add_tangential
 
-   !> Model the rotation from now on.
-   subroutine add_rotation(self)
+   !> Model a motion from now on.
+   subroutine add_motion(self, motion)
       class(contact_model_type), intent(inout) :: self
+      integer, intent(in) :: motion
 
-      self%rotational = .true.
-   end subroutine add_rotation
+      self%moves(motion) = .true.
+   end subroutine add_motion
 
    subroutine build_compliance(self, nodes, interval)
       class(contact_model_type), intent(inout) :: self
@@ -251,11 +252,11 @@ contains
       type(contact_fields_type), intent(in) :: fields
       real(wp) :: gap(self%compliance%nodes)
 
-      gap = self%initial_gap - fields%approach + fields%normal
+      gap = self%initial_gap - fields%motion(motion_approach) + fields%normal
    end function gap
 
-   !> Displacements of the surfaces against each other by deformation and, where it is modelled, rotation, as
-   !> contact_fields_type has them, from the tractions and the rotation in `fields`; shape (nodes), length.
+   !> Displacements of the surfaces against each other by deformation and rigid parts, as contact_fields_type has them, from the
+   !> tractions and motions in `fields`; shape (nodes), length.
    subroutine relative_displacements(self, fields, normal, tangential)
       class(contact_model_type), intent(in) :: self
       type(contact_fields_type), intent(in) :: fields
@@ -278,13 +279,21 @@ contains
       fields%tangential = tangential
    end subroutine displace
 
-   !> Whether motions of the upper body do more than lessen all gaps alike and slide all nodes alike: it may rotate, or normals
-   !> lean. Without, rigid_normal and rigid_tangential are zero.
+   !> Whether motions of the upper body do more than lessen all gaps alike and slide all nodes alike: one besides approach and shift
+   !> is modelled, or normals lean. Without, rigid_normal and rigid_tangential are zero.
    pure logical function has_rigid_parts(self)
       class(contact_model_type), intent(in) :: self
 
-      has_rigid_parts = self%rotational .or. .not. self%upright
+      has_rigid_parts = any(self%moves .and. motions%optional) .or. .not. self%upright
    end function has_rigid_parts
+
+   !> Whether a motion lessens gaps; if not, it only slides.
+   pure logical function lifts(self, motion)
+      class(contact_model_type), intent(in) :: self
+      integer, intent(in) :: motion
+
+      lifts = any(abs(self%normal_arm(:, motion)) > 0.0_wp)
+   end function lifts
 
    !> By how much the upper body's motion lessens the gaps, but for the approach itself; shape (nodes), length.
    pure function rigid_normal(self, fields)
@@ -292,8 +301,7 @@ contains
       type(contact_fields_type), intent(in) :: fields
       real(wp) :: rigid_normal(self%compliance%nodes)
 
-      rigid_normal = (self%normal_arm(:, along_approach) - 1.0_wp)*fields%approach &
-                     + self%normal_arm(:, along_shift)*fields%shift + self%normal_arm(:, along_rotation)*fields%rotation
+      rigid_normal = carried(self%normal_arm, motion_approach, fields%motion)
    end function rigid_normal
 
    !> How far the upper body's motion carries its surface to the right, but for the shift itself; shape (nodes), length.
@@ -302,17 +310,28 @@ contains
       type(contact_fields_type), intent(in) :: fields
       real(wp) :: rigid_tangential(self%compliance%nodes)
 
-      rigid_tangential = self%tangential_arm(:, along_approach)*fields%approach &
-                         + (self%tangential_arm(:, along_shift) - 1.0_wp)*fields%shift &
-                         + self%tangential_arm(:, along_rotation)*fields%rotation
+      rigid_tangential = carried(self%tangential_arm, motion_shift, fields%motion)
    end function rigid_tangential
+
+   !> How far motions carry the nodes by their `arm` (shape (nodes, motion_count)), less the motion `own` itself.
+   pure function carried(arm, own, motion)
+      real(wp), intent(in) :: arm(:, :), motion(motion_count)
+      integer, intent(in) :: own
+      real(wp) :: carried(size(arm, 1))
+      integer :: i
+
+      carried = 0.0_wp
+      do i = 1, motion_count
+         carried = carried + (arm(:, i) - merge(1.0_wp, 0.0_wp, i == own))*motion(i)
+      end do
+   end function carried
 
    !> How much further the upper body must approach until the node with the least way to go closes its `gap`, length.
    pure real(wp) function nearest_approach(self, gap)
       class(contact_model_type), intent(in) :: self
       real(wp), intent(in) :: gap(:)
 
-      nearest_approach = minval(gap/max(self%normal_arm(:, along_approach), tiny(1.0_wp)), mask=self%can_touch)
+      nearest_approach = minval(gap/max(self%normal_arm(:, motion_approach), tiny(1.0_wp)), mask=self%can_touch)
    end function nearest_approach
 
    !> Sum of a traction over the surface, force/length.
@@ -323,19 +342,19 @@ contains
       force = ddot(size(traction), self%width, 1, traction, 1)
    end function force
 
-   !> What the tractions amount to on the lower body: normal force down (`along_approach`), tangential force to the right
-   !> (`along_shift`), force/length; moment about the centre of rotation, counterclockwise (`along_rotation`), force.
-   pure real(wp) function resultant(self, along, pressure, shear)
+   !> What the tractions amount to on the lower body, the force of a motion (mfv_motions): normal force down, tangential force to
+   !> the right, force/length; moment about the centre of rotation, counterclockwise, force.
+   pure real(wp) function resultant(self, motion, pressure, shear)
       class(contact_model_type), intent(in) :: self
-      integer, intent(in) :: along
+      integer, intent(in) :: motion
       real(wp), intent(in) :: pressure(:), shear(:)
 
-      if (self%upright .and. along == along_approach) then
+      if (self%upright .and. motion == motion_approach) then
          resultant = self%force(pressure)
-      else if (self%upright .and. along == along_shift) then
+      else if (self%upright .and. motion == motion_shift) then
          resultant = self%force(shear)
       else
-         resultant = self%force(self%normal_arm(:, along)*pressure) + self%force(self%tangential_arm(:, along)*shear)
+         resultant = self%force(self%normal_arm(:, motion)*pressure) + self%force(self%tangential_arm(:, motion)*shear)
       end if
    end function resultant
 
@@ -408,17 +427,17 @@ contains
 
       n = self%nodes()
       if (allocated(self%normal_arm)) deallocate (self%normal_arm, self%tangential_arm)
-      allocate (self%normal_arm(n, 3), self%tangential_arm(n, 3), source=0.0_wp)
-      self%normal_arm(:, along_approach) = 1.0_wp
-      self%tangential_arm(:, along_shift) = 1.0_wp
+      allocate (self%normal_arm(n, motion_count), self%tangential_arm(n, motion_count), source=0.0_wp)
+      self%normal_arm(:, motion_approach) = 1.0_wp
+      self%tangential_arm(:, motion_shift) = 1.0_wp
       self%upright = .not. self%scene%mesh%radial
       if (self%scene%mesh%radial) then
          call place_radial_arms(self)
          return
       end if
-      self%normal_arm(:, along_rotation) = -self%x
-      if (self%rolls()) self%normal_arm(:, along_rotation) = -rolling_arm(self)
-      self%tangential_arm(:, along_rotation) = self%centre_height()
+      self%normal_arm(:, motion_rotation) = -self%x
+      if (self%rolls()) self%normal_arm(:, motion_rotation) = -rolling_arm(self)
+      self%tangential_arm(:, motion_rotation) = self%centre_height()
    end subroutine place_arms
 
    !> Height of the centre of rotation above the pole, length: negative where it is that of a disk below; 0 without a circle.
@@ -448,7 +467,7 @@ contains
       type(contact_fields_type), intent(in) :: fields
 
       rolled = 0.0_wp
-      if (self%rolls()) rolled = -fields%rotation/self%scene%curvature()
+      if (self%rolls()) rolled = -fields%motion(motion_rotation)/self%scene%curvature()
    end function rolled
 
    !> How far the upper surface has slid over the lower one at the pole, as rigid bodies, to the right, length.
@@ -456,7 +475,7 @@ contains
       class(contact_model_type), intent(in) :: self
       type(contact_fields_type), intent(in) :: fields
 
-      slid = fields%shift + self%centre_height()*fields%rotation
+      slid = fields%motion(motion_shift) + self%centre_height()*fields%motion(motion_rotation)
    end function slid
 
    !> By how much the gap grows per unit of rotation, length, shape (nodes). A contact that has rolled along by s has the gap
@@ -494,12 +513,12 @@ contains
 
       side = self%scene%lower%curvature()*self%scene%lower%radius
       associate (angle => self%arc/self%scene%arc_radius())
-         self%normal_arm(:, along_approach) = cos(angle)
-         self%normal_arm(:, along_shift) = -side*sin(angle)
-         self%tangential_arm(:, along_approach) = side*sin(angle)
-         self%tangential_arm(:, along_shift) = cos(angle)
+         self%normal_arm(:, motion_approach) = cos(angle)
+         self%normal_arm(:, motion_shift) = -side*sin(angle)
+         self%tangential_arm(:, motion_approach) = side*sin(angle)
+         self%tangential_arm(:, motion_shift) = cos(angle)
       end associate
-      self%tangential_arm(:, along_rotation) = -side*self%scene%upper%radius
+      self%tangential_arm(:, motion_rotation) = -side*self%scene%upper%radius
    end subroutine place_radial_arms
 
    !> Half-width of a mesh for a scene that asks for none, length along the surface: the punch itself, the whole profile, or

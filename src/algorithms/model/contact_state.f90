@@ -3,6 +3,7 @@ module mfv_contact_state
    use mfv_contact_fields, only: contact_fields_type, new_contact_fields
    use mfv_friction_law, only: friction_point_type, memory_size
    use mfv_kinds, only: wp
+   use mfv_motions, only: motion_shift
    use mfv_node_status
    implicit none
    private
@@ -60,7 +61,7 @@ contains
          if (.not. mask(i)) cycle
          if (status(i) == node_stick .and. self%status(i) /= node_stick .or. &
              slips(status(i)) .and. any(self%status(i) == [node_open, node_frictionless])) &
-            self%stuck_slip(i) = self%fields%tangential(i) - self%fields%shift
+            self%stuck_slip(i) = self%fields%tangential(i) - self%fields%motion(motion_shift)
          self%status(i) = status(i)
       end do
    end subroutine set_status
@@ -89,7 +90,11 @@ contains
       type(friction_point_type) :: point
 
       point = friction_point_type(static, kinetic, fields%pressure(node), fields%shear(node), &
+<<<<<<< HEAD
                                   fields%tangential(node) - fields%shift, self%memory(:, node))
+=======
+                                  fields%tangential(node) - fields%motion(motion_shift), self%slipped(node), self%excess(node))
+>>>>>>> motions
    end function friction_point
 
    !> Add `extra` open nodes at either end; the caller fills in their displacements.

@@ -2,14 +2,15 @@
 module mfv_history
    use mfv_contact_state, only: contact_state_type
    use mfv_kinds, only: wp
+   use mfv_motions, only: motion_count
    implicit none
    private
    public :: history_type, history_record_type
 
    type :: history_record_type
-      real(wp) :: normal_force = 0.0_wp, tangential_force = 0.0_wp, approach = 0.0_wp, shift = 0.0_wp
+      !> Motions and their forces, as contact_fields_type has them.
+      real(wp) :: motion(motion_count) = 0.0_wp, force(motion_count) = 0.0_wp
       real(wp) :: dissipation = 0.0_wp
-      real(wp) :: moment = 0.0_wp, rotation = 0.0_wp
       integer :: contact_nodes = 0, stick_nodes = 0
       !> What happened (see mfv_node_status), to which node first, and to how many together.
       integer :: event_kind = 0, event_node = 0, event_count = 0
@@ -40,10 +41,8 @@ contains
       if (self%records == size(self%record)) call double_capacity(self)
       self%records = self%records + 1
       self%record(self%records) = history_record_type( &
-                                  state%fields%normal_force, state%fields%tangential_force, state%fields%approach, &
-                                  state%fields%shift, state%dissipation, &
-                                  state%fields%moment, state%fields%rotation, state%contact_nodes(), state%stick_nodes(), &
-                                  kind, node, count, step, linear_solves)
+                                  state%fields%motion, state%fields%force, state%dissipation, state%contact_nodes(), &
+                                  state%stick_nodes(), kind, node, count, step, linear_solves)
    end subroutine append
 
    subroutine double_capacity(self)

@@ -7,6 +7,7 @@ module mfv_scene
    use mfv_interior, only: interior_type, new_interior
    use mfv_kinds, only: pi, wp
    use mfv_material, only: plane_strain
+   use mfv_motions, only: motions, motion_count, control_keep, control_force, control_displacement
    use mfv_surface_tractions, only: zone_list_type
    implicit none
    private
@@ -14,9 +15,6 @@ module mfv_scene
              most_cycles, algorithm_mfv, algorithm_conventional, stepping_event, stepping_nominal, stepping_leap, &
              integration_second_order, integration_explicit, solver_auto, solver_dgesv, solver_reduced, solver_fft
 
-   !> What a step does with the normal, the tangential or the rotational load: leave it as it is, lead the force (moment) to
-   !> a target, or lead the rigid displacement (approach, shift, rotation) to a target.
-   integer, parameter :: control_keep = 0, control_force = 1, control_displacement = 2
    !> The Method of First Violation (dissertation section 2.3) or the conventional algorithm (2.2).
    integer, parameter :: algorithm_mfv = 1, algorithm_conventional = 2
    !> How the Method of First Violation finds an event: from rates, or from a trial load step and interpolation (2.3 to 2.5); or
@@ -32,18 +30,14 @@ module mfv_scene
 
    !> One step of the load history; targets are reached linearly from the step before.
    type :: step_type
-      integer :: normal_control = control_keep, tangential_control = control_keep
-      !> Normal force P >= 0 (force/length) or approach delta (length).
-      real(wp) :: normal_target = 0.0_wp
-      !> Tangential force Q (force/length) or shift U (length), positive to the right.
-      real(wp) :: tangential_target = 0.0_wp
+      !> What it does with every motion (mfv_motions), and the target: normal force P >= 0 or approach delta, tangential force Q or
+      !> shift U to the right, moment M or rotation counterclockwise; force/length, force (moment), length, radians.
+      integer :: control(motion_count) = control_keep
+      real(wp) :: target(motion_count) = 0.0_wp
       !> Whether friction acts during this step.
       logical :: friction = .true.
       !> 0: go to the targets and stay; n: go there and back to where the step began, n times.
       integer :: cycles = 0
-      integer :: rotational_control = control_keep
-      !> Moment M (force) or rotation (radians), counterclockwise.
-      real(wp) :: rotational_target = 0.0_wp
       !> Cycles end early when two in a row are equal to within this part of the largest traction; 0: never.
       real(wp) :: steady_tolerance = 0.0_wp
    end type step_type
@@ -91,7 +85,7 @@ module mfv_scene
       type(step_type), allocatable :: steps(:)
    contains
       procedure :: tangential
-      procedure :: rotational
+      procedure :: moves
       procedure :: modulus
       procedure :: curvature
       procedure :: dundurs_beta
@@ -114,13 +108,18 @@ contains
       if (size(self%steps) > 0) tangential = tangential .and. any(self%steps%friction)
    end function tangential
 
-   !> Whether the scene needs the rotation: a step names it or the moment.
-   pure logical function rotational(self)
+   !> Which motions the scene needs: those that are always modelled, and those that a step controls.
+   pure function moves(self)
       class(scene_type), intent(in) :: self
+      logical :: moves(motion_count)
+      integer :: i
 
-      rotational = .false.
-      if (allocated(self%steps)) rotational = any(self%steps%rotational_control /= control_keep)
-   end function rotational
+      moves = .not. motions%optional
+      if (.not. allocated(self%steps)) return
+      do i = 1, motion_count
+         moves(i) = moves(i) .or. any(self%steps%control(i) /= control_keep)
+      end do
+   end function moves
 
    !> Contact modulus of both bodies, force/length^2: 1/m = 1/m1 + 1/m2 with m = 4 G/(kappa + 1) of each elastic one; the
    !> A of dissertation eq. 6.1, less its misprint, is 1/m. Zero where a body has no material of its own.

@@ -3,8 +3,9 @@ module mfv_scene_indenter
    use mfv_body, only: body_type, shape_flat_punch, shape_half_plane, shape_matrix, shape_power, shape_profile, &
                        shape_rounded_punch
    use mfv_kinds, only: wp
+   use mfv_motions, only: motion_approach, control_force, control_displacement
    use mfv_reference_indenter, only: flat_indenter, indenter_type, power_indenter, rounded_punch_indenter
-   use mfv_scene, only: control_displacement, control_force, scene_type
+   use mfv_scene, only: scene_type
    implicit none
    private
    public :: indenter_of, touches_everywhere, largest_half_width, default_datum
@@ -60,7 +61,7 @@ contains
 
       largest = half_width_of_forces(scene)
       indenter = indenter_of(scene)
-      approach = maxval(scene%steps%normal_target, mask=scene%steps%normal_control == control_displacement)
+      approach = maxval(scene%steps%target(motion_approach), mask=scene%steps%control(motion_approach) == control_displacement)
       if (approach > 0.0_wp .and. .not. indenter%is_flat() .and. scene%modulus() > 0.0_wp) &
          largest = max(largest, indenter%half_width_at_approach(approach, scene%datum(), most))
    end function largest_half_width
@@ -73,7 +74,7 @@ contains
 
       half_width = 0.0_wp
       indenter = indenter_of(scene)
-      force = maxval(scene%steps%normal_target, mask=scene%steps%normal_control == control_force)
+      force = maxval(scene%steps%target(motion_approach), mask=scene%steps%control(motion_approach) == control_force)
       if (force > 0.0_wp .and. .not. indenter%is_flat() .and. scene%modulus() > 0.0_wp) &
          half_width = indenter%half_width(0.5_wp*force/scene%modulus())
    end function half_width_of_forces

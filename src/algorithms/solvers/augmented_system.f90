@@ -4,7 +4,7 @@
 !> tractions tau, w - delta, s = u - U, and delta, U, P, Q; 4m + 4 in all (4n + 12 for one patch of n contact nodes).
 !> Rows: elasticity, force balance (eq. 2.1), one normal and one tangential constraint a node (Table 2.1), and the two
 !> controlled loads. While no node can carry shear (friction off or absent), tau, s, U and Q are left out: 2m + 2.
-!> Where rotation is modelled it and the moment come as well (eq. 4.24): w and s then contain what it does.
+!> Where rotation (or another motion) is modelled it and the moment come as well (eq. 4.24): w and s then contain what it does.
 !>
 !> The unknowns are scaled by the compliance's modulus and the mesh's length, so that units do not matter, and shear also
 !> by mu where that is small. One
@@ -13,12 +13,12 @@ module mfv_augmented_system
    use, intrinsic :: ieee_arithmetic, only: ieee_is_finite
    use mfv_compliance, only: block_up, block_ut, block_wp, block_wt, compliance_type
    use mfv_contact_fields, only: contact_fields_type, new_contact_fields
-   use mfv_contact_model, only: along_approach, along_rotation, along_shift, contact_model_type
+   use mfv_contact_model, only: contact_model_type
    use mfv_contact_system
    use mfv_kinds, only: wp
    use mfv_lapack, only: dgesv
+   use mfv_motions, only: motions, motion_count, motion_approach, motion_shift, motion_rotation, control_force, arm_unit
    use mfv_node_status
-   use mfv_scene, only: control_force
    implicit none
    private
    public :: augmented_system_type
@@ -37,7 +37,7 @@ module mfv_augmented_system
       real(wp), allocatable :: matrix(:, :), right(:, :)
       !> Unknowns before those of the first carried node, by field; and places of the scalars.
       integer :: pressure = 0, shear = 0, normal = 0, slip = 0
-      integer :: approach = 0, shift = 0, normal_force = 0, tangential_force = 0, rotation = 0, moment = 0
+      integer :: motion(motion_count) = 0, force(motion_count) = 0
       !> Where normals are vertical the unknown in the place of the shift U is the sliding U + h phi, which is small where the bodies
       !> roll and U and h phi nearly cancel: the height h of the centre of rotation, length; else 0.
       real(wp) :: height = 0.0_wp
@@ -57,12 +57,14 @@ contains
       logical, intent(out) :: singular
       type(assembly_type) :: assembly
       integer, allocatable :: pivots(:)
-      integer :: info, n
+      integer :: i, info, n
 
       assembly = new_assembly(model, constraints%status)
-      call add_elasticity(assembly, model, constraints%tangential)
+      call add_elasticity(assembly, model, constraints%load(motion_shift))
       call add_force_balance(assembly, model)
-      if (model%rotational) call add_rotation(assembly, model)
+      do i = 1, motion_count
+         if (motions(i)%optional .and. model%moves(i)) call add_motion(assembly, model, i)
+      end do
       call add_normal_constraints(assembly, model, constraints)
       if (assembly%tangential) call add_tangential_constraints(assembly, model, constraints)
       call add_loads(assembly, constraints)
@@ -77,8 +79,8 @@ contains
       response%state = extracted(assembly, constraints%status, assembly%right(:, 1))
       response%rate = extracted(assembly, constraints%status, assembly%right(:, 2))
       if (.not. assembly%tangential) then
-         response%state%shift = constraints%tangential%value
-         response%rate%shift = constraints%tangential%rate
+         response%state%motion(motion_shift) = constraints%load(motion_shift)%value
+         response%rate%motion(motion_shift) = constraints%load(motion_shift)%rate
       end if
       if (.not. assembly%tangential) call add_leaning_force(response, model)
       call fill_displacements(response%state, model, assembly)
@@ -91,8 +93,8 @@ contains
       type(contact_model_type), intent(in) :: model
 
       associate (state => response%state, rate => response%rate)
-         state%tangential_force = model%resultant(along_shift, state%pressure, state%shear)
-         rate%tangential_force = model%resultant(along_shift, rate%pressure, rate%shear)
+         state%force(motion_shift) = model%resultant(motion_shift, state%pressure, state%shear)
+         rate%force(motion_shift) = model%resultant(motion_shift, rate%pressure, rate%shear)
       end associate
    end subroutine add_leaning_force
 
@@ -118,22 +120,23 @@ contains
       m = size(assembly%nodes)
       assembly%pressure = 0
       assembly%normal = m
-      assembly%approach = 2*m + 1
-      assembly%normal_force = 2*m + 2
+      assembly%motion(motion_approach) = 2*m + 1
+      assembly%force(motion_approach) = 2*m + 2
       n = 2*m + 2
       if (assembly%tangential) then
          assembly%shear = n
          assembly%slip = n + m
-         assembly%shift = n + 2*m + 1
-         assembly%tangential_force = n + 2*m + 2
+         assembly%motion(motion_shift) = n + 2*m + 1
+         assembly%force(motion_shift) = n + 2*m + 2
          n = n + 2*m + 2
       end if
-      if (model%rotational) then
-         if (assembly%tangential .and. model%upright) assembly%height = model%centre_height()
-         assembly%rotation = n + 1
-         assembly%moment = n + 2
+      if (model%moves(motion_rotation) .and. assembly%tangential .and. model%upright) assembly%height = model%centre_height()
+      do i = 1, motion_count
+         if (.not. (motions(i)%optional .and. model%moves(i))) cycle
+         assembly%motion(i) = n + 1
+         assembly%force(i) = n + 2
          n = n + 2
-      end if
+      end do
       allocate (assembly%matrix(n, n), assembly%right(n, 2), source=0.0_wp)
    end function new_assembly
 
@@ -151,11 +154,11 @@ contains
          call add_block(assembly, compliance, block_wp, pressure, pressure, assembly%stress)
          do i = 1, m
             assembly%matrix(pressure + i, assembly%normal + i) = 1.0_wp
-            assembly%matrix(pressure + i, assembly%approach) = model%normal_arm(nodes(i), along_approach)
+            assembly%matrix(pressure + i, assembly%motion(motion_approach)) = model%normal_arm(nodes(i), motion_approach)
             if (assembly%tangential) then
-               assembly%matrix(pressure + i, assembly%shift) = model%normal_arm(nodes(i), along_shift)
+               assembly%matrix(pressure + i, assembly%motion(motion_shift)) = model%normal_arm(nodes(i), motion_shift)
             else
-               assembly%right(pressure + i, :) = -model%normal_arm(nodes(i), along_shift)*[shift%value, shift%rate] &
+               assembly%right(pressure + i, :) = -model%normal_arm(nodes(i), motion_shift)*[shift%value, shift%rate] &
                                                  /assembly%length
             end if
          end do
@@ -165,8 +168,8 @@ contains
          call add_block(assembly, compliance, block_ut, shear, shear, assembly%shear_stress)
          do i = 1, m
             assembly%matrix(shear + i, assembly%slip + i) = 1.0_wp
-            assembly%matrix(shear + i, assembly%shift) = model%tangential_arm(nodes(i), along_shift)
-            assembly%matrix(shear + i, assembly%approach) = model%tangential_arm(nodes(i), along_approach)
+            assembly%matrix(shear + i, assembly%motion(motion_shift)) = model%tangential_arm(nodes(i), motion_shift)
+            assembly%matrix(shear + i, assembly%motion(motion_approach)) = model%tangential_arm(nodes(i), motion_approach)
          end do
       end associate
    end subroutine add_elasticity
@@ -192,49 +195,50 @@ contains
       type(assembly_type), intent(inout) :: assembly
       type(contact_model_type), intent(in) :: model
 
-      call add_resultant(assembly, model, along_approach, assembly%approach, assembly%normal_force, assembly%stress, 1.0_wp)
-      if (assembly%tangential) call add_resultant(assembly, model, along_shift, assembly%shift, assembly%tangential_force, &
-                                                  assembly%shear_stress, 1.0_wp)
+      call add_resultant(assembly, model, motion_approach, assembly%stress, 1.0_wp)
+      if (assembly%tangential) call add_resultant(assembly, model, motion_shift, assembly%shear_stress, 1.0_wp)
    end subroutine add_force_balance
 
-   !> The rotation in the elasticity rows, the balance of moments in its own (eq. 4.24): with vertical normals the moment of the
-   !> shear is h Q.
-   subroutine add_rotation(assembly, model)
+   !> A motion besides approach and shift in the elasticity rows, the balance of its force in its own (eq. 4.24 of the rotation:
+   !> with vertical normals the moment of the shear is h Q).
+   subroutine add_motion(assembly, model, motion)
       type(assembly_type), intent(inout) :: assembly
       type(contact_model_type), intent(in) :: model
+      integer, intent(in) :: motion
+      real(wp) :: arm
       integer :: m
 
       m = size(assembly%nodes)
-      call add_resultant(assembly, model, along_rotation, assembly%rotation, assembly%moment, assembly%stress, assembly%length)
-      assembly%matrix(assembly%pressure + 1:assembly%pressure + m, assembly%rotation) = &
-         model%normal_arm(assembly%nodes, along_rotation)/assembly%length
-      if (.not. assembly%tangential) return
-      if (model%upright) then
-         assembly%matrix(assembly%rotation, assembly%shear + 1:assembly%shear + m) = 0.0_wp
-         assembly%matrix(assembly%rotation, assembly%tangential_force) = &
-            assembly%height*assembly%shear_stress/(assembly%stress*assembly%length)
-      else
-         assembly%matrix(assembly%shear + 1:assembly%shear + m, assembly%rotation) = &
-            model%tangential_arm(assembly%nodes, along_rotation)/assembly%length
-      end if
-   end subroutine add_rotation
+      arm = arm_unit(motion, assembly%length)
+      call add_resultant(assembly, model, motion, assembly%stress, arm)
+      associate (row => assembly%motion(motion), pressure => assembly%pressure, shear => assembly%shear)
+         assembly%matrix(pressure + 1:pressure + m, row) = model%normal_arm(assembly%nodes, motion)/arm
+         if (.not. assembly%tangential) return
+         if (motion == motion_rotation .and. model%upright) then
+            assembly%matrix(row, shear + 1:shear + m) = 0.0_wp
+            assembly%matrix(row, assembly%force(motion_shift)) = assembly%height*assembly%shear_stress/(assembly%stress*arm)
+         else
+            assembly%matrix(shear + 1:shear + m, row) = model%tangential_arm(assembly%nodes, motion)/arm
+         end if
+      end associate
+   end subroutine add_motion
 
-   !> A row that sums up the tractions to a force or moment in the column `force`; `stress`: its unit of stress, `arm`: of arms.
-   subroutine add_resultant(assembly, model, along, row, force, stress, arm)
+   !> The row of a motion sums up the tractions to its force; `stress`: its unit of stress, `arm`: of arms.
+   subroutine add_resultant(assembly, model, motion, stress, arm)
       type(assembly_type), intent(inout) :: assembly
       type(contact_model_type), intent(in) :: model
-      integer, intent(in) :: along, row, force
+      integer, intent(in) :: motion
       real(wp), intent(in) :: stress, arm
       integer :: m
 
       m = size(assembly%nodes)
-      associate (weight => model%width(assembly%nodes)/assembly%length/arm/stress)
+      associate (weight => model%width(assembly%nodes)/assembly%length/arm/stress, row => assembly%motion(motion))
          assembly%matrix(row, assembly%pressure + 1:assembly%pressure + m) = &
-            weight*model%normal_arm(assembly%nodes, along)*assembly%stress
-         assembly%matrix(row, force) = -1.0_wp
+            weight*model%normal_arm(assembly%nodes, motion)*assembly%stress
+         assembly%matrix(row, assembly%force(motion)) = -1.0_wp
          if (.not. assembly%tangential) return
          assembly%matrix(row, assembly%shear + 1:assembly%shear + m) = &
-            weight*model%tangential_arm(assembly%nodes, along)*assembly%shear_stress
+            weight*model%tangential_arm(assembly%nodes, motion)*assembly%shear_stress
       end associate
    end subroutine add_resultant
 
@@ -294,35 +298,38 @@ contains
    subroutine add_loads(assembly, constraints)
       type(assembly_type), intent(inout) :: assembly
       type(constraints_type), intent(in) :: constraints
+      integer :: i
 
       associate (length => assembly%length)
-         call add_load(assembly, constraints%normal, assembly%normal_force, assembly%approach, &
-                       assembly%stress*length, length)
-         if (assembly%tangential) call add_load(assembly, constraints%tangential, assembly%tangential_force, &
-                                                assembly%shift, assembly%shear_stress*length, length)
-         if (assembly%rotation > 0 .and. assembly%tangential .and. constraints%tangential%control /= control_force) &
-            assembly%matrix(assembly%tangential_force, assembly%rotation) = -assembly%height/length
-         if (assembly%rotation > 0) call add_load(assembly, constraints%rotational, assembly%moment, &
-                                                  assembly%rotation, assembly%stress*length**2, 1.0_wp)
+         call add_load(assembly, constraints, motion_approach, assembly%stress*length, length)
+         if (assembly%tangential) call add_load(assembly, constraints, motion_shift, assembly%shear_stress*length, length)
+         if (abs(assembly%height) > 0.0_wp .and. constraints%load(motion_shift)%control /= control_force) &
+            assembly%matrix(assembly%force(motion_shift), assembly%motion(motion_rotation)) = -assembly%height/length
+         do i = 1, motion_count
+            if (motions(i)%optional .and. assembly%motion(i) > 0) &
+               call add_load(assembly, constraints, i, assembly%stress*(length*arm_unit(i, length)), length/arm_unit(i, length))
+         end do
       end associate
    end subroutine add_loads
 
    !> The row in the force's place: prescribe the force, or the displacement, each with its unit.
-   subroutine add_load(assembly, load, force, displacement, force_unit, displacement_unit)
+   subroutine add_load(assembly, constraints, motion, force_unit, displacement_unit)
       type(assembly_type), intent(inout) :: assembly
-      type(load_type), intent(in) :: load
-      integer, intent(in) :: force, displacement
+      type(constraints_type), intent(in) :: constraints
+      integer, intent(in) :: motion
       real(wp), intent(in) :: force_unit, displacement_unit
       real(wp) :: unit
 
-      if (load%control == control_force) then
-         unit = force_unit
-         assembly%matrix(force, force) = 1.0_wp
-      else
-         unit = displacement_unit
-         assembly%matrix(force, displacement) = 1.0_wp
-      end if
-      assembly%right(force, :) = [load%value, load%rate]/unit
+      associate (load => constraints%load(motion), row => assembly%force(motion))
+         if (load%control == control_force) then
+            unit = force_unit
+            assembly%matrix(row, row) = 1.0_wp
+         else
+            unit = displacement_unit
+            assembly%matrix(row, assembly%motion(motion)) = 1.0_wp
+         end if
+         assembly%right(row, :) = [load%value, load%rate]/unit
+      end associate
    end subroutine add_load
 
    !> Fields from a scaled solution; displacements of the carried nodes only.
@@ -331,25 +338,27 @@ contains
       integer, intent(in) :: status(:)
       real(wp), intent(in) :: solution(:)
       type(contact_fields_type) :: fields
-      integer :: m
+      integer :: i, m
 
       m = size(assembly%nodes)
       fields = new_contact_fields(size(status))
       associate (stress => assembly%stress, length => assembly%length, nodes => assembly%nodes)
-         fields%approach = length*solution(assembly%approach)
-         fields%normal_force = stress*length*solution(assembly%normal_force)
+         fields%motion(motion_approach) = length*solution(assembly%motion(motion_approach))
+         fields%force(motion_approach) = stress*length*solution(assembly%force(motion_approach))
          fields%pressure(nodes) = stress*solution(assembly%pressure + 1:assembly%pressure + m)
-         fields%normal(nodes) = length*solution(assembly%normal + 1:assembly%normal + m) + fields%approach
+         fields%normal(nodes) = length*solution(assembly%normal + 1:assembly%normal + m) + fields%motion(motion_approach)
          where (.not. in_contact(status)) fields%pressure = 0.0_wp
-         if (assembly%rotation > 0) then
-            fields%rotation = solution(assembly%rotation)
-            fields%moment = stress*length**2*solution(assembly%moment)
-         end if
+         do i = 1, motion_count
+            if (.not. motions(i)%optional .or. assembly%motion(i) == 0) cycle
+            fields%motion(i) = length/arm_unit(i, length)*solution(assembly%motion(i))
+            fields%force(i) = stress*(length*arm_unit(i, length))*solution(assembly%force(i))
+         end do
          if (.not. assembly%tangential) return
-         fields%shift = length*solution(assembly%shift) - assembly%height*fields%rotation
-         fields%tangential_force = assembly%shear_stress*length*solution(assembly%tangential_force)
+         fields%motion(motion_shift) = length*solution(assembly%motion(motion_shift)) &
+                                       - assembly%height*fields%motion(motion_rotation)
+         fields%force(motion_shift) = assembly%shear_stress*length*solution(assembly%force(motion_shift))
          fields%shear(nodes) = assembly%shear_stress*solution(assembly%shear + 1:assembly%shear + m)
-         fields%tangential(nodes) = length*solution(assembly%slip + 1:assembly%slip + m) + fields%shift
+         fields%tangential(nodes) = length*solution(assembly%slip + 1:assembly%slip + m) + fields%motion(motion_shift)
          where (.not. in_contact(status)) fields%shear = 0.0_wp
       end associate
    end function extracted

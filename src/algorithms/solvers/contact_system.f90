@@ -1,4 +1,4 @@
-!> What a linear solver offers to the Method of First Violation: with the status of every node and the two controlled
+!> What a linear solver offers to the Method of First Violation: with the status of every node and the controlled
 !> loads given, the state and its rates per unit of load.
 module mfv_contact_system
    use, intrinsic :: iso_fortran_env, only: int64
@@ -6,10 +6,10 @@ module mfv_contact_system
    use mfv_contact_model, only: contact_model_type
    use mfv_friction_law, only: friction_row_type
    use mfv_kinds, only: wp
-   use mfv_scene, only: control_displacement, control_force
+   use mfv_motions, only: motions, motion_count, control_force, control_displacement
    implicit none
    private
-   public :: contact_system_type, load_type, response_type, constraints_type
+   public :: contact_system_type, load_type, response_type, constraints_type, initial_loads
 
    !> One controlled load: force (moment) or rigid displacement (rotation), its value now and its rate per unit of load.
    type :: load_type
@@ -17,6 +17,11 @@ module mfv_contact_system
       real(wp) :: value = 0.0_wp
       real(wp) :: rate = 0.0_wp
    end type load_type
+
+   integer :: motion
+   !> Loads of bodies that nothing has been prescribed for: no forces; motions that need not be modelled are held.
+   type(load_type), parameter :: initial_loads(motion_count) = &
+      [(load_type(merge(control_displacement, control_force, motions(motion)%optional)), motion=1, motion_count)]
 
    !> The equality constraints of all nodes (dissertation Table 2.1).
    type :: constraints_type
@@ -30,8 +35,8 @@ module mfv_contact_system
       real(wp), allocatable :: offset_rate(:)
       !> Rates with which nodes in contact part and stuck nodes slip, length per unit of load, shape (nodes); not there: none.
       real(wp), allocatable :: gap_rate(:), slip_rate(:)
-      !> Normal, tangential and rotational load; the last one of no meaning where rotation is not modelled.
-      type(load_type) :: normal, tangential, rotational
+      !> The load of every motion; of no meaning where the motion is not modelled.
+      type(load_type) :: load(motion_count)
    end type constraints_type
 
    !> The state that the constraints determine and its rates per unit of load.

@@ -18,14 +18,14 @@ module mfv_krylov_system
    use, intrinsic :: ieee_arithmetic, only: ieee_is_finite
    use mfv_compliance, only: block_up
    use mfv_contact_fields, only: contact_fields_type, new_contact_fields
-   use mfv_contact_model, only: along_approach, along_rotation, along_shift, contact_model_type
+   use mfv_contact_model, only: contact_model_type
    use mfv_contact_system
    use mfv_gmres, only: gmres_type
    use mfv_kinds, only: wp
    use mfv_lapack, only: dgesv
    use mfv_krylov_preconditioner, only: krylov_preconditioner_type
+   use mfv_motions, only: motion_count, motion_shift, control_force, arm_unit
    use mfv_node_status
-   use mfv_scene, only: control_force
    implicit none
    private
    public :: krylov_system_type
@@ -37,7 +37,7 @@ module mfv_krylov_system
       !> Offsets of the slip lines, shape (nodes).
       real(wp), allocatable :: offset(:)
       !> Motions that are prescribed, and zero for the free ones.
-      real(wp) :: motion(3) = 0.0_wp
+      real(wp) :: motion(motion_count) = 0.0_wp
    end type right_side_type
 
    type, extends(contact_system_type) :: krylov_system_type
@@ -46,7 +46,7 @@ module mfv_krylov_system
       type(gmres_type) :: gmres
       !> Units of traction and length.
       real(wp) :: stress = 1.0_wp, length = 0.0_wp
-      !> Arms of the three motions and widths of the nodes in these units, shapes (nodes, 3), (nodes).
+      !> Arms of the motions and widths of the nodes in these units, shapes (nodes, motion_count), (nodes).
       real(wp), allocatable :: normal_arm(:, :), tangential_arm(:, :), width(:)
       !> Nodes in contact, held nodes, and free motions, ascending.
       integer, allocatable :: contact(:), held(:), free(:)
@@ -65,7 +65,7 @@ module mfv_krylov_system
       real(wp), allocatable :: last_pressure(:), last_shear(:)
       !> First and last node in contact and held then; zero where there were gaps.
       integer :: last_contact(2) = 0, last_held(2) = 0
-      real(wp) :: last_motion(3) = 0.0_wp
+      real(wp) :: last_motion(motion_count) = 0.0_wp
    contains
       procedure :: solve
    end type krylov_system_type
@@ -97,7 +97,7 @@ contains
 
       right = right_of_state(self, model, constraints)
       unknowns = packed(self, start%pressure/self%stress, start%shear/self%stress, &
-                        [start%approach/self%length, start%shift/self%length, start%rotation])
+                        start%motion/motion_units(self))
       call iterate(self, model, right, unknowns, singular)
       if (singular) return
       response%state = fields_of(self, model, right, unknowns)
@@ -120,7 +120,7 @@ contains
    subroutine meet_mesh(self, model)
       class(krylov_system_type), intent(inout) :: self
       type(contact_model_type), intent(in) :: model
-      integer :: n
+      integer :: i, n
 
       n = model%nodes()
       if (.not. self%length > 0.0_wp) then
@@ -135,8 +135,10 @@ contains
       allocate (self%pressure(n), self%shear(n), self%normal(n), self%tangential(n), self%found(n, 4), source=0.0_wp)
       self%normal_arm = model%normal_arm
       self%tangential_arm = model%tangential_arm
-      self%normal_arm(:, along_rotation) = self%normal_arm(:, along_rotation)/self%length
-      self%tangential_arm(:, along_rotation) = self%tangential_arm(:, along_rotation)/self%length
+      do i = 1, motion_count
+         self%normal_arm(:, i) = self%normal_arm(:, i)/arm_unit(i, self%length)
+         self%tangential_arm(:, i) = self%tangential_arm(:, i)/arm_unit(i, self%length)
+      end do
       self%width = model%width/self%length
       if (allocated(self%last_pressure)) then
          where (self%last_contact > 0) self%last_contact = self%last_contact + (n - size(self%last_pressure))/2
@@ -169,7 +171,7 @@ contains
       real(wp), parameter :: no_stiffness = 1.0e-14_wp
       logical, dimension(size(constraints%status)) :: is_held, follows
       real(wp), dimension(size(constraints%status)) :: stiffness
-      logical :: free(3)
+      logical :: free(motion_count)
       integer :: i, n
 
       n = size(constraints%status)
@@ -188,10 +190,9 @@ contains
                      any(abs(self%held_slope) > 0.0_wp)
       self%coupled = self%coupled .and. size(self%held) > 0
 
-      free(along_approach) = constraints%normal%control == control_force
-      free(along_shift) = constraints%tangential%control == control_force .and. (any(is_held) .or. any(follows))
-      free(along_rotation) = constraints%rotational%control == control_force .and. model%rotational
-      self%free = pack([along_approach, along_shift, along_rotation], free)
+      free = constraints%load%control == control_force .and. model%moves
+      free(motion_shift) = free(motion_shift) .and. (any(is_held) .or. any(follows))
+      self%free = pack([(i, i=1, motion_count)], free)
    end subroutine choose_unknowns
 
    !> The preconditioner for these unknowns. `singular`: the free motions are not determined.
@@ -256,8 +257,7 @@ contains
       integer :: m
 
       m = size(self%contact)
-      call set_loads(self, model, constraints, [constraints%normal%value, constraints%tangential%value, &
-                                                constraints%rotational%value], constraints%row%offset, right)
+      call set_loads(self, model, constraints, constraints%load%value, constraints%row%offset, right)
       right%rows(:m) = -model%initial_gap(self%contact)/self%length
       where (constraints%status(self%held) == node_stick) &
          right%rows(m + 1:m + size(self%held)) = constraints%stuck_slip(self%held)/self%length
@@ -272,43 +272,51 @@ contains
       integer :: m
 
       m = size(self%contact)
-      call set_loads(self, model, constraints, [constraints%normal%rate, constraints%tangential%rate, &
-                                                constraints%rotational%rate], constraints%offset_rate, right)
+      call set_loads(self, model, constraints, constraints%load%rate, constraints%offset_rate, right)
       if (allocated(constraints%gap_rate)) right%rows(:m) = constraints%gap_rate(self%contact)/self%length
       if (.not. allocated(constraints%slip_rate)) return
       where (constraints%status(self%held) == node_stick) &
          right%rows(m + 1:m + size(self%held)) = constraints%slip_rate(self%held)/self%length
    end function right_of_rates
 
-   !> Loads (`values` of the normal, tangential and rotational one) and offsets; the other rows are zero.
+   !> Loads (`values`, of every motion) and offsets; the other rows are zero.
    subroutine set_loads(self, model, constraints, values, offset, right)
       class(krylov_system_type), intent(in) :: self
       type(contact_model_type), intent(in) :: model
       type(constraints_type), intent(in) :: constraints
-      real(wp), intent(in) :: values(3), offset(:)
+      real(wp), intent(in) :: values(motion_count), offset(:)
       type(right_side_type), intent(out) :: right
-      real(wp) :: force_unit(3), motion_unit(3)
+      real(wp) :: force_unit(motion_count)
+      integer :: i
       logical :: follows(size(offset))
       integer :: m
 
       m = size(self%contact)
-      force_unit = self%stress*self%length*[1.0_wp, 1.0_wp, self%length]
-      motion_unit = [self%length, self%length, 1.0_wp]
+      force_unit = self%stress*self%length*[(arm_unit(i, self%length), i=1, motion_count)]
       allocate (right%rows(m + size(self%held) + size(self%free)), source=0.0_wp)
       right%rows(m + size(self%held) + 1:) = values(self%free)/force_unit(self%free)
-      right%motion = values/motion_unit
+      right%motion = values/motion_units(self)
       right%motion(self%free) = 0.0_wp
-      if (.not. model%rotational) right%motion(along_rotation) = 0.0_wp
+      where (.not. model%moves) right%motion = 0.0_wp
       follows = slips(constraints%status) .or. creeps(constraints%status)
       right%offset = merge(offset, 0.0_wp, follows)/self%stress
       right%rows(m + 1:m + size(self%held)) = self%softness*right%offset(self%held)
       right%offset(self%held) = 0.0_wp
    end subroutine set_loads
 
+   !> Units of the motions.
+   pure function motion_units(self)
+      class(krylov_system_type), intent(in) :: self
+      real(wp) :: motion_units(motion_count)
+      integer :: i
+
+      motion_units = [(self%length/arm_unit(i, self%length), i=1, motion_count)]
+   end function motion_units
+
    !> The unknowns out of fields, shape (nodes), and motions.
    function packed(self, pressure, shear, motion) result(unknowns)
       class(krylov_system_type), intent(in) :: self
-      real(wp), intent(in) :: pressure(:), shear(:), motion(3)
+      real(wp), intent(in) :: pressure(:), shear(:), motion(motion_count)
       real(wp), allocatable :: unknowns(:)
 
       unknowns = [pressure(self%contact), shear(self%held), motion(self%free)]
@@ -355,12 +363,12 @@ contains
       end do
    end subroutine stretch
 
-   !> All three motions.
+   !> All motions.
    pure function motion_of(self, right, unknowns) result(motion)
       class(krylov_system_type), intent(in) :: self
       type(right_side_type), intent(in) :: right
       real(wp), intent(in) :: unknowns(:)
-      real(wp) :: motion(3)
+      real(wp) :: motion(motion_count)
 
       motion = right%motion
       motion(self%free) = unknowns(size(self%contact) + size(self%held) + 1:)
@@ -470,7 +478,7 @@ contains
       type(contact_model_type), intent(in) :: model
       real(wp), intent(in) :: unknowns(:)
       real(wp), intent(out) :: rows(:)
-      real(wp) :: motion(3)
+      real(wp) :: motion(motion_count)
 
       motion = 0.0_wp
       motion(self%free) = unknowns(size(self%contact) + size(self%held) + 1:)
@@ -508,7 +516,7 @@ contains
    !> Left-hand sides of all rows with the tractions and displacements of now.
    subroutine collect_rows(self, motion, rows)
       class(krylov_system_type), intent(in) :: self
-      real(wp), intent(in) :: motion(3)
+      real(wp), intent(in) :: motion(motion_count)
       real(wp), intent(out) :: rows(:)
       integer :: i, j, m, s
 
@@ -536,16 +544,16 @@ contains
    end subroutine collect_rows
 
    !> Resultant of the tractions of now, as mfv_contact_model has it.
-   pure real(wp) function resultant(self, along)
+   pure real(wp) function resultant(self, motion)
       class(krylov_system_type), intent(in) :: self
-      integer, intent(in) :: along
+      integer, intent(in) :: motion
       integer :: i, j
 
       resultant = 0.0_wp
       do i = 1, size(self%contact)
          j = self%contact(i)
-         resultant = resultant + self%width(j)*(self%normal_arm(j, along)*self%pressure(j) &
-                                                + self%tangential_arm(j, along)*self%shear(j))
+         resultant = resultant + self%width(j)*(self%normal_arm(j, motion)*self%pressure(j) &
+                                                + self%tangential_arm(j, motion)*self%shear(j))
       end do
    end function resultant
 
@@ -599,13 +607,11 @@ contains
       type(right_side_type), intent(in) :: right
       real(wp), intent(in) :: unknowns(:)
       type(contact_fields_type) :: fields
-      real(wp) :: motion(3)
+      real(wp) :: motion(motion_count)
 
       fields = new_contact_fields(size(self%pressure))
       motion = motion_of(self, right, unknowns)
-      fields%approach = self%length*motion(along_approach)
-      fields%shift = self%length*motion(along_shift)
-      fields%rotation = motion(along_rotation)
+      fields%motion = motion_units(self)*motion
       fields%pressure = self%stress*self%found(:, 1)
       fields%shear = self%stress*self%found(:, 2)
       fields%normal = self%length*self%found(:, 3) - model%rigid_normal(fields)
@@ -619,25 +625,19 @@ contains
       type(constraints_type), intent(in) :: constraints
       type(contact_fields_type), intent(inout) :: fields
       logical, intent(in) :: rates
+      real(wp) :: prescribed
+      integer :: i
 
-      call meet(constraints%normal, along_approach, fields%normal_force, fields%approach)
-      call meet(constraints%tangential, along_shift, fields%tangential_force, fields%shift)
-      if (model%rotational) call meet(constraints%rotational, along_rotation, fields%moment, fields%rotation)
-
-   contains
-
-      subroutine meet(load, along, force, motion)
-         type(load_type), intent(in) :: load
-         integer, intent(in) :: along
-         real(wp), intent(inout) :: force, motion
-
-         if (any(self%free == along)) then
-            force = merge(load%rate, load%value, rates)
+      do i = 1, motion_count
+         if (.not. model%moves(i)) cycle
+         prescribed = merge(constraints%load(i)%rate, constraints%load(i)%value, rates)
+         if (any(self%free == i)) then
+            fields%force(i) = prescribed
          else
-            motion = merge(load%rate, load%value, rates)
-            force = model%resultant(along, fields%pressure, fields%shear)
+            fields%motion(i) = prescribed
+            fields%force(i) = model%resultant(i, fields%pressure, fields%shear)
          end if
-      end subroutine meet
+      end do
    end subroutine meet_loads
 
 end module mfv_krylov_system

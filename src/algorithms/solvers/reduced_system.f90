@@ -20,11 +20,11 @@ module mfv_reduced_system
    use mfv_compliance, only: block_up, block_ut, block_wp, block_wt
    use mfv_constrained_inverse, only: constrained_inverse_type
    use mfv_contact_fields, only: contact_fields_type
-   use mfv_contact_model, only: along_approach, along_rotation, along_shift, contact_model_type
+   use mfv_contact_model, only: contact_model_type
    use mfv_contact_system
    use mfv_kinds, only: wp
+   use mfv_motions, only: motions, motion_count, motion_approach, motion_shift, motion_rotation, control_force, arm_unit
    use mfv_node_status, only: node_stick
-   use mfv_scene, only: control_force
    implicit none
    private
    public :: reduced_system_type
@@ -55,14 +55,14 @@ module mfv_reduced_system
       logical :: apart = .false.
       !> Where the unknowns of the nodes are in their part, shape (nodes, 2), and those of the motions; 0: nowhere.
       integer, allocatable :: place(:, :)
-      integer :: motion_place(3) = 0
+      integer :: motion_place(motion_count) = 0
       !> Constraint of every node (shape (nodes)) and motion; 0: none.
       integer, allocatable :: constraint_of(:)
-      integer :: motion_constraint(3) = 0
+      integer :: motion_constraint(motion_count) = 0
       !> Unit of length: half the mesh when the first unknown came; it stays while the mesh grows.
       real(wp) :: length = 1.0_wp
       !> What the inverses were built for.
-      logical :: block(4) = .false., rotational = .false.
+      logical :: block(4) = .false., moves(motion_count) = .false.
       type(augmented_system_type) :: augmented
       !> How often a solution was refined.
       integer, public :: refinements = 0
@@ -107,7 +107,7 @@ contains
       logical, intent(out) :: singular
 
       self%solves = self%solves + 1
-      if (model%compliance%one_way() .and. (model%rotational .or. model%scene%mesh%radial)) then
+      if (model%compliance%one_way() .and. model%has_rigid_parts()) then
          self%name = self%augmented%name
          call self%augmented%solve(model, constraints, start, response, singular)
          return
@@ -145,10 +145,13 @@ contains
       class(reduced_system_type), intent(in) :: self
       type(contact_model_type), intent(in) :: model
       type(constraints_type), intent(in) :: constraints
+      integer :: i
 
-      undetermined = self%motion_place(along_approach) == 0 .and. .not. is_held(constraints, along_approach)
-      if (model%rotational) undetermined = undetermined .or. (self%motion_place(along_rotation) == 0 .and. &
-                                                              .not. is_held(constraints, along_rotation))
+      undetermined = .false.
+      do i = 1, motion_count
+         if (i == motion_shift .or. .not. model%moves(i)) cycle
+         undetermined = undetermined .or. (self%motion_place(i) == 0 .and. .not. is_held(constraints, i))
+      end do
    end function undetermined
 
    !> Forget what belongs to other blocks, or to a scene without rotation; follow the nodes where the mesh has grown. (An object
@@ -162,7 +165,7 @@ contains
 
       n = model%nodes()
       if (allocated(self%place)) then
-         same = all(self%block .eqv. model%compliance%has_block) .and. (self%rotational .eqv. model%rotational)
+         same = all(self%block .eqv. model%compliance%has_block) .and. all(self%moves .eqv. model%moves)
          if (same .and. size(self%place, 1) == n) return
          if (same .and. n > size(self%place, 1)) then
             extra = (n - size(self%place, 1))/2
@@ -181,9 +184,9 @@ contains
          deallocate (self%place, self%constraint_of)
       end if
       self%block = model%compliance%has_block
-      self%rotational = model%rotational
+      self%moves = model%moves
       self%length = model%length()
-      self%apart = .not. (self%block(block_wt) .or. self%rotational .or. model%scene%mesh%radial)
+      self%apart = .not. (self%block(block_wt) .or. model%has_rigid_parts())
       self%motion_place = 0
       self%motion_constraint = 0
       allocate (self%place(n, 2), self%constraint_of(n), source=0)
@@ -203,7 +206,7 @@ contains
 
       part_of = 1
       if (.not. self%apart) return
-      if (sort == a_shear .or. (sort == a_motion .and. number == along_shift)) part_of = 2
+      if (sort == a_shear .or. (sort == a_motion .and. number == motion_shift)) part_of = 2
    end function part_of
 
    !> Bring unknowns and constraints to the statuses and controls of `constraints`. `anew`: compute the inverse anew.
@@ -215,16 +218,19 @@ contains
       logical, intent(out) :: singular
       logical, parameter :: touches(0:6) = [.false., .true., .true., .true., .true., .true., .true.], &
                             has_shear(0:6) = [.false., .true., .true., .true., .false., .true., .true.]
-      logical :: wanted(size(constraints%status), 2), wanted_motion(3)
+      logical :: wanted(size(constraints%status), 2), wanted_motion(motion_count)
+      integer :: i
 
       wanted(:, a_pressure) = touches(constraints%status)
       wanted(:, a_shear) = has_shear(constraints%status)
       wanted_motion = .false.
-      wanted_motion(along_approach) = any(wanted(:, a_pressure))
-      wanted_motion(along_shift) = any(wanted(:, a_shear))
-      ! Where normals are along the radius a rotation only slides: nothing but friction determines it.
-      if (model%rotational) wanted_motion(along_rotation) = count(wanted(:, a_pressure)) > 1 .and. &
-                                                            (model%upright .or. any(wanted(:, a_shear)))
+      wanted_motion(motion_approach) = any(wanted(:, a_pressure))
+      wanted_motion(motion_shift) = any(wanted(:, a_shear))
+      ! What only slides, a rotation where normals are along the radius, nothing but friction determines.
+      do i = 1, motion_count
+         if (motions(i)%optional .and. model%moves(i)) &
+            wanted_motion(i) = count(wanted(:, a_pressure)) > 1 .and. (wanted_motion(motion_shift) .or. model%lifts(i))
+      end do
       call self%lose_constraints(constraints, wanted, wanted_motion)
       if (anew) then
          call self%rebuild(model, wanted, wanted_motion, singular)
@@ -239,7 +245,7 @@ contains
    subroutine lose_constraints(self, constraints, wanted, wanted_motion)
       class(reduced_system_type), intent(inout) :: self
       type(constraints_type), intent(in) :: constraints
-      logical, intent(in) :: wanted(:, :), wanted_motion(3)
+      logical, intent(in) :: wanted(:, :), wanted_motion(motion_count)
       integer :: going(size(wanted, 1)), i, number, part
 
       part = self%part_of(a_shear, 0)
@@ -254,7 +260,7 @@ contains
       do i = 1, number
          call self%release(part, self%constraint_of(going(i)))
       end do
-      do i = 1, 3
+      do i = 1, motion_count
          if (self%motion_constraint(i) == 0) cycle
          if (is_held(constraints, i) .and. wanted_motion(i)) cycle
          call self%release(self%part_of(a_motion, i), self%motion_constraint(i))
@@ -265,31 +271,15 @@ contains
    pure logical function is_held(constraints, motion)
       type(constraints_type), intent(in) :: constraints
       integer, intent(in) :: motion
-      type(load_type) :: load
 
-      load = load_of(constraints, motion)
-      is_held = load%control /= control_force
+      is_held = constraints%load(motion)%control /= control_force
    end function is_held
-
-   pure type(load_type) function load_of(constraints, motion)
-      type(constraints_type), intent(in) :: constraints
-      integer, intent(in) :: motion
-
-      select case (motion)
-      case (along_approach)
-         load_of = constraints%normal
-      case (along_shift)
-         load_of = constraints%tangential
-      case default
-         load_of = constraints%rotational
-      end select
-   end function load_of
 
    !> Add and remove unknowns one by one, or all of them anew where that is less work.
    subroutine change_unknowns(self, model, wanted, wanted_motion, singular)
       class(reduced_system_type), intent(inout) :: self
       type(contact_model_type), intent(in) :: model
-      logical, intent(in) :: wanted(:, :), wanted_motion(3)
+      logical, intent(in) :: wanted(:, :), wanted_motion(motion_count)
       logical, intent(out) :: singular
       integer, parameter :: few = 16
       integer :: changes(2), i, sort, part
@@ -325,11 +315,11 @@ contains
    subroutine change_motions(self, model, wanted_motion, adding, singular)
       class(reduced_system_type), intent(inout) :: self
       type(contact_model_type), intent(in) :: model
-      logical, intent(in) :: wanted_motion(3), adding
+      logical, intent(in) :: wanted_motion(motion_count), adding
       logical, intent(inout) :: singular
       integer :: i
 
-      do i = 1, 3
+      do i = 1, motion_count
          if (singular) return
          if (adding .and. wanted_motion(i) .and. self%motion_place(i) == 0) then
             call self%add_named(model, self%part_of(a_motion, i), [a_motion], [i], singular)
@@ -443,7 +433,7 @@ contains
    subroutine rebuild(self, model, wanted, wanted_motion, singular)
       class(reduced_system_type), intent(inout) :: self
       type(contact_model_type), intent(in) :: model
-      logical, intent(in) :: wanted(:, :), wanted_motion(3)
+      logical, intent(in) :: wanted(:, :), wanted_motion(motion_count)
       logical, intent(out) :: singular
       real(wp), allocatable :: matrix(:, :)
       integer :: i, j, p, sort
@@ -464,7 +454,7 @@ contains
             self%place(i, sort) = self%part(p)%unknowns
          end do
       end do
-      do i = 1, 3
+      do i = 1, motion_count
          if (.not. wanted_motion(i)) cycle
          p = self%part_of(a_motion, i)
          call enlist(self%part(p), a_motion, i)
@@ -499,8 +489,8 @@ contains
       entries = 0.0_wp
       if (column_sort == a_motion) then
          do i = 1, size(sort)
-            if (sort(i) == a_pressure) entries(i) = -model%normal_arm(of(i), column_of)/arm_unit(length, column_of)
-            if (sort(i) == a_shear) entries(i) = -model%tangential_arm(of(i), column_of)/arm_unit(length, column_of)
+            if (sort(i) == a_pressure) entries(i) = -model%normal_arm(of(i), column_of)/arm_unit(column_of, length)
+            if (sort(i) == a_shear) entries(i) = -model%tangential_arm(of(i), column_of)/arm_unit(column_of, length)
          end do
          return
       end if
@@ -520,8 +510,8 @@ contains
       end do
       do i = 1, size(sort)
          if (sort(i) /= a_motion) cycle
-         if (column_sort == a_pressure) entries(i) = -model%normal_arm(column_of, of(i))/arm_unit(length, of(i))
-         if (column_sort == a_shear) entries(i) = -model%tangential_arm(column_of, of(i))/arm_unit(length, of(i))
+         if (column_sort == a_pressure) entries(i) = -model%normal_arm(column_of, of(i))/arm_unit(of(i), length)
+         if (column_sort == a_shear) entries(i) = -model%tangential_arm(column_of, of(i))/arm_unit(of(i), length)
       end do
    end subroutine entries_of
 
@@ -535,15 +525,6 @@ contains
          block_between = merge(block_up, block_ut, column_sort == a_pressure)
       end if
    end function block_between
-
-   !> Unit of the arms of a motion: none, or length for the rotation.
-   pure real(wp) function arm_unit(length, motion)
-      real(wp), intent(in) :: length
-      integer, intent(in) :: motion
-
-      arm_unit = 1.0_wp
-      if (motion == along_rotation) arm_unit = length
-   end function arm_unit
 
    !> Constraints of the nodes that slip or creep, and of the motions that are held.
    subroutine set_constraints(self, model, constraints)
@@ -571,7 +552,7 @@ contains
             end associate
          end if
       end do
-      do i = 1, 3
+      do i = 1, motion_count
          if (self%motion_place(i) == 0 .or. self%motion_constraint(i) > 0 .or. .not. is_held(constraints, i)) cycle
          p = self%part_of(a_motion, i)
          call self%part(p)%system%constrain(self%motion_place(i), 0, 0.0_wp, 0.0_wp)
@@ -646,14 +627,12 @@ contains
          if (singular) return
       end do
       singular = .not. residual <= fair
-      do i = 1, 3
-         if (i == along_rotation .and. .not. model%rotational) cycle
-         load = load_of(constraints, i)
+      do i = 1, motion_count
+         if (.not. model%moves(i)) cycle
+         load = constraints%load(i)
          value = model%resultant(i, fields%pressure, fields%shear)
          if (load%control == control_force .and. self%motion_place(i) > 0) value = merge(load%rate, load%value, rates)
-         if (i == along_approach) fields%normal_force = value
-         if (i == along_shift) fields%tangential_force = value
-         if (i == along_rotation) fields%moment = value
+         fields%force(i) = value
       end do
    end subroutine refine
 
@@ -672,10 +651,10 @@ contains
          fields%normal = fields%normal + model%rigid_normal(fields)
          fields%tangential = fields%tangential + model%rigid_tangential(fields)
       end if
-      do i = 1, 3
-         load = load_of(constraints, i)
-         if (self%motion_place(i) > 0 .or. (i == along_rotation .and. .not. model%rotational)) cycle
-         call set_motion(fields, i, merge(load%rate, load%value, rates))
+      do i = 1, motion_count
+         if (self%motion_place(i) > 0 .or. .not. model%moves(i)) cycle
+         load = constraints%load(i)
+         fields%motion(i) = merge(load%rate, load%value, rates)
       end do
       if (model%has_rigid_parts()) then
          fields%normal = fields%normal - model%rigid_normal(fields)
@@ -709,25 +688,6 @@ contains
       call model%displace(fields)
    end subroutine open_up
 
-   pure subroutine set_motion(fields, motion, value)
-      type(contact_fields_type), intent(inout) :: fields
-      integer, intent(in) :: motion
-      real(wp), intent(in) :: value
-
-      if (motion == along_approach) fields%approach = value
-      if (motion == along_shift) fields%shift = value
-      if (motion == along_rotation) fields%rotation = value
-   end subroutine set_motion
-
-   pure real(wp) function motion_of(fields, motion)
-      type(contact_fields_type), intent(in) :: fields
-      integer, intent(in) :: motion
-
-      motion_of = fields%approach
-      if (motion == along_shift) motion_of = fields%shift
-      if (motion == along_rotation) motion_of = fields%rotation
-   end function motion_of
-
    !> What is missing in every row and constraint, in their units, as right sides for a correction; and the largest of them, in
    !> parts of the magnitude of their sort.
    subroutine find_residual(self, model, constraints, rates, fields, scales, largest)
@@ -760,7 +720,7 @@ contains
             do i = 1, part%unknowns
                node = part%of(i)
                if (part%sort(i) == a_pressure) then
-                  missing = fields%approach - fields%normal(node)
+                  missing = fields%motion(motion_approach) - fields%normal(node)
                   if (.not. rates) then
                      missing = missing - model%initial_gap(node)
                   else if (allocated(constraints%gap_rate)) then
@@ -769,21 +729,21 @@ contains
                   gap_rest = max(gap_rest, abs(missing))
                   part%right(i) = missing*by_length
                else if (part%sort(i) == a_motion) then
-                  load = load_of(constraints, node)
+                  load = constraints%load(node)
                   value = merge(load%rate, load%value, rates)
                   if (self%motion_constraint(node) > 0) then
-                     value = (value - motion_of(fields, node))*arm_unit(length, node)
+                     value = (value - fields%motion(node))*arm_unit(node, length)
                      largest = max(largest, relative(abs(value), scales%normal))
                      part%values(self%motion_constraint(node)) = value*by_length
                      part%right(i) = 0.0_wp
                   else
-                     missing = (model%resultant(node, fields%pressure, fields%shear) - value)/arm_unit(length, node)
+                     missing = (model%resultant(node, fields%pressure, fields%shear) - value)/arm_unit(node, length)
                      largest = max(largest, relative(abs(missing), merge(scales%shear_force, scales%force, &
-                                                                         node == along_shift)))
+                                                                         node == motion_shift)))
                      part%right(i) = missing*by_stress
                   end if
                else if (constraints%status(node) == node_stick) then
-                  missing = fields%shift - fields%tangential(node)
+                  missing = fields%motion(motion_shift) - fields%tangential(node)
                   if (.not. rates) then
                      missing = missing + constraints%stuck_slip(node)
                   else if (allocated(constraints%slip_rate)) then
@@ -820,10 +780,10 @@ contains
       real(wp) :: normal, tangential, traction, force, shear_force, possible
       integer :: i
 
-      normal = max(abs(fields%approach), least*first%normal, smallest)
-      tangential = max(abs(fields%shift), least*first%tangential, smallest)
+      normal = max(abs(fields%motion(motion_approach)), least*first%normal, smallest)
+      tangential = max(abs(fields%motion(motion_shift)), least*first%tangential, smallest)
       if (model%has_rigid_parts()) &
-         normal = max(normal, abs(fields%shift), abs(fields%rotation)*model%length())
+         normal = max(normal, abs(fields%motion(motion_shift)), abs(fields%motion(motion_rotation))*model%length())
       traction = max(least*first%traction, smallest)
       force = smallest
       shear_force = smallest
@@ -861,7 +821,7 @@ contains
       associate (row => constraints%row(node))
          missing_shear = row%slope*fields%pressure(node) - fields%shear(node)
          if (abs(row%stiffness) > 0.0_wp) &
-            missing_shear = missing_shear + row%stiffness*(fields%tangential(node) - fields%shift)
+            missing_shear = missing_shear + row%stiffness*(fields%tangential(node) - fields%motion(motion_shift))
          missing_shear = missing_shear + merge(constraints%offset_rate(node), row%offset, rates)
       end associate
    end function missing_shear
@@ -909,7 +869,7 @@ contains
          do i = 1, part%unknowns
             node = part%of(i)
             if (part%sort(i) == a_motion) then
-               call set_motion(fields, node, motion_of(fields, node) + part%solution(i)*self%length/arm_unit(self%length, node))
+               fields%motion(node) = fields%motion(node) + part%solution(i)*self%length/arm_unit(node, self%length)
                cycle
             end if
             unit = stress/model%width(node)

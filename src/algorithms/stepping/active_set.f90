@@ -11,12 +11,11 @@
 !> violating nodes halves the distance only.
 module mfv_active_set
    use mfv_contact_fields, only: contact_fields_type
-   use mfv_contact_model, only: along_approach
    use mfv_contact_path, only: contact_path_type, segment_type
    use mfv_contact_system
    use mfv_kinds, only: pi, wp
+   use mfv_motions, only: motions, motion_count, motion_approach, motion_shift, control_force, control_displacement
    use mfv_node_status
-   use mfv_scene, only: control_displacement, control_force
    implicit none
    private
    public :: settle_at, first_guess
@@ -87,22 +86,24 @@ contains
       real(wp), dimension(size(contact)) :: gap, normal, tangential
       type(contact_fields_type) :: fields
       real(wp) :: level
+      logical :: turned(motion_count)
 
       fields = path%state%fields
-      if (path%model%rotational .and. segment%rotational%control == control_displacement) then
-         fields%rotation = segment%rotational%value + part*segment%rotational%rate
+      turned = motions%optional .and. path%model%moves .and. segment%load%control == control_displacement
+      if (any(turned)) then
+         where (turned) fields%motion = segment%load%value + part*segment%load%rate
          call path%model%relative_displacements(fields, normal, tangential)
          fields%normal = normal
       end if
       gap = path%model%gap(fields)
-      level = segment%normal%value + part*segment%normal%rate
-      if (segment%normal%control == control_force) then
+      level = segment%load(motion_approach)%value + part*segment%load(motion_approach)%rate
+      if (segment%load(motion_approach)%control == control_force) then
          level = level/(pi*path%model%compliance%modulus)
       else
-         level = deformed*(level - fields%approach - path%model%nearest_approach(gap))
+         level = deformed*(level - fields%motion(motion_approach) - path%model%nearest_approach(gap))
       end if
       level = max(level, 0.0_wp) + path%model%nearest_approach(gap) + 8*epsilon(1.0_wp)*maxval(abs(gap))
-      contact = path%model%can_touch .and. gap <= level*path%model%normal_arm(:, along_approach)
+      contact = path%model%can_touch .and. gap <= level*path%model%normal_arm(:, motion_approach)
    end subroutine first_guess
 
    !> The constraints at the part `done` of the segment, without rates. `possible`: false where a prescribed force (moment) has
@@ -115,20 +116,21 @@ contains
       logical, intent(out) :: possible
       real(wp), parameter :: no_force = 1.0e-12_wp
       real(wp) :: scale
+      integer :: i
 
       call path%loads_at(segment, done, constraints)
-      constraints%normal%rate = 0.0_wp
-      constraints%tangential%rate = 0.0_wp
-      constraints%rotational%rate = 0.0_wp
+      constraints%load%rate = 0.0_wp
       call path%set_rows(constraints, .false.)
-      possible = any(in_contact(path%state%status)) .or. constraints%normal%control == control_displacement
-      if (path%model%rotational .and. constraints%rotational%control == control_force) &
-         possible = possible .and. .not. path%model%scene%mesh%radial .and. path%state%contact_nodes() > 1
-      if (any(holds(path%state%status)) .or. constraints%tangential%control == control_displacement) return
-      scale = max(path%certificate%force_scale(), abs(constraints%normal%value))
+      possible = any(in_contact(path%state%status)) .or. constraints%load(motion_approach)%control == control_displacement
+      do i = 1, motion_count
+         if (motions(i)%optional .and. path%model%moves(i) .and. constraints%load(i)%control == control_force) &
+            possible = possible .and. path%model%lifts(i) .and. path%state%contact_nodes() > 1
+      end do
+      if (any(holds(path%state%status)) .or. constraints%load(motion_shift)%control == control_displacement) return
+      scale = max(path%certificate%force_scale(), abs(constraints%load(motion_approach)%value))
       possible = possible .and. .not. any(slips(path%state%status)) .and. &
-                 max(abs(constraints%tangential%value), abs(segment%tangential%rate)) <= no_force*scale
-      constraints%tangential = load_type(control_displacement, path%state%fields%shift, 0.0_wp)
+                 max(abs(constraints%load(motion_shift)%value), abs(segment%load(motion_shift)%rate)) <= no_force*scale
+      constraints%load(motion_shift) = load_type(control_displacement, path%state%fields%motion(motion_shift), 0.0_wp)
    end subroutine constrain
 
    !> The statuses that the nodes want with the `fields`: where an inequality breaks, the other status.
@@ -143,8 +145,8 @@ contains
 
       noise = max(round_off, path%system%noise)
       traction = noise*max(maxval(abs(fields%pressure)), maxval(abs(fields%shear)), path%certificate%traction_scale())
-      motion = noise*max(maxval(abs(fields%normal)), maxval(abs(fields%tangential)), abs(fields%approach), &
-                             abs(fields%shift))
+      motion = noise*max(maxval(abs(fields%normal)), maxval(abs(fields%tangential)), abs(fields%motion(motion_approach)), &
+                             abs(fields%motion(motion_shift)))
       gap = path%model%gap(fields)
       slipped = 0.0_wp
       if (path%model%tangential) slipped = fields%slip() - path%state%stuck_slip

@@ -4,7 +4,7 @@ module mfv_contact_path
    use, intrinsic :: ieee_arithmetic, only: ieee_quiet_nan, ieee_value
    use mfv_certificate, only: certificate_type, new_certificate
    use mfv_contact_fields, only: contact_fields_type
-   use mfv_contact_model, only: along_rotation, along_shift, contact_model_type, new_contact_model
+   use mfv_contact_model, only: contact_model_type, new_contact_model
    use mfv_contact_state, only: contact_state_type, new_contact_state
    use mfv_contact_system
    use mfv_error, only: error_type, set_error
@@ -13,10 +13,12 @@ module mfv_contact_path
    use mfv_history, only: history_type
    use mfv_kinds, only: wp
    use mfv_linear_solvers, only: new_contact_system
+   use mfv_motions, only: motions, motion_count, motion_approach, motion_shift, motion_rotation, control_force, &
+                          control_displacement, arm_unit
    use mfv_node_status
    use mfv_observer, only: observer_type
    use mfv_rolling, only: rolling_type
-   use mfv_scene, only: algorithm_mfv, control_displacement, control_force, stepping_leap
+   use mfv_scene, only: algorithm_mfv, stepping_leap
    use mfv_slip_zones, only: widest_slip_zone
    use mfv_status
    use mfv_strings, only: to_text
@@ -27,8 +29,7 @@ module mfv_contact_path
 
    !> A straight part of the load history: the controlled loads with their targets, and whether friction acts.
    type :: segment_type
-      type(load_type) :: normal, tangential
-      type(load_type) :: rotational = load_type(control_displacement)
+      type(load_type) :: load(motion_count) = initial_loads
       logical :: friction = .true.
       !> Number of this segment, how many there are, and the step that it belongs to: for records and progress.
       integer :: number = 1, segments = 1, step = 1
@@ -74,7 +75,7 @@ module mfv_contact_path
       procedure :: notify
       procedure, private :: model_as
       procedure :: await_increment
-      procedure :: begin_rotation
+      procedure :: begin_motion
       procedure :: record
       procedure :: start_segment
       procedure :: settle_loads
@@ -107,7 +108,7 @@ module mfv_contact_path
       type(path_position_type) :: position
       class(contact_system_type), allocatable :: system
       integer :: records = 0, added = 0
-      logical :: tangential = .false., rotational = .false.
+      logical :: tangential = .false., moves(motion_count) = .false.
    end type kept_path_type
 
    !> What is known at one load while statuses settle.
@@ -136,7 +137,7 @@ contains
       self%model = model
       call new_contact_system(model, self%system)
       self%state = new_contact_state(model%nodes())
-      self%state%fields%approach = model%nearest_approach(model%initial_gap)
+      self%state%fields%motion(motion_approach) = model%nearest_approach(model%initial_gap)
       call model%displace(self%state%fields)
       self%certificate = new_certificate(model)
       self%record_events = record_events
@@ -165,7 +166,7 @@ contains
       kept%records = self%history%records
       kept%added = self%model%added
       kept%tangential = self%model%tangential
-      kept%rotational = self%model%rotational
+      kept%moves = self%model%moves
    end subroutine keep
 
    !> Come back to what was kept of this contact, or of one with the same scene. History records since then are dropped. A mesh
@@ -175,24 +176,28 @@ contains
       type(kept_path_type), intent(in) :: kept
 
       call self%history%move_nodes(kept%added - self%model%added)
-      call self%model_as(kept%added, kept%tangential, kept%rotational)
+      call self%model_as(kept%added, kept%tangential, kept%moves)
       self%path_position_type = kept%position
       deallocate (self%system)
       allocate (self%system, source=kept%system)
       self%history%records = min(kept%records, self%history%records)
    end subroutine come_back
 
-   !> Model the contact with so many nodes added at either end, and with the problems that are named; anew where it was otherwise.
-   subroutine model_as(self, added, tangential, rotational)
+   !> Model the contact with so many nodes added at either end, and with the problems and motions that are named; anew where it was
+   !> otherwise.
+   subroutine model_as(self, added, tangential, moves)
       class(contact_path_type), intent(inout) :: self
       integer, intent(in) :: added
-      logical, intent(in) :: tangential, rotational
+      logical, intent(in) :: tangential, moves(motion_count)
+      integer :: i
 
       if (self%model%added == added .and. (self%model%tangential .eqv. tangential) .and. &
-          (self%model%rotational .eqv. rotational)) return
+          all(self%model%moves .eqv. moves)) return
       self%model = new_contact_model(self%model%scene)
       if (tangential .and. .not. self%model%tangential) call self%model%add_tangential()
-      if (rotational) call self%model%add_rotation()
+      do i = 1, motion_count
+         if (moves(i)) call self%model%add_motion(i)
+      end do
       if (added > 0) call self%model%grow(added)
    end subroutine model_as
 
@@ -203,7 +208,7 @@ contains
       type(path_position_type), intent(in) :: position
       integer, intent(in) :: added
 
-      call self%model_as(added, self%model%tangential, self%model%rotational)
+      call self%model_as(added, self%model%tangential, self%model%moves)
       self%path_position_type = position
       call self%certificate%claim(self%model)
    end subroutine resume
@@ -228,8 +233,8 @@ contains
       class(contact_path_type), intent(inout) :: self
 
       self%first_stiffness = ieee_value(1.0_wp, ieee_quiet_nan)
-      self%start_force = self%state%fields%tangential_force
-      self%start_shift = self%state%fields%shift
+      self%start_force = self%state%fields%force(motion_shift)
+      self%start_shift = self%state%fields%motion(motion_shift)
       self%start_dissipation = self%state%dissipation
       self%slip_zone_nodes = 0
       self%awaits_increment = self%model%scene%method%algorithm == algorithm_mfv .and. &
@@ -242,9 +247,9 @@ contains
       real(wp), parameter :: visible = 1.0e-6_wp
       real(wp) :: force, shift
 
-      force = self%state%fields%tangential_force - self%start_force
-      shift = self%state%fields%shift - self%start_shift
-      if (.not. abs(force) > visible*self%model%grip*self%state%fields%normal_force) return
+      force = self%state%fields%force(motion_shift) - self%start_force
+      shift = self%state%fields%motion(motion_shift) - self%start_shift
+      if (.not. abs(force) > visible*self%model%grip*self%state%fields%force(motion_approach)) return
       self%awaits_increment = .false.
       if (abs(force) < self%model%largest_stiffness()*abs(shift)) self%first_stiffness = force/shift
    end subroutine find_first_stiffness
@@ -281,15 +286,18 @@ contains
       call self%model%relative_displacements(self%state%fields, normal, self%state%fields%tangential)
    end subroutine begin_tangential
 
-   !> Model the rotation from now on, from the moment that the tractions have.
-   subroutine begin_rotation(self)
+   !> Model a motion from now on, from the force that the tractions have.
+   subroutine begin_motion(self, motion)
       class(contact_path_type), intent(inout) :: self
+      integer, intent(in) :: motion
 
-      if (self%model%rotational) return
-      call self%model%add_rotation()
+      if (self%model%moves(motion)) return
+      call self%model%add_motion(motion)
       call self%certificate%claim(self%model)
-      self%state%fields%moment = self%model%resultant(along_rotation, self%state%fields%pressure, self%state%fields%shear)
-   end subroutine begin_rotation
+      associate (fields => self%state%fields)
+         fields%force(motion) = self%model%resultant(motion, fields%pressure, fields%shear)
+      end associate
+   end subroutine begin_motion
 
    !> The loads at the part `done` of the segment, as they are prescribed.
    subroutine loads_at(self, segment, done, constraints)
@@ -298,9 +306,7 @@ contains
       real(wp), intent(in) :: done
       type(constraints_type), intent(inout) :: constraints
 
-      constraints%normal = at_part(segment%normal, done)
-      constraints%tangential = at_part(segment%tangential, done)
-      constraints%rotational = at_part(segment%rotational, done)
+      constraints%load = at_part(segment%load, done)
    end subroutine loads_at
 
    !> The constraints at the part `done` of the segment. A load that nothing in the present contact determines is held
@@ -316,78 +322,72 @@ contains
       type(constraints_type), intent(inout) :: constraints
       logical, intent(out) :: settled
       type(error_type), allocatable, intent(out) :: error
-      type(load_type) :: load
       logical :: contact, slides, drop
+      integer :: i
 
       settled = .true.
       call self%loads_at(segment, done, constraints)
       drop = self%dropping()
-      if (drop) then
-         constraints%normal%rate = 0.0_wp
-         constraints%tangential%rate = 0.0_wp
-         constraints%rotational%rate = 0.0_wp
-      end if
+      if (drop) constraints%load%rate = 0.0_wp
       call self%set_rows(constraints, drop)
       contact = any(in_contact(self%state%status))
-      if (.not. contact .and. constraints%normal%control == control_force) then
-         if (constraints%normal%rate > 0.0_wp) then
+      if (.not. contact .and. constraints%load(motion_approach)%control == control_force) then
+         if (constraints%load(motion_approach)%rate > 0.0_wp) then
             call self%close_nearest(segment, moment)
             settled = .false.
             return
          end if
-         constraints%normal = load_type(control_displacement, self%state%fields%approach, 0.0_wp)
+         constraints%load(motion_approach) = load_type(control_displacement, self%state%fields%motion(motion_approach), 0.0_wp)
       end if
 
       slides = .not. any(holds(self%state%status))
-      if (slides .and. constraints%tangential%control == control_force) then
-         load = constraints%tangential
-         call hold_motion(self, constraints, load, along_shift, settled, error)
-         constraints%tangential = load
+      if (slides .and. constraints%load(motion_shift)%control == control_force) then
+         call hold_motion(self, constraints, motion_shift, settled, error)
          if (allocated(error) .or. .not. settled) return
       end if
-      if (self%model%rotational .and. constraints%rotational%control == control_force) then
-         call settle_moment(self, slides, constraints, settled, error)
+      do i = 1, motion_count
+         if (.not. (motions(i)%optional .and. self%model%moves(i)) .or. constraints%load(i)%control /= control_force) cycle
+         call settle_optional(self, i, slides, constraints, settled, error)
          if (allocated(error) .or. .not. settled) return
-      end if
+      end do
    end subroutine settle_loads
 
-   !> A prescribed moment. While no two nodes are in contact nothing determines the rotation: it is held, which only a moment of
-   !> zero allows (a tangential force at the surface makes another one). The same where normals are along the radius and no node
-   !> sticks: rotation then only slides.
+   !> A prescribed moment, or force of another motion besides approach and shift. While no two nodes are in contact nothing
+   !> determines the rotation: it is held, which only a moment of zero allows (a tangential force at the surface makes another
+   !> one). The same where no node sticks and the motion only slides: a rotation where normals are along the radius.
    !> Errors MFV_NO_CONTINUATION: the moment tips the upper body over; MFV_GROSS_SLIDING.
-   subroutine settle_moment(self, slides, constraints, settled, error)
+   subroutine settle_optional(self, motion, slides, constraints, settled, error)
       class(contact_path_type), intent(inout) :: self
+      integer, intent(in) :: motion
       logical, intent(in) :: slides
       type(constraints_type), intent(inout) :: constraints
       logical, intent(inout) :: settled
       type(error_type), allocatable, intent(out) :: error
       real(wp), parameter :: no_moment = 1.0e-14_wp
-      type(load_type) :: load
       real(wp) :: scale
 
       if (self%state%contact_nodes() < 2) then
-         scale = self%model%compliance%modulus*self%model%length()**2
-         if (max(abs(constraints%rotational%value), abs(constraints%rotational%rate), &
-                 abs(self%state%fields%moment - constraints%rotational%value)) > no_moment*scale) &
-            call no_continuation(self, 'fewer than two nodes are in contact, and the moment tips the upper body over', error)
-         constraints%rotational = load_type(control_displacement, self%state%fields%rotation, 0.0_wp)
-      else if (slides .and. self%model%scene%mesh%radial) then
-         load = constraints%rotational
-         call hold_motion(self, constraints, load, along_rotation, settled, error)
-         constraints%rotational = load
+         associate (load => constraints%load(motion), length => self%model%length())
+            scale = self%model%compliance%modulus*(length*arm_unit(motion, length))
+            if (max(abs(load%value), abs(load%rate), abs(self%state%fields%force(motion) - load%value)) > no_moment*scale) &
+               call no_continuation(self, 'fewer than two nodes are in contact, and the '//trim(motions(motion)%force_name)// &
+                                    ' tips the upper body over', error)
+         end associate
+         constraints%load(motion) = load_type(control_displacement, self%state%fields%motion(motion), 0.0_wp)
+      else if (slides .and. .not. self%model%lifts(motion)) then
+         call hold_motion(self, constraints, motion, settled, error)
       end if
-   end subroutine settle_moment
+   end subroutine settle_optional
 
-   !> No node is stuck and the tangential force (or moment) `load` is prescribed, so that no equation determines the shift (the
-   !> rotation). Hold it where friction balances the force all the same: no friction, no contact, or equal slip to both
+   !> No node is stuck and the force of a motion that slides (shift, rotation) is prescribed, so that no equation determines the
+   !> motion. Hold it where friction balances the force all the same: no friction, no contact, or equal slip to both
    !> sides. Otherwise the upper body moves towards the missing force; nodes that slip with it will stick first: let them
    !> (`settled` is then false). Error MFV_GROSS_SLIDING where there are none: every contact node already gives all it has
    !> against the force.
-   subroutine hold_motion(self, constraints, load, along, settled, error)
+   subroutine hold_motion(self, constraints, motion, settled, error)
       class(contact_path_type), intent(inout) :: self
-      type(constraints_type), intent(in) :: constraints
-      type(load_type), intent(inout) :: load
-      integer, intent(in) :: along
+      type(constraints_type), intent(inout) :: constraints
+      integer, intent(in) :: motion
       logical, intent(inout) :: settled
       type(error_type), allocatable, intent(out) :: error
       real(wp), parameter :: balanced = 1.0e-9_wp, nothing = 1.0e-12_wp, noises = 10.0_wp
@@ -396,58 +396,48 @@ contains
       real(wp) :: wanted, missing, scale, arm, negligible, none
       logical :: pressed
       logical :: yielding(size(self%state%status)), singular
+      integer :: i
 
-      wanted = load%rate
+      wanted = constraints%load(motion)%rate
       none = max(nothing, noises*self%system%noise)
-      load = load_type(control_displacement, merge(self%state%fields%shift, self%state%fields%rotation, along == along_shift), &
-                       0.0_wp)
-      arm = merge(1.0_wp, self%model%length(), along == along_shift)
+      constraints%load(motion) = load_type(control_displacement, self%state%fields%motion(motion), 0.0_wp)
+      arm = arm_unit(motion, self%model%length())
       negligible = none*self%certificate%force_scale()*arm
-      pressed = self%state%fields%normal_force > none*self%certificate%force_scale()
+      pressed = self%state%fields%force(motion_approach) > none*self%certificate%force_scale()
       if (.not. any(slips(self%state%status))) then
-         if (abs(wanted) > max(balanced*self%state%fields%normal_force*arm, negligible)) &
+         if (abs(wanted) > max(balanced*self%state%fields%force(motion_approach)*arm, negligible)) &
             call self%end_here(merge(MFV_GROSS_SLIDING, MFV_SEPARATED, pressed), &
-                               'no node in contact has friction to carry a '//trim(force_name(along)), error)
+                               'no node in contact has friction to carry a '//trim(motions(motion)%force_name), error)
          return
       end if
       ! What is lifted off opens next; its last round-off of pressure slides nothing.
-      if (.not. pressed .and. abs(wanted) <= negligible .and. constraints%normal%rate < 0.0_wp) return
+      if (.not. pressed .and. abs(wanted) <= negligible .and. constraints%load(motion_approach)%rate < 0.0_wp) return
       trial = constraints
-      if (along == along_shift) then
-         trial%tangential = load
-         if (self%model%scene%mesh%radial .and. trial%rotational%control == control_force) &
-            trial%rotational = load_type(control_displacement, self%state%fields%rotation, 0.0_wp)
-      else
-         trial%rotational = load
-      end if
+      do i = 1, motion_count
+         if (i /= motion .and. motions(i)%optional .and. trial%load(i)%control == control_force .and. .not. self%model%lifts(i)) &
+            trial%load(i) = load_type(control_displacement, self%state%fields%motion(i), 0.0_wp)
+      end do
       call self%system%solve(self%model, trial, self%state%fields, response, singular)
       missing = wanted
       scale = abs(wanted)
       if (.not. singular) then
-         missing = wanted - self%model%resultant(along, response%rate%pressure, response%rate%shear)
-         scale = max(scale, self%model%force(abs(response%rate%shear*self%model%tangential_arm(:, along))))
+         missing = wanted - self%model%resultant(motion, response%rate%pressure, response%rate%shear)
+         scale = max(scale, self%model%force(abs(response%rate%shear*self%model%tangential_arm(:, motion))))
          if (abs(missing) <= max(balanced*scale, noises*self%system%noise*scale, negligible)) return
       end if
       yielding = slips(self%state%status)
       if (.not. singular) yielding = yielding .and. &
-                                     slip_sign(self%state%status)*self%model%tangential_arm(:, along)*missing > 0.0_wp
+                                     slip_sign(self%state%status)*self%model%tangential_arm(:, motion)*missing > 0.0_wp
       if (any(yielding)) then
          call self%set_status(yielding, self%holding(real(-slip_sign(self%state%status), wp)))
          settled = .false.
       else if (pressed) then
          call self%end_here(MFV_GROSS_SLIDING, 'gross sliding: every contact node slips', error)
       else
-         call self%end_here(MFV_SEPARATED, 'the bodies are no longer pressed together to carry a '//trim(force_name(along)), error)
+         call self%end_here(MFV_SEPARATED, 'the bodies are no longer pressed together to carry a '// &
+                            trim(motions(motion)%force_name), error)
       end if
    end subroutine hold_motion
-
-   !> What a motion's force is called.
-   pure character(len=16) function force_name(along)
-      integer, intent(in) :: along
-
-      force_name = 'tangential force'
-      if (along == along_rotation) force_name = 'moment'
-   end function force_name
 
    !> Force control without contact: move the upper body, free of load, until its nearest nodes touch.
    subroutine close_nearest(self, segment, moment)
@@ -460,13 +450,13 @@ contains
       logical :: touching(self%model%nodes())
 
       gap = self%model%gap(self%state%fields)
-      self%state%fields%approach = self%state%fields%approach + self%model%nearest_approach(gap)
+      self%state%fields%motion(motion_approach) = self%state%fields%motion(motion_approach) + self%model%nearest_approach(gap)
       call self%model%relative_displacements(self%state%fields, normal, tangential)
       self%state%fields%normal = normal
       if (self%model%tangential) self%state%fields%tangential = tangential
       gap = self%model%gap(self%state%fields)
       smallest = minval(gap, mask=self%model%can_touch)
-      round_off = 8*epsilon(1.0_wp)*max(maxval(abs(self%model%initial_gap)), abs(self%state%fields%approach))
+      round_off = 8*epsilon(1.0_wp)*max(maxval(abs(self%model%initial_gap)), abs(self%state%fields%motion(motion_approach)))
       touching = self%model%can_touch .and. gap - smallest <= round_off
       status = status_after(event_close, node_open, segment%friction .and. self%model%tangential, 0, &
                             self%holding(self%state%fields%shear))
@@ -674,8 +664,9 @@ contains
       call self%before%take(self%state)
       call remember_slip(self, after, dropped)
       call self%state%fields%take(after)
-      if (.not. self%model%rotational) &
-         self%state%fields%moment = self%model%resultant(along_rotation, after%pressure, after%shear)
+      do i = 1, motion_count
+         if (.not. self%model%moves(i)) self%state%fields%force(i) = self%model%resultant(i, after%pressure, after%shear)
+      end do
       if (present(friction_work)) then
          self%state%dissipation = self%state%dissipation + self%model%force(friction_work)
          self%state%friction_work = self%state%friction_work + friction_work
@@ -684,7 +675,7 @@ contains
          associate (before => self%before%fields)
             do i = 1, size(slip_rate)
                part = (before%shear(i) + after%shear(i)) &
-                      *((after%tangential(i) - after%shift) - (before%tangential(i) - before%shift))
+                      *((after%tangential(i) - after%motion(motion_shift)) - (before%tangential(i) - before%motion(motion_shift)))
                loss = loss - self%model%width(i)*part
                self%state%friction_work(i) = self%state%friction_work(i) - 0.5_wp*part
             end do
@@ -699,7 +690,7 @@ contains
       call self%certificate%check_increment(self%model, self%before, self%state, present(friction_work))
       if (self%awaits_increment) call find_first_stiffness(self)
       call note_slip_zones(self)
-      if (.not. self%model%rotational .or. dropped > 0.0_wp) return
+      if (.not. self%model%moves(motion_rotation) .or. dropped > 0.0_wp) return
       associate (before => self%before%fields)
          call self%rolling%follow(self%model%interval(), [self%model%rolled(before), self%model%rolled(after)], &
                                   [self%model%slid(before), self%model%slid(after)], forces_stay(before, after))
@@ -711,8 +702,7 @@ contains
       type(contact_fields_type), intent(in) :: before, after
       real(wp), parameter :: round_off = 1.0e-9_wp
 
-      forces_stay = max(abs(after%normal_force - before%normal_force), abs(after%tangential_force - before%tangential_force)) &
-                    <= round_off*after%normal_force
+      forces_stay = maxval(abs(after%force(:motion_shift) - before%force(:motion_shift))) <= round_off*after%force(motion_approach)
    end function forces_stay
 
    !> Keep slip_zone_nodes, but for slip zones of round-off: where a cycle repeats the tractions of one before, many nodes come to
@@ -808,7 +798,7 @@ contains
    end subroutine keep_settled
 
    !> The load at the part `done` of its way.
-   pure type(load_type) function at_part(load, done)
+   elemental type(load_type) function at_part(load, done)
       type(load_type), intent(in) :: load
       real(wp), intent(in) :: done
 
@@ -854,8 +844,8 @@ contains
       character(*), intent(in) :: why
       type(error_type), allocatable, intent(out) :: error
 
-      call set_error(error, status, why//' (normal force '//to_text(self%state%fields%normal_force, 10)// &
-                     ', tangential force '//to_text(self%state%fields%tangential_force, 10)//', '// &
+      call set_error(error, status, why//' (normal force '//to_text(self%state%fields%force(motion_approach), 10)// &
+                     ', tangential force '//to_text(self%state%fields%force(motion_shift), 10)//', '// &
                      to_text(self%state%contact_nodes())//' nodes in contact, '//to_text(self%state%stick_nodes())//' stuck)')
    end subroutine end_here
 

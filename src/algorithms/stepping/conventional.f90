@@ -13,9 +13,9 @@ module mfv_conventional
    use mfv_event_search, only: status_after
    use mfv_friction_law, only: memory_size
    use mfv_kinds, only: wp
+   use mfv_motions, only: motion_approach, motion_shift, control_force, control_displacement
    use mfv_node_status
    use mfv_observer, only: observer_type
-   use mfv_scene, only: control_displacement, control_force
    use mfv_status
    use mfv_strings, only: to_text
    implicit none
@@ -134,8 +134,8 @@ contains
       logical, intent(out) :: touched
       type(moment_type) :: moment
 
-      touched = .not. any(in_contact(path%state%status)) .and. segment%normal%control == control_force .and. &
-                segment%normal%value + done*segment%normal%rate > 0.0_wp
+      touched = .not. any(in_contact(path%state%status)) .and. segment%load(motion_approach)%control == control_force .and. &
+                segment%load(motion_approach)%value + done*segment%load(motion_approach)%rate > 0.0_wp
       if (touched) call path%close_nearest(segment, moment)
    end subroutine touch
 
@@ -186,18 +186,18 @@ contains
 
       call path%loads_at(segment, done, constraints)
       call path%set_rows(constraints, .false., expected)
-      if (.not. any(in_contact(path%state%status)) .and. constraints%normal%control == control_force) &
-         constraints%normal = load_type(control_displacement, path%state%fields%approach, 0.0_wp)
-      if (any(holds(path%state%status)) .or. constraints%tangential%control /= control_force) return
-      scale = max(path%state%fields%normal_force, abs(constraints%normal%value))
+      if (.not. any(in_contact(path%state%status)) .and. constraints%load(motion_approach)%control == control_force) &
+         constraints%load(motion_approach) = load_type(control_displacement, path%state%fields%motion(motion_approach), 0.0_wp)
+      if (any(holds(path%state%status)) .or. constraints%load(motion_shift)%control /= control_force) return
+      scale = max(path%state%fields%force(motion_approach), abs(constraints%load(motion_approach)%value))
       if (any(slips(path%state%status))) then
          call path%end_here(MFV_GROSS_SLIDING, 'gross sliding: every contact node slips', error)
-      else if (abs(constraints%tangential%value) > no_force*scale .and. any(in_contact(path%state%status))) then
+      else if (abs(constraints%load(motion_shift)%value) > no_force*scale .and. any(in_contact(path%state%status))) then
          call path%end_here(MFV_GROSS_SLIDING, 'no node in contact has friction to carry a tangential force', error)
-      else if (abs(constraints%tangential%value) > no_force*scale) then
+      else if (abs(constraints%load(motion_shift)%value) > no_force*scale) then
          call path%end_here(MFV_SEPARATED, 'no node is in contact to carry a tangential force', error)
       end if
-      constraints%tangential = load_type(control_displacement, path%state%fields%shift, 0.0_wp)
+      constraints%load(motion_shift) = load_type(control_displacement, path%state%fields%motion(motion_shift), 0.0_wp)
    end subroutine constrain
 
    !> The worst violation of the first sort there is, and its repair.
@@ -210,7 +210,8 @@ contains
 
       associate (status => path%state%status)
          traction = round_off*max(maxval(abs(trial%pressure)), maxval(abs(trial%shear)), path%certificate%traction_scale())
-         motion = round_off*max(maxval(abs(trial%normal)), maxval(abs(trial%tangential)), abs(trial%approach), abs(trial%shift))
+         motion = round_off*max(maxval(abs(trial%normal)), maxval(abs(trial%tangential)), &
+                                abs(trial%motion(motion_approach)), abs(trial%motion(motion_shift)))
          gap = path%model%gap(trial)
          repair = worst(event_close, -gap, path%model%can_touch .and. .not. in_contact(status), motion)
          if (repair%kind == event_none) repair = worst(event_open, -trial%pressure, in_contact(status), traction)

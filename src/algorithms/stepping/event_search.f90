@@ -6,6 +6,7 @@ module mfv_event_search
    use mfv_contact_model, only: contact_model_type
    use mfv_friction_law, only: friction_event_type, most_events
    use mfv_kinds, only: wp
+   use mfv_motions, only: motion_approach, motion_shift
    use mfv_node_status
    use mfv_scene, only: integration_explicit
    implicit none
@@ -62,12 +63,13 @@ contains
       call find_scales(rate, traction_scale, motion_scale)
       noise = round_off*traction_scale
       do i = 1, n
-         slip_rate = rate%tangential(i) - rate%shift
+         slip_rate = rate%tangential(i) - rate%motion(motion_shift)
          select case (status(i))
          case (node_open)
-            gap_rate = rate%normal(i) - rate%approach
+            gap_rate = rate%normal(i) - rate%motion(motion_approach)
             if (gap_rate < 0.0_wp .and. model%can_touch(i)) &
-               call consider(event_close, model%initial_gap(i) - state%approach + state%normal(i), gap_rate, motion_scale)
+               call consider(event_close, model%initial_gap(i) - state%motion(motion_approach) + state%normal(i), gap_rate, &
+                             motion_scale)
             cycle
          case (node_stick, node_creep_right, node_creep_left)
             mu = full*limit(i)
@@ -134,10 +136,11 @@ contains
       integer :: i
 
       traction_scale = 0.0_wp
-      motion_scale = abs(rate%shift)
+      motion_scale = abs(rate%motion(motion_shift))
       do i = 1, size(rate%pressure)
          traction_scale = max(traction_scale, abs(rate%pressure(i)), abs(rate%shear(i)))
-         motion_scale = max(motion_scale, abs(rate%normal(i)), abs(rate%tangential(i)), abs(rate%normal(i) - rate%approach))
+         motion_scale = max(motion_scale, abs(rate%normal(i)), abs(rate%tangential(i)), &
+                            abs(rate%normal(i) - rate%motion(motion_approach)))
       end do
    end subroutine find_scales
 

@@ -21,10 +21,10 @@ module mfv_first_violation
    use mfv_event_search, only: status_after, violations_type
    use mfv_increment
    use mfv_kinds, only: wp
+   use mfv_motions, only: motion_approach, control_force
    use mfv_node_status
    use mfv_observer, only: observer_type
    use mfv_rate_problem, only: settle_by_rates
-   use mfv_scene, only: control_force
    use mfv_status
    use mfv_strings, only: to_text
    implicit none
@@ -171,7 +171,7 @@ contains
 
       last_step = no_step_of(path)
       negligible = max(round_off, path%system%noise)*path%certificate%force_scale()
-      associate (normal => segment%normal)
+      associate (normal => segment%load(motion_approach))
          if (normal%control /= control_force .or. .not. normal%rate < 0.0_wp) return
          if (abs(normal%value + normal%rate) <= negligible) last_step = max(last_step, min(negligible/(-normal%rate), largest))
       end associate

@@ -288,9 +288,7 @@ contains
       integer :: i
 
       target = constraints
-      target%normal%value = target%normal%value + step*target%normal%rate
-      target%tangential%value = target%tangential%value + step*target%tangential%rate
-      target%rotational%value = target%rotational%value + step*target%rotational%rate
+      target%load%value = target%load%value + step*target%load%rate
       do i = 1, size(target%row)
          target%row(i)%offset = target%row(i)%offset + step*target%offset_rate(i)
       end do

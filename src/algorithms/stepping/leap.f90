@@ -22,9 +22,9 @@ module mfv_leap
    use mfv_error, only: error_type
    use mfv_first_violation, only: lead_by_violations
    use mfv_kinds, only: wp
+   use mfv_motions, only: motion_approach, motion_shift, control_force
    use mfv_node_status
    use mfv_observer, only: observer_type
-   use mfv_scene, only: control_force
    use mfv_straight, only: before_separation, carries_nothing_yet, close_leap, grow_mesh, lead_straight, part_of, settle_on_mesh
    implicit none
    private
@@ -345,18 +345,18 @@ contains
       real(wp) :: force, grip
       logical :: reverses
 
-      if (.not. abs(segment%tangential%rate) > 0.0_wp) return
-      status = merge(node_slip_left, node_slip_right, segment%tangential%rate > 0.0_wp)
+      if (.not. abs(segment%load(motion_shift)%rate) > 0.0_wp) return
+      status = merge(node_slip_left, node_slip_right, segment%load(motion_shift)%rate > 0.0_wp)
       reverses = any(slips(path%state%status) .and. path%state%status /= status)
-      associate (fields => path%state%fields, load => segment%tangential)
+      associate (fields => path%state%fields, load => segment%load(motion_shift))
          grip = path%model%force(path%model%static_friction*fields%pressure)
-         if (load%control /= control_force .or. abs(segment%normal%rate) > 0.0_wp .or. .not. grip > 0.0_wp .or. &
+         if (load%control /= control_force .or. abs(segment%load(motion_approach)%rate) > 0.0_wp .or. .not. grip > 0.0_wp .or. &
              path%model%compliance%has_block(block_wt)) then
             call path%set_status(slips(path%state%status), status)
             return
          end if
          force = load%value + part*load%rate
-         if (reverses) force = 0.5_wp*(force - fields%tangential_force)
+         if (reverses) force = 0.5_wp*(force - fields%force(motion_shift))
          force = max(sign(1.0_wp, load%rate)*force, 0.0_wp)
          where (fields%pressure > sqrt(force/grip)*maxval(fields%pressure)) status = node_stick
       end associate
@@ -373,10 +373,10 @@ contains
 
       associate (compliance => path%model%compliance, model => path%model)
          moves_nothing = .not. (compliance%has_block(block_up) .or. compliance%has_block(block_wt) .or. &
-                                model%rotational .or. model%scene%mesh%radial)
+                                model%has_rigid_parts())
       end associate
       if (.not. moves_nothing) return
-      moves_nothing = .not. abs(segment%tangential%rate) > 0.0_wp .and. .not. any(slips(path%state%status)) .and. &
+      moves_nothing = .not. abs(segment%load(motion_shift)%rate) > 0.0_wp .and. .not. any(slips(path%state%status)) .and. &
                       max(maxval(abs(path%state%fields%shear)), maxval(abs(after%shear))) &
                       <= max(nothing, path%system%noise)*max(path%certificate%traction_scale(), maxval(abs(after%pressure)))
    end function moves_nothing

@@ -1,7 +1,8 @@
 !> What closed forms need to know of the steps that were taken, folded up step by step: of one size however many there are.
 module mfv_load_way
    use mfv_kinds, only: wp
-   use mfv_scene, only: control_displacement, control_force, control_keep, step_type
+   use mfv_motions, only: motion_count, motion_approach, motion_shift, control_keep, control_force, control_displacement
+   use mfv_scene, only: step_type
    implicit none
    private
    public :: load_way_type
@@ -9,8 +10,8 @@ module mfv_load_way
    type :: load_way_type
       !> Steps taken, the last one perhaps not to its end.
       integer :: steps = 0
-      !> Whether a step named the rotation or the moment, and whether one had cycles.
-      logical :: rotated = .false., cycled = .false.
+      !> Which motions a step controlled, and whether one had cycles.
+      logical :: controlled(motion_count) = .false., cycled = .false.
       !> Pressed by forces only, ever harder, with friction from the start.
       logical :: pressed_harder = .true.
       !> Pressed without a tangential force, then sheared by forces alone with friction; whether shear has begun, and whether friction
@@ -30,18 +31,20 @@ contains
       type(step_type), intent(in) :: step
 
       self%steps = self%steps + 1
-      self%rotated = self%rotated .or. step%rotational_control /= control_keep
+      self%controlled = self%controlled .or. step%control /= control_keep
       self%cycled = self%cycled .or. step%cycles > 0
       self%pressed_harder = self%pressed_harder .and. step%friction .and. step%cycles == 0 &
-                            .and. step%normal_control == control_force .and. step%normal_target >= self%normal_target &
-                            .and. .not. abs(step%tangential_target) > 0.0_wp
-      self%normal_target = step%normal_target
-      self%sheared = self%sheared .or. abs(step%tangential_target) > 0.0_wp
+                            .and. step%control(motion_approach) == control_force &
+                            .and. step%target(motion_approach) >= self%normal_target &
+                            .and. .not. abs(step%target(motion_shift)) > 0.0_wp
+      self%normal_target = step%target(motion_approach)
+      self%sheared = self%sheared .or. abs(step%target(motion_shift)) > 0.0_wp
       if (self%sheared) then
-         self%pressed_then_sheared = self%pressed_then_sheared .and. step%friction .and. step%normal_control == control_keep &
-                                     .and. step%tangential_control == control_force
+         self%pressed_then_sheared = self%pressed_then_sheared .and. step%friction &
+                                     .and. step%control(motion_approach) == control_keep &
+                                     .and. step%control(motion_shift) == control_force
       else
-         self%pressed_then_sheared = self%pressed_then_sheared .and. step%tangential_control /= control_displacement
+         self%pressed_then_sheared = self%pressed_then_sheared .and. step%control(motion_shift) /= control_displacement
          self%friction_in_press = self%friction_in_press .or. step%friction
       end if
    end subroutine add

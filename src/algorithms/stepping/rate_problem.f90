@@ -11,6 +11,7 @@ module mfv_rate_problem
    use mfv_contact_path, only: contact_path_type
    use mfv_contact_system
    use mfv_kinds, only: wp
+   use mfv_motions, only: motion_approach
    use mfv_node_status
    implicit none
    private
@@ -69,7 +70,7 @@ contains
       integer :: i
 
       gap = path%model%gap(path%state%fields)
-      gap_scale = max(maxval(abs(path%model%initial_gap)), abs(path%state%fields%approach))
+      gap_scale = max(maxval(abs(path%model%initial_gap)), abs(path%state%fields%motion(motion_approach)))
       pressure_scale = path%certificate%traction_scale()
       allocate (node(0), sort(0))
       do i = 1, size(gap)

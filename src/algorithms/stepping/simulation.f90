@@ -5,7 +5,7 @@ module mfv_simulation
    use mfv_checksum, only: add_to_checksum
    use mfv_contact_model, only: new_contact_model
    use mfv_contact_state, only: contact_state_type
-   use mfv_contact_system, only: load_type
+   use mfv_contact_system, only: initial_loads, load_type
    use mfv_cycle, only: append_cycle, cycle_type, new_turning_point
    use mfv_error, only: error_type
    use mfv_contact_path, only: contact_path_type, new_contact_path, path_position_type, segment_type
@@ -14,6 +14,7 @@ module mfv_simulation
    use mfv_kinds, only: wp
    use mfv_leap, only: lead_by_leaps
    use mfv_load_way, only: load_way_type
+   use mfv_motions, only: motion_count, control_keep, control_force, arm_unit
    use mfv_node_status, only: event_none, event_step_end, event_stopped
    use mfv_observer, only: observer_type
    use mfv_scene
@@ -66,8 +67,7 @@ module mfv_simulation
       !> What is known of the steps that were taken, the last one perhaps not to its end.
       type(load_way_type) :: way
       !> What the loads control now.
-      type(load_type) :: normal, tangential
-      type(load_type) :: rotational = load_type(control_displacement)
+      type(load_type) :: load(motion_count) = initial_loads
    end type position_type
 
    !> By how much the final state changes with all coefficients of friction times 1 + `perturbation` (see mfv_sensitivity).
@@ -81,12 +81,12 @@ module mfv_simulation
       real(wp) :: pressure = 0.0_wp, shear = 0.0_wp, dissipation = 0.0_wp, stick_ratio = 0.0_wp
    end type sensitivity_type
 
-   !> The step that is being taken: where its loads lead and come from (normal, tangential, rotational), its cycle, and the straight
+   !> The step that is being taken: where its loads lead and come from, its cycle, and the straight
    !> part of it that is next or under way.
    type :: leg_type
       !> 0: no step is under way.
       integer :: number = 0
-      type(load_type) :: there(3), back(3)
+      type(load_type) :: there(motion_count), back(motion_count)
       type(cycle_type) :: cycle
       type(segment_type) :: segment
       type(leg_start_type) :: start
@@ -99,7 +99,7 @@ module mfv_simulation
       integer :: records = 0, solves = 0, leg = 1, added = 0
       integer(int64) :: iterations = 0, products = 0
       type(slip_record_type) :: slip
-      type(load_type) :: loads(3)
+      type(load_type) :: load(motion_count)
    end type restart_type
 
    type, extends(position_type) :: simulation_type
@@ -276,7 +276,7 @@ contains
          r%iterations = system%iterations
          r%products = system%products
          r%slip = self%slip
-         r%loads = [self%normal, self%tangential, self%rotational]
+         r%load = self%load
       end associate
    end subroutine note_restart
 
@@ -292,9 +292,7 @@ contains
          self%contact%system%iterations = r%iterations
          self%contact%system%products = r%products
          self%slip = r%slip
-         self%normal = r%loads(1)
-         self%tangential = r%loads(2)
-         self%rotational = r%loads(3)
+         self%load = r%load
          self%steps_done = self%scene_steps_done
          do i = 1, self%scene_steps_done
             call self%way%add(steps(i))
@@ -320,10 +318,13 @@ contains
    subroutine begin_step(self, step)
       class(simulation_type), intent(inout) :: self
       type(step_type), intent(in) :: step
+      integer :: i
 
       call self%way%add(step)
       self%leg%number = 1
-      if (step%rotational_control /= control_keep) call self%contact%begin_rotation()
+      do i = 1, motion_count
+         if (step%control(i) /= control_keep) call self%contact%begin_motion(i)
+      end do
       call set_ends(self, step, self%contact%state)
       if (step%cycles > 0) call self%begin_cycles(self%leg%cycle)
    end subroutine begin_step
@@ -333,16 +334,9 @@ contains
       class(simulation_type), intent(inout) :: self
       type(step_type), intent(in) :: step
       type(contact_state_type), intent(in) :: start
-      integer :: i
 
-      associate (leg => self%leg)
-         leg%there(1) = target_of(self%normal, step%normal_control, step%normal_target)
-         leg%there(2) = target_of(self%tangential, step%tangential_control, step%tangential_target)
-         leg%there(3) = target_of(self%rotational, step%rotational_control, step%rotational_target)
-         do i = 1, size(leg%back)
-            leg%back(i) = start_of(start, leg%there(i), i)
-         end do
-      end associate
+      self%leg%there = target_of(self%load, step%control, step%target)
+      self%leg%back = start_of(start%fields%force, start%fields%motion, self%leg%there)
    end subroutine set_ends
 
    !> The step cannot be led to its end, and why.
@@ -376,12 +370,11 @@ contains
       end if
       checksum = 0
       if (self%way%steps > 1) checksum = self%trails(self%way%steps - 1)
-      call add_to_checksum(transfer([step%normal_control, step%tangential_control, step%rotational_control, step%cycles, &
+      call add_to_checksum(transfer([step%control, step%cycles, &
                                      merge(1, 0, step%friction), self%contact%events], mold), checksum)
       associate (f => self%contact%state%fields)
-         call add_to_checksum(transfer([step%normal_target, step%tangential_target, step%rotational_target, &
-                                        step%steady_tolerance, f%normal_force, f%tangential_force, f%moment, f%approach, &
-                                        f%shift, f%rotation, self%contact%state%dissipation], mold), checksum)
+         call add_to_checksum(transfer([step%target, step%steady_tolerance, f%force, f%motion, self%contact%state%dissipation], &
+                                       mold), checksum)
       end associate
       self%trails(self%way%steps) = checksum
    end subroutine note_trail
@@ -477,7 +470,7 @@ contains
    end subroutine set_mark
 
    !> The load that a step leads to: `value` is its target; an absent one stays as it is.
-   pure type(load_type) function target_of(load, control, value)
+   elemental type(load_type) function target_of(load, control, value)
       type(load_type), intent(in) :: load
       integer, intent(in) :: control
       real(wp), intent(in) :: value
@@ -486,17 +479,12 @@ contains
       if (control /= control_keep) target_of = load_type(control, value)
    end function target_of
 
-   !> The same load with the value that it has in `state`; `direction`: 1 normal, 2 tangential, 3 rotational.
-   pure type(load_type) function start_of(state, load, direction)
-      type(contact_state_type), intent(in) :: state
+   !> The same load with the value that it has where the force and the motion are these.
+   elemental type(load_type) function start_of(force, motion, load)
+      real(wp), intent(in) :: force, motion
       type(load_type), intent(in) :: load
-      integer, intent(in) :: direction
-      real(wp) :: forces(3), displacements(3)
 
-      forces = [state%fields%normal_force, state%fields%tangential_force, state%fields%moment]
-      displacements = [state%fields%approach, state%fields%shift, state%fields%rotation]
-      start_of = load_type(load%control, merge(forces(direction), displacements(direction), &
-                                               load%control == control_force))
+      start_of = load_type(load%control, merge(force, motion, load%control == control_force))
    end function start_of
 
    !> Apply the loads of the leg, straight to where it goes.
@@ -506,7 +494,7 @@ contains
       integer, intent(in) :: before, segments
       class(observer_type), intent(inout), optional :: observer
       type(error_type), allocatable, intent(out) :: error
-      type(load_type) :: targets(3)
+      type(load_type) :: targets(motion_count)
 
       targets = merge(self%leg%there, self%leg%back, mod(self%leg%number, 2) == 1)
       call self%begin_segment(targets, step, before, segments)
@@ -521,42 +509,38 @@ contains
       end associate
       call self%slip%add_leg(self%contact%model, self%leg%start, self%contact%state, self%contact%slip_zone_nodes, &
                              self%contact%system%noise)
-      self%normal = load_type(targets(1)%control, targets(1)%value)
-      self%tangential = load_type(targets(2)%control, targets(2)%value)
-      self%rotational = load_type(targets(3)%control, targets(3)%value)
+      self%load%control = targets%control
+      self%load%value = targets%value
       if (self%keep_history /= history_none) &
          call self%contact%record(merge(event_stopped, event_step_end, allocated(error)), 0, 0, self%leg%segment%step)
    end subroutine lead_to
 
-   !> The segment from the present state to `targets` (normal, tangential, rotational).
+   !> The segment from the present state to `targets`.
    subroutine begin_segment(self, targets, step, before, segments)
       class(simulation_type), intent(inout) :: self
-      type(load_type), intent(in) :: targets(3)
+      type(load_type), intent(in) :: targets(motion_count)
       type(step_type), intent(in) :: step
       integer, intent(in) :: before, segments
-      real(wp) :: force
+      integer :: i
+      real(wp) :: force(motion_count)
 
-      force = self%contact%certificate%force_scale()
-      associate (segment => self%leg%segment)
-         segment%normal = load_towards(start_of(self%contact%state, targets(1), 1), targets(1), force)
-         segment%tangential = load_towards(start_of(self%contact%state, targets(2), 2), targets(2), force)
-         segment%rotational = load_towards(start_of(self%contact%state, targets(3), 3), targets(3), &
-                                           force*self%contact%model%length())
+      force = [(self%contact%certificate%force_scale()*arm_unit(i, self%contact%model%length()), i=1, motion_count)]
+      associate (segment => self%leg%segment, fields => self%contact%state%fields)
+         segment%load = load_towards(start_of(fields%force, fields%motion, targets), targets, force)
          segment%friction = step%friction
          segment%step = self%steps_done + 1
          segment%number = before + self%leg%number
          segment%segments = segments
       end associate
       associate (state => self%contact%state)
-         self%leg%start = leg_start_type(state%dissipation, state%fields%normal_force, state%fields%tangential_force, &
-                                         state%fields%shear)
+         self%leg%start = leg_start_type(state%dissipation, state%fields%force, state%fields%shear)
       end associate
       call self%contact%await_increment()
    end subroutine begin_segment
 
    !> From the load `start` to `goal`, at a rate per segment. A change of a force that is round-off of the largest one so far,
    !> `scale`, is none: what it would do to bodies just apart is noise.
-   pure type(load_type) function load_towards(start, goal, scale)
+   elemental type(load_type) function load_towards(start, goal, scale)
       type(load_type), intent(in) :: start, goal
       real(wp), intent(in) :: scale
 

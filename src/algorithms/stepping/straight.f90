@@ -10,9 +10,10 @@ module mfv_straight
    use mfv_error, only: error_type
    use mfv_first_violation, only: failed_certificate, lead_by_violations, noises
    use mfv_kinds, only: wp
+   use mfv_motions, only: motion_approach, control_force
    use mfv_node_status
    use mfv_observer, only: observer_type
-   use mfv_scene, only: control_force, stepping_nominal
+   use mfv_scene, only: stepping_nominal
    use mfv_strings, only: to_text
    implicit none
    private
@@ -139,27 +140,27 @@ contains
       real(wp), parameter :: nothing = 1.0e-9_wp, little = 1.0e-4_wp
 
       part = 1.0_wp
-      if (segment%normal%control /= control_force) return
-      associate (start => segment%normal%value, change => segment%normal%rate)
+      if (segment%load(motion_approach)%control /= control_force) return
+      associate (start => segment%load(motion_approach)%value, change => segment%load(motion_approach)%rate)
          if (start + change > nothing*abs(start) .and. start + change > 0.0_wp) return
          part = 0.0_wp
          if (start > 0.0_wp) part = (1.0_wp - little)*start/(-change)
       end associate
    end function before_separation
 
-   !> Whether a tangential force or a moment begins to act while the bodies are apart and only draw near: it has nothing to
+   !> Whether a force other than the normal one begins to act while the bodies are apart and only draw near: it has nothing to
    !> carry it until they touch.
    pure logical function carries_nothing_yet(path, segment)
       class(contact_path_type), intent(in) :: path
       type(segment_type), intent(in) :: segment
 
       carries_nothing_yet = .false.
-      if (segment%normal%control == control_force .or. any(in_contact(path%state%status))) return
-      carries_nothing_yet = acts(segment%tangential) .or. (path%model%rotational .and. acts(segment%rotational))
+      if (segment%load(motion_approach)%control == control_force .or. any(in_contact(path%state%status))) return
+      carries_nothing_yet = any(path%model%moves .and. acts(segment%load))
 
    contains
 
-      pure logical function acts(load)
+      elemental logical function acts(load)
          type(load_type), intent(in) :: load
 
          acts = load%control == control_force .and. max(abs(load%value), abs(load%rate)) > 0.0_wp
@@ -173,14 +174,12 @@ contains
 
       part = segment
       if (.not. begin > 0.0_wp .and. .not. end < 1.0_wp) return
-      part%normal = part_of_load(segment%normal, begin, end)
-      part%tangential = part_of_load(segment%tangential, begin, end)
-      part%rotational = part_of_load(segment%rotational, begin, end)
+      part%load = part_of_load(segment%load, begin, end)
       part%from = segment%from + (segment%to - segment%from)*begin
       part%to = segment%from + (segment%to - segment%from)*end
    end function part_of
 
-   pure type(load_type) function part_of_load(load, begin, end) result(part)
+   elemental type(load_type) function part_of_load(load, begin, end) result(part)
       type(load_type), intent(in) :: load
       real(wp), intent(in) :: begin, end
 

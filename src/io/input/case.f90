@@ -1,7 +1,8 @@
 !> A case: a scene with what the user wants to see of its solution, and the text it came from.
 module mfv_case
    use mfv_kinds, only: wp
-   use mfv_scene, only: control_force, control_keep, scene_type, step_type
+   use mfv_motions, only: motion_count, control_keep, controlled_key
+   use mfv_scene, only: scene_type, step_type
    use mfv_simulation, only: history_events, simulation_type, states_reversals
    use mfv_strings, only: to_text
    implicit none
@@ -51,16 +52,12 @@ contains
    subroutine add_targets(step, text)
       type(step_type), intent(in) :: step
       character(:), allocatable, intent(inout) :: text
+      integer :: i
 
-      if (step%normal_control /= control_keep) &
-         text = text//' '//trim(merge('normal_force', 'approach    ', step%normal_control == control_force))//'='// &
-                to_text(step%normal_target, 10)
-      if (step%tangential_control /= control_keep) &
-         text = text//' '//trim(merge('tangential_force', 'shift           ', step%tangential_control == control_force))// &
-                '='//to_text(step%tangential_target, 10)
-      if (step%rotational_control /= control_keep) &
-         text = text//' '//trim(merge('moment  ', 'rotation', step%rotational_control == control_force))// &
-                '='//to_text(step%rotational_target, 10)
+      do i = 1, motion_count
+         if (step%control(i) == control_keep) cycle
+         text = text//' '//trim(controlled_key(i, step%control(i)))//'='//to_text(step%target(i), 10)
+      end do
    end subroutine add_targets
 
 end module mfv_case

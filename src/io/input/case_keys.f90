@@ -5,6 +5,7 @@ module mfv_case_keys
    use mfv_friction, only: friction_law_names
    use mfv_keys
    use mfv_kinds, only: wp
+   use mfv_motions, only: motions, motion_count, motion_shift
    use mfv_scene, only: most_cycles
    implicit none
    private
@@ -143,21 +144,19 @@ contains
 
    subroutine add_step_keys(keys)
       type(key_type), allocatable, intent(inout) :: keys(:)
+      integer :: i
 
-      call add_real_key(keys, 'step', 'normal_force', 'force/length', 'target of the normal force P', lower=0.0_wp)
-      call add_real_key(keys, 'step', 'approach', 'length', &
-                        'target of the approach of the upper body, in place of normal_force')
-      call add_real_key(keys, 'step', 'tangential_force', 'force/length', &
-                        'target of the tangential force Q, positive to the right')
-      call add_real_key(keys, 'step', 'shift', 'length', &
-                        'target of the shift of the upper body to the right, in place of tangential_force')
-      call add_real_key(keys, 'step', 'force_ratio', '', 'target Q/(mu P) in place of tangential_force: mu the largest '// &
-                        'coefficient of &friction, P the normal_force that this step or the last one before it names', &
-                        lower=-1.0e6_wp, upper=1.0e6_wp)
-      call add_real_key(keys, 'step', 'moment', 'force', 'target of the moment M about the centre of the upper disk or '// &
-                        'hole, else of the lower one, else about the pole; counterclockwise')
-      call add_real_key(keys, 'step', 'rotation', 'radians', &
-                        'target of the rotation of the upper body about the same point, in place of moment')
+      do i = 1, motion_count
+         associate (motion => motions(i))
+            call add_real_key(keys, 'step', trim(motion%force_key), trim(motion%force_unit), trim(motion%force_target))
+            if (motion%pushes) keys(size(keys))%lower = 0.0_wp
+            call add_real_key(keys, 'step', trim(motion%key), trim(motion%unit), trim(motion%target))
+         end associate
+         if (i == motion_shift) &
+            call add_real_key(keys, 'step', 'force_ratio', '', 'target Q/(mu P) in place of tangential_force: mu the largest '// &
+                              'coefficient of &friction, P the normal_force that this step or the last one before it names', &
+                              lower=-1.0e6_wp, upper=1.0e6_wp)
+      end do
       call add_logical_key(keys, 'step', 'friction', '.true.', 'whether friction acts during this step')
       call add_integer_key(keys, 'step', 'cycles', '0', '0: go to the targets; n: go there and back to where the step '// &
                            'began, n times', 0.0_wp, real(most_cycles, wp))

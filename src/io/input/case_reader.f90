@@ -13,6 +13,8 @@ module mfv_case_reader
    use mfv_kinds, only: wp
    use mfv_material, only: plane_strain, plane_stress
    use mfv_mesh_reader, only: read_mesh
+   use mfv_motions, only: motions, motion_count, motion_approach, motion_shift, control_keep, control_force, &
+                          control_displacement, controlled_key
    use mfv_namelist, only: group_type, parse_namelists
    use mfv_scene
    use mfv_simulation, only: history_events, history_none, history_steps, states_none, states_reversals, states_steps
@@ -172,7 +174,7 @@ contains
       type(reader_type), intent(in) :: reader
       type(scene_type), intent(inout) :: scene
       type(error_type), allocatable, intent(out) :: error
-      integer :: i
+      integer :: i, j
 
       if (count_groups(reader, 'step') == 0 .and. .not. reader%without_steps) then
          call fail(reader, 0, '&step: at least one step is needed', error)
@@ -181,13 +183,11 @@ contains
       allocate (scene%steps(count_groups(reader, 'step')))
       do i = 1, size(scene%steps)
          associate (step => scene%steps(i))
-            call read_target(reader, i, 'normal_force', 'approach', step%normal_control, step%normal_target, error)
-            if (allocated(error)) return
-            call read_target(reader, i, 'tangential_force', 'shift', step%tangential_control, step%tangential_target, error)
-            if (.not. allocated(error)) call read_force_ratio(reader, i, scene, error)
-            if (allocated(error)) return
-            call read_target(reader, i, 'moment', 'rotation', step%rotational_control, step%rotational_target, error)
-            if (allocated(error)) return
+            do j = 1, motion_count
+               call read_target(reader, i, j, step%control(j), step%target(j), error)
+               if (j == motion_shift .and. .not. allocated(error)) call read_force_ratio(reader, i, scene, error)
+               if (allocated(error)) return
+            end do
             step%friction = reader%logical_value('step', i, 'friction')
             step%cycles = reader%integer_value('step', i, 'cycles')
             if (reader%has('step', i, 'steady_tolerance')) then
@@ -196,7 +196,7 @@ contains
                                                          'more', error)
                if (allocated(error)) return
             end if
-            if (all([step%normal_control, step%tangential_control, step%rotational_control] == control_keep)) then
+            if (all(step%control == control_keep)) then
                call fail(reader, line_of(reader, 'step', i), '&step '//to_text(i)//': needs a target: normal_force or '// &
                          'approach, tangential_force, force_ratio or shift, moment or rotation', error)
                return
@@ -215,9 +215,9 @@ contains
 
       if (.not. reader%has('step', number, 'force_ratio')) return
       ! A step with cycles ends where it began. (Of this step itself the cycles are read later, and do not count.)
-      last = findloc(scene%steps(:number)%normal_control /= control_keep .and. scene%steps(:number)%cycles == 0, .true., &
+      last = findloc(scene%steps(:number)%control(motion_approach) /= control_keep .and. scene%steps(:number)%cycles == 0, .true., &
                      dim=1, back=.true.)
-      if (scene%steps(number)%tangential_control /= control_keep) then
+      if (scene%steps(number)%control(motion_shift) /= control_keep) then
          call reader%complain('step', number, 'force_ratio', 'tangential_force or shift is there too; a step controls one of '// &
                               'them', error)
       else if (.not. scene%friction%acts()) then
@@ -227,38 +227,37 @@ contains
       else if (last == 0) then
          call reader%complain('step', number, 'force_ratio', 'needs a normal_force, in this step or in one before it '// &
                               'without cycles', error)
-      else if (scene%steps(last)%normal_control /= control_force) then
+      else if (scene%steps(last)%control(motion_approach) /= control_force) then
          call reader%complain('step', number, 'force_ratio', 'needs a normal_force, but step '//to_text(last)// &
                               ' names an approach', error)
       else
-         scene%steps(number)%tangential_control = control_force
-         scene%steps(number)%tangential_target = reader%real_value('step', number, 'force_ratio') &
-                                                 *scene%friction%static%largest()*scene%steps(last)%normal_target
+         scene%steps(number)%control(motion_shift) = control_force
+         scene%steps(number)%target(motion_shift) = reader%real_value('step', number, 'force_ratio') &
+                                                 *scene%friction%static%largest()*scene%steps(last)%target(motion_approach)
       end if
    end subroutine read_force_ratio
 
-   !> The target of one direction of step `number`: a force or a displacement.
-   subroutine read_target(reader, number, force, displacement, control, target, error)
+   !> The target of one motion of step `number`: a force or a displacement.
+   subroutine read_target(reader, number, motion, control, target, error)
       type(reader_type), intent(in) :: reader
-      integer, intent(in) :: number
-      character(*), intent(in) :: force, displacement
+      integer, intent(in) :: number, motion
       integer, intent(out) :: control
       real(wp), intent(out) :: target
       type(error_type), allocatable, intent(out) :: error
+      integer :: i
 
       control = control_keep
       target = 0.0_wp
-      if (reader%has('step', number, force)) then
-         control = control_force
-         target = reader%real_value('step', number, force)
-      end if
-      if (.not. reader%has('step', number, displacement)) return
-      if (control /= control_keep) then
-         call reader%complain('step', number, displacement, force//' is there too; a step controls one of them', error)
-         return
-      end if
-      control = control_displacement
-      target = reader%real_value('step', number, displacement)
+      do i = control_force, control_displacement
+         if (.not. reader%has('step', number, trim(controlled_key(motion, i)))) cycle
+         if (control /= control_keep) then
+            call reader%complain('step', number, trim(motions(motion)%key), trim(motions(motion)%force_key)//' is there too; '// &
+                                 'a step controls one of them', error)
+            return
+         end if
+         control = i
+         target = reader%real_value('step', number, trim(controlled_key(motion, i)))
+      end do
    end subroutine read_target
 
 end module mfv_case_reader

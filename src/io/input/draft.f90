@@ -11,6 +11,7 @@ module mfv_draft
    use mfv_keys, only: catalogue_type
    use mfv_kinds, only: wp
    use mfv_material, only: flexibilities
+   use mfv_motions, only: motions, motion_count
    use mfv_namelist, only: entry_type, group_type, parse_namelists, resize_entries, resize_groups, write_namelists
    use mfv_numbers, only: write_real
    use mfv_status, only: MFV_INPUT_ERROR
@@ -24,10 +25,10 @@ module mfv_draft
    character(*), parameter :: dundurs_key = 'dundurs_beta', dundurs_values = 'must be a number from -0.5 to 0.5'
    real(wp), parameter :: largest_beta = 0.5_wp
    character(*), parameter :: line_ends = achar(10)//achar(13)
-   !> Keys of one group of which a case has one at most.
-   character(*), parameter :: alternatives_of(5) = [character(40) :: 'tangential_force force_ratio shift', &
-                                                    'normal_force approach', 'moment rotation', &
-                                                    'shear_modulus youngs_modulus', 'half_width half_angle']
+   !> Keys of one group of which a case has one at most; the last row that has a key holds.
+   character(*), parameter :: alternatives_of(motion_count + 3) = &
+      [character(40) :: motions%force_key//' '//motions%key, 'tangential_force force_ratio shift', &
+       'shear_modulus youngs_modulus', 'half_width half_angle']
 
    !> A fault, and the key that was named: a value for that mends it.
    type :: fault_type

@@ -12,9 +12,9 @@ module mfv_hdf5_restart
    use mfv_hdf5_reader, only: read_vector
    use mfv_history, only: history_record_type, history_type
    use mfv_kinds, only: wp
+   use mfv_motions, only: motions, motion_count, control_keep, control_displacement
    use mfv_node_status, only: node_creep_left, node_open
    use mfv_result_fields, only: add_real, add_whole, along_nothing, field_type, step_group
-   use mfv_scene, only: control_displacement, control_keep
    use mfv_simulation, only: mark_count, simulation_type, snapshot_type
    use mfv_status, only: MFV_INPUT_ERROR
    use mfv_strings, only: to_text
@@ -122,10 +122,10 @@ contains
          call exchange_counter(self, 'iterations', r%iterations, 'iterations of the linear solver')
          call exchange_counter(self, 'products', r%products, 'products with the compliance')
          if (simulation%scene_steps_done == size(steps) .and. r%leg > 1) call self%complain('segment')
-         do i = 1, size(r%loads)
-            call self%exchange('control_'//to_text(i), r%loads(i)%control, 'what controls motion '//to_text(i), control_keep, &
+         do i = 1, size(r%load)
+            call self%exchange('control_'//to_text(i), r%load(i)%control, 'what controls motion '//to_text(i), control_keep, &
                                control_displacement)
-            call self%exchange('load_'//to_text(i), r%loads(i)%value, 'load of motion '//to_text(i))
+            call self%exchange('load_'//to_text(i), r%load(i)%value, 'load of motion '//to_text(i))
          end do
          if (self%reading .and. .not. allocated(self%error)) call read_snapshots(self, simulation, nodes)
          call exchange_internals(self, simulation)
@@ -251,8 +251,7 @@ contains
       if (self%reading) state = new_contact_state(nodes)
       self%prefix = prefix
       call exchange_visible(self, state)
-      call self%exchange('moment', state%fields%moment, 'moment')
-      call self%exchange('rotation', state%fields%rotation, 'rotation')
+      call exchange_motions(self, state, motions%optional)
       call self%exchange('friction_work', state%friction_work, 'energy dissipated per unit of surface')
       call self%exchange('normal', state%fields%normal, 'how far the surfaces draw apart by deformation and rotation')
       call self%exchange('tangential', state%fields%tangential, 'how far the lower surface moves to the right of the upper one')
@@ -273,12 +272,23 @@ contains
       if (any(state%status < node_open .or. state%status > node_creep_left)) call self%complain('status')
       call self%exchange('pressure', state%fields%pressure, 'pressure')
       call self%exchange('shear', state%fields%shear, 'shear traction')
-      call self%exchange('approach', state%fields%approach, 'approach')
-      call self%exchange('shift', state%fields%shift, 'shift')
-      call self%exchange('normal_force', state%fields%normal_force, 'normal force')
-      call self%exchange('tangential_force', state%fields%tangential_force, 'tangential force')
+      call exchange_motions(self, state, .not. motions%optional)
       call self%exchange('dissipation', state%dissipation, 'energy dissipated so far')
    end subroutine exchange_visible
+
+   !> Some of the motions with their forces.
+   subroutine exchange_motions(self, state, which)
+      type(exchange_type), intent(inout) :: self
+      type(contact_state_type), intent(inout) :: state
+      logical, intent(in) :: which(motion_count)
+      integer :: i
+
+      do i = 1, motion_count
+         if (.not. which(i)) cycle
+         call self%exchange(trim(motions(i)%key), state%fields%motion(i), trim(motions(i)%key))
+         call self%exchange(trim(motions(i)%force_key), state%fields%force(i), trim(motions(i)%force_name))
+      end do
+   end subroutine exchange_motions
 
    !> The states of steps and reversals before the restart.
    subroutine read_snapshots(self, simulation, nodes)
@@ -296,8 +306,7 @@ contains
             self%group = step_group(i)
             snapshot%state = new_contact_state(nodes)
             call exchange_visible(self, snapshot%state)
-            if (model%rotational) call self%exchange('moment', snapshot%state%fields%moment, '')
-            if (model%rotational) call self%exchange('rotation', snapshot%state%fields%rotation, '')
+            call exchange_motions(self, snapshot%state, motions%optional .and. model%moves)
             if (model%tangential) call self%exchange('friction_work', snapshot%state%friction_work, '')
             call self%exchange('step', snapshot%step, '', 1, size(model%scene%steps))
             call self%exchange('reversal', snapshot%reversal, '', 1, huge(1))

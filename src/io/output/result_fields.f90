@@ -8,11 +8,11 @@ module mfv_result_fields
    use mfv_certificate, only: residual_count, residual_description, residual_name
    use mfv_closed_form, only: closed_form_of, closed_form_type
    use mfv_compliance, only: block_up, block_ut, block_wp, block_wt
-   use mfv_contact_model, only: along_approach, along_shift
    use mfv_contact_state, only: contact_state_type
    use mfv_error_bar
    use mfv_cycle, only: cycle_type
    use mfv_kinds, only: wp
+   use mfv_motions, only: motions, motion_count, motion_approach, motion_shift, motion_rotation
    use mfv_node_status, only: event_names, holds, in_contact, node_status_names
    use mfv_observables, only: observable_count, observable_meaning, observable_name, observable_unit, observables_of
    use mfv_scene, only: stepping_leap
@@ -53,12 +53,6 @@ module mfv_result_fields
    character(*), parameter :: moment_names(3) = [character(8) :: 'loading', 'reversal', 'return']
    integer, parameter :: moment_marks(3) = [mark_loading, mark_reversal, mark_return]
    !> Meanings that several groups share.
-   character(*), parameter :: normal_force_meaning = 'normal force P per unit thickness'
-   character(*), parameter :: tangential_force_meaning = 'tangential force Q per unit thickness'
-   character(*), parameter :: approach_meaning = 'approach of the upper body'
-   character(*), parameter :: shift_meaning = 'shift of the upper body to the right'
-   character(*), parameter :: moment_meaning = 'moment M of the upper on the lower body per unit thickness, counterclockwise'
-   character(*), parameter :: rotation_meaning = 'rotation of the upper body, counterclockwise, in radians'
    character(*), parameter :: pressure_meaning = 'compressive normal traction p'
    character(*), parameter :: shear_meaning = 'shear traction tau on the lower body, positive to the right'
    character(*), parameter :: dissipation_meaning = 'energy dissipated so far per unit thickness'
@@ -475,14 +469,10 @@ contains
 
       call find_zone_edges(simulation%contact%model, state, edges)
       associate (f => state%fields)
-         call add_scalar(fields, 'normal_force', f%normal_force, units%force, normal_force_meaning)
-         call add_scalar(fields, 'tangential_force', f%tangential_force, units%force, tangential_force_meaning)
-         call add_scalar(fields, 'approach', f%approach, units%length, approach_meaning)
-         call add_scalar(fields, 'shift', f%shift, units%length, shift_meaning)
-         if (simulation%contact%model%rotational) then
-            call add_scalar(fields, 'moment', f%moment, units%energy, moment_meaning)
-            call add_scalar(fields, 'rotation', f%rotation, '1', rotation_meaning)
-         end if
+         call add_motions(fields, .not. motions%optional, reshape(f%force, [1, motion_count]), &
+                          reshape(f%motion, [1, motion_count]), along_nothing, units)
+         call add_motions(fields, motions%optional .and. simulation%contact%model%moves, reshape(f%force, [1, motion_count]), &
+                          reshape(f%motion, [1, motion_count]), along_nothing, units)
          call add_scalar(fields, 'dissipation', state%dissipation, units%energy, dissipation_meaning)
          call add_scalar_whole(fields, 'contact_nodes', state%contact_nodes(), contact_nodes_meaning)
          call add_scalar_whole(fields, 'stick_nodes', state%stick_nodes(), stick_nodes_meaning)
@@ -611,8 +601,8 @@ contains
                pressure(first:last) = state%pressure(first:last)
                shear(first:last) = state%shear(first:last)
             end associate
-            normal_force(i) = model%resultant(along_approach, pressure, shear)
-            tangential_force(i) = model%resultant(along_shift, pressure, shear)
+            normal_force(i) = model%resultant(motion_approach, pressure, shear)
+            tangential_force(i) = model%resultant(motion_shift, pressure, shear)
             peak_pressure(i) = maxval(pressure)
             peak_shear(i) = maxval(abs(shear))
          end do
@@ -783,25 +773,47 @@ contains
       call add_real(fields, name//'_companions', bar%companions, along_companions, unit, 'on the coarser meshes: '//meaning)
    end subroutine add_bar
 
+   !> Some of the motions and their forces (shape (values, motion_count)), first the forces.
+   subroutine add_motions(fields, which, force, motion, along, units)
+      type(field_type), allocatable, intent(inout) :: fields(:)
+      logical, intent(in) :: which(motion_count)
+      real(wp), intent(in) :: force(:, :), motion(:, :)
+      integer, intent(in) :: along
+      type(units_type), intent(in) :: units
+      integer :: i
+
+      do i = 1, motion_count
+         if (which(i)) call add_real(fields, trim(motions(i)%force_key), force(:, i), along, &
+                                     labelled_unit(trim(motions(i)%force_unit), units%length, units%energy), &
+                                     trim(motions(i)%force_meaning))
+      end do
+      do i = 1, motion_count
+         if (which(i)) call add_real(fields, trim(motions(i)%key), motion(:, i), along, &
+                                     labelled_unit(trim(merge('1      ', motions(i)%unit, motions(i)%unit == 'radians')), &
+                                                   units%length, units%energy), trim(motions(i)%meaning))
+      end do
+   end subroutine add_motions
+
    subroutine add_history(fields, simulation, units)
       type(field_type), allocatable, intent(inout) :: fields(:)
       type(simulation_type), intent(in) :: simulation
       type(units_type), intent(in) :: units
       integer, parameter :: along = along_records
+      real(wp), dimension(simulation%contact%history%records, motion_count) :: force, motion
       integer :: i
 
       associate (r => simulation%contact%history%record(:simulation%contact%history%records))
          call add_whole(fields, 'record', [(i, i=0, size(r) - 1)], along, 'number of the record')
-         call add_real(fields, 'normal_force', r%normal_force, along, units%force, normal_force_meaning)
-         call add_real(fields, 'tangential_force', r%tangential_force, along, units%force, tangential_force_meaning)
-         call add_real(fields, 'approach', r%approach, along, units%length, approach_meaning)
-         call add_real(fields, 'shift', r%shift, along, units%length, shift_meaning)
-         call add_nonlinear_shift(fields, simulation, units)
-         if (simulation%contact%model%rotational) then
-            call add_real(fields, 'moment', r%moment, along, units%energy, moment_meaning)
-            call add_real(fields, 'rotation', r%rotation, along, '1', rotation_meaning)
-            call add_rolling(fields, simulation, units)
-         end if
+         do i = 1, motion_count
+            force(:, i) = r%force(i)
+            motion(:, i) = r%motion(i)
+         end do
+         associate (moves => simulation%contact%model%moves)
+            call add_motions(fields, .not. motions%optional, force, motion, along, units)
+            call add_nonlinear_shift(fields, simulation, units)
+            call add_motions(fields, motions%optional .and. moves, force, motion, along, units)
+            if (moves(motion_rotation)) call add_rolling(fields, simulation, units)
+         end associate
          call add_real(fields, 'dissipation', r%dissipation, along, units%energy, dissipation_meaning)
          call add_whole(fields, 'contact_nodes', r%contact_nodes, along, contact_nodes_meaning)
          call add_whole(fields, 'stick_nodes', r%stick_nodes, along, stick_nodes_meaning)
@@ -823,10 +835,10 @@ contains
       associate (model => simulation%contact%model, &
                  r => simulation%contact%history%record(:simulation%contact%history%records))
          if (.not. model%rolls()) return
-         call add_real(fields, 'rolled', -r%rotation/model%scene%curvature(), along_records, units%length, &
+         call add_real(fields, 'rolled', -r%motion(motion_rotation)/model%scene%curvature(), along_records, units%length, &
                        'how far the contact has rolled to the right along the surfaces')
-         call add_real(fields, 'slid', r%shift + model%centre_height()*r%rotation, along_records, units%length, &
-                       'how far the upper surface has slid to the right over the lower one, as rigid bodies')
+         call add_real(fields, 'slid', r%motion(motion_shift) + model%centre_height()*r%motion(motion_rotation), along_records, &
+                       units%length, 'how far the upper surface has slid to the right over the lower one, as rigid bodies')
       end associate
    end subroutine add_rolling
 
@@ -843,8 +855,8 @@ contains
       if (ieee_is_nan(stiffness)) return
       if (.not. abs(stiffness) > 0.0_wp) return
       associate (r => simulation%contact%history%record(:simulation%contact%history%records))
-         call add_real(fields, 'nonlinear_shift', r%shift - r%tangential_force/stiffness, along_records, units%length, &
-                       'shift less tangential_force over the tangential stiffness right after the last reversal')
+         call add_real(fields, 'nonlinear_shift', r%motion(motion_shift) - r%force(motion_shift)/stiffness, along_records, &
+                       units%length, 'shift less tangential_force over the tangential stiffness right after the last reversal')
       end associate
    end subroutine add_nonlinear_shift
 

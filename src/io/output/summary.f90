@@ -6,6 +6,7 @@ module mfv_summary
    use mfv_error_bar
    use mfv_interior, only: has_interior
    use mfv_kinds, only: wp
+   use mfv_motions, only: motions, motion_count, motion_rotation
    use mfv_result_fields, only: field_named, field_type, group_fields
    use mfv_simulation, only: simulation_type
    use mfv_status, only: status_outcome
@@ -46,10 +47,12 @@ contains
          end if
          call group_fields(case, simulation, 'observables', seen)
          if (simulation%cycle_count > 0) call add_last_cycle(text, seen)
-         if (model%rotational) then
-            call add_line(text, 'moment', amount(fields, 'moment')//', rotation '//amount(fields, 'rotation'))
-            call add_creepage(text, seen)
-         end if
+         do i = 1, motion_count
+            if (motions(i)%optional .and. model%moves(i)) &
+               call add_line(text, trim(motions(i)%force_name), amount(fields, trim(motions(i)%force_key))//', '// &
+                             trim(motions(i)%key)//' '//amount(fields, trim(motions(i)%key)))
+         end do
+         if (model%moves(motion_rotation)) call add_creepage(text, seen)
          call add_tension(text, seen, model, simulation%contact%state%contact_nodes() > 0)
          words = ''
          if (simulation%contact%certificate%leaps > 0) words = amount(fields, 'leaps')//' large increments, '
