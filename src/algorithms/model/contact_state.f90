@@ -90,11 +90,7 @@ contains
       type(friction_point_type) :: point
 
       point = friction_point_type(static, kinetic, fields%pressure(node), fields%shear(node), &
-<<<<<<< HEAD
-                                  fields%tangential(node) - fields%shift, self%memory(:, node))
-=======
-                                  fields%tangential(node) - fields%motion(motion_shift), self%slipped(node), self%excess(node))
->>>>>>> motions
+                                  fields%tangential(node) - fields%motion(motion_shift), self%memory(:, node))
    end function friction_point
 
    !> Add `extra` open nodes at either end; the caller fills in their displacements.
