@@ -148,7 +148,7 @@ contains
 
       copy%model = self%model
       copy%path_position_type = self%path_position_type
-      copy%system = self%system
+      allocate (copy%system, source=self%system)
       copy%record_events = .false.
    end subroutine copy_without_history
 
@@ -158,7 +158,9 @@ contains
       type(kept_path_type), intent(inout) :: kept
 
       kept%position = self%path_position_type
-      kept%system = self%system
+      ! By hand: gfortran 12 leaks what a polymorphic component held before an assignment.
+      if (allocated(kept%system)) deallocate (kept%system)
+      allocate (kept%system, source=self%system)
       kept%records = self%history%records
       kept%added = self%model%added
       kept%tangential = self%model%tangential
@@ -174,7 +176,8 @@ contains
       call self%history%move_nodes(kept%added - self%model%added)
       call self%model_as(kept%added, kept%tangential, kept%moves)
       self%path_position_type = kept%position
-      self%system = kept%system
+      deallocate (self%system)
+      allocate (self%system, source=kept%system)
       self%history%records = min(kept%records, self%history%records)
    end subroutine come_back
 
