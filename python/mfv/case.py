@@ -13,7 +13,7 @@ from contextlib import contextmanager
 from ctypes import POINTER, byref, c_int, c_int32, c_size_t, c_void_p
 from operator import index
 from types import TracebackType
-from typing import TYPE_CHECKING, Any, Callable, NoReturn, cast
+from typing import TYPE_CHECKING, Any, Callable, NoReturn
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -56,6 +56,10 @@ _DIMENSIONS: tuple[tuple[str, ...], ...] = ((), ("x",), ("record",), ("companion
 #: Plain numbers, which are quicker at hand than members of enumerations.
 _KEEP, _FORCE, _DISPLACEMENT = map(int, Control)
 _SIZE_OF_STEP = ctypes.sizeof(StepStructure)
+
+#: What a step does that controls nothing.
+_NO_CONTROL: list[int] = [_KEEP] * len(MOTIONS)
+_NO_TARGET: list[Any] = [0.0] * len(MOTIONS)
 
 #: Motion and control by what a target is named.
 _CONTROLLED = {
@@ -265,13 +269,14 @@ class Case:
         tractions to within `steady_tolerance` times the largest one (0: never). `check`: as for `run`.
         Raises BadArgument.
         """
-        control, target = [_KEEP] * len(MOTIONS), [0.0] * len(MOTIONS)
-        for name, value in cast("dict[str, float | None]", targets).items():
-            if name not in _CONTROLLED:
-                raise TypeError(f"advance() got an unexpected keyword argument {name!r}")
+        control, target = _NO_CONTROL.copy(), _NO_TARGET.copy()
+        for name, value in targets.items():
+            try:
+                motion, kind = _CONTROLLED[name]
+            except KeyError:
+                raise TypeError(f"advance() got an unexpected keyword argument {name!r}") from None
             if value is None:
                 continue
-            motion, kind = _CONTROLLED[name]
             if control[motion] != _KEEP:
                 raise TypeError(f"give {MOTIONS[motion].force} or {MOTIONS[motion].displacement}, not both")
             control[motion], target[motion] = kind, value

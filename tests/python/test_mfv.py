@@ -743,6 +743,8 @@ def test_rotation_is_led(tmp_path: Path) -> None:
         assert case.result().certificate.moment_balance < 1e-11
         with pytest.raises(TypeError, match="give moment or rotation, not both"):
             case.advance(moment=0.0, rotation=0.0)
+        with pytest.raises(TypeError, match="unexpected keyword argument 'rotatoin'"):
+            case.advance(rotatoin=None)
 
 
 def matrix_file(path: Path, **datasets: np.ndarray) -> str:
