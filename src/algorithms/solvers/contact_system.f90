@@ -55,7 +55,6 @@ module mfv_contact_system
       real(wp) :: noise = 0.0_wp
    contains
       procedure(solve_interface), deferred :: solve
-      !> See mfv_archive; a solver that keeps more than this type has overrides it.
    end type contact_system_type
 
    abstract interface
