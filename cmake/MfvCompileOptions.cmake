@@ -19,8 +19,8 @@ function(mfv_compile_options target)
     $<${gnu_fortran}:-std=f2018 -frecursive -fimplicit-none -Wall -Wextra -Wcharacter-truncation
       -Wno-c-binding-type -Wno-unused-dummy-argument ${MFV_UNHEARD_WARNINGS}>
     $<${gnu_c}:-std=gnu11 -Wall -Wextra -Wconversion -Wshadow -Wstrict-prototypes>)
-  # What is built on the library is built again when its modules change.
-  if(NOT target MATCHES "^mfv_folder_|quadruple|interior_equations")
+  # What is built on the library is built again when its modules change. (Ninja finds that out by itself.)
+  if(CMAKE_GENERATOR MATCHES "Makefiles" AND NOT target MATCHES "^mfv_folder_|quadruple|interior_equations")
     get_target_property(sources ${target} SOURCES)
     list(FILTER sources INCLUDE REGEX "\\.f90$")
     get_property(modules GLOBAL PROPERTY MFV_MODULE_FILES)

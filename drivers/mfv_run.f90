@@ -7,24 +7,19 @@ program mfv_run
    use mfv_error, only: error_type
    use mfv_command_line, only: fail, get_argument, refuse, refuse_option
    use mfv_keys, only: list_keys_as_markdown
-   use mfv_output, only: begin_program, print_line, print_lines, print_text
+   use mfv_output, only: begin_program, print_text
    use mfv_run_case, only: run_case
    use mfv_strings, only: shortened
    use mfv_summary, only: summarize_check
-   use mfv_version, only: library_version
    use mfv_run_help, only: help, usage
    implicit none
    save  ! the standard says so of a program; gfortran's -frecursive loses what they hold, which the leak sanitizer tells
 
    character(:), allocatable :: option, text
 
-   call begin_program()
+   call begin_program('mfv_run', usage, help)
    call get_argument(1, option)
    select case (option)
-   case ('--help', '-h')
-      call print_lines([usage, help])
-   case ('--version')
-      call print_line('mfv_run '//library_version)
    case ('--keys')
       call list_keys_as_markdown(case_catalogue(), text)
       call print_text(text)

@@ -1,18 +1,15 @@
 !> mfv_stress: stresses inside the bodies of a result, into its file.
 program mfv_stress
-   use, intrinsic :: ieee_arithmetic, only: ieee_is_finite
    use, intrinsic :: iso_fortran_env, only: error_unit
    use mfv_error, only: error_type
-   use mfv_command_line, only: end_program, fail, get_argument, refuse, refuse_option
-   use mfv_interior, only: stress_count, stress_names
+   use mfv_command_line, only: fail, get_argument, refuse, refuse_option
    use mfv_kinds, only: wp
-   use mfv_output, only: begin_program, print_line, print_lines
+   use mfv_output, only: begin_program, print_text
    use mfv_numbers, only: read_real
    use mfv_profile_file, only: read_table
    use mfv_stress_file
    use mfv_strings, only: shortened, to_text
-   use mfv_summary, only: unit_suffix
-   use mfv_version, only: library_version
+   use mfv_stress_text, only: list_stresses, summarize_stresses
    use mfv_stress_help, only: help, usage
    implicit none
    save  ! the standard says so of a program; gfortran's -frecursive loses what they hold, which the leak sanitizer tells
@@ -20,23 +17,18 @@ program mfv_stress
    type(stress_request_type) :: request
    type(stress_result_type) :: result
    type(error_type), allocatable :: error
-   character(:), allocatable :: option, path
+   character(:), allocatable :: path, text, warning
 
-   call begin_program()
-   call get_argument(1, option)
-   select case (option)
-   case ('--help', '-h')
-      call print_lines([usage, help])
-      call end_program(0)
-   case ('--version')
-      call print_line('mfv_stress '//library_version)
-      call end_program(0)
-   end select
+   call begin_program('mfv_stress', usage, help)
    call read_arguments()
    call add_stresses(path, request, result, error)
    if (allocated(error)) call fail(error)
-   if (allocated(request%x)) call print_points()
-   call print_summary()
+   text = ''
+   if (allocated(request%x)) call list_stresses(result, text)
+   call print_text(text)
+   call summarize_stresses(path, request, result, text, warning)
+   call print_text(text)
+   if (warning /= '') write (error_unit, '(a)') warning
 
 contains
 
@@ -105,47 +97,5 @@ contains
       if (.not. (is_right .and. value >= lower .and. value <= most)) &
          call refuse('mfv_stress', usage, option//" needs"//kind//", not '"//shortened(text)//"'")
    end function number
-
-   subroutine print_points()
-      character(len=25*(stress_count + 2)) :: line
-      integer :: i
-
-      call print_line('# x y '//stress_names)
-      do i = 1, size(result%x)
-         write (line, '(*(es24.16e3, :, 1x))') result%x(i), result%y(i), result%stress(:, i)
-         call print_line(trim(line))
-      end do
-   end subroutine print_points
-
-   subroutine print_summary()
-      character(:), allocatable :: unit
-
-      unit = unit_suffix(result%stress_unit)
-      call print_line('largest von Mises   '//described(result%largest%value, result%largest%x, result%largest%y))
-      if (.not. ieee_is_finite(result%tension%value)) then
-         call print_line('largest tension     singular: the surface of a body ends where it carries shear')
-      else if (result%tension%value > 0.0_wp) then
-         call print_line('largest tension     '//described(result%tension%value, result%tension%x, result%tension%y)// &
-            ', along the surface')
-      else
-         call print_line('largest tension     0'//unit//': no tension along the surface')
-      end if
-      if (result%yield_strength > 0.0_wp .and. result%largest%value > result%yield_strength) &
-         write (error_unit, '(a)') 'warning: the largest von Mises stress, '//to_text(result%largest%value, 4)//unit// &
-         ', is beyond the yield_strength '//to_text(result%yield_strength)//unit//' of the '// &
-         trim(merge('upper', 'lower', request%upper))//' body: elasticity no longer holds'
-      call print_line('stresses            '//to_text(stress_count)//' quantities at '// &
-         to_text(size(result%stress, 2))//' points, in '//path//' under /'//result%group)
-   end subroutine print_summary
-
-   !> A stress and its place, in the user's units and over those of the contact.
-   function described(value, x, y) result(text)
-      real(wp), intent(in) :: value, x, y
-      character(:), allocatable :: text
-
-      text = to_text(value)//unit_suffix(result%stress_unit)//' = '//to_text(value/result%largest_pressure, 4)// &
-             ' p0, at x, y = '//to_text(x)//', '//to_text(y)//unit_suffix(result%length_unit)//' = '// &
-             to_text(x/result%half_width, 4)//', '//to_text(y/result%half_width, 4)//' a'
-   end function described
 
 end program mfv_stress

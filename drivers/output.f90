@@ -5,7 +5,8 @@ module mfv_output
    use, intrinsic :: iso_fortran_env, only: error_unit
    use mfv_safe_file, only: write_all
    use mfv_status, only: MFV_FILE_ERROR, status_exit_code
-   use mfv_command_line, only: end_program
+   use mfv_version, only: library_version
+   use mfv_command_line, only: end_program, get_argument
    implicit none
    private
    public :: begin_program, print_text, print_line, print_lines
@@ -17,9 +18,23 @@ module mfv_output
 
 contains
 
-   !> What every program does first. See streams.c.
-   subroutine begin_program()
+   !> What every program does first: see streams.c; and answer --help and --version, if one of them is the first argument. The program
+   !> then ends. `usage`, `help`: lines of text.
+   subroutine begin_program(program, usage, help)
+      character(*), intent(in) :: program, usage(:), help(:)
+      character(:), allocatable :: option
+
       call c_begin_streams()
+      call get_argument(1, option)
+      select case (option)
+      case ('--help', '-h')
+         call print_lines([character(max(len(usage), len(help))) :: usage, help])
+      case ('--version')
+         call print_line(program//' '//library_version)
+      case default
+         return
+      end select
+      call end_program(0)
    end subroutine begin_program
 
    !> Print a text as it is. Where that fails the program ends with the exit code of MFV_FILE_ERROR.

@@ -15,8 +15,7 @@ module mfv_terminal
    !> Shows progress on a terminal, and ends the run after Ctrl-C.
    type, extends(observer_type) :: terminal_observer_type
       private
-      logical :: visible = .false.
-      logical :: shown = .false.
+      logical :: visible = .false., shown = .false.
       real(wp) :: next_time = 0.0_wp
       !> What is being done, before the rest; empty for the case itself.
       character(len=20) :: work = ''
@@ -44,16 +43,11 @@ contains
    !> Find out whether there is a terminal to show progress on.
    subroutine start(self)
       class(terminal_observer_type), intent(inout) :: self
-      self%visible = is_terminal()
-      self%next_time = seconds_now() + pause
-   end subroutine start
-
-   !> Whether messages go to a terminal.
-   logical function is_terminal()
       integer(c_int), parameter :: standard_error = 2
 
-      is_terminal = c_isatty(standard_error) /= 0
-   end function is_terminal
+      self%visible = c_isatty(standard_error) /= 0
+      self%next_time = seconds_now() + pause
+   end subroutine start
 
    !> See mfv_observer.
    subroutine notify(self, state, segment, segments, fraction, stop_wanted)
