@@ -279,7 +279,7 @@ contains
       logical, intent(in) :: leap
       real(wp) :: sliding, law_defect, beyond_limit, wrong_way, slipped, limit
       type(friction_point_type) :: here, there
-      logical :: explicit
+      logical :: explicit, varies
       integer :: i, status
 
       sliding = 0.0_wp
@@ -288,12 +288,15 @@ contains
       wrong_way = 0.0_wp
       explicit = model%scene%method%integration == integration_explicit .and. model%scene%method%algorithm == algorithm_mfv
       associate (law => model%scene%friction%law)
+         varies = law%limit_varies()
          do i = 1, size(after%status)
             status = after%status(i)
             if (status == node_open) cycle
-            there = after%friction_point(after%fields, i, model%static_friction(i), model%kinetic_friction(i))
+            ! Friction points cost: they are made where something is asked of them.
+            if (varies .or. motion_sign(status) /= 0) there = after%friction_point(after%fields, i, model%static_friction(i), &
+                                                                                   model%kinetic_friction(i))
             limit = model%static_friction(i)
-            if (law%limit_varies()) limit = law%limit(there)
+            if (varies) limit = law%limit(there)
             limit = limit*after%fields%pressure(i)
             if (status == node_frictionless) limit = 0.0_wp
             beyond_limit = max(beyond_limit, abs(after%fields%shear(i)) - limit)

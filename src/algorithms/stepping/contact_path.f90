@@ -468,7 +468,8 @@ contains
    pure logical function dropping(self)
       class(contact_path_type), intent(in) :: self
 
-      dropping = any(self%is_releasing())
+      dropping = self%has_memory()
+      if (dropping) dropping = any(self%is_releasing())
    end function dropping
 
    !> Nodes whose over-stress must relax.
