@@ -18,7 +18,7 @@ module mfv_command_line
 
 contains
 
-   !> Command-line argument `number`, empty where there is none.
+   !> Command-line argument `number`; empty if there are fewer.
    subroutine get_argument(number, text)
       integer, intent(in) :: number
       character(:), allocatable, intent(out) :: text

@@ -9,7 +9,7 @@ module mfv_output
    use mfv_command_line, only: end_program, get_argument
    implicit none
    private
-   public :: begin_program, print_text, print_line, print_lines
+   public :: begin_program, print_text, print_line
 
    interface
       subroutine c_begin_streams() bind(C, name='mfv_begin_streams')

@@ -141,6 +141,17 @@ def test_without_a_checkpoint_a_run_starts_from_step_1(tmp_path):
     assert code == COMPLETE and output == "" and errors == "case.h5 is complete; there is nothing to resume\n"
 
 
+def test_a_run_that_failed_is_not_called_complete(tmp_path):
+    write_case(tmp_path, nodes=41, cycles=1)
+    path = tmp_path / "case.nml"
+    path.write_text(path.read_text().replace("tangential_force=2e-4", "tangential_force=2e-3"))
+    assert run(tmp_path)[0] == 3 and outcome_of(tmp_path / "case.h5") == "gross sliding"
+    code, output, errors = run(tmp_path, "--resume")
+    assert code == INPUT and output == ""
+    assert errors == ("case.h5: the run ended (gross sliding); nothing to resume; without --resume the case starts again from "
+                      "step 1\n")
+
+
 @pytest.mark.parametrize("damage, why", [
     ("text", "the text of the case has changed"),
     ("version", "written by version 0.0.0"),

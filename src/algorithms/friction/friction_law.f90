@@ -39,7 +39,7 @@ module mfv_friction_law
    !> An event of a law's own at a node: `slack` must not become negative, and changes at the rate
    !> rate + by_pressure*(rate of p) + by_motion*(rate of slip in the direction of the node's motion).
    type :: friction_event_type
-      !> See mfv_node_status; event_none: there is none.
+      !> See mfv_node_status; event_none: no event.
       integer :: kind = event_none
       real(wp) :: slack = 0.0_wp, rate = 0.0_wp, by_pressure = 0.0_wp, by_motion = 0.0_wp
       !> Whether `slack` is a length (else force/length^2); and how many times larger than others the rate's round-off is.

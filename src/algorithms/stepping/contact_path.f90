@@ -544,7 +544,7 @@ contains
       integer :: i
 
       unstable = .false.
-      if (.not. self%model%scene%friction%acts()) return
+      if (.not. self%has_memory()) return
       do i = 1, size(unstable)
          unstable(i) = self%model%scene%friction%law%can_become_unstable(self%state%status(i), self%point(i, self%state%fields))
       end do

@@ -59,7 +59,6 @@ contains
       copy%restart = simulation%restart
       copy%leg = simulation%leg
       if (allocated(simulation%cycles)) copy%cycles = simulation%cycles
-      copy%snapshots = simulation%snapshots(:simulation%snapshot_count)
       copy%contact%model = simulation%contact%model
       copy%contact%history = simulation%contact%history
       associate (r => copy%restart)
@@ -69,8 +68,11 @@ contains
       do i = 1, mark_count
          if (copy%marks(i)%step > 0) copy%marks(i)%state = copy%padded(copy%marks(i))
       end do
+      ! Of the snapshots only what `steps` does not have is written, on the nodes of the present mesh.
+      allocate (copy%snapshots(simulation%snapshot_count))
       do i = 1, simulation%snapshot_count
-         copy%snapshots(i)%state = simulation%padded_state(i)
+         copy%snapshots(i)%state = simulation%snapshots(i)%state
+         call copy%snapshots(i)%state%widen(copy%contact%model%added - simulation%snapshots(i)%added)
       end do
       to_file%group = restart_group
       allocate (to_file%fields(0))

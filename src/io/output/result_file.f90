@@ -11,7 +11,7 @@ module mfv_result_file
    use mfv_hdf5_writer
    use mfv_result_fields
    use mfv_simulation, only: simulation_type
-   use mfv_status, only: MFV_INPUT_ERROR, MFV_INTERRUPTED, status_outcome
+   use mfv_status, only: MFV_COMPLETE, MFV_INPUT_ERROR, MFV_INTERRUPTED, status_outcome
    use mfv_strings, only: string_type
    use mfv_version, only: library_version
    implicit none
@@ -39,9 +39,9 @@ contains
       if (is_whole_result) is_whole_result = outcome /= status_outcome(MFV_INTERRUPTED)
    end function is_whole_result
 
-   !> Bring a new simulation of a case to where the interrupted run was whose result is at `path`. `is_finished`: that run was not
-   !> interrupted, nothing is done. Error MFV_INPUT_ERROR: the file cannot be read, is no result, is that of another case or of
-   !> another version, or is damaged; the simulation is then of no use.
+   !> Bring a new simulation of a case to where the interrupted run was whose result is at `path`. `is_finished`: that run was
+   !> complete, nothing is done. Error MFV_INPUT_ERROR: the file cannot be read, is not a result, is that of a run that failed, of another
+   !> case or of another version, or is damaged; the simulation is then of no use.
    subroutine resume_result(path, case, simulation, is_finished, error)
       character(*), intent(in) :: path
       type(case_type), intent(in) :: case
@@ -67,16 +67,18 @@ contains
       type(simulation_type), intent(inout) :: simulation
       logical, intent(out) :: is_finished
       type(error_type), allocatable, intent(out) :: error
-      character(:), allocatable :: input, version
+      character(:), allocatable :: input, version, outcome
 
       is_finished = .false.
       call read_text_attribute(file, 'input', input, error)
       if (.not. allocated(error)) call read_text_attribute(file, 'mfv_version', version, error)
+      if (.not. allocated(error)) call read_text_attribute(file, 'outcome', outcome, error)
       if (allocated(error)) return
       if (input /= case%text) then
          call set_error(error, MFV_INPUT_ERROR, 'the result of another case: the text of the case has changed')
       else if (.not. has(file, restart_group)) then
-         is_finished = .true.
+         is_finished = outcome == status_outcome(MFV_COMPLETE)
+         if (.not. is_finished) call set_error(error, MFV_INPUT_ERROR, 'the run ended ('//outcome//'); nothing to resume')
       else if (version /= library_version) then
          call set_error(error, MFV_INPUT_ERROR, 'written by version '//version//'; this is '//library_version)
       else
