@@ -1,3 +1,4 @@
+# shellcheck shell=sh
 # Shared by the scripts: what the project needs, how to get it, how to build. Sourced, not run.
 set -eu
 root=$(cd "$(dirname "$0")/.." && pwd)

@@ -12,16 +12,14 @@ for part in "$@"; do
 done
 mkdir -p "$root/build/deep"
 failed=
-# shellcheck disable=SC2086
-for part in "${@:-$all}"; do
-  for part in $part; do
-    log=$root/build/deep/$part.log
-    [ ! -t 1 ] || printf '%s ...' "$part"
-    started=$(date +%s)
-    if sh "$root/scripts/deep-$part.sh" >"$log" 2>&1; then word=ok; else word=FAILED; failed="$failed $part"; fi
-    [ ! -t 1 ] || printf '\r'
-    printf '%-7s %-9s %3d min: %s\n' "$word" "$part" $((($(date +%s) - started + 59) / 60)) "$(tail -n 1 "$log")"
-    [ $word = ok ] || printf '        see build/deep/%s.log\n' "$part"
-  done
+[ $# -gt 0 ] || eval "set -- $all"
+for part in "$@"; do
+  log=$root/build/deep/$part.log
+  [ ! -t 1 ] || printf '%s ...' "$part"
+  started=$(date +%s)
+  if sh "$root/scripts/deep-$part.sh" >"$log" 2>&1; then word=ok; else word=FAILED; failed="$failed $part"; fi
+  [ ! -t 1 ] || printf '\r'
+  printf '%-7s %-9s %3d min: %s\n' "$word" "$part" $((($(date +%s) - started + 59) / 60)) "$(tail -n 1 "$log")"
+  [ $word = ok ] || printf '        see build/deep/%s.log\n' "$part"
 done
 [ -z "$failed" ]

@@ -3,7 +3,7 @@
 # C interface, and the summaries of the examples, which must be those of gfortran's build in all six digits.
 . "$(dirname "$0")/common.sh"
 flang=$(apt-cache pkgnames flang- 2>/dev/null | grep -E '^flang-[0-9]+$' | sort -V | tail -n 1)
-[ -n "$flang" ] || flang=flang-19
+[ -n "$flang" ] || flang='flang-19'
 packages="$packages $flang"
 install_missing
 version=${flang#flang-}

@@ -19,6 +19,11 @@ show animate shear_cycles.h5 --frames 50 --rate 10 -o "$pictures/cycles.gif"
 show report shear_cycles.h5 --states 120
 chromium --headless --no-sandbox --disable-gpu --hide-scrollbars --window-size=1200,1310 --virtual-time-budget=20000 \
   --screenshot="$pictures/report.png" "file://$work/shear_cycles.html"
+"$bin/mfv_run" "$root/examples/fretting_pad.nml" >/dev/null
+"$bin/mfv_stress" fretting_pad.h5 >/dev/null
+draw fretting_pad.h5 --step 2 -o "$pictures/tutorial_shear.png"
+draw fretting_pad.h5 --cycles -o "$pictures/tutorial_cycles.png"
+draw fretting_pad.h5 --stress von_mises -o "$pictures/tutorial_stress.png"
 for example in two_cylinders pin_in_bore; do
   "$bin/mfv_stress" "$example.h5" >/dev/null
   draw "$example.h5" --stress von_mises -o "$pictures/${example}_stress.png"
