@@ -24,7 +24,7 @@ PYTHON_PAGES = ("docs/tutorial.md",)
 COMPLETE, ENDED_EARLY = 0, 3
 #: Commands that the scripts of CI run themselves, that install, or that take minutes.
 NOT_RUN = re.compile(r"git clone|sh scripts/|cmake |pip |.*pip install|export |man |.*examples/dissertation/draw.py")
-COMMAND = re.compile(r"(build/release/bin/|build/venv/bin/)?(mfv_\w+|python|printf|test) (?=\S)")
+COMMAND = re.compile(r"(PYTHONPATH=python )?(build/release/bin/|build/venv/bin/)?(mfv_\w+|python|printf|test) (?=\S)")
 #: Residuals at the level of round-off depend on the processor; times on the day.
 ROUND_OFF = 1.0e-11
 
@@ -39,6 +39,7 @@ class Reader:
         self.printed: list[str] = []
         self.fresh = True
         shutil.copytree(PROJECT / "examples", folder / "examples", ignore=shutil.ignore_patterns("*.h5", "pictures"))
+        (folder / "python").symlink_to(PROJECT / "python")
         for place, target in (("release/bin", PROGRAMS), ("venv", sys.prefix)):
             (folder / "build" / place).parent.mkdir(parents=True, exist_ok=True)
             (folder / "build" / place).symlink_to(target)
