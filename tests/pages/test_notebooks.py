@@ -1,0 +1,57 @@
+"""The notebooks of examples/notebooks: each is executed as it is, and prints what it shows."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+import nbformat
+import pytest
+from nbclient import NotebookClient
+
+NOTEBOOKS = Path(__file__).resolve().parents[2] / "examples" / "notebooks"
+#: Values below this are round-off, which depends on the processor.
+ROUND_OFF = 1.0e-11
+
+
+def printed(notebook: nbformat.NotebookNode) -> list[str]:
+    """What the cells print, one text a cell."""
+    cells = [cell for cell in notebook.cells if cell.cell_type == "code"]
+    return ["".join(output.text for output in cell.outputs if output.output_type == "stream") for cell in cells]
+
+
+def pictures(notebook: nbformat.NotebookNode) -> int:
+    """Number of pictures that the cells show."""
+    outputs = [output for cell in notebook.cells if cell.cell_type == "code" for output in cell.outputs]
+    return sum("image/png" in output.get("data", {}) for output in outputs)
+
+
+def words(text: str) -> list[float | str]:
+    """The words of a text, numbers as numbers: round-off is zero."""
+    found: list[float | str] = []
+    for word in re.split(r"[\s\[\],=:]+", text):
+        try:
+            value = float(word)
+            found.append(0.0 if abs(value) < ROUND_OFF else value)
+        except ValueError:
+            found.append(word)
+    return found
+
+
+@pytest.mark.parametrize("name", sorted(path.stem for path in NOTEBOOKS.glob("*.ipynb")))
+def test_notebook_prints_what_it_shows(name: str) -> None:
+    shown = nbformat.read(NOTEBOOKS / f"{name}.ipynb", as_version=4)
+    run = nbformat.from_dict(shown)
+    NotebookClient(run, timeout=300, kernel_name="python3", resources={"metadata": {"path": str(NOTEBOOKS)}}).execute()
+    assert pictures(run) == pictures(shown) > 0
+    for before, after in zip(printed(shown), printed(run)):
+        first, second = words(before), words(after)
+        assert len(first) == len(second), f"shown:\n{before}\nprinted:\n{after}"
+        for one, other in zip(first, second):
+            same = one == other if isinstance(one, str) else other == pytest.approx(one, rel=1e-4)
+            assert same, f"shown:\n{before}\nprinted:\n{after}"
+
+
+def test_every_notebook_is_listed() -> None:
+    listed = re.findall(r"\]\((\w+)\.ipynb\)", (NOTEBOOKS / "README.md").read_text())
+    assert sorted(listed) == sorted(path.stem for path in NOTEBOOKS.glob("*.ipynb"))
