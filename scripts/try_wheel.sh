@@ -15,9 +15,8 @@ for python in "$@"; do
   mkdir "$folder/work"
   cd "$folder/work"
   "$folder/venv/bin/python" -m pip install --quiet --disable-pip-version-check "$wheel"
-  PATH=$folder/venv/bin:/usr/bin:/bin
-  env -i PATH="$PATH" HOME="$folder" MPLBACKEND=Agg sh -euc '
-    python -m mfv new cylinder.nml >/dev/null
+  env -i PATH="$folder/venv/bin:/usr/bin:/bin" HOME="$folder" MPLBACKEND=Agg sh -euc '
+    python -m mfv new >/dev/null
     mfv_run cylinder.nml >summary.txt
     python -m mfv plot cylinder.h5 >/dev/null
     python -c "import mfv; result = mfv.read(\"cylinder.h5\"); assert result.certificate.largest < 1e-10"

@@ -19,16 +19,12 @@ EXPRESSION = "BSD-3-Clause AND GPL-3.0-or-later"
 
 
 def package_of(library: str) -> str:
-    """Debian package that a bundled library comes from; `library`: its name in the wheel, libgsl-0f93aff2.so.27.0.0."""
-    name = re.sub(r"-[0-9a-f]{8,}(?=\.so)", "", library)
-    links = subprocess.run(["ldconfig", "-p"], capture_output=True, text=True, check=True, env={"PATH": "/usr/sbin:/sbin:/usr/bin"})
-    stem = name.split(".so")[0] + ".so"
-    paths = [line.split("=> ")[1] for line in links.stdout.splitlines() if line.strip().startswith(stem) and "=> " in line]
-    for path in paths:
-        for candidate in (str(Path(path).resolve()), path, path.removeprefix("/usr")):
-            found = subprocess.run(["dpkg", "-S", candidate], capture_output=True, text=True, check=False)
-            if found.returncode == 0:
-                return found.stdout.split(":")[0]
+    """Debian package that a bundled library comes from; `library`: its name in the wheel, libgsl-0f93aff2.so.27.0.0, with the checksum
+    before the first point."""
+    name = re.sub(r"-[0-9a-f]{8,}(?=\.)", "", library)
+    found = subprocess.run(["dpkg", "-S", f"*/{name}"], capture_output=True, text=True, check=False)
+    if found.returncode == 0:
+        return found.stdout.split(":")[0]
     sys.exit(f"{library}: the Debian package it comes from was not found")
 
 

@@ -81,3 +81,14 @@ def test_files_of_the_package_are_there(tmp_path):
     subprocess.run(["mfv_run", "cylinder.nml"], cwd=tmp_path, capture_output=True, check=True)
     subprocess.run([sys.executable, "-m", "mfv", "report", "cylinder.h5"], cwd=tmp_path, capture_output=True, check=True)
     assert "<html" in (tmp_path / "cylinder.html").read_text()[:1000]
+
+
+def test_licences_of_what_is_bundled():
+    (info,) = SITE.glob("mfv-*.dist-info")
+    metadata = (info / "METADATA").read_text()
+    assert "License-Expression: BSD-3-Clause AND GPL-3.0-or-later\n" in metadata
+    texts = {path.name for path in (info / "licenses").iterdir()}
+    assert {"LICENSE", "GPL-3.txt"} <= texts
+    for library in "gsl", "fftw3", "openblas", "hdf5", "gfortran":
+        assert any(library in name for name in texts), library
+    assert set(re.findall(r"(?m)^License-File: (.+)$", metadata)) == texts
