@@ -44,8 +44,8 @@ module mfv_krylov_system
       private
       type(krylov_preconditioner_type) :: preconditioner
       type(gmres_type) :: gmres
-      !> Units of traction and length.
-      real(wp) :: stress = 1.0_wp, length = 0.0_wp
+      !> Units of traction, length, arms and motions.
+      real(wp) :: stress = 1.0_wp, length = 0.0_wp, arm(motion_count) = 1.0_wp, motion_unit(motion_count) = 1.0_wp
       !> Arms of the motions and widths of the nodes in these units, shapes (nodes, motion_count), (nodes).
       real(wp), allocatable :: normal_arm(:, :), tangential_arm(:, :), width(:)
       !> Nodes in contact, held nodes, and free motions, ascending.
@@ -98,8 +98,8 @@ contains
 
       prescribed = prescribed_by(constraints, model, .false.)
       right = right_side(self, model, constraints%status, prescribed)
-      unknowns = packed(self, start%pressure/self%stress, start%shear/self%stress, &
-                        start%motion/motion_units(self))
+      unknowns = [start%pressure(self%contact)/self%stress, start%shear(self%held)/self%stress, &
+                  start%motion(self%free)/self%motion_unit(self%free)]
       call iterate(self, model, right, unknowns, singular)
       if (singular) return
       response%state = fields_of(self, model, prescribed, right, unknowns)
@@ -127,6 +127,8 @@ contains
       if (.not. self%length > 0.0_wp) then
          self%length = model%length()
          self%stress = model%compliance%modulus
+         self%arm = [(arm_unit(i, self%length), i=1, motion_count)]
+         self%motion_unit = self%length/self%arm
       end if
       call self%preconditioner%prepare(model%compliance, self%length/self%stress)
       if (allocated(self%pressure)) then
@@ -137,8 +139,8 @@ contains
       self%normal_arm = model%normal_arm
       self%tangential_arm = model%tangential_arm
       do i = 1, motion_count
-         self%normal_arm(:, i) = self%normal_arm(:, i)/arm_unit(i, self%length)
-         self%tangential_arm(:, i) = self%tangential_arm(:, i)/arm_unit(i, self%length)
+         self%normal_arm(:, i) = self%normal_arm(:, i)/self%arm(i)
+         self%tangential_arm(:, i) = self%tangential_arm(:, i)/self%arm(i)
       end do
       self%width = model%width/self%length
       if (allocated(self%last_pressure)) then
@@ -255,39 +257,18 @@ contains
       type(contact_model_type), intent(in) :: model
       integer, intent(in) :: status(:)
       type(prescribed_type), intent(in) :: prescribed
-      real(wp) :: force_unit(motion_count)
-      integer :: i
 
-      force_unit = self%stress*self%length*[(arm_unit(i, self%length), i=1, motion_count)]
-      right%motion = prescribed%load/motion_units(self)
+      right%motion = prescribed%load/self%motion_unit
       right%motion(self%free) = 0.0_wp
       where (.not. model%moves) right%motion = 0.0_wp
       right%offset = merge(prescribed%offset, 0.0_wp, slips(status) .or. creeps(status))/self%stress
       associate (held => self%held)
          right%rows = [prescribed%opening(self%contact)/self%length, &
                        merge(prescribed%slip(held)/self%length, self%softness*right%offset(held), status(held) == node_stick), &
-                       prescribed%load(self%free)/force_unit(self%free)]
+                       prescribed%load(self%free)/(self%stress*self%length*self%arm(self%free))]
          right%offset(held) = 0.0_wp
       end associate
    end function right_side
-
-   !> Units of the motions.
-   pure function motion_units(self)
-      class(krylov_system_type), intent(in) :: self
-      real(wp) :: motion_units(motion_count)
-      integer :: i
-
-      motion_units = [(self%length/arm_unit(i, self%length), i=1, motion_count)]
-   end function motion_units
-
-   !> The unknowns out of fields, shape (nodes), and motions.
-   function packed(self, pressure, shear, motion) result(unknowns)
-      class(krylov_system_type), intent(in) :: self
-      real(wp), intent(in) :: pressure(:), shear(:), motion(motion_count)
-      real(wp), allocatable :: unknowns(:)
-
-      unknowns = [pressure(self%contact), shear(self%held), motion(self%free)]
-   end function packed
 
    !> The rates found last as a guess: on nodes without gaps stretched to where these are now, so that what is singular at the
    !> ends stays there; else node by node.
@@ -300,7 +281,7 @@ contains
       shear = self%last_shear
       call stretch(self%last_contact, ends_of(self%contact), pressure)
       call stretch(self%last_held, ends_of(self%held), shear)
-      unknowns = packed(self, pressure, shear, self%last_motion)
+      unknowns = [pressure(self%contact), shear(self%held), self%last_motion(self%free)]
    end function guess_of_rates
 
    !> First and last of nodes without gaps; zero where there are gaps, or none.
@@ -575,7 +556,7 @@ contains
       integer :: i
 
       fields = new_contact_fields(size(self%pressure))
-      fields%motion = motion_units(self)*motion_of(self, right%motion, unknowns)
+      fields%motion = self%motion_unit*motion_of(self, right%motion, unknowns)
       fields%pressure = self%stress*self%found(:, 1)
       fields%shear = self%stress*self%found(:, 2)
       fields%normal = self%length*self%found(:, 3) - model%rigid_normal(fields)
