@@ -90,7 +90,10 @@ contains
       logical, intent(in) :: rates
 
       if (.not. rates) then
-         prescribed = prescribed_type(-model%initial_gap, constraints%stuck_slip, constraints%row%offset, constraints%load%value)
+         prescribed%load = constraints%load%value
+         prescribed%offset = constraints%row%offset
+         prescribed%opening = -model%initial_gap
+         prescribed%slip = constraints%stuck_slip
          return
       end if
       prescribed%load = constraints%load%rate
