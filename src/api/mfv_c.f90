@@ -17,7 +17,7 @@ module mfv_c
    use mfv_keys, only: catalogue_type, kind_integer
    use mfv_kinds, only: wp
    use mfv_motions, only: motions, motion_count
-   use mfv_observables, only: observable_count, observable_meaning, observable_name, observable_unit
+   use mfv_observables, only: observable_count, observables
    use mfv_observer, only: observer_type
    use mfv_result_fields, only: field_type
    use mfv_scene, only: step_type
@@ -157,9 +157,9 @@ contains
       call say('', description, description_size)
       if (index < 0 .or. index >= observable_count) return
       number = int(index) + 1
-      call say(observable_name(number), name, name_size)
-      call say(observable_unit(number), unit, unit_size)
-      call say(observable_meaning(number), description, description_size)
+      call say(trim(observables(number)%name), name, name_size)
+      call say(trim(observables(number)%unit), unit, unit_size)
+      call say(trim(observables(number)%meaning), description, description_size)
       status = MFV_COMPLETE
    end function mfv_observable_info
 

@@ -69,69 +69,51 @@ module mfv_body
 contains
 
    !> A flat surface without end.
-   pure function new_half_plane_body() result(body)
-      type(body_type) :: body
-
-      body%shape = shape_half_plane
+   pure type(body_type) function new_half_plane_body() result(body)
+      body = body_type(shape=shape_half_plane)
    end function new_half_plane_body
 
    !> Disk of the given radius (length).
-   pure function new_disk(radius) result(body)
+   pure type(body_type) function new_disk(radius) result(body)
       real(wp), intent(in) :: radius
-      type(body_type) :: body
 
-      body%shape = shape_disk
-      body%radius = radius
-      body%from = -radius
-      body%to = radius
+      body = body_type(shape=shape_disk, radius=radius, from=-radius, to=radius)
    end function new_disk
 
    !> Infinite plane around a hole of the given radius (length).
-   pure function new_hole(radius) result(body)
+   pure type(body_type) function new_hole(radius) result(body)
       real(wp), intent(in) :: radius
-      type(body_type) :: body
 
-      body = new_disk(radius)
-      body%shape = shape_hole
+      body = body_type(shape=shape_hole, radius=radius, from=-radius, to=radius)
    end function new_hole
 
    !> Flat punch with sharp edges at x = -half_width and half_width (length).
-   pure function new_flat_punch(half_width) result(body)
+   pure type(body_type) function new_flat_punch(half_width) result(body)
       real(wp), intent(in) :: half_width
-      type(body_type) :: body
 
-      body%shape = shape_flat_punch
-      body%from = -half_width
-      body%to = half_width
+      body = body_type(shape=shape_flat_punch, from=-half_width, to=half_width)
    end function new_flat_punch
 
    !> Punch that is flat over |x| < half_width, with edges that recede by (|x| - half_width)^2/(2 edge_radius); lengths.
-   pure function new_rounded_punch(half_width, edge_radius) result(body)
+   pure type(body_type) function new_rounded_punch(half_width, edge_radius) result(body)
       real(wp), intent(in) :: half_width, edge_radius
-      type(body_type) :: body
 
-      body%shape = shape_rounded_punch
-      body%flat_half_width = half_width
-      body%radius = edge_radius
+      body = body_type(shape=shape_rounded_punch, flat_half_width=half_width, radius=edge_radius)
    end function new_rounded_punch
 
    !> Body that recedes by coefficient*|x|**exponent; the coefficient is a length^(1 - exponent).
-   pure function new_power(coefficient, exponent) result(body)
+   pure type(body_type) function new_power(coefficient, exponent) result(body)
       real(wp), intent(in) :: coefficient, exponent
-      type(body_type) :: body
 
-      body%shape = shape_power
-      body%coefficient = coefficient
-      body%exponent = exponent
+      body = body_type(shape=shape_power, coefficient=coefficient, exponent=exponent)
    end function new_power
 
    !> Profile through the points (position, height), lengths, height the recess. `interpolation`: straight between the points, or
    !> Steffen's monotone interpolation: no overshoot, flat parts stay flat, corners are rounded. The caller makes sure of at least
    !> three strictly increasing positions.
-   pure function new_profile(position, height, interpolation) result(body)
+   pure type(body_type) function new_profile(position, height, interpolation) result(body)
       real(wp), intent(in) :: position(:), height(:)
       integer, intent(in), optional :: interpolation
-      type(body_type) :: body
 
       body%shape = shape_profile
       if (present(interpolation)) body%interpolation = interpolation
@@ -143,9 +125,8 @@ contains
 
    !> Elastic body of a user's matrix: `position` and `recess` of its surface nodes and the `width` of the surface that
    !> belongs to each, lengths, shape (n); `matrix`: displacements by nodal forces, see mfv_matrix_compliance.
-   pure function new_matrix_body(position, recess, width, matrix) result(body)
+   pure type(body_type) function new_matrix_body(position, recess, width, matrix) result(body)
       real(wp), intent(in) :: position(:), recess(:), width(:), matrix(:, :)
-      type(body_type) :: body
 
       body%shape = shape_matrix
       body%rigid = .false.

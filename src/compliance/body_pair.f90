@@ -119,29 +119,24 @@ contains
    end subroutine entries
 
    !> See mfv_compliance.
-   subroutine parts(self, pressure, shear, normal_by_pressure, normal_by_shear, tangential_by_pressure, tangential_by_shear)
+   subroutine parts(self, pressure, shear, part)
       class(body_pair_type), intent(in) :: self
       real(wp), intent(in) :: pressure(:), shear(:)
-      real(wp), intent(out) :: normal_by_pressure(:), normal_by_shear(:), tangential_by_pressure(:), tangential_by_shear(:)
-      real(wp), dimension(size(pressure), 4) :: upper
-      integer :: first
+      real(wp), intent(out) :: part(:, :)
+      real(wp) :: upper(size(pressure), 4)
+      integer :: block
 
-      first = merge(part_lower, part_upper, self%deforms(part_lower))
-      call self%part(first)%compliance%parts(pressure, shear, normal_by_pressure, normal_by_shear, tangential_by_pressure, &
-                                             tangential_by_shear)
-      if (first == part_lower .and. self%deforms(part_upper)) then
-         call self%part(part_upper)%compliance%parts(pressure, shear, upper(:, block_wp), upper(:, block_wt), &
-                                                     upper(:, block_up), upper(:, block_ut))
-         normal_by_pressure = normal_by_pressure + upper_sign(block_wp)*upper(:, block_wp)
-         normal_by_shear = normal_by_shear + upper_sign(block_wt)*upper(:, block_wt)
-         tangential_by_pressure = tangential_by_pressure + upper_sign(block_up)*upper(:, block_up)
-         tangential_by_shear = tangential_by_shear + upper_sign(block_ut)*upper(:, block_ut)
-      else if (first == part_upper) then
-         normal_by_shear = upper_sign(block_wt)*normal_by_shear
-         tangential_by_pressure = upper_sign(block_up)*tangential_by_pressure
+      if (self%deforms(part_lower)) call self%part(part_lower)%compliance%parts(pressure, shear, part)
+      if (self%deforms(part_upper)) then
+         call self%part(part_upper)%compliance%parts(pressure, shear, upper)
+         do block = 1, 4
+            upper(:, block) = upper_sign(block)*upper(:, block)
+         end do
+         if (self%deforms(part_lower)) upper = part + upper
+         part = upper
       end if
-      if (.not. self%has_block(block_wt)) normal_by_shear = 0.0_wp
-      if (.not. self%has_block(block_up)) tangential_by_pressure = 0.0_wp
+      if (.not. self%has_block(block_wt)) part(:, block_wt) = 0.0_wp
+      if (.not. self%has_block(block_up)) part(:, block_up) = 0.0_wp
    end subroutine parts
 
    !> Surface displacements of one body, into it and to the right, length, under the tractions on the lower body; zero

@@ -246,18 +246,16 @@ contains
 
    !> See mfv_compliance: tractions are turned to polar components, multiplied by the Toeplitz kernels, and displacements
    !> turned back.
-   subroutine parts(self, pressure, shear, normal_by_pressure, normal_by_shear, tangential_by_pressure, tangential_by_shear)
+   subroutine parts(self, pressure, shear, part)
       class(circle_type), intent(in) :: self
       real(wp), intent(in) :: pressure(:), shear(:)
-      real(wp), intent(out) :: normal_by_pressure(:), normal_by_shear(:), tangential_by_pressure(:), tangential_by_shear(:)
+      real(wp), intent(out) :: part(:, :)
 
-      tangential_by_pressure = 0.0_wp
-      normal_by_shear = 0.0_wp
-      tangential_by_shear = 0.0_wp
-      call multiply(self, .true., pressure, normal_by_pressure, tangential_by_pressure)
-      if (self%has_block(block_ut)) call multiply(self, .false., shear, normal_by_shear, tangential_by_shear)
-      if (.not. self%has_block(block_wt)) normal_by_shear = 0.0_wp
-      if (.not. self%has_block(block_up)) tangential_by_pressure = 0.0_wp
+      part = 0.0_wp
+      call multiply(self, .true., pressure, part(:, block_wp), part(:, block_up))
+      if (self%has_block(block_ut)) call multiply(self, .false., shear, part(:, block_wt), part(:, block_ut))
+      if (.not. self%has_block(block_wt)) part(:, block_wt) = 0.0_wp
+      if (.not. self%has_block(block_up)) part(:, block_up) = 0.0_wp
    end subroutine parts
 
    !> w and u by a normal (`by_pressure`) or a shear traction, shapes (nodes).

@@ -47,17 +47,19 @@ contains
 
    !> The exact kernels at `nodes` distances 0, dtheta, 2 dtheta, ... (at most half the circle, or whole when dtheta
    !> divides it). `kappa`: Kolosov's constant. Only these entries are computed, however fine the circle is.
-   pure function exact_kernels(body, kappa, dtheta, nodes) result(kernels)
+   pure type(circle_kernels_type) function exact_kernels(body, kappa, dtheta, nodes) result(kernels)
       integer, intent(in) :: body, nodes
       real(wp), intent(in) :: kappa, dtheta
-      type(circle_kernels_type) :: kernels
-      real(wp) :: theta
+      real(wp) :: theta, sine_first, sine_second, cosine_first, cosine_second, sign
       integer :: i
 
       allocate (kernels%radial(0:nodes - 1), kernels%cross(0:nodes - 1), kernels%tangential(0:nodes - 1))
+      sign = merge(1.0_wp, -1.0_wp, body == body_disk)
       do i = 0, nodes - 1
          theta = i*dtheta
-         call higher_terms(body, kappa, theta, 0.5_wp*dtheta, kernels%radial(i), kernels%cross(i))
+         call differences(theta, 0.5_wp*dtheta, sine_first, sine_second, cosine_first, cosine_second)
+         kernels%radial(i) = (sign*(kappa + 1.0_wp)*sine_first - (kappa - 1.0_wp)*sine_second)/(4.0_wp*pi)
+         kernels%cross(i) = -((kappa - 1.0_wp)*cosine_first - sign*(kappa + 1.0_wp)*cosine_second)/(4.0_wp*pi)
          kernels%tangential(i) = kernels%radial(i)
          call add_lower_terms(body, kappa, theta, dtheta, kernels%radial(i), kernels%cross(i), kernels%tangential(i))
       end do
@@ -94,10 +96,9 @@ contains
 
    !> The kernels at `nodes` distances with the series cut after `harmonics` terms, on a circle of `circle_nodes`
    !> intervals: the coefficients folded onto the circle's nodes and summed by one transform.
-   function fourier_kernels(body, kappa, circle_nodes, harmonics, nodes) result(kernels)
+   type(circle_kernels_type) function fourier_kernels(body, kappa, circle_nodes, harmonics, nodes) result(kernels)
       integer, intent(in) :: body, circle_nodes, harmonics, nodes
       real(wp), intent(in) :: kappa
-      type(circle_kernels_type) :: kernels
       complex(wp), allocatable :: folded(:)
       real(wp), allocatable :: sums(:)
       real(wp) :: dtheta, mirrored
@@ -148,21 +149,8 @@ contains
       end do
    end function folded_coefficients
 
-   !> The terms n >= 2 of u_r and u_theta by a unit radial traction at the angle `theta` in [0, 2 pi), in closed form;
-   !> times G/R. `a`: half the angle of the box; theta is 0 or at least 2a.
-   pure subroutine higher_terms(body, kappa, theta, a, radial, cross)
-      integer, intent(in) :: body
-      real(wp), intent(in) :: kappa, theta, a
-      real(wp), intent(out) :: radial, cross
-      real(wp) :: sine_first, sine_second, cosine_first, cosine_second, sign
-
-      call differences(theta, a, sine_first, sine_second, cosine_first, cosine_second)
-      sign = merge(1.0_wp, -1.0_wp, body == body_disk)
-      radial = (sign*(kappa + 1.0_wp)*sine_first - (kappa - 1.0_wp)*sine_second)/(4.0_wp*pi)
-      cross = -((kappa - 1.0_wp)*cosine_first - sign*(kappa + 1.0_wp)*cosine_second)/(4.0_wp*pi)
-   end subroutine higher_terms
-
-   !> Differences f(theta + a) - f(theta - a) of the four sums, in the order of the head of this file.
+   !> Differences f(theta + a) - f(theta - a) of the four sums, in the order of the head of this file, for theta in [0, 2 pi). `a`:
+   !> half the angle of the box; theta is 0 or at least 2a.
    pure subroutine differences(theta, a, sine_first, sine_second, cosine_first, cosine_second)
       real(wp), intent(in) :: theta, a
       real(wp), intent(out) :: sine_first, sine_second, cosine_first, cosine_second

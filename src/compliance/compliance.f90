@@ -36,7 +36,6 @@ module mfv_compliance
       procedure(resize_interface), deferred :: resize
       procedure(entries_interface), deferred :: entries
       procedure(parts_interface), deferred :: parts
-      procedure :: product
       procedure :: displacements
       procedure :: signature
       procedure :: choose_blocks
@@ -61,15 +60,14 @@ module mfv_compliance
          real(wp), intent(out) :: matrix(:, :)
       end subroutine entries_interface
 
-      !> The products of the four blocks with `pressure` and `shear`, force/length^2: displacements, length; all of shape
-      !> (nodes). A block that does not exist gives zero. Of the order of n log n operations where the kernel depends on the
+      !> `part(:, block)`: the product of each block with `pressure` or `shear`, force/length^2, shape (nodes): displacements,
+      !> length. A block that does not exist gives zero. Of the order of n log n operations where the kernel depends on the
       !> distance only.
-      subroutine parts_interface(self, pressure, shear, normal_by_pressure, normal_by_shear, tangential_by_pressure, &
-                                 tangential_by_shear)
+      subroutine parts_interface(self, pressure, shear, part)
          import :: compliance_type, wp
          class(compliance_type), intent(in) :: self
          real(wp), intent(in) :: pressure(:), shear(:)
-         real(wp), intent(out) :: normal_by_pressure(:), normal_by_shear(:), tangential_by_pressure(:), tangential_by_shear(:)
+         real(wp), intent(out) :: part(:, :)
       end subroutine parts_interface
    end interface
 
@@ -81,31 +79,12 @@ contains
       class(compliance_type), intent(in) :: self
       real(wp), intent(in) :: pressure(:), shear(:)
       real(wp), intent(out) :: normal(:), tangential(:)
+      real(wp) :: part(size(pressure), 4)
 
-      real(wp), dimension(size(pressure)) :: normal_by_shear, tangential_by_pressure
-
-      call self%parts(pressure, shear, normal, normal_by_shear, tangential_by_pressure, tangential)
-      normal = normal + normal_by_shear
-      tangential = tangential + tangential_by_pressure
+      call self%parts(pressure, shear, part)
+      normal = part(:, block_wp) + part(:, block_wt)
+      tangential = part(:, block_ut) + part(:, block_up)
    end subroutine displacements
-
-   !> Add block times `traction` to `displacement`, both of shape (nodes); a block that does not exist adds nothing.
-   subroutine product(self, block, traction, displacement)
-      class(compliance_type), intent(in) :: self
-      integer, intent(in) :: block
-      real(wp), intent(in) :: traction(:)
-      real(wp), intent(inout) :: displacement(:)
-      real(wp), dimension(size(traction), 4) :: part
-      real(wp) :: nothing(size(traction))
-
-      nothing = 0.0_wp
-      if (block == block_wp .or. block == block_up) then
-         call self%parts(traction, nothing, part(:, block_wp), part(:, block_wt), part(:, block_up), part(:, block_ut))
-      else
-         call self%parts(nothing, traction, part(:, block_wp), part(:, block_wt), part(:, block_up), part(:, block_ut))
-      end if
-      displacement = displacement + part(:, block)
-   end subroutine product
 
    !> What the coupling blocks depend on: two bodies with equal signatures pressed together do not couple. Zero where there
    !> is no coupling; enormous, as here, where nothing is known of it, so that no other body's cancels it.

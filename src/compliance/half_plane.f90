@@ -43,12 +43,11 @@ contains
    !> Half-plane with `nodes` intervals of width `interval` (length).
    !> `datum`: distance at which displacements are measured, length. `coupling`: see mfv_compliance.
    !> `tangential`: whether friction can act in the scene; without it only C_wp is built.
-   function new_half_plane(material, nodes, interval, datum, coupling, tangential) result(self)
+   type(half_plane_type) function new_half_plane(material, nodes, interval, datum, coupling, tangential) result(self)
       type(material_type), intent(in) :: material
       integer, intent(in) :: nodes, coupling
       real(wp), intent(in) :: interval, datum
       logical, intent(in) :: tangential
-      type(half_plane_type) :: self
 
       self%material = material
       self%interval = interval
@@ -104,18 +103,16 @@ contains
    end subroutine entries
 
    !> See mfv_compliance; the cross blocks, constant on either side of the diagonal, need only running sums.
-   subroutine parts(self, pressure, shear, normal_by_pressure, normal_by_shear, tangential_by_pressure, tangential_by_shear)
+   subroutine parts(self, pressure, shear, part)
       class(half_plane_type), intent(in) :: self
       real(wp), intent(in) :: pressure(:), shear(:)
-      real(wp), intent(out) :: normal_by_pressure(:), normal_by_shear(:), tangential_by_pressure(:), tangential_by_shear(:)
+      real(wp), intent(out) :: part(:, :)
 
-      normal_by_shear = 0.0_wp
-      tangential_by_pressure = 0.0_wp
-      tangential_by_shear = 0.0_wp
-      call self%operator%multiply(pressure, normal_by_pressure, shear, tangential_by_shear)
-      if (self%has_block(block_wt)) call multiply_steps(self%cross, shear, normal_by_shear)
-      if (self%has_block(block_up)) call multiply_steps(-self%cross, pressure, tangential_by_pressure)
-      if (.not. self%has_block(block_ut)) tangential_by_shear = 0.0_wp
+      part(:, [block_wt, block_up]) = 0.0_wp
+      call self%operator%multiply(pressure, part(:, block_wp), shear, part(:, block_ut))
+      if (self%has_block(block_wt)) call multiply_steps(self%cross, shear, part(:, block_wt))
+      if (self%has_block(block_up)) call multiply_steps(-self%cross, pressure, part(:, block_up))
+      if (.not. self%has_block(block_ut)) part(:, block_ut) = 0.0_wp
    end subroutine parts
 
    !> displacement(i) = cross (sum of tractions left of i - sum right of i).
@@ -147,11 +144,11 @@ contains
 
       distance = abs(r)
       if (distance < near) then
-         kernel = even_series(distance**2)
+         kernel = series(distance**2, -1.0_wp)
       else if (distance < far) then
          kernel = x_log_x(distance + 1.0_wp) - x_log_x(distance - 1.0_wp)
       else
-         kernel = 2.0_wp*log(distance) + 2.0_wp - 2.0_wp*odd_series(distance**(-2))
+         kernel = 2.0_wp*log(distance) + 2.0_wp - series(distance**(-2), 1.0_wp)
       end if
    end function log_kernel
 
@@ -163,29 +160,18 @@ contains
       if (abs(x) > 0.0_wp) x_log_x = x*log(abs(x))
    end function x_log_x
 
-   !> (1+r) ln(1+r) + (1-r) ln(1-r) = sum over k >= 1 of r^(2k)/(k (2k-1)), from the smallest term up; r <= 1/2.
-   pure real(wp) function even_series(square) result(total)
-      real(wp), intent(in) :: square
+   !> sum over k >= 1 of square^k/(k (2k + sign)), from the smallest term up; square <= 1/4. With sign -1 and r^2 it is
+   !> (1+r) ln(1+r) + (1-r) ln(1-r), with sign 1 and 1/r^2 what log_kernel lacks of 2 ln(r) + 2.
+   pure real(wp) function series(square, sign) result(total)
+      real(wp), intent(in) :: square, sign
       integer, parameter :: terms = 26
       integer :: k
 
       total = 0.0_wp
       do k = terms, 1, -1
-         total = (total + 1.0_wp/(k*(2.0_wp*k - 1.0_wp)))*square
+         total = (total + 1.0_wp/(k*(2.0_wp*k + sign)))*square
       end do
-   end function even_series
-
-   !> sum over m >= 1 of t^(2m)/(2m (2m+1)), t = 1/r; r >= 2.
-   pure real(wp) function odd_series(square) result(total)
-      real(wp), intent(in) :: square
-      integer, parameter :: terms = 26
-      integer :: m
-
-      total = 0.0_wp
-      do m = terms, 1, -1
-         total = (total + 1.0_wp/(2.0_wp*m*(2.0_wp*m + 1.0_wp)))*square
-      end do
-   end function odd_series
+   end function series
 
    !> x/h inside the loaded interval, -1 or 1 outside: the tangential displacement by a box pressure.
    elemental real(wp) function step_kernel(r) result(kernel)

@@ -24,10 +24,9 @@ module mfv_material
 contains
 
    !> Material from its shear modulus (force/length^2), Poisson's ratio and plane state. The caller checks the ranges.
-   pure function new_material(shear_modulus, poisson_ratio, plane) result(material)
+   pure type(material_type) function new_material(shear_modulus, poisson_ratio, plane) result(material)
       real(wp), intent(in) :: shear_modulus, poisson_ratio
       integer, intent(in) :: plane
-      type(material_type) :: material
 
       material = material_type(shear_modulus, poisson_ratio, kolosov_constant(poisson_ratio, plane))
    end function new_material

@@ -33,11 +33,10 @@ contains
    !> Compliance of `compliance`, displacements by nodal forces, checked by check_compliance; shape (n, n) or (2n, 2n).
    !> `width`: length of the surface that belongs to each node, shape (n); a traction on it makes a nodal force.
    !> `tangential`: whether friction can act; it takes the larger matrix.
-   function new_matrix_compliance(compliance, width, coupling, tangential) result(self)
+   type(matrix_compliance_type) function new_matrix_compliance(compliance, width, coupling, tangential) result(self)
       real(wp), intent(in) :: compliance(:, :), width(:)
       integer, intent(in) :: coupling
       logical, intent(in) :: tangential
-      type(matrix_compliance_type) :: self
       integer :: j, n
 
       n = size(width)
@@ -147,34 +146,24 @@ contains
       matrix = self%matrix(before(1) + rows, before(2) + columns)
    end subroutine entries
 
-   !> See mfv_compliance.
-   subroutine parts(self, pressure, shear, normal_by_pressure, normal_by_shear, tangential_by_pressure, tangential_by_shear)
+   !> See mfv_compliance; only what is loaded is looked at.
+   subroutine parts(self, pressure, shear, part)
       class(matrix_compliance_type), intent(in) :: self
       real(wp), intent(in) :: pressure(:), shear(:)
-      real(wp), intent(out) :: normal_by_pressure(:), normal_by_shear(:), tangential_by_pressure(:), tangential_by_shear(:)
+      real(wp), intent(out) :: part(:, :)
+      real(wp) :: traction(self%nodes)
+      integer :: before(2), block, j
 
-      call multiply(self, block_wp, pressure, normal_by_pressure)
-      call multiply(self, block_wt, shear, normal_by_shear)
-      call multiply(self, block_up, pressure, tangential_by_pressure)
-      call multiply(self, block_ut, shear, tangential_by_shear)
-   end subroutine parts
-
-   !> A block times a traction, shapes (nodes); only what is loaded is looked at.
-   subroutine multiply(self, block, traction, displacement)
-      class(matrix_compliance_type), intent(in) :: self
-      integer, intent(in) :: block
-      real(wp), intent(in) :: traction(:)
-      real(wp), intent(out) :: displacement(:)
-      integer :: before(2), j, n
-
-      displacement = 0.0_wp
-      if (.not. self%has_block(block)) return
-      before = origin(self, block)
-      n = self%nodes
-      do j = 1, n
-         if (.not. abs(traction(j)) > 0.0_wp) cycle
-         displacement = displacement + traction(j)*self%matrix(before(1) + 1:before(1) + n, before(2) + j)
+      part = 0.0_wp
+      do block = 1, 4
+         if (.not. self%has_block(block)) cycle
+         before = origin(self, block)
+         traction = merge(pressure, shear, before(2) == 0)
+         do j = 1, self%nodes
+            if (.not. abs(traction(j)) > 0.0_wp) cycle
+            part(:, block) = part(:, block) + traction(j)*self%matrix(before(1) + 1:before(1) + self%nodes, before(2) + j)
+         end do
       end do
-   end subroutine multiply
+   end subroutine parts
 
 end module mfv_matrix_compliance

@@ -33,10 +33,9 @@ contains
 
    !> From the entries by distance 0, 1, ..., n-1, shape (n): the even A and, where present, the odd B (its sign that of row
    !> less column) and the even C; left out, B is zero and C is A.
-   function new_toeplitz(even, odd, other) result(self)
+   type(toeplitz_type) function new_toeplitz(even, odd, other) result(self)
       real(wp), intent(in) :: even(:)
       real(wp), intent(in), optional :: odd(:), other(:)
-      type(toeplitz_type) :: self
       complex(wp), allocatable :: work(:), spectrum(:)
       integer :: n
 

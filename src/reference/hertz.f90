@@ -2,10 +2,9 @@
 !> dissertation eqs. 3.1, 3.2).
 module mfv_reference_hertz
    use mfv_kinds, only: pi, wp
-   use mfv_numerics, only: root_between
    implicit none
    private
-   public :: hertz_half_width, hertz_force, hertz_pressure, hertz_approach, hertz_half_width_of_approach
+   public :: hertz_half_width, hertz_force, hertz_pressure, hertz_approach
 
 contains
 
@@ -42,22 +41,5 @@ contains
       approach = 0.0_wp
       if (half_width > 0.0_wp) approach = half_width**2/(2.0_wp*radius)*(log(2.0_wp*datum/half_width) + 0.5_wp)
    end function hertz_approach
-
-   !> Contact half-width (length) at a prescribed approach (length); at most min(R, D), where the formula ends.
-   function hertz_half_width_of_approach(approach, radius, datum) result(a)
-      real(wp), intent(in) :: approach, radius, datum
-      real(wp) :: a
-
-      a = 0.0_wp
-      if (approach > 0.0_wp) a = root_between(approach_excess, [approach, radius, datum], 0.0_wp, min(radius, datum))
-   end function hertz_half_width_of_approach
-
-   !> Hertz's approach at the half-width `a` less the wanted one; parameters: approach, radius, datum.
-   pure function approach_excess(x, parameters) result(value)
-      real(wp), intent(in) :: x, parameters(:)
-      real(wp) :: value
-
-      value = hertz_approach(x, parameters(2), parameters(3)) - parameters(1)
-   end function approach_excess
 
 end module mfv_reference_hertz

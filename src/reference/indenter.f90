@@ -27,8 +27,6 @@ module mfv_reference_indenter
       procedure :: half_width_at_approach
       procedure :: approach
       procedure :: pressure
-      procedure, private :: smallest
-      procedure, private :: slope
    end type indenter_type
 
    integer, parameter :: quadrature_points = 128
@@ -36,30 +34,23 @@ module mfv_reference_indenter
 contains
 
    !> No gap at all.
-   pure function flat_indenter() result(indenter)
-      type(indenter_type) :: indenter
+   pure type(indenter_type) function flat_indenter() result(indenter)
 
-      allocate (indenter%coefficient(0), indenter%exponent(0), indenter%flat(0), indenter%radius(0))
+      indenter = indenter_type([real(wp) ::], [real(wp) ::], [real(wp) ::], [real(wp) ::])
    end function flat_indenter
 
    !> The gap C |x|^n (C: length^(1 - n)).
-   pure function power_indenter(coefficient, exponent) result(indenter)
+   pure type(indenter_type) function power_indenter(coefficient, exponent) result(indenter)
       real(wp), intent(in) :: coefficient, exponent
-      type(indenter_type) :: indenter
 
-      indenter%coefficient = [coefficient]
-      indenter%exponent = [exponent]
-      allocate (indenter%flat(0), indenter%radius(0))
+      indenter = indenter_type([coefficient], [exponent], [real(wp) ::], [real(wp) ::])
    end function power_indenter
 
    !> The gap of a punch that is flat over |x| < half_width, with edges of a radius, lengths.
-   pure function rounded_punch_indenter(half_width, radius) result(indenter)
+   pure type(indenter_type) function rounded_punch_indenter(half_width, radius) result(indenter)
       real(wp), intent(in) :: half_width, radius
-      type(indenter_type) :: indenter
 
-      indenter%flat = [half_width]
-      indenter%radius = [radius]
-      allocate (indenter%coefficient(0), indenter%exponent(0))
+      indenter = indenter_type([real(wp) ::], [real(wp) ::], [half_width], [radius])
    end function rounded_punch_indenter
 
    !> Add the gap of another pair.
@@ -127,7 +118,7 @@ contains
       real(wp) :: next
       integer :: i
 
-      a = self%smallest()
+      a = smallest(self)
       if (.not. force > 0.0_wp .or. self%is_flat()) return
       a = huge(1.0_wp)
       do i = 1, size(self%coefficient)
@@ -138,8 +129,8 @@ contains
          a = min(a, self%flat(i) + 2.0_wp*sqrt(force*self%radius(i)))
       end do
       do i = 1, most_iterations
-         if (.not. self%slope(a) > 0.0_wp) exit
-         next = a - (self%force(a) - force)/self%slope(a)
+         if (.not. slope(self, a) > 0.0_wp) exit
+         next = a - (self%force(a) - force)/slope(self, a)
          if (.not. next < a) exit
          a = next
       end do
@@ -180,7 +171,7 @@ contains
       real(wp), intent(in) :: approach, datum, largest
       real(wp) :: lower, upper
 
-      lower = self%smallest()
+      lower = smallest(self)
       upper = max(lower, min(datum, largest))
       a = lower
       if (.not. approach > 0.0_wp) return
@@ -268,9 +259,8 @@ contains
    end function punches
 
    !> (x cosh(v))^power; parameters: x, power.
-   pure function power_of_cosh(x, parameters) result(value)
+   pure real(wp) function power_of_cosh(x, parameters) result(value)
       real(wp), intent(in) :: x, parameters(:)
-      real(wp) :: value
 
       value = (parameters(1)*cosh(x))**parameters(2)
    end function power_of_cosh

@@ -58,12 +58,7 @@ contains
       type(indenter_type), intent(in) :: indenter
       type(mindlin_history_type) :: history
 
-      history%indenter = indenter
-      history%normal_force = normal_force
-      history%half_width = half_width
-      history%datum = datum
-      history%friction_coefficient = friction_coefficient
-      allocate (history%turning(0))
+      history = mindlin_history_type(indenter, normal_force, half_width, datum, friction_coefficient, [real(wp) ::])
    end function new_history_of_indenter
 
    !> Lead the tangential force (force/length) straight to `tangential_force`. Closed inner loops are forgotten.
@@ -169,7 +164,8 @@ contains
       end if
       slip = 0.0_wp
       if (abs(x) <= stick_half_width) return
-      v = acosh_from_excess(abs(x)/stick_half_width - 1.0_wp)
+      ! arcosh(|x|/b) without cancellation.
+      v = 2.0_wp*asinh(sqrt(0.5_wp*(abs(x)/stick_half_width - 1.0_wp)))
       if (v < near) then
          slip = sinh_less_argument(2.0_wp*v)/2.0_wp
       else
@@ -177,13 +173,6 @@ contains
       end if
       slip = 0.5_wp*friction_coefficient*stick_half_width**2/radius*slip
    end function mindlin_slip
-
-   !> arcosh(1 + e) without cancellation.
-   pure real(wp) function acosh_from_excess(e) result(v)
-      real(wp), intent(in) :: e
-
-      v = 2.0_wp*asinh(sqrt(0.5_wp*e))
-   end function acosh_from_excess
 
    !> sinh(y) - y by its series, for small y.
    pure real(wp) function sinh_less_argument(y) result(total)
@@ -213,9 +202,8 @@ contains
 
    !> mu p s dx/dphi at x = b + (a - b) sin^2(phi), which takes the square roots out of both ends;
    !> parameters: P, a, b, R, mu.
-   pure function friction_work(x, parameters) result(value)
+   pure real(wp) function friction_work(x, parameters) result(value)
       real(wp), intent(in) :: x, parameters(:)
-      real(wp) :: value
       real(wp) :: position
 
       associate (a => parameters(2), b => parameters(3), phi => x)

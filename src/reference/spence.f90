@@ -22,9 +22,8 @@ contains
 
    !> Stick ratio c from beta K(c) = mu K'(c), equation 3.4. 1 for beta = 0 (nothing slips), 0 for mu = 0.
    !> `beta`: Dundurs' parameter of the half-plane against a rigid body, of either sign.
-   function spence_stick_ratio(friction_coefficient, beta) result(ratio)
+   real(wp) function spence_stick_ratio(friction_coefficient, beta) result(ratio)
       real(wp), intent(in) :: friction_coefficient, beta
-      real(wp) :: ratio
 
       ratio = 1.0_wp
       if (.not. abs(beta) > 0.0_wp) return
@@ -34,9 +33,8 @@ contains
    end function spence_stick_ratio
 
    !> beta K(c) - mu K'(c) at c = exp(x); parameters: mu, beta.
-   pure function spence_balance(x, parameters) result(value)
+   pure real(wp) function spence_balance(x, parameters) result(value)
       real(wp), intent(in) :: x, parameters(:)
-      real(wp) :: value
 
       value = parameters(2)*elliptic_k(one_less_square(x)) - parameters(1)*elliptic_k(exp(2.0_wp*x))
    end function spence_balance

@@ -43,10 +43,9 @@ contains
       depth = abs(place(1))
    end subroutine hertz_largest_von_mises
 
-   function negative_von_mises(self, x) result(value)
+   real(wp) function negative_von_mises(self, x) result(value)
       class(axis_type), intent(in) :: self
       real(wp), intent(in) :: x(:)
-      real(wp) :: value
 
       value = -hertz_axis_von_mises(abs(x(1)), self%out_of_plane)
    end function negative_von_mises

@@ -25,7 +25,6 @@ module mfv_interior
 
    !> A body under tractions.
    type :: interior_type
-      private
       type(body_type) :: body
       !> 1 for a lower body, -1 for an upper one.
       real(wp) :: side = 1.0_wp
@@ -46,15 +45,11 @@ module mfv_interior
       procedure :: half_width
       procedure :: surface
       procedure :: middle
-      procedure :: largest_pressure
       procedure :: contains_point
-      procedure :: is_circle
       procedure :: centre
-      procedure :: radius
       procedure :: knots
       procedure :: point_at
       procedure :: is_sheared
-      procedure :: is_singular
       procedure :: zone_edges
    end type interior_type
 
@@ -90,19 +85,19 @@ contains
       if (plane == plane_strain) self%out_of_plane = body%material%poisson_ratio
       self%peak = maxval(pressure)
       longest = huge(1.0_wp)
-      if (self%is_circle()) longest = longest_element*body%radius
+      if (self%body%circular()) longest = longest_element*body%radius
       seen = zones
       seen%beta = self%side*zones%beta
       call find_traction_elements(arc, width, pressure, self%side*shear, seen, longest, self%elements)
       associate (e => self%elements)
-         if (self%is_circle()) then
+         if (self%body%circular()) then
             self%length = body%radius
          else if (size(e%from) > 0) then
             self%length = 0.5_wp*(maxval(e%to) - minval(e%from))
          end if
          e%from = e%from/self%length
          e%to = e%to/self%length
-         if (self%is_circle()) &
+         if (self%body%circular()) &
             self%circle = new_circle_load(body%shape == shape_disk, body%material%kolosov, e%from, e%to, &
                                           polar(self, radial, e%from, e%first), polar(self, radial, e%to, e%last))
       end associate
@@ -124,13 +119,6 @@ contains
       end associate
    end function polar
 
-   !> Whether the body is a disk or a hole.
-   pure logical function is_circle(self)
-      class(interior_type), intent(in) :: self
-
-      is_circle = self%body%circular()
-   end function is_circle
-
    !> y of the centre of a disk or hole (its x is 0), length.
    pure real(wp) function centre(self)
       class(interior_type), intent(in) :: self
@@ -145,7 +133,7 @@ contains
       real(wp) :: from_pole(2)
       real(wp), parameter :: round_off = 4.0_wp*epsilon(1.0_wp)
 
-      if (self%is_circle()) then
+      if (self%body%circular()) then
          from_pole = radii_from_pole(self, x, y)
          associate (beyond => 2.0_wp*from_pole(1) + sum(from_pole**2))
             contains_point = merge(beyond <= round_off, beyond >= -round_off, self%body%shape == shape_disk)
@@ -174,7 +162,7 @@ contains
       values = ieee_value(1.0_wp, ieee_quiet_nan)
       if (.not. (ieee_is_finite(x) .and. ieee_is_finite(y))) return
       if (.not. self%contains_point(x, y)) return
-      if (self%is_circle()) then
+      if (self%body%circular()) then
          from_pole = radii_from_pole(self, x, y)
          if (self%body%shape == shape_disk .and. hypot(1.0_wp + from_pole(1), from_pole(2)) < epsilon(1.0_wp)) return
          turned = self%circle%stress(from_pole)
@@ -194,7 +182,7 @@ contains
       class(interior_type), intent(in) :: self
       real(wp), intent(in) :: arc
 
-      if (self%is_circle()) then
+      if (self%body%circular()) then
          surface_stress = self%circle%surface_stress(arc/self%body%radius)
       else
          surface_stress = half_plane_surface_stress(self%elements%from, self%elements%to, self%elements%first, &
@@ -215,8 +203,9 @@ contains
       values(5:6) = principal_stresses(values(:4))
       values(stress_von_mises) = von_mises_stress(values(:4))
       values(stress_tresca) = tresca_stress(values(:4))
-      values(stress_angle) = principal_angle(values(:4))
-      if (self%is_circle()) values(8:10) = polar_stress(values(:4), self%centre(), x, y)
+      ! Of the larger principal stress in the plane, counterclockwise from the x axis, in (-pi/2, pi/2].
+      values(stress_angle) = 0.5_wp*atan2(2.0_wp*values(stress_xy), values(stress_xx) - values(stress_yy))
+      if (self%body%circular()) values(8:10) = polar_stress(values(:4), self%centre(), x, y)
    end function all_stresses
 
    !> y of the surface at x, lengths; NaN beside a disk or hole.
@@ -226,9 +215,9 @@ contains
       real(wp) :: depth(1)
 
       surface = ieee_value(1.0_wp, ieee_quiet_nan)
-      if (self%is_circle() .and. .not. self%body%covers(x, .false.)) return
+      if (self%body%circular() .and. .not. self%body%covers(x, .false.)) return
       surface = 0.0_wp
-      if (.not. self%is_circle()) return
+      if (.not. self%body%circular()) return
       depth = self%body%recess([x], parabolic=.false.)
       surface = -self%side*depth(1)
    end function surface
@@ -253,33 +242,12 @@ contains
       end associate
    end function middle
 
-   !> Largest pressure at the nodes, force/length^2.
-   pure real(wp) function largest_pressure(self)
-      class(interior_type), intent(in) :: self
-
-      largest_pressure = self%peak
-   end function largest_pressure
-
-   !> Radius of a disk or hole, length.
-   pure real(wp) function radius(self)
-      class(interior_type), intent(in) :: self
-
-      radius = self%body%radius
-   end function radius
-
    !> Whether there is shear on the surface.
    pure logical function is_sheared(self)
       class(interior_type), intent(in) :: self
 
       is_sheared = any(abs(aimag(self%elements%first)) > 0.0_wp) .or. any(abs(aimag(self%elements%last)) > 0.0_wp)
    end function is_sheared
-
-   !> Whether there is shear at the end of a body's surface, where the stress along the surface has no limit.
-   pure logical function is_singular(self)
-      class(interior_type), intent(in) :: self
-
-      is_singular = self%elements%singular
-   end function is_singular
 
    !> Edges of contact and stick zones along the surface from the pole, lengths, ascending, and between them equidistant places,
    !> together about `most_between`.
@@ -315,7 +283,7 @@ contains
       real(wp) :: point(2), angle
 
       point = [arc, -self%side*depth]
-      if (.not. self%is_circle()) return
+      if (.not. self%body%circular()) return
       angle = arc/self%body%radius
       ! The height of the arc over the pole, and the depth along the radius, each without a difference of radii.
       point(1) = (self%body%radius - self%outward*depth)*sin(angle)
@@ -339,13 +307,6 @@ contains
       principal = [principal_stresses(values), values(stress_zz)]
       tresca_stress = maxval(principal) - minval(principal)
    end function tresca_stress
-
-   !> Direction of the larger principal stress in the plane, radians from the x axis, counterclockwise, in (-pi/2, pi/2].
-   pure real(wp) function principal_angle(values)
-      real(wp), intent(in) :: values(4)
-
-      principal_angle = 0.5_wp*atan2(2.0_wp*values(stress_xy), values(stress_xx) - values(stress_yy))
-   end function principal_angle
 
    !> Principal stresses in the plane, the larger first.
    pure function principal_stresses(values) result(principal)

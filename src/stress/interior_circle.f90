@@ -58,11 +58,10 @@ contains
 
    !> `disk`: disk or hole. `kappa`: Kolosov's constant. `from`, `to`: ends of the elements, radians, at most `longest_element`
    !> apart; `first`, `last`: sigma_rr + i sigma_rtheta there, force/length^2; shapes (elements).
-   pure function new_circle_load(disk, kappa, from, to, first, last) result(self)
+   pure type(circle_load_type) function new_circle_load(disk, kappa, from, to, first, last) result(self)
       logical, intent(in) :: disk
       real(wp), intent(in) :: kappa, from(:), to(:)
       complex(wp), intent(in) :: first(:), last(:)
-      type(circle_load_type) :: self
       complex(wp), parameter :: i = (0.0_wp, 1.0_wp)
       integer :: j
 

@@ -25,10 +25,9 @@ contains
    !> The largest von Mises stress: the best points of a coarse net below the contact, which is dense towards the surface, are each
    !> refined by a simplex search (GSL), those on the surface along it. A disk is not searched deeper than half its radius nor where
    !> stresses rise towards the force in its centre. Zero where there is no load.
-   function largest_von_mises(interior) result(largest)
+   type(largest_type) function largest_von_mises(interior) result(largest)
       type(interior_type), intent(in) :: interior
-      type(largest_type) :: largest
-      integer, parameter :: across = 41, down = 21, starts = 6
+      integer, parameter :: across = 41, down = 21, starts = 6, neighbours = 2
       real(wp), parameter :: shallowest = 1.0e-3_wp
       real(wp) :: length, reach, place(2), value
       real(wp), allocatable :: net(:, :), positions(:), depths(:)
@@ -38,7 +37,7 @@ contains
       length = 2.0_wp*interior%half_width()
       if (.not. length > 0.0_wp) return
       reach = length
-      if (interior%is_circle()) reach = min(reach, 0.5_wp*interior%radius())
+      if (interior%body%circular()) reach = min(reach, 0.5_wp*interior%body%radius)
       positions = [(interior%middle() + length*((i - 1)/(across - 1.0_wp) - 0.5_wp), i=1, across)]
       depths = [(reach*shallowest**((down - j)/(down - 1.0_wp)), j=1, down)]
       search%interior = interior
@@ -49,24 +48,25 @@ contains
             net(i, j) = von_mises_at(interior, positions(i), depths(j))
          end do
       end do
-      if (interior%is_circle()) call leave_out_rise(net)
+      if (interior%body%circular()) call leave_out_rise(net)
       do start = 1, starts
          best = maxloc(net)
          if (.not. net(best(1), best(2)) > 0.0_wp) exit
          place = [positions(best(1)), depths(best(2))]
          call minimum_near(search, [length/across, 0.2_wp*place(2)], place, value)
-         if (place(2) < search%deepest .or. .not. interior%is_circle()) &
+         if (place(2) < search%deepest .or. .not. interior%body%circular()) &
             call keep_larger(interior, largest, place(1), min(max(place(2), 0.0_wp), search%deepest))
-         call clear_around(net, best)
+         net(max(1, best(1) - neighbours):min(across, best(1) + neighbours), &
+             max(1, best(2) - neighbours):min(down, best(2) + neighbours)) = -1.0_wp
       end do
-      call search_surface(interior, largest)
+      call refine_along(interior, interior%knots(), .true., place(1), value)
+      call keep_larger(interior, largest, place(1), 0.0_wp)
    end function largest_von_mises
 
    !> The von Mises stress, to be made large, at an arc length and a depth.
-   function negative_von_mises(self, x) result(value)
+   real(wp) function negative_von_mises(self, x) result(value)
       class(search_type), intent(in) :: self
       real(wp), intent(in) :: x(:)
-      real(wp) :: value
 
       value = -von_mises_at(self%interior, x(1), min(max(x(2), 0.0_wp), self%deepest))
    end function negative_von_mises
@@ -87,45 +87,20 @@ contains
       end do
    end subroutine leave_out_rise
 
-   !> Take a place and its neighbours out of a net.
-   pure subroutine clear_around(net, best)
-      real(wp), intent(inout) :: net(:, :)
-      integer, intent(in) :: best(2)
-      integer, parameter :: neighbours = 2
-
-      net(max(1, best(1) - neighbours):min(size(net, 1), best(1) + neighbours), &
-          max(1, best(2) - neighbours):min(size(net, 2), best(2) + neighbours)) = -1.0_wp
-   end subroutine clear_around
-
-   !> The largest von Mises stress on the loaded surface.
-   subroutine search_surface(interior, largest)
-      type(interior_type), intent(in) :: interior
-      type(largest_type), intent(inout) :: largest
-      real(wp), allocatable :: places(:)
-      real(wp) :: place, value
-
-      places = interior%knots()
-      call refine_along(interior, places, .true., place, value)
-      call keep_larger(interior, largest, place, 0.0_wp)
-   end subroutine search_surface
-
    !> The largest tension along the surface, force/length^2: at the edges of contact and stick zones, where it has cusps,
    !> between them and beside the contact (of a circle, all around). Not a number where tractions are singular, at the end of a
    !> body's surface that carries shear; `x` and `y` are not numbers where there is no tension anywhere.
-   function largest_tension(interior) result(largest)
+   type(largest_type) function largest_tension(interior) result(largest)
       type(interior_type), intent(in) :: interior
-      type(largest_type) :: largest
-      real(wp), allocatable :: places(:)
       real(wp) :: place, point(2)
 
       largest%x = ieee_value(1.0_wp, ieee_quiet_nan)
       largest%y = largest%x
       if (.not. interior%half_width() > 0.0_wp) return
-      if (.not. interior%is_circle() .and. .not. interior%is_sheared()) return
+      if (.not. interior%body%circular() .and. .not. interior%is_sheared()) return
       largest%value = ieee_value(1.0_wp, ieee_quiet_nan)
-      if (interior%is_singular()) return
-      places = candidates(interior)
-      call refine_along(interior, places, .false., place, largest%value)
+      if (interior%elements%singular) return
+      call refine_along(interior, candidates(interior), .false., place, largest%value)
       if (largest%value > 0.0_wp) then
          point = interior%point_at(place, 0.0_wp)
          largest%x = point(1)
@@ -148,10 +123,10 @@ contains
       inside = interior%zone_edges(most_between=16)
       nearest = 1.0e-3_wp*interior%half_width()
       farthest = 4.0_wp*interior%half_width()
-      if (interior%is_circle()) farthest = max(farthest, pi*interior%radius())
+      if (interior%body%circular()) farthest = max(farthest, pi*interior%body%radius)
       beside = [(nearest*(farthest/nearest)**((i - 1)/(steps - 1.0_wp)), i=1, steps)]
-      if (interior%is_circle()) &
-         beside = pack(beside, beside <= pi*interior%radius() - max(abs(inside(1)), abs(inside(size(inside)))))
+      if (interior%body%circular()) &
+         beside = pack(beside, beside <= pi*interior%body%radius - max(abs(inside(1)), abs(inside(size(inside)))))
       places = [inside(1) - beside(size(beside):1:-1), inside, inside(size(inside)) + beside]
    end function candidates
 

@@ -262,7 +262,7 @@ contains
    subroutine find_limit(patch)
       type(patch_type), intent(inout) :: patch
       logical :: slips(size(patch%arc))
-      integer :: i, side, node, next
+      integer :: i, node
 
       slips = slipping_nodes(patch)
       patch%limit = table_type()
@@ -270,20 +270,10 @@ contains
       node = 0
       do i = 1, size(patch%stick)
          associate (zone => patch%stick(i))
-            do side = 1, 2
-               if (side == 1) call add_nodes_before(zone%edge(1))
-               if (side == 2) then
-                  do while (node < size(patch%arc))
-                     if (patch%arc(node + 1) >= zone%edge(2)) exit
-                     node = node + 1
-                  end do
-               end if
-               if (.not. zone%rooted(side)) cycle
-               if (side == 1) next = findloc(slips(:node), .true., dim=1, back=.true.)
-               if (side == 2) next = node + findloc(slips(node + 1:), .true., dim=1)
-               patch%limit%x = [patch%limit%x, zone%edge(side)]
-               patch%limit%value = [patch%limit%value, patch%shear(next)/patch%pressure(next)]
-            end do
+            call add_nodes_before(zone%edge(1))
+            if (zone%rooted(1)) call add(zone%edge(1), findloc(slips(:node), .true., dim=1, back=.true.))
+            node = max(node, count(patch%arc < zone%edge(2)))
+            if (zone%rooted(2)) call add(zone%edge(2), node + findloc(slips(node + 1:), .true., dim=1))
          end associate
       end do
       call add_nodes_before(huge(1.0_wp))
@@ -296,11 +286,18 @@ contains
          do while (node < size(patch%arc))
             if (patch%arc(node + 1) > place) exit
             node = node + 1
-            if (.not. slips(node)) cycle
-            patch%limit%x = [patch%limit%x, patch%arc(node)]
-            patch%limit%value = [patch%limit%value, patch%shear(node)/patch%pressure(node)]
+            if (slips(node)) call add(patch%arc(node), node)
          end do
       end subroutine add_nodes_before
+
+      !> Add a place with tau/p of a node.
+      subroutine add(x, from)
+         real(wp), intent(in) :: x
+         integer, intent(in) :: from
+
+         patch%limit%x = [patch%limit%x, x]
+         patch%limit%value = [patch%limit%value, patch%shear(from)/patch%pressure(from)]
+      end subroutine add
    end subroutine find_limit
 
    !> Which nodes are in no stick zone.
@@ -661,7 +658,7 @@ contains
       type(patch_type), intent(in) :: patch
       real(wp), intent(in) :: knots(:)
       complex(wp), intent(inout) :: values(:)
-      real(wp) :: shape(size(knots)), wanted(2), there(2)
+      real(wp) :: shape(size(knots)), wanted(2), there(2), area(2)
       integer :: i
 
       wanted = [sum(patch%pressure*patch%width), sum(patch%shear*patch%width)]
@@ -676,8 +673,10 @@ contains
          end do
       end if
       there = integrals(values)
-      values = values + cmplx(0.0_wp, shape*(wanted(2) - there(2))/dot_product_of(shape), wp)
-      if (.not. patch%has_ratio) values = values + shape*(wanted(1) - there(1))/dot_product_of(shape)
+      area = integrals(cmplx(shape, 0.0_wp, wp))
+      area = max(area(1), tiny(1.0_wp))
+      values = values + cmplx(0.0_wp, shape*(wanted(2) - there(2))/area(1), wp)
+      if (.not. patch%has_ratio) values = values + shape*(wanted(1) - there(1))/area(1)
 
    contains
 
@@ -690,12 +689,6 @@ contains
          total = 0.5_wp*sum((of(2:) + of(:size(of) - 1))*(knots(2:) - knots(:size(of) - 1)))
          integrals = [real(total, wp), aimag(total)]
       end function integrals
-
-      pure real(wp) function dot_product_of(of)
-         real(wp), intent(in) :: of(:)
-
-         dot_product_of = max(0.5_wp*sum((of(2:) + of(:size(of) - 1))*(knots(2:) - knots(:size(of) - 1))), tiny(1.0_wp))
-      end function dot_product_of
    end subroutine balance
 
 end module mfv_surface_tractions

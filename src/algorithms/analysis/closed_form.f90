@@ -38,9 +38,8 @@ contains
 
    !> The closed form of a simulation's present state. The forms are those of parabolas on half-planes: for the exact
    !> circle they are off by the order of (a/R)^2, for elastic disks and holes by that of a/R or less.
-   function closed_form_of(simulation) result(form)
+   type(closed_form_type) function closed_form_of(simulation) result(form)
       type(simulation_type), intent(in) :: simulation
-      type(closed_form_type) :: form
 
       form%pressure_source = ''
       form%shear_source = ''

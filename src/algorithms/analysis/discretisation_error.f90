@@ -14,7 +14,7 @@ module mfv_discretisation_error
    use mfv_slip_zones, only: contact_interval
    use mfv_status, only: MFV_COMPLETE, MFV_INPUT_ERROR, status_outcome
    use mfv_strings, only: to_text
-   use mfv_zone_edges, only: ends_with_body
+   use mfv_zone_edges, only: ends_with_body, zone_type, zones_of
    implicit none
    private
    public :: estimate_error, coarser_scene, scene_on_mesh, fix_cycles, nearest_mesh, quantities_of, interval_allowances, &
@@ -189,10 +189,9 @@ contains
    end subroutine solve_companions
 
    !> The scene of a simulation on `nodes` intervals, with as many cycles as were run, steady or not.
-   function coarser_scene(simulation, nodes) result(scene)
+   type(scene_type) function coarser_scene(simulation, nodes) result(scene)
       type(simulation_type), intent(in) :: simulation
       integer, intent(in) :: nodes
-      type(scene_type) :: scene
 
       scene = scene_on_mesh(simulation%contact%model%scene, nodes)
       call fix_cycles(scene, simulation)
@@ -216,10 +215,9 @@ contains
    !> A scene on `nodes` intervals over the same surface. A mesh of a given half-width has another interval at either end, so
    !> that wider intervals do not exceed it; a mesh that grows does so here too: what is beyond the contact changes nothing. A
    !> coefficient of friction that is given one a node is averaged over the wider intervals.
-   function scene_on_mesh(original, nodes) result(scene)
+   type(scene_type) function scene_on_mesh(original, nodes) result(scene)
       type(scene_type), intent(in) :: original
       integer, intent(in) :: nodes
-      type(scene_type) :: scene
       integer :: spare
 
       scene = original
@@ -281,8 +279,9 @@ contains
       real(wp) :: contact, stick, length
 
       associate (state => simulation%contact%state, model => simulation%contact%model)
-         contact = open_length(free_edges(model, in_contact(state%status)), model%interval())
-         stick = open_length(max(edges(holds(state%status)), 2), model%interval())
+         ! Edges of one patch are off together, patches as they come.
+         contact = model%interval()*sqrt(0.5_wp*free_edges(model, in_contact(state%status)))
+         stick = model%interval()*sqrt(real(max(size(zones_of(holds(state%status))), 1), wp))
          length = max(sum(model%width, mask=in_contact(state%status)), model%interval())
          allowances = 0.0_wp
          allowances(quantity_half_width) = 0.5_wp*contact
@@ -292,41 +291,17 @@ contains
       end associate
    end function interval_allowances
 
-   !> By how much the length of a zone may be off that has `edges` edges, each half an interval off: those of one patch
-   !> together, patches as they come.
-   pure real(wp) function open_length(edges, interval)
-      integer, intent(in) :: edges
-      real(wp), intent(in) :: interval
-
-      open_length = interval*sqrt(0.5_wp*edges)
-   end function open_length
-
-   !> Edges of the zones where `inside` is true.
-   pure integer function edges(inside)
-      logical, intent(in) :: inside(:)
-      logical :: padded(0:size(inside) + 1)
-      integer :: n
-
-      n = size(inside)
-      padded = .false.
-      padded(1:n) = inside
-      edges = count(padded(:n) .neqv. padded(1:))
-   end function edges
-
    !> Edges of the contact less those where the surface of a body ends between two intervals: these are exact.
    pure integer function free_edges(model, contact)
       type(contact_model_type), intent(in) :: model
       logical, intent(in) :: contact(:)
-      integer :: i, side, n
+      type(zone_type), allocatable :: zones(:)
+      integer :: i
 
-      n = size(contact)
-      free_edges = edges(contact)
-      do i = 1, n
-         if (.not. contact(i)) cycle
-         do side = -1, 1, 2
-            if (contact(min(max(i + side, 1), n)) .and. i + side >= 1 .and. i + side <= n) cycle
-            if (ends_with_body(model, i, side)) free_edges = free_edges - 1
-         end do
+      zones = zones_of(contact)
+      free_edges = 2*size(zones)
+      do i = 1, size(zones)
+         free_edges = free_edges - count([ends_with_body(model, zones(i)%first, -1), ends_with_body(model, zones(i)%last, 1)])
       end do
    end function free_edges
 

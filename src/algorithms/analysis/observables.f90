@@ -13,106 +13,69 @@ module mfv_observables
    use mfv_zone_edges, only: find_zone_edges, zone_edges_type
    implicit none
    private
-   public :: observable_count, observable_name, observable_unit, observable_meaning, observable_place, observables_of
+   public :: observable_count, observables, observable_place, observables_of
 
-   !> Number of observables.
+   !> Name, as in tables and files; unit in terms of length and force (energies are per unit thickness), or 1; what it is.
+   type :: row_type
+      character(len=24) :: name
+      character(len=14) :: unit
+      character(len=96) :: meaning
+   end type row_type
+
+   !> Number of observables, and the observables.
    integer, parameter :: observable_count = 40
-   character(*), parameter :: names(observable_count) = [character(24) :: &
-                              'normal_force', 'tangential_force', 'approach', &
-                              'shift', 'dissipation', 'contact_half_width', 'contact_length', 'patches', &
-                              'contact_centre', 'stick_ratio', 'peak_pressure', &
-                              'peak_shear', 'cycles', 'cycle_dissipation', &
-                              'first_cycle_dissipation', 'cycle_change', 'force_amplitude', &
-                              'shift_amplitude', 'tangential_stiffness', 'secant_stiffness', &
-                              'loss_factor', 'stick_ratio_loading', 'stick_ratio_reversal', &
-                              'stick_ratio_return', 'patch_shift_loading', 'patch_shift_reversal', &
-                              'patch_shift_return', 'half_width_number', 'pressure_number', &
-                              'shear_number', 'force_number', 'shift_number', &
-                              'dissipation_number', 'stiffness_number', &
-                              'creepage', 'creepage_number', &
-                              'lower_tension', 'lower_tension_x', 'upper_tension', 'upper_tension_x']
-   character(*), parameter :: units(observable_count) = [character(14) :: &
-                              'force/length', 'force/length', 'length', 'length', 'force', 'length', 'length', '1', &
-                              'length', '1', 'force/length^2', 'force/length^2', '1', 'force', &
-                              'force', '1', 'force/length', 'length', 'force/length^2', 'force/length^2', &
-                              '1', '1', '1', '1', '1', '1', &
-                              '1', '1', '1', '1', '1', '1', &
-                              '1', '1', '1', '1', &
-                              'force/length^2', 'length', 'force/length^2', 'length']
-   character(*), parameter :: meanings(observable_count) = [character(96) :: &
-                              'normal force P per unit thickness at the end', &
-                              'tangential force Q per unit thickness at the end', &
-                              'approach of the upper body at the end', &
-                              'shift of the upper body to the right at the end', &
-                              'energy dissipated in all, per unit thickness', &
-                              'half the length of the contact at the end, from edges between nodes, where it is one patch', &
-                              'length of the contact at the end, of all its patches, from edges between nodes', &
-                              'contact patches at the end, with open nodes between them', &
-                              'middle between the outermost edges at the end, from the origin along the surface', &
-                              'length of the stick zones over that of the contact at the end, from edges between nodes', &
-                              'largest pressure at the end', &
-                              'largest size of the shear traction at the end', &
-                              'whole cycles of the last step that has any', &
-                              'energy dissipated in the last cycle, per unit thickness', &
-                              'energy dissipated in the first cycle, per unit thickness', &
-                              'largest change of a traction over the last cycle, in parts of the largest traction', &
-                              'half of what the tangential force changes by in the last cycle', &
-                              'half of what the shift changes by in the last cycle', &
-                              'tangential force over shift right after the last reversal', &
-                              'tangential force over shift from end to end of the last cycle', &
-                              'cycle_dissipation over 2 pi times the energy of the secant stiffness, at constant P, no rotation', &
-                              'stick ratio where the cycles begin', &
-                              'stick ratio at the far end of the last cycle', &
-                              'stick ratio at the end of the last cycle', &
-                              'middle of the contact over its half-width where the cycles begin', &
-                              'middle of the contact over its half-width at the far end of the last cycle', &
-                              'middle of the contact over its half-width at the end of the last cycle', &
-                              'contact_half_width times the relative curvature', &
-                              'peak_pressure over p0 = 2 P/(pi a), the peak of an ellipse (section 5.2)', &
-                              'peak_shear over p0 = 2 P/(pi a)', &
-                              'force_amplitude over mu P: the lateral force ratio of section 6.4', &
-                              'shift_amplitude times the relative curvature (section 5.2)', &
-                              'cycle_dissipation over P^2 A, A = sum of (kappa + 1)/(4 G) (eq. 6.5)', &
-                              'tangential_stiffness times A', &
-                              'rolling: sliding of the upper body over the lower per rolled distance, both to the right', &
-                              'creepage over mu a K: K relative curvature, a contact_half_width (Carter 1926)', &
-                              'largest tension along the surface of the lower body at the end', &
-                              'where it is: x', &
-                              'largest tension along the surface of the upper body at the end', &
-                              'where it is: x']
+   type(row_type), parameter :: observables(observable_count) = [ &
+      row_type('normal_force', 'force/length', 'normal force P per unit thickness at the end'), &
+      row_type('tangential_force', 'force/length', 'tangential force Q per unit thickness at the end'), &
+      row_type('approach', 'length', 'approach of the upper body at the end'), &
+      row_type('shift', 'length', 'shift of the upper body to the right at the end'), &
+      row_type('dissipation', 'force', 'energy dissipated in all, per unit thickness'), &
+      row_type('contact_half_width', 'length', &
+               'half the length of the contact at the end, from edges between nodes, where it is one patch'), &
+      row_type('contact_length', 'length', 'length of the contact at the end, of all its patches, from edges between nodes'), &
+      row_type('patches', '1', 'contact patches at the end, with open nodes between them'), &
+      row_type('contact_centre', 'length', 'middle between the outermost edges at the end, from the origin along the surface'), &
+      row_type('stick_ratio', '1', 'length of the stick zones over that of the contact at the end, from edges between nodes'), &
+      row_type('peak_pressure', 'force/length^2', 'largest pressure at the end'), &
+      row_type('peak_shear', 'force/length^2', 'largest size of the shear traction at the end'), &
+      row_type('cycles', '1', 'whole cycles of the last step that has any'), &
+      row_type('cycle_dissipation', 'force', 'energy dissipated in the last cycle, per unit thickness'), &
+      row_type('first_cycle_dissipation', 'force', 'energy dissipated in the first cycle, per unit thickness'), &
+      row_type('cycle_change', '1', 'largest change of a traction over the last cycle, in parts of the largest traction'), &
+      row_type('force_amplitude', 'force/length', 'half of what the tangential force changes by in the last cycle'), &
+      row_type('shift_amplitude', 'length', 'half of what the shift changes by in the last cycle'), &
+      row_type('tangential_stiffness', 'force/length^2', 'tangential force over shift right after the last reversal'), &
+      row_type('secant_stiffness', 'force/length^2', 'tangential force over shift from end to end of the last cycle'), &
+      row_type('loss_factor', '1', &
+               'cycle_dissipation over 2 pi times the energy of the secant stiffness, at constant P, no rotation'), &
+      row_type('stick_ratio_loading', '1', 'stick ratio where the cycles begin'), &
+      row_type('stick_ratio_reversal', '1', 'stick ratio at the far end of the last cycle'), &
+      row_type('stick_ratio_return', '1', 'stick ratio at the end of the last cycle'), &
+      row_type('patch_shift_loading', '1', 'middle of the contact over its half-width where the cycles begin'), &
+      row_type('patch_shift_reversal', '1', 'middle of the contact over its half-width at the far end of the last cycle'), &
+      row_type('patch_shift_return', '1', 'middle of the contact over its half-width at the end of the last cycle'), &
+      row_type('half_width_number', '1', 'contact_half_width times the relative curvature'), &
+      row_type('pressure_number', '1', 'peak_pressure over p0 = 2 P/(pi a), the peak of an ellipse (section 5.2)'), &
+      row_type('shear_number', '1', 'peak_shear over p0 = 2 P/(pi a)'), &
+      row_type('force_number', '1', 'force_amplitude over mu P: the lateral force ratio of section 6.4'), &
+      row_type('shift_number', '1', 'shift_amplitude times the relative curvature (section 5.2)'), &
+      row_type('dissipation_number', '1', 'cycle_dissipation over P^2 A, A = sum of (kappa + 1)/(4 G) (eq. 6.5)'), &
+      row_type('stiffness_number', '1', 'tangential_stiffness times A'), &
+      row_type('creepage', '1', 'rolling: sliding of the upper body over the lower per rolled distance, both to the right'), &
+      row_type('creepage_number', '1', 'creepage over mu a K: K relative curvature, a contact_half_width (Carter 1926)'), &
+      row_type('lower_tension', 'force/length^2', 'largest tension along the surface of the lower body at the end'), &
+      row_type('lower_tension_x', 'length', 'where it is: x'), &
+      row_type('upper_tension', 'force/length^2', 'largest tension along the surface of the upper body at the end'), &
+      row_type('upper_tension_x', 'length', 'where it is: x')]
 
 contains
-
-   !> Name of observable `number`, as in tables and files.
-   pure function observable_name(number) result(name)
-      integer, intent(in) :: number
-      character(len=len_trim(names(number))) :: name
-
-      name = names(number)
-   end function observable_name
-
-   !> Its unit in terms of length and force (energies are per unit thickness), or 1.
-   pure function observable_unit(number) result(unit)
-      integer, intent(in) :: number
-      character(len=len_trim(units(number))) :: unit
-
-      unit = units(number)
-   end function observable_unit
-
-   !> What it is.
-   pure function observable_meaning(number) result(meaning)
-      integer, intent(in) :: number
-      character(len=len_trim(meanings(number))) :: meaning
-
-      meaning = meanings(number)
-   end function observable_meaning
 
    !> Number of the observable of a name, which must be one.
    pure integer function observable_place(name) result(place)
       character(*), intent(in) :: name
 
       do place = 1, observable_count
-         if (names(place) == name) return
+         if (observables(place)%name == name) return
       end do
    end function observable_place
 

@@ -32,14 +32,89 @@ contains
       name = merge('upper', 'lower', upper)
       contact = touched(simulation)
       if (.not. any(contact)) return
-      call check_end(simulation, contact, name, body, warnings)
-      if (body%shape == shape_profile) call check_interpolation(simulation, contact, name, body, warnings)
-      if (body%shape == shape_rounded_punch) call check_rounded_edges(simulation, name, body, warnings)
+      call check_end
+      if (body%shape == shape_profile) call check_interpolation
+      if (body%shape == shape_rounded_punch) call check_rounded_edges
       if (body%shape /= shape_power .or. body%exponent > 1.0_wp) return
       angle = atan(body%coefficient)*180.0_wp/pi
       if (angle > steepest) call add_text(warnings, 'the flanks of the '//name//' body rise by '//to_text(angle, 3)// &
                                           ' degrees; bodies deform as half-planes, which is a poor approximation beyond '// &
                                           to_text(steepest, 2)//' degrees')
+
+   contains
+
+      !> A contact cannot grow beyond the end of a surface. (That of a flat punch is a corner by design.)
+      subroutine check_end()
+         integer :: i, side
+
+         if (body%shape == shape_flat_punch) return
+         do side = -1, 1, 2
+            do i = 1, size(contact)
+               if (.not. contact(i) .or. .not. ends_at(i, side)) cycle
+               call add_text(warnings, 'the contact reaches the end of the surface of the '//name//' body, near x = '// &
+                             to_text(simulation%contact%model%x(i), 4)//', and cannot grow beyond it: the tractions there are '// &
+                             'those at a sharp corner')
+               return
+            end do
+         end do
+      end subroutine check_end
+
+      !> Whether the body has no surface one node further.
+      pure logical function ends_at(node, side)
+         integer, intent(in) :: node, side
+         real(wp) :: arc
+
+         associate (model => simulation%contact%model)
+            arc = model%arc(node) + side*model%interval()
+            if (node + side >= 1 .and. node + side <= model%nodes()) arc = model%arc(node + side)
+            ends_at = .not. model%scene%touchable(arc) .and. &
+                      (.not. body%covers(model%scene%x_of_arc(arc), model%scene%mesh%parabolic) .or. &
+                       (body%circular() .and. .not. body%rigid .and. abs(arc) >= 0.5_wp*pi*body%radius))
+         end associate
+      end function ends_at
+
+      !> Between the flat of a punch and the edge of the contact the pressure rises to its peak and falls to zero.
+      subroutine check_rounded_edges()
+         type(zone_edges_type) :: edges
+         real(wp) :: width
+
+         associate (model => simulation%contact%model, state => simulation%contact%state)
+            call find_zone_edges(model, state, edges)
+            width = 0.5_wp*(edges%contact_right - edges%contact_left) - body%flat_half_width
+            if (.not. edges%contact .or. .not. width > 0.0_wp .or. width >= resolved_nodes*model%interval()) return
+            call add_text(warnings, 'the rounded edges of the '//name//' body are in contact over a width of '// &
+                          to_text(width, 3)//', '//to_text(width/model%interval(), 2)// &
+                          ' intervals: the peak of the pressure, slip and stresses '// &
+                          'there are not resolved; use '//trim(needed_mesh(model, state, width)))
+         end associate
+      end subroutine check_rounded_edges
+
+      !> Points further apart than the nodes leave open what is between them, where that matters: a bump of the height e and the
+      !> width h takes a pressure of pi m e/h to be pressed flat (Johnson 1985, section 13.2: pi E* (e/2)/h of a sinusoid, E* = 2 m).
+      subroutine check_interpolation()
+         real(wp), parameter :: matters = 0.02_wp, further = 1.5_wp
+         real(wp), allocatable :: x(:), departure(:), spacing(:)
+         real(wp) :: part
+
+         x = pack(simulation%contact%model%x, contact)
+         departure = abs(body%from_polyline(x))
+         spacing = spacing_at(body%position, x)
+         if (maxval(spacing) <= further*simulation%contact%model%interval()) return
+         associate (model => simulation%contact%model, pressure => simulation%contact%state%fields%pressure)
+            if (model%scene%modulus() > 0.0_wp .and. maxval(pressure) > 0.0_wp) then
+               part = pi*model%scene%modulus()*maxval(departure/spacing)/maxval(pressure)
+            else
+               part = maxval(departure)/max(maxval(pack(model%initial_gap, contact)) - minval(pack(model%initial_gap, contact)), &
+                                            tiny(1.0_wp))
+            end if
+         end associate
+         if (part < matters) return
+         if (body%interpolation == interpolation_linear .and. corners_under(body, x) <= 2) return
+         call add_text(warnings, 'the profile of the '//name//' body is coarser than the mesh: its points are up to '// &
+                       to_text(maxval(spacing), 3)//' apart in the contact; straight lines and a smooth curve through them '// &
+                       'differ by up to '//to_text(maxval(departure), 3)//', equivalent to some '//to_text(100.0_wp*part, 2)// &
+                       ' % of the largest pressure: give more points, or '//trim(advice_for(body%interpolation)))
+      end subroutine check_interpolation
    end subroutine warn_of_surface
 
    !> The nodes in contact in the last state or in that of the largest normal force among those kept.
@@ -56,94 +131,6 @@ contains
       state = simulation%padded_state(i)
       contact = contact .or. in_contact(state%status)
    end function touched
-
-   !> A contact cannot grow beyond the end of a surface. (That of a flat punch is a corner by design.)
-   subroutine check_end(simulation, contact, name, body, warnings)
-      type(simulation_type), intent(in) :: simulation
-      logical, intent(in) :: contact(:)
-      character(*), intent(in) :: name
-      type(body_type), intent(in) :: body
-      type(string_type), allocatable, intent(inout) :: warnings(:)
-      integer :: i, side
-
-      if (body%shape == shape_flat_punch) return
-      do side = -1, 1, 2
-         do i = 1, size(contact)
-            if (.not. contact(i) .or. .not. ends_at(i, side)) cycle
-            call add_text(warnings, 'the contact reaches the end of the surface of the '//name//' body, near x = '// &
-                          to_text(simulation%contact%model%x(i), 4)//', and cannot grow beyond it: the tractions there are '// &
-                          'those at a sharp corner')
-            return
-         end do
-      end do
-
-   contains
-
-      !> Whether the body has no surface one node further.
-      pure logical function ends_at(node, side)
-         integer, intent(in) :: node, side
-         real(wp) :: arc
-
-         associate (model => simulation%contact%model)
-            arc = model%arc(node) + side*model%interval()
-            if (node + side >= 1 .and. node + side <= model%nodes()) arc = model%arc(node + side)
-            ends_at = .not. model%scene%touchable(arc) .and. &
-                      (.not. body%covers(model%scene%x_of_arc(arc), model%scene%mesh%parabolic) .or. &
-                       (body%circular() .and. .not. body%rigid .and. abs(arc) >= 0.5_wp*pi*body%radius))
-         end associate
-      end function ends_at
-   end subroutine check_end
-
-   !> Between the flat of a punch and the edge of the contact the pressure rises to its peak and falls to zero.
-   subroutine check_rounded_edges(simulation, name, body, warnings)
-      type(simulation_type), intent(in) :: simulation
-      character(*), intent(in) :: name
-      type(body_type), intent(in) :: body
-      type(string_type), allocatable, intent(inout) :: warnings(:)
-      type(zone_edges_type) :: edges
-      real(wp) :: width
-
-      associate (model => simulation%contact%model, state => simulation%contact%state)
-         call find_zone_edges(model, state, edges)
-         width = 0.5_wp*(edges%contact_right - edges%contact_left) - body%flat_half_width
-         if (.not. edges%contact .or. .not. width > 0.0_wp .or. width >= resolved_nodes*model%interval()) return
-         call add_text(warnings, 'the rounded edges of the '//name//' body are in contact over a width of '//to_text(width, 3)// &
-                       ', '//to_text(width/model%interval(), 2)//' intervals: the peak of the pressure, slip and stresses '// &
-                       'there are not resolved; use '//trim(needed_mesh(model, state, width)))
-      end associate
-   end subroutine check_rounded_edges
-
-   !> Points further apart than the nodes leave open what is between them, where that matters: a bump of the height e and the width h
-   !> takes a pressure of pi m e/h to be pressed flat (Johnson 1985, section 13.2: pi E* (e/2)/h of a sinusoid, E* = 2 m).
-   subroutine check_interpolation(simulation, contact, name, body, warnings)
-      type(simulation_type), intent(in) :: simulation
-      logical, intent(in) :: contact(:)
-      character(*), intent(in) :: name
-      type(body_type), intent(in) :: body
-      type(string_type), allocatable, intent(inout) :: warnings(:)
-      real(wp), parameter :: matters = 0.02_wp, further = 1.5_wp
-      real(wp), allocatable :: x(:), departure(:), spacing(:)
-      real(wp) :: part
-
-      x = pack(simulation%contact%model%x, contact)
-      departure = abs(body%from_polyline(x))
-      spacing = spacing_at(body%position, x)
-      if (maxval(spacing) <= further*simulation%contact%model%interval()) return
-      associate (model => simulation%contact%model, pressure => simulation%contact%state%fields%pressure)
-         if (model%scene%modulus() > 0.0_wp .and. maxval(pressure) > 0.0_wp) then
-            part = pi*model%scene%modulus()*maxval(departure/spacing)/maxval(pressure)
-         else
-            part = maxval(departure)/max(maxval(pack(model%initial_gap, contact)) - minval(pack(model%initial_gap, contact)), &
-                                         tiny(1.0_wp))
-         end if
-      end associate
-      if (part < matters) return
-      if (body%interpolation == interpolation_linear .and. corners_under(body, x) <= 2) return
-      call add_text(warnings, 'the profile of the '//name//' body is coarser than the mesh: its points are up to '// &
-                    to_text(maxval(spacing), 3)//' apart in the contact; straight lines and a smooth curve through them differ '// &
-                    'by up to '//to_text(maxval(departure), 3)//', equivalent to some '//to_text(100.0_wp*part, 2)// &
-                    ' % of the largest pressure: give more points, or '//trim(advice_for(body%interpolation)))
-   end subroutine check_interpolation
 
    !> What to do about a profile that is not clear between its points; padded with blanks.
    pure function advice_for(interpolation) result(advice)

@@ -28,6 +28,11 @@ contains
    subroutine validity_warnings(simulation, warnings)
       type(simulation_type), intent(in) :: simulation
       type(string_type), allocatable, intent(out) :: warnings(:)
+      !> Half-width and stick ratio come in whole nodes: the fewest in contact; the largest residual without lost digits.
+      integer, parameter :: fewest = 10
+      real(wp), parameter :: good = 1.0e-8_wp
+      integer :: nodes
+      real(wp) :: largest
 
       allocate (warnings(0))
       associate (scene => simulation%contact%model%scene)
@@ -38,11 +43,16 @@ contains
          call check_yield(simulation, .false., scene%lower, warnings)
          call check_yield(simulation, .true., scene%upper, warnings)
       end associate
-      call check_resolution(simulation, warnings)
+      nodes = simulation%contact%state%contact_nodes()
+      if (nodes > 0 .and. nodes < fewest) call add_text(warnings, 'only '//to_text(nodes)// &
+                                                        trim(merge(' node is  ', ' nodes are', nodes == 1))// &
+                                                        ' in contact: the mesh is too coarse')
       call check_slip_zones(simulation, warnings)
       call check_order(simulation%contact%model%scene%lower, warnings)
       call check_rotation(simulation, warnings)
-      call check_certificate(simulation, warnings)
+      largest = simulation%contact%certificate%largest()
+      if (largest > good) call add_text(warnings, 'the certificate, '//to_text(largest, 2)// &
+                                        ', is far from round-off: digits have been lost')
    end subroutine validity_warnings
 
    subroutine check_angle(simulation, name, body, warnings)
@@ -90,19 +100,6 @@ contains
          call add_text(warnings, 'the bodies have rolled at a prescribed approach, which is measured at the initial '// &
                        'point of contact, so that the normal force has grown with the distance: prescribe normal_force')
    end subroutine check_rotation
-
-   !> Half-width and stick ratio come in whole nodes.
-   subroutine check_resolution(simulation, warnings)
-      type(simulation_type), intent(in) :: simulation
-      type(string_type), allocatable, intent(inout) :: warnings(:)
-      integer, parameter :: fewest = 10
-
-      associate (contact => simulation%contact%state%contact_nodes())
-         if (contact > 0 .and. contact < fewest) &
-            call add_text(warnings, 'only '//to_text(contact)//trim(merge(' node is  ', ' nodes are', contact == 1))// &
-                          ' in contact: the mesh is too coarse')
-      end associate
-   end subroutine check_resolution
 
    !> Slip zones with too few nodes: of which quantities, and how many nodes it takes.
    subroutine check_slip_zones(simulation, warnings)
@@ -178,18 +175,6 @@ contains
                        'columns have all normal components first, then the tangential ones?')
    end subroutine check_order
 
-   !> A result that has lost digits.
-   subroutine check_certificate(simulation, warnings)
-      type(simulation_type), intent(in) :: simulation
-      type(string_type), allocatable, intent(inout) :: warnings(:)
-      real(wp), parameter :: good = 1.0e-8_wp
-
-      associate (largest => simulation%contact%certificate%largest())
-         if (largest > good) call add_text(warnings, 'the certificate, '//to_text(largest, 2)// &
-                                           ', is far from round-off: digits have been lost')
-      end associate
-   end subroutine check_certificate
-
    !> The last state, and of those at the ends of steps the ones with the largest normal force and the largest tangential
    !> forces to either side.
    subroutine check_yield(simulation, upper, body, warnings)
@@ -223,11 +208,10 @@ contains
    end subroutine check_yield
 
    !> The largest von Mises stress of a body in a state; zero for a body without an inside.
-   function largest_below(simulation, upper, state) result(largest)
+   type(largest_type) function largest_below(simulation, upper, state) result(largest)
       type(simulation_type), intent(in) :: simulation
       logical, intent(in) :: upper
       type(contact_state_type), intent(in) :: state
-      type(largest_type) :: largest
       type(interior_type) :: interior
       logical :: available
 

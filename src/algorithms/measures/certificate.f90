@@ -4,6 +4,7 @@
 !> their sort so far, so that units do not matter; the largest over all increments is kept.
 module mfv_certificate
    use, intrinsic :: ieee_arithmetic, only: ieee_is_finite
+   use mfv_compliance, only: block_up, block_ut, block_wp, block_wt
    use mfv_contact_fields, only: contact_fields_type
    use mfv_contact_model, only: contact_model_type
    use mfv_contact_state, only: contact_state_type
@@ -14,7 +15,7 @@ module mfv_certificate
    use mfv_scene, only: algorithm_mfv, integration_explicit
    implicit none
    private
-   public :: certificate_type, new_certificate, residual_count, residual_name, residual_description
+   public :: certificate_type, new_certificate, residual_count, residual_names, residual_descriptions
 
    integer, parameter :: elasticity_normal = 1, elasticity_tangential = 2, normal_force_balance = 3, &
                          tangential_force_balance = 4, contact_gap = 5, open_traction = 6, stick_slip = 7, &
@@ -28,11 +29,12 @@ module mfv_certificate
                                                         (energy_balance + motion - motion_shift, &
                                                          motion=motion_shift + 1, motion_count)]
 
-   character(*), parameter :: names(residual_count) = &
+   !> Names of the residuals, as in the result file, and what they are the sizes of.
+   character(*), parameter :: residual_names(residual_count) = &
       [character(24) :: 'elasticity_normal', 'elasticity_tangential', motions(:motion_shift)%balance, &
        'contact_gap', 'open_traction', 'stick_slip', 'slip_traction', 'pressure_sign', 'gap_sign', 'friction_limit', &
        'slip_direction', 'continuity', 'energy_balance', motions(motion_shift + 1:)%balance]
-   character(*), parameter :: descriptions(residual_count) = &
+   character(*), parameter :: residual_descriptions(residual_count) = &
       [character(80) :: 'w - C_wp p - C_wt tau', 'u - C_up p - C_ut tau', motions(:motion_shift)%balance_meaning, &
        'gap of nodes in contact', 'tractions of open nodes', 'slip of stuck nodes', &
        'distance of slipping nodes from the friction limit', 'negative pressure', 'negative gap', &
@@ -67,31 +69,13 @@ module mfv_certificate
       procedure :: check_increment
       procedure :: note_jump
       procedure :: note_large_increment
-      procedure, private :: note
    end type certificate_type
 
 contains
 
-   !> Name of residual `kind`, as in the result file.
-   pure function residual_name(kind) result(name)
-      integer, intent(in) :: kind
-      character(len=len_trim(names(kind))) :: name
-
-      name = names(kind)
-   end function residual_name
-
-   !> What residual `kind` is the size of.
-   pure function residual_description(kind) result(description)
-      integer, intent(in) :: kind
-      character(len=len_trim(descriptions(kind))) :: description
-
-      description = descriptions(kind)
-   end function residual_description
-
    !> Empty certificate of a model.
-   function new_certificate(model) result(certificate)
+   type(certificate_type) function new_certificate(model) result(certificate)
       type(contact_model_type), intent(in) :: model
-      type(certificate_type) :: certificate
 
       call certificate%claim(model)
    end function new_certificate
@@ -165,7 +149,7 @@ contains
          jump = largest_or_nan(jump, after%pressure(i) - before%pressure(i))
          jump = largest_or_nan(jump, after%shear(i) - before%shear(i))
       end do
-      if (self%traction > 0.0_wp) call self%note(continuity, jump, self%traction)
+      if (self%traction > 0.0_wp) call note(self, continuity, jump, self%traction)
    end subroutine note_jump
 
    !> Note the estimated errors of an interval by large increments: of the tractions at its end, force/length^2; of what friction
@@ -185,14 +169,13 @@ contains
       class(certificate_type), intent(inout) :: self
       type(contact_model_type), intent(in) :: model
       type(contact_fields_type), intent(in) :: fields
-      real(wp), dimension(size(fields%pressure)) :: normal_by_pressure, normal_by_shear, tangential_by_pressure, &
-                                                    tangential_by_shear, rigid_normal, rigid_tangential
+      real(wp) :: part(size(fields%pressure), 4)
+      real(wp), dimension(size(fields%pressure)) :: rigid_normal, rigid_tangential
       real(wp) :: pressure_force, shear_force, normal_rest, tangential_rest
       integer :: i
 
       ! By pressure and by shear apart: their sizes are the scale, however much they cancel.
-      call model%compliance%parts(fields%pressure, fields%shear, normal_by_pressure, normal_by_shear, tangential_by_pressure, &
-                                  tangential_by_shear)
+      call model%compliance%parts(fields%pressure, fields%shear, part)
       rigid_normal = 0.0_wp
       rigid_tangential = 0.0_wp
       if (model%has_rigid_parts()) then
@@ -205,22 +188,20 @@ contains
       tangential_rest = 0.0_wp
       do i = 1, size(fields%pressure)
          self%traction = max(self%traction, abs(fields%pressure(i)), abs(fields%shear(i)))
-         self%normal = max(self%normal, abs(normal_by_pressure(i)), abs(normal_by_shear(i)))
-         self%tangential = max(self%tangential, abs(tangential_by_pressure(i)), abs(tangential_by_shear(i)), &
-                               abs(rigid_tangential(i)))
+         self%normal = max(self%normal, abs(part(i, block_wp)), abs(part(i, block_wt)))
+         self%tangential = max(self%tangential, abs(part(i, block_up)), abs(part(i, block_ut)), abs(rigid_tangential(i)))
          pressure_force = pressure_force + model%width(i)*abs(fields%pressure(i))
          shear_force = shear_force + model%width(i)*abs(fields%shear(i))
-         normal_rest = largest_or_nan(normal_rest, fields%normal(i) + rigid_normal(i) - normal_by_pressure(i) &
-                                      - normal_by_shear(i))
-         tangential_rest = largest_or_nan(tangential_rest, fields%tangential(i) + rigid_tangential(i) &
-                                          - tangential_by_pressure(i) - tangential_by_shear(i))
+         normal_rest = largest_or_nan(normal_rest, fields%normal(i) + rigid_normal(i) - part(i, block_wp) - part(i, block_wt))
+         tangential_rest = largest_or_nan(tangential_rest, fields%tangential(i) + rigid_tangential(i) - part(i, block_up) &
+                                          - part(i, block_ut))
       end do
       self%tangential = max(self%tangential, model%grip*self%normal, abs(fields%motion(motion_shift)))
       self%force(motion_approach) = max(self%force(motion_approach), abs(fields%force(motion_approach)), pressure_force)
       self%force(motion_shift) = max(self%force(motion_shift), model%grip*self%force(motion_approach), shear_force, &
                                      abs(fields%force(motion_shift)))
-      call self%note(elasticity_normal, normal_rest, max(self%normal, maxval(abs(rigid_normal))))
-      call self%note(elasticity_tangential, tangential_rest, self%tangential)
+      call note(self, elasticity_normal, normal_rest, max(self%normal, maxval(abs(rigid_normal))))
+      call note(self, elasticity_tangential, tangential_rest, self%tangential)
       do i = 1, motion_count
          if (motions(i)%optional) then
             if (.not. self%claimed(force_balance(i))) cycle
@@ -228,7 +209,7 @@ contains
                                 model%force(abs(model%normal_arm(:, i)*fields%pressure)) &
                                 + model%force(abs(model%tangential_arm(:, i)*fields%shear)))
          end if
-         call self%note(force_balance(i), abs(fields%force(i) - model%resultant(i, fields%pressure, fields%shear)), self%force(i))
+         call note(self, force_balance(i), abs(fields%force(i) - model%resultant(i, fields%pressure, fields%shear)), self%force(i))
       end do
    end subroutine check_equilibrium
 
@@ -264,10 +245,10 @@ contains
       end do
       scale = self%normal
       if (.not. scale > 0.0_wp) scale = max(maxval(abs(model%initial_gap)), abs(state%fields%motion(motion_approach)))
-      call self%note(contact_gap, closed_gap, scale)
-      call self%note(gap_sign, open_gap, scale)
-      call self%note(open_traction, open_traction_size, self%traction)
-      call self%note(pressure_sign, negative_pressure, self%traction)
+      call note(self, contact_gap, closed_gap, scale)
+      call note(self, gap_sign, open_gap, scale)
+      call note(self, open_traction, open_traction_size, self%traction)
+      call note(self, pressure_sign, negative_pressure, self%traction)
    end subroutine check_normal_contact
 
    !> Equalities and inequalities of slip and shear traction. Over a large increment (`leap`) slip counts from what that
@@ -316,10 +297,10 @@ contains
                                                   *(after%fields%pressure(i) - before%fields%pressure(i))*law%limit_part()))
             end if
          end do
-         call self%note(stick_slip, sliding, self%tangential)
-         call self%note(slip_traction, law_defect, self%traction)
-         call self%note(friction_limit, beyond_limit, self%traction)
-         call self%note(slip_direction, wrong_way, merge(self%tangential, self%traction, law%sticks()))
+         call note(self, stick_slip, sliding, self%tangential)
+         call note(self, slip_traction, law_defect, self%traction)
+         call note(self, friction_limit, beyond_limit, self%traction)
+         call note(self, slip_direction, wrong_way, merge(self%tangential, self%traction, law%sticks()))
       end associate
    end subroutine check_friction
 
@@ -354,7 +335,7 @@ contains
       end associate
       if (leap) self%work = stored + after%dissipation
       self%energy = max(self%energy, self%gross_work, abs(stored), after%dissipation)
-      if (.not. leap) call self%note(energy_balance, abs(self%work - stored - after%dissipation), self%energy)
+      if (.not. leap) call note(self, energy_balance, abs(self%work - stored - after%dissipation), self%energy)
    end subroutine check_energy
 
    !> Keep a residual when it is the largest of its kind; `scale` is its magnitude of reference.

@@ -51,12 +51,11 @@ module mfv_cycle
 contains
 
    !> The turning point that a state is. `slip`: see turning_point_type; `stiffness`: see stiffness_on_leaving.
-   function new_turning_point(model, state, slip, stiffness) result(point)
+   type(turning_point_type) function new_turning_point(model, state, slip, stiffness) result(point)
       type(contact_model_type), intent(in) :: model
       type(contact_state_type), intent(in) :: state
       type(slip_record_type), intent(in) :: slip
       real(wp), intent(in) :: stiffness
-      type(turning_point_type) :: point
 
       point%force = state%fields%force
       point%motion = state%fields%motion

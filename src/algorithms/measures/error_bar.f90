@@ -60,11 +60,10 @@ contains
    !> what the interval leaves open on each of the meshes, in the unit of the values, shape of values. `counted`: whether the
    !> values are numbers of intervals, so that differences that the allowances explain say nothing. `bounded`: whether the
    !> quantity always has a limit.
-   pure function new_error_bar(nodes, values, allowances, counted, bounded) result(bar)
+   pure type(error_bar_type) function new_error_bar(nodes, values, allowances, counted, bounded) result(bar)
       integer, intent(in) :: nodes(:)
       real(wp), intent(in) :: values(:), allowances(:)
       logical, intent(in) :: counted, bounded
-      type(error_bar_type) :: bar
       real(wp), dimension(size(values) - 1) :: ratio, difference
       real(wp) :: scatter
 
@@ -98,9 +97,8 @@ contains
    end function grows
 
    !> The bar of a quantity of which coarser meshes tell nothing. `values`: as above.
-   pure function unresolved_bar(values) result(bar)
+   pure type(error_bar_type) function unresolved_bar(values) result(bar)
       real(wp), intent(in) :: values(:)
-      type(error_bar_type) :: bar
 
       bar%known = .true.
       bar%resolved = .false.

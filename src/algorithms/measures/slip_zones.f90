@@ -17,7 +17,7 @@ module mfv_slip_zones
    use mfv_node_status, only: holds, in_contact, motion_sign, node_frictionless
    use mfv_reference_spence, only: spence_stick_ratio
    use mfv_strings, only: to_text
-   use mfv_zone_edges, only: ends_with_body, find_zone_edges, zone_edges_type
+   use mfv_zone_edges, only: ends_with_body, find_zone_edges, zone_edges_type, zone_type, zones_of
    implicit none
    private
    public :: slip_record_type, leg_start_type, widest_slip_zone, resolved_nodes, needed_mesh, &
@@ -77,24 +77,19 @@ contains
    !> whole patch slides there is no zone to resolve either, and it counts with its nodes, but as resolved at least.
    pure integer function widest_slip_zone(status) result(widest)
       integer, intent(in) :: status(:)
-      integer :: first, last, n
-      logical :: partial
+      type(zone_type), allocatable :: zones(:)
+      integer, allocatable :: neighbours(:)
+      integer :: i, nodes
 
       widest = 0
-      n = size(status)
-      last = 0
-      do while (last < n)
-         first = last + 1
-         last = first
-         if (motion_sign(status(first)) == 0) cycle
-         do while (last < n)
-            if (motion_sign(status(last + 1)) == 0) exit
-            last = last + 1
-         end do
-         partial = .false.
-         if (first > 1) partial = holds(status(first - 1))
-         if (last < n) partial = partial .or. holds(status(last + 1))
-         widest = max(widest, merge(last - first + 1, max(last - first + 1, resolved_nodes), partial))
+      zones = zones_of(motion_sign(status) /= 0)
+      do i = 1, size(zones)
+         associate (first => zones(i)%first, last => zones(i)%last)
+            nodes = last - first + 1
+            neighbours = pack([first - 1, last + 1], [first > 1, last < size(status)])
+            if (.not. any(holds(status(neighbours)))) nodes = max(nodes, resolved_nodes)
+            widest = max(widest, nodes)
+         end associate
       end do
    end function widest_slip_zone
 
@@ -151,9 +146,10 @@ contains
       real(wp), intent(in) :: noise
       real(wp), intent(out) :: width, missing
       integer, parameter :: fewest = 6
-      real(wp), parameter :: widest = 1.5_wp
+      !> Changes of the shear traction below a part of the friction limit are round-off.
+      real(wp), parameter :: widest = 1.5_wp, round_off = 1.0e-9_wp, noises = 100.0_wp
       real(wp) :: change(size(state%status)), one_width, one_work
-      integer :: first, last, side
+      integer :: added, first, last, side
 
       width = 0.0_wp
       missing = 0.0_wp
@@ -166,8 +162,12 @@ contains
          return
       end if
       if (presses_within_friction(model, start, state)) return
-      change = change_of_shear(start, state)
-      if (.not. maxval(abs(change)) > significant(model, state, noise)) return
+      ! The mesh may have grown at both ends.
+      added = (size(change) - size(start%shear))/2
+      change = state%fields%shear
+      change(added + 1:added + size(start%shear)) = change(added + 1:added + size(start%shear)) - start%shear
+      if (.not. maxval(abs(change)) > max(round_off, noises*noise)*model%scene%friction%static%largest() &
+          *maxval(state%fields%pressure)) return
       do side = -1, 1, 2
          call hidden_at_edge(model, state, change, merge(first, last, side < 0), side, one_width, one_work)
          width = max(width, one_width)
@@ -207,29 +207,6 @@ contains
       presses_within_friction = pressed > round_off*state%fields%force(motion_approach) .and. &
                                 sheared <= model%scene%friction%static%largest()*pressed*(1.0_wp + round_off)
    end function presses_within_friction
-
-   !> By how much a leg has changed the shear traction, force/length^2; its mesh may have grown at both ends.
-   pure function change_of_shear(start, state) result(change)
-      type(leg_start_type), intent(in) :: start
-      type(contact_state_type), intent(in) :: state
-      real(wp) :: change(size(state%status))
-      integer :: added, before
-
-      before = size(start%shear)
-      added = (size(change) - before)/2
-      change = state%fields%shear
-      change(added + 1:added + before) = change(added + 1:added + before) - start%shear
-   end function change_of_shear
-
-   !> Changes of the shear traction below this are round-off, force/length^2.
-   pure real(wp) function significant(model, state, noise)
-      type(contact_model_type), intent(in) :: model
-      type(contact_state_type), intent(in) :: state
-      real(wp), intent(in) :: noise
-      real(wp), parameter :: round_off = 1.0e-9_wp, noises = 100.0_wp
-
-      significant = max(round_off, noises*noise)*model%scene%friction%static%largest()*maxval(state%fields%pressure)
-   end function significant
 
    !> Width (length) of the slip zone that the `change` of the shear traction, force/length^2, makes at the edge of the contact
    !> on `side` (-1 left, 1 right), whose outermost node `edge` holds; and what it dissipates, force. The squares of the friction

@@ -23,7 +23,7 @@ module mfv_zone_edges
    use mfv_surface_tractions, only: root_shift
    implicit none
    private
-   public :: zone_type, patch_type, zone_edges_type, find_patches, find_zone_edges, ends_with_body
+   public :: zone_type, patch_type, zone_edges_type, find_patches, find_zone_edges, zones_of, ends_with_body
 
    !> A zone of neighbouring nodes, from `first` to `last`, and its edges: lengths along the surface from the pole, to the right
    !> positive.
@@ -143,7 +143,7 @@ contains
       type(zone_type), allocatable :: zones(:)
       integer :: i
 
-      call find_zones(in_contact(state%status), zones)
+      zones = zones_of(in_contact(state%status))
       allocate (patches(size(zones)))
       do i = 1, size(zones)
          patches(i)%first = zones(i)%first
@@ -154,23 +154,18 @@ contains
          patches(i)%right_power = contact_power(model, state, zones(i)%last, 1)
          patches(i)%left = contact_edge(model, state, patches(i), -1)
          patches(i)%right = contact_edge(model, state, patches(i), 1)
-         if (i > 1) call separate(patches(i - 1), patches(i))
+         if (i == 1) cycle
+         ! Patches with an open node between them do not overlap, wherever the tractions of a few nodes may point.
+         if (patches(i - 1)%right <= patches(i)%left) cycle
+         patches(i - 1)%right = 0.5_wp*(patches(i - 1)%right + patches(i)%left)
+         patches(i)%left = patches(i - 1)%right
       end do
-      call find_zones(held(state), zones)
+      zones = zones_of(held(state))
       do i = 1, size(patches)
          call find_stick_zones(model, state, pack(zones, zones%first >= patches(i)%first .and. zones%last <= patches(i)%last), &
                                patches(i))
       end do
    end subroutine find_patches
-
-   !> Patches with an open node between them do not overlap, wherever the tractions of a few nodes may point.
-   pure subroutine separate(left, right)
-      type(patch_type), intent(inout) :: left, right
-
-      if (left%right <= right%left) return
-      left%right = 0.5_wp*(left%right + right%left)
-      right%left = left%right
-   end subroutine separate
 
    !> The edges of the `zones` of a patch that stick.
    subroutine find_stick_zones(model, state, zones, patch)
@@ -207,25 +202,23 @@ contains
       held = holds(state%status) .or. (slips(state%status) .and. slipped <= nothing*maxval(slipped))
    end function held
 
-   !> The zones where `inside` is true.
-   pure subroutine find_zones(inside, zones)
+   !> The zones where `inside` is true, without edges.
+   pure function zones_of(inside) result(zones)
       logical, intent(in) :: inside(:)
-      type(zone_type), allocatable, intent(out) :: zones(:)
+      type(zone_type), allocatable :: zones(:)
       logical :: padded(0:size(inside) + 1)
-      integer :: i, n, number
+      integer, allocatable :: first(:), last(:)
+      integer :: i, n
 
       n = size(inside)
       padded = .false.
       padded(1:n) = inside
-      allocate (zones(count(padded(1:n) .and. .not. padded(:n - 1))))
-      number = 0
-      do i = 1, n
-         if (.not. padded(i)) cycle
-         if (.not. padded(i - 1)) number = number + 1
-         if (.not. padded(i - 1)) zones(number)%first = i
-         zones(number)%last = i
-      end do
-   end subroutine find_zones
+      first = pack([(i, i=1, n)], inside .and. .not. padded(:n - 1))
+      last = pack([(i, i=1, n)], inside .and. .not. padded(2:))
+      allocate (zones(size(first)))
+      zones%first = first
+      zones%last = last
+   end function zones_of
 
    !> Edge of a contact patch on `side` (-1 left, 1 right), length from the pole.
    real(wp) function contact_edge(model, state, patch, side) result(edge)
@@ -325,11 +318,10 @@ contains
    end function stick_edge
 
    !> The outermost values of a traction in a zone that goes from node `outermost` to node `other`; shape of the traction (nodes).
-   pure function sampled(model, traction, outermost, other) result(samples)
+   pure type(samples_type) function sampled(model, traction, outermost, other) result(samples)
       type(contact_model_type), intent(in) :: model
       real(wp), intent(in) :: traction(:)
       integer, intent(in) :: outermost, other
-      type(samples_type) :: samples
       integer :: i, side
 
       side = merge(1, -1, other >= outermost)
@@ -406,10 +398,9 @@ contains
    end function edge_by_slip
 
    !> Tractions that go as a power of the distance, raised to the inverse power, in parts of the largest.
-   pure function straightened(samples, power) result(straight)
+   pure type(samples_type) function straightened(samples, power) result(straight)
       type(samples_type), intent(in) :: samples
       real(wp), intent(in) :: power
-      type(samples_type) :: straight
       real(wp) :: largest
 
       straight = samples

@@ -16,13 +16,17 @@ module mfv_constrained_inverse
    private
    public :: constrained_inverse_type
 
+   !> A constraint; partner 0: none.
+   type :: constraint_type
+      integer :: slot = 0, partner = 0
+      real(wp) :: slope = 0.0_wp, stiffness = 0.0_wp
+   end type constraint_type
+
    type :: constrained_inverse_type
       type(updated_inverse_type) :: inverse
-      !> Number of constraints; slot and partner (0: none) of each, slope and stiffness. Shapes (capacity); the first
-      !> `constraints` entries are in use.
+      !> The constraints, shape (capacity); the first `constraints` ones are in use.
       integer :: constraints = 0
-      integer, allocatable :: slot(:), partner(:)
-      real(wp), allocatable :: slope(:), stiffness(:)
+      type(constraint_type), allocatable :: constraint(:)
       !> Columns of the inverse, shape (rows, constraints), and the inverse of S, shape (constraints, constraints); leading
       !> parts. `stale`: the latter must be computed anew.
       real(wp), allocatable, private :: columns(:, :), small(:, :)
@@ -38,11 +42,6 @@ module mfv_constrained_inverse
       procedure :: change_constraint
       procedure :: refresh
       procedure :: solve
-      procedure, private :: reserve
-      procedure, private :: follow_change
-      procedure, private :: functional
-      procedure, private :: border_small
-      procedure, private :: rebuild_small
    end type constrained_inverse_type
 
    !> Pivots below this part of what they are made of are none.
@@ -67,13 +66,13 @@ contains
       integer :: i
 
       singular = .false.
-      call self%reserve(size(borders, 1), self%constraints)
+      call reserve(self, size(borders, 1), self%constraints)
       call self%inverse%prepare(borders)
       do i = 1, size(borders, 2)
          call self%inverse%add_prepared(singular)
          if (singular) return
          self%columns(self%inverse%order, :self%constraints) = 0.0_wp
-         call self%follow_change(self%inverse%order)
+         call follow_change(self, self%inverse%order)
       end do
    end subroutine add_unknowns
 
@@ -87,12 +86,12 @@ contains
       last = self%inverse%order
       call self%inverse%remove(row, singular)
       if (singular) return
-      call self%follow_change(last)
+      call follow_change(self, last)
       associate (k => self%constraints)
          if (k == 0) return
          self%columns(row, :k) = self%columns(last, :k)
-         where (self%slot(:k) == last) self%slot(:k) = row
-         where (self%partner(:k) == last) self%partner(:k) = row
+         where (self%constraint(:k)%slot == last) self%constraint(:k)%slot = row
+         where (self%constraint(:k)%partner == last) self%constraint(:k)%partner = row
       end associate
    end subroutine remove_unknown
 
@@ -102,15 +101,15 @@ contains
       integer, intent(in) :: rows
       real(wp), dimension(self%constraints) :: along, across, by_along, by_across
       real(wp) :: pivot
-      integer :: k
+      integer :: c, k
 
       k = self%constraints
       if (k == 0) return
       associate (change => self%inverse%change, weight => self%inverse%change_weight)
-         across = change(self%slot(:k))
+         across = [(change(self%constraint(c)%slot), c=1, k)]
          call dger(rows, k, weight, change, 1, across, 1, self%columns, size(self%columns, 1))
          if (self%stale) return
-         along = self%functional(change)
+         along = functional(self, change)
          call dgemv('N', k, k, 1.0_wp, self%small, size(self%small, 1), along, 1, 0.0_wp, by_along, 1)
          call dgemv('T', k, k, 1.0_wp, self%small, size(self%small, 1), across, 1, 0.0_wp, by_across, 1)
          pivot = 1.0_wp + weight*dot_product(across, by_along)
@@ -128,8 +127,10 @@ contains
       integer :: c
 
       do c = 1, self%constraints
-         values(c) = x(self%slot(c))
-         if (self%partner(c) > 0) values(c) = values(c) - self%slope(c)*x(self%partner(c))
+         associate (constraint => self%constraint(c))
+            values(c) = x(constraint%slot)
+            if (constraint%partner > 0) values(c) = values(c) - constraint%slope*x(constraint%partner)
+         end associate
       end do
    end function functional
 
@@ -138,51 +139,39 @@ contains
       class(constrained_inverse_type), intent(inout) :: self
       integer, intent(in) :: slot, partner
       real(wp), intent(in) :: slope, stiffness
-      real(wp), dimension(self%constraints) :: row, column
-      integer :: c, k, n
+      real(wp) :: row(self%constraints)
+      integer :: k, n
 
       n = self%inverse%order
       k = self%constraints
-      call self%reserve(n, k + 1)
-      self%slot(k + 1) = slot
-      self%partner(k + 1) = partner
-      self%slope(k + 1) = slope
-      self%stiffness(k + 1) = stiffness
+      call reserve(self, n, k + 1)
+      self%constraint(k + 1) = constraint_type(slot, partner, slope, stiffness)
       call self%inverse%column(slot, self%columns(:n, k + 1))
-      if (.not. self%stale) then
-         do c = 1, k
-            row(c) = self%columns(slot, c)
-            if (partner > 0) row(c) = row(c) - slope*self%columns(partner, c)
-         end do
-         column = self%functional(self%columns(:n, k + 1))
-      end if
       self%constraints = k + 1
       if (self%stale) return
-      call self%border_small(row, column)
+      row = self%columns(slot, :k)
+      if (partner > 0) row = row - slope*self%columns(partner, :k)
+      call border_small(self, row)
    end subroutine constrain
 
    !> S has a new last row and column.
-   subroutine border_small(self, row, column)
+   subroutine border_small(self, row)
       class(constrained_inverse_type), intent(inout) :: self
-      real(wp), intent(in) :: row(:), column(:)
+      real(wp), intent(in) :: row(:)
       real(wp), dimension(size(row)) :: by_column, by_row
-      real(wp) :: diagonal, pivot, values(size(row) + 1)
+      real(wp) :: diagonal, pivot, column(size(row) + 1)
       integer :: k, capacity
 
       k = size(row)
       capacity = size(self%small, 1)
-      values = self%functional(self%columns(:self%inverse%order, k + 1))
-      diagonal = values(k + 1) - self%stiffness(k + 1)
-      by_column = 0.0_wp
-      by_row = 0.0_wp
-      if (k > 0) then
-         call dgemv('N', k, k, 1.0_wp, self%small, capacity, column, 1, 0.0_wp, by_column, 1)
-         call dgemv('T', k, k, 1.0_wp, self%small, capacity, row, 1, 0.0_wp, by_row, 1)
-      end if
+      column = functional(self, self%columns(:self%inverse%order, k + 1))
+      diagonal = column(k + 1) - self%constraint(k + 1)%stiffness
+      call dgemv('N', k, k, 1.0_wp, self%small, capacity, column, 1, 0.0_wp, by_column, 1)
+      call dgemv('T', k, k, 1.0_wp, self%small, capacity, row, 1, 0.0_wp, by_row, 1)
       pivot = diagonal - dot_product(row, by_column)
       self%stale = abs(pivot) <= no_pivot*max(abs(diagonal), abs(diagonal - pivot))
       if (self%stale) return
-      if (k > 0) call dger(k, k, 1.0_wp/pivot, by_column, 1, by_row, 1, self%small, capacity)
+      call dger(k, k, 1.0_wp/pivot, by_column, 1, by_row, 1, self%small, capacity)
       self%small(:k, k + 1) = -by_column/pivot
       self%small(k + 1, :k) = -by_row/pivot
       self%small(k + 1, k + 1) = 1.0_wp/pivot
@@ -209,10 +198,7 @@ contains
             self%small(number, :k) = self%small(k, :k)
          end if
       end if
-      self%slot(number) = self%slot(k)
-      self%partner(number) = self%partner(k)
-      self%slope(number) = self%slope(k)
-      self%stiffness(number) = self%stiffness(k)
+      self%constraint(number) = self%constraint(k)
       self%columns(:n, number) = self%columns(:n, k)
       self%constraints = k - 1
       if (k == 1) self%stale = .false.
@@ -239,8 +225,8 @@ contains
       integer, intent(in) :: number
       real(wp), intent(in) :: slope, stiffness
 
-      self%slope(number) = slope
-      self%stiffness(number) = stiffness
+      self%constraint(number)%slope = slope
+      self%constraint(number)%stiffness = stiffness
       self%stale = .true.
    end subroutine change_constraint
 
@@ -254,9 +240,9 @@ contains
 
       call self%inverse%rebuild(matrix, singular)
       if (singular) return
-      call self%reserve(self%inverse%order, self%constraints)
+      call reserve(self, self%inverse%order, self%constraints)
       do c = 1, self%constraints
-         call self%inverse%column(self%slot(c), self%columns(:self%inverse%order, c))
+         call self%inverse%column(self%constraint(c)%slot, self%columns(:self%inverse%order, c))
       end do
       self%stale = self%constraints > 0
    end subroutine refresh
@@ -276,9 +262,9 @@ contains
       k = self%constraints
       call self%inverse%multiply(right, x)
       if (k == 0) return
-      if (self%stale) call self%rebuild_small(singular)
+      if (self%stale) call rebuild_small(self, singular)
       if (singular) return
-      missing = values - self%functional(x)
+      missing = values - functional(self, x)
       call dgemv('N', k, k, 1.0_wp, self%small, size(self%small, 1), missing, 1, 0.0_wp, lambda, 1)
       call dgemv('N', n, k, 1.0_wp, self%columns, size(self%columns, 1), lambda, 1, 1.0_wp, x, 1)
    end subroutine solve
@@ -288,16 +274,13 @@ contains
       class(constrained_inverse_type), intent(inout) :: self
       logical, intent(out) :: singular
       integer, parameter :: block = 32
-      integer :: pivots(self%constraints), c, d, info, k
+      integer :: pivots(self%constraints), c, info, k
       real(wp) :: work(block*self%constraints)
 
       k = self%constraints
       do c = 1, k
-         do d = 1, k
-            self%small(d, c) = self%columns(self%slot(d), c)
-            if (self%partner(d) > 0) self%small(d, c) = self%small(d, c) - self%slope(d)*self%columns(self%partner(d), c)
-         end do
-         self%small(c, c) = self%small(c, c) - self%stiffness(c)
+         self%small(:k, c) = functional(self, self%columns(:, c))
+         self%small(c, c) = self%small(c, c) - self%constraint(c)%stiffness
       end do
       call dgetrf(k, k, self%small, size(self%small, 1), pivots, info)
       if (info == 0) call dgetri(k, self%small, size(self%small, 1), pivots, work, size(work), info)
@@ -310,50 +293,26 @@ contains
       class(constrained_inverse_type), intent(inout) :: self
       integer, intent(in) :: rows, constraints
       integer, parameter :: least = 32
-      real(wp), allocatable :: columns(:, :), small(:, :), real_values(:)
-      integer, allocatable :: whole(:)
+      type(constraint_type), allocatable :: constraint(:)
+      real(wp), allocatable :: columns(:, :), small(:, :)
       integer :: capacity(2), wanted(2), k, n
 
       capacity = 0
       if (allocated(self%columns)) capacity = shape(self%columns)
       wanted = [rows, constraints]
       if (all(wanted <= capacity)) return
+      n = min(self%inverse%order, capacity(1))
       where (wanted > capacity) capacity = max(wanted + wanted/4, least)
       k = self%constraints
-      n = 0
-      if (allocated(self%columns)) n = min(self%inverse%order, size(self%columns, 1))
-      allocate (columns(capacity(1), capacity(2)), small(capacity(2), capacity(2)))
+      allocate (columns(capacity(1), capacity(2)), small(capacity(2), capacity(2)), constraint(capacity(2)))
       if (k > 0) then
          columns(:n, :k) = self%columns(:n, :k)
          small(:k, :k) = self%small(:k, :k)
+         constraint(:k) = self%constraint(:k)
       end if
       call move_alloc(columns, self%columns)
       call move_alloc(small, self%small)
-      if (allocated(self%slot)) then
-         if (size(self%slot) >= capacity(2)) return
-      end if
-      call lengthen(self%slot)
-      call lengthen(self%partner)
-      call lengthen_real(self%slope)
-      call lengthen_real(self%stiffness)
-
-   contains
-
-      subroutine lengthen(values)
-         integer, allocatable, intent(inout) :: values(:)
-
-         allocate (whole(capacity(2)), source=0)
-         if (k > 0) whole(:k) = values(:k)
-         call move_alloc(whole, values)
-      end subroutine lengthen
-
-      subroutine lengthen_real(values)
-         real(wp), allocatable, intent(inout) :: values(:)
-
-         allocate (real_values(capacity(2)), source=0.0_wp)
-         if (k > 0) real_values(:k) = values(:k)
-         call move_alloc(real_values, values)
-      end subroutine lengthen_real
+      call move_alloc(constraint, self%constraint)
    end subroutine reserve
 
 end module mfv_constrained_inverse

@@ -9,7 +9,7 @@ module mfv_contact_system
    use mfv_motions, only: motions, motion_count, control_force, control_displacement
    implicit none
    private
-   public :: contact_system_type, load_type, response_type, constraints_type, initial_loads
+   public :: contact_system_type, load_type, response_type, constraints_type, prescribed_type, prescribed_by, initial_loads
 
    !> One controlled load: force (moment) or rigid displacement (rotation), its value now and its rate per unit of load.
    type :: load_type
@@ -38,6 +38,15 @@ module mfv_contact_system
       !> The load of every motion; of no meaning where the motion is not modelled.
       type(load_type) :: load(motion_count)
    end type constraints_type
+
+   !> What the constraints prescribe of the state, or of its rates per unit of load.
+   type :: prescribed_type
+      !> Opening w - delta of nodes in contact and slip s of stuck ones, length; offsets of the lines of slipping and creeping ones,
+      !> force/length^2; shape (nodes).
+      real(wp), allocatable :: opening(:), slip(:), offset(:)
+      !> Values of the controlled loads.
+      real(wp) :: load(motion_count) = 0.0_wp
+   end type prescribed_type
 
    !> The state that the constraints determine and its rates per unit of load.
    type :: response_type
@@ -71,5 +80,27 @@ module mfv_contact_system
          logical, intent(out) :: singular
       end subroutine solve_interface
    end interface
+
+contains
+
+   !> What the constraints prescribe of the state of a model, or (`rates`) of its rates.
+   pure type(prescribed_type) function prescribed_by(constraints, model, rates) result(prescribed)
+      type(constraints_type), intent(in) :: constraints
+      type(contact_model_type), intent(in) :: model
+      logical, intent(in) :: rates
+
+      if (.not. rates) then
+         prescribed%load = constraints%load%value
+         prescribed%offset = constraints%row%offset
+         prescribed%opening = -model%initial_gap
+         prescribed%slip = constraints%stuck_slip
+         return
+      end if
+      prescribed%load = constraints%load%rate
+      prescribed%offset = constraints%offset_rate
+      allocate (prescribed%opening(size(constraints%status)), prescribed%slip(size(constraints%status)), source=0.0_wp)
+      if (allocated(constraints%gap_rate)) prescribed%opening = constraints%gap_rate
+      if (allocated(constraints%slip_rate)) prescribed%slip = constraints%slip_rate
+   end function prescribed_by
 
 end module mfv_contact_system

@@ -94,13 +94,11 @@ contains
       class(krylov_preconditioner_type), intent(inout) :: self
       integer, intent(in) :: nodes(:)
       real(wp), intent(in) :: softness(:)
-      integer :: now, wanted
 
       if (size(nodes) > 0) then
-         now = self%held%inverse%current_order()
-         wanted = nodes(size(nodes)) - nodes(1) + 1
-         if (abs(self%contact%inverse%current_order() - wanted) < abs(now - wanted)) &
-            call self%held%inverse%copy_order(self%contact%inverse)
+         associate (inverse => self%held%inverse, other => self%contact%inverse, wanted => nodes(size(nodes)) - nodes(1) + 1)
+            if (abs(other%order - wanted) < abs(inverse%order - wanted)) call inverse%copy_order(other)
+         end associate
       end if
       call set_nodes(self, self%held, nodes)
       self%soft = any(abs(softness) > 0.0_wp)
@@ -130,7 +128,7 @@ contains
       integer :: i, level, levels, length
 
       self%softness = softness
-      length = fast_length(2*self%held%inverse%current_order())
+      length = fast_length(2*self%held%inverse%order)
       allocate (values(length), spectrum(length/2 + 1))
       values(:length/2 + 1) = self%kernel(:length/2 + 1)
       values(length/2 + 2:) = self%kernel(length/2:2:-1)
@@ -207,7 +205,7 @@ contains
       real(wp), intent(inout) :: values(:)
       integer :: order
 
-      order = block%inverse%current_order()
+      order = block%inverse%order
       if (size(values) == order) then
          call block%inverse%apply(values)
          return

@@ -44,8 +44,8 @@ module mfv_krylov_system
       private
       type(krylov_preconditioner_type) :: preconditioner
       type(gmres_type) :: gmres
-      !> Units of traction and length.
-      real(wp) :: stress = 1.0_wp, length = 0.0_wp
+      !> Units of traction, length, arms and motions.
+      real(wp) :: stress = 1.0_wp, length = 0.0_wp, arm(motion_count) = 1.0_wp, motion_unit(motion_count) = 1.0_wp
       !> Arms of the motions and widths of the nodes in these units, shapes (nodes, motion_count), (nodes).
       real(wp), allocatable :: normal_arm(:, :), tangential_arm(:, :), width(:)
       !> Nodes in contact, held nodes, and free motions, ascending.
@@ -85,6 +85,7 @@ contains
       type(contact_fields_type), intent(in) :: start
       type(response_type), intent(inout) :: response
       logical, intent(out) :: singular
+      type(prescribed_type) :: prescribed
       type(right_side_type) :: right
       real(wp), allocatable :: unknowns(:)
 
@@ -95,25 +96,25 @@ contains
       call prepare_preconditioner(self, model, singular)
       if (singular) return
 
-      right = right_of_state(self, model, constraints)
-      unknowns = packed(self, start%pressure/self%stress, start%shear/self%stress, &
-                        start%motion/motion_units(self))
+      prescribed = prescribed_by(constraints, model, .false.)
+      right = right_side(self, model, constraints%status, prescribed)
+      unknowns = [start%pressure(self%contact)/self%stress, start%shear(self%held)/self%stress, &
+                  start%motion(self%free)/self%motion_unit(self%free)]
       call iterate(self, model, right, unknowns, singular)
       if (singular) return
-      response%state = fields_of(self, model, right, unknowns)
-      call meet_loads(self, model, constraints, response%state, .false.)
+      response%state = fields_of(self, model, prescribed, right, unknowns)
 
-      right = right_of_rates(self, model, constraints)
+      prescribed = prescribed_by(constraints, model, .true.)
+      right = right_side(self, model, constraints%status, prescribed)
       unknowns = guess_of_rates(self)
       call iterate(self, model, right, unknowns, singular)
       if (singular) return
-      response%rate = fields_of(self, model, right, unknowns)
-      call meet_loads(self, model, constraints, response%rate, .true.)
+      response%rate = fields_of(self, model, prescribed, right, unknowns)
       self%last_pressure = self%found(:, 1)
       self%last_shear = self%found(:, 2)
       self%last_contact = ends_of(self%contact)
       self%last_held = ends_of(self%held)
-      self%last_motion = motion_of(self, right, unknowns)
+      self%last_motion = motion_of(self, right%motion, unknowns)
    end subroutine solve
 
    !> Units, arms and work space of the mesh as it is now; the last rates go along with a mesh that has grown.
@@ -126,6 +127,8 @@ contains
       if (.not. self%length > 0.0_wp) then
          self%length = model%length()
          self%stress = model%compliance%modulus
+         self%arm = [(arm_unit(i, self%length), i=1, motion_count)]
+         self%motion_unit = self%length/self%arm
       end if
       call self%preconditioner%prepare(model%compliance, self%length/self%stress)
       if (allocated(self%pressure)) then
@@ -136,8 +139,8 @@ contains
       self%normal_arm = model%normal_arm
       self%tangential_arm = model%tangential_arm
       do i = 1, motion_count
-         self%normal_arm(:, i) = self%normal_arm(:, i)/arm_unit(i, self%length)
-         self%tangential_arm(:, i) = self%tangential_arm(:, i)/arm_unit(i, self%length)
+         self%normal_arm(:, i) = self%normal_arm(:, i)/self%arm(i)
+         self%tangential_arm(:, i) = self%tangential_arm(:, i)/self%arm(i)
       end do
       self%width = model%width/self%length
       if (allocated(self%last_pressure)) then
@@ -248,79 +251,24 @@ contains
       end do
    end function smallest_pivot
 
-   !> What the constraints prescribe for the state.
-   function right_of_state(self, model, constraints) result(right)
+   !> The right-hand sides that the constraints prescribe, for nodes of these statuses.
+   type(right_side_type) function right_side(self, model, status, prescribed) result(right)
       class(krylov_system_type), intent(in) :: self
       type(contact_model_type), intent(in) :: model
-      type(constraints_type), intent(in) :: constraints
-      type(right_side_type) :: right
-      integer :: m
+      integer, intent(in) :: status(:)
+      type(prescribed_type), intent(in) :: prescribed
 
-      m = size(self%contact)
-      call set_loads(self, model, constraints, constraints%load%value, constraints%row%offset, right)
-      right%rows(:m) = -model%initial_gap(self%contact)/self%length
-      where (constraints%status(self%held) == node_stick) &
-         right%rows(m + 1:m + size(self%held)) = constraints%stuck_slip(self%held)/self%length
-   end function right_of_state
-
-   !> What they prescribe for the rates.
-   function right_of_rates(self, model, constraints) result(right)
-      class(krylov_system_type), intent(in) :: self
-      type(contact_model_type), intent(in) :: model
-      type(constraints_type), intent(in) :: constraints
-      type(right_side_type) :: right
-      integer :: m
-
-      m = size(self%contact)
-      call set_loads(self, model, constraints, constraints%load%rate, constraints%offset_rate, right)
-      if (allocated(constraints%gap_rate)) right%rows(:m) = constraints%gap_rate(self%contact)/self%length
-      if (.not. allocated(constraints%slip_rate)) return
-      where (constraints%status(self%held) == node_stick) &
-         right%rows(m + 1:m + size(self%held)) = constraints%slip_rate(self%held)/self%length
-   end function right_of_rates
-
-   !> Loads (`values`, of every motion) and offsets; the other rows are zero.
-   subroutine set_loads(self, model, constraints, values, offset, right)
-      class(krylov_system_type), intent(in) :: self
-      type(contact_model_type), intent(in) :: model
-      type(constraints_type), intent(in) :: constraints
-      real(wp), intent(in) :: values(motion_count), offset(:)
-      type(right_side_type), intent(out) :: right
-      real(wp) :: force_unit(motion_count)
-      integer :: i
-      logical :: follows(size(offset))
-      integer :: m
-
-      m = size(self%contact)
-      force_unit = self%stress*self%length*[(arm_unit(i, self%length), i=1, motion_count)]
-      allocate (right%rows(m + size(self%held) + size(self%free)), source=0.0_wp)
-      right%rows(m + size(self%held) + 1:) = values(self%free)/force_unit(self%free)
-      right%motion = values/motion_units(self)
+      right%motion = prescribed%load/self%motion_unit
       right%motion(self%free) = 0.0_wp
       where (.not. model%moves) right%motion = 0.0_wp
-      follows = slips(constraints%status) .or. creeps(constraints%status)
-      right%offset = merge(offset, 0.0_wp, follows)/self%stress
-      right%rows(m + 1:m + size(self%held)) = self%softness*right%offset(self%held)
-      right%offset(self%held) = 0.0_wp
-   end subroutine set_loads
-
-   !> Units of the motions.
-   pure function motion_units(self)
-      class(krylov_system_type), intent(in) :: self
-      real(wp) :: motion_units(motion_count)
-      integer :: i
-
-      motion_units = [(self%length/arm_unit(i, self%length), i=1, motion_count)]
-   end function motion_units
-
-   !> The unknowns out of fields, shape (nodes), and motions.
-   function packed(self, pressure, shear, motion) result(unknowns)
-      class(krylov_system_type), intent(in) :: self
-      real(wp), intent(in) :: pressure(:), shear(:), motion(motion_count)
-      real(wp), allocatable :: unknowns(:)
-
-      unknowns = [pressure(self%contact), shear(self%held), motion(self%free)]
-   end function packed
+      right%offset = merge(prescribed%offset, 0.0_wp, slips(status) .or. creeps(status))/self%stress
+      associate (held => self%held)
+         right%rows = [prescribed%opening(self%contact)/self%length, &
+                       merge(prescribed%slip(held)/self%length, self%softness*right%offset(held), status(held) == node_stick), &
+                       prescribed%load(self%free)/(self%stress*self%length*self%arm(self%free))]
+         right%offset(held) = 0.0_wp
+      end associate
+   end function right_side
 
    !> The rates found last as a guess: on nodes without gaps stretched to where these are now, so that what is singular at the
    !> ends stays there; else node by node.
@@ -333,7 +281,7 @@ contains
       shear = self%last_shear
       call stretch(self%last_contact, ends_of(self%contact), pressure)
       call stretch(self%last_held, ends_of(self%held), shear)
-      unknowns = packed(self, pressure, shear, self%last_motion)
+      unknowns = [pressure(self%contact), shear(self%held), self%last_motion(self%free)]
    end function guess_of_rates
 
    !> First and last of nodes without gaps; zero where there are gaps, or none.
@@ -363,14 +311,13 @@ contains
       end do
    end subroutine stretch
 
-   !> All motions.
-   pure function motion_of(self, right, unknowns) result(motion)
+   !> All motions: the free ones out of the unknowns, the others `prescribed`.
+   pure function motion_of(self, prescribed, unknowns) result(motion)
       class(krylov_system_type), intent(in) :: self
-      type(right_side_type), intent(in) :: right
-      real(wp), intent(in) :: unknowns(:)
+      real(wp), intent(in) :: prescribed(motion_count), unknowns(:)
       real(wp) :: motion(motion_count)
 
-      motion = right%motion
+      motion = prescribed
       motion(self%free) = unknowns(size(self%contact) + size(self%held) + 1:)
    end function motion_of
 
@@ -468,7 +415,7 @@ contains
       self%found(:, 2) = self%shear
       self%found(:, 3) = self%normal
       self%found(:, 4) = self%tangential
-      call collect_rows(self, motion_of(self, right, unknowns), rows)
+      call collect_rows(self, motion_of(self, right%motion, unknowns), rows)
       rows = right%rows - rows
    end subroutine find_residual
 
@@ -478,13 +425,11 @@ contains
       type(contact_model_type), intent(in) :: model
       real(wp), intent(in) :: unknowns(:)
       real(wp), intent(out) :: rows(:)
-      real(wp) :: motion(motion_count)
+      real(wp), parameter :: at_rest(motion_count) = 0.0_wp
 
-      motion = 0.0_wp
-      motion(self%free) = unknowns(size(self%contact) + size(self%held) + 1:)
       call spread_tractions(self, unknowns)
       call displace(self, model)
-      call collect_rows(self, motion, rows)
+      call collect_rows(self, motion_of(self, at_rest, unknowns), rows)
    end subroutine multiply
 
    !> Tractions of all nodes from the unknowns; of the slip lines without offset.
@@ -600,44 +545,31 @@ contains
       call self%preconditioner%apply_held(rows(m + 1:))
    end subroutine precondition_tractions
 
-   !> Fields of the tractions and displacements in `found` and the motions.
-   function fields_of(self, model, right, unknowns) result(fields)
+   !> Fields of the tractions and displacements in `found` and the motions. Forces and motions that are prescribed to the last
+   !> digit.
+   type(contact_fields_type) function fields_of(self, model, prescribed, right, unknowns) result(fields)
       class(krylov_system_type), intent(in) :: self
       type(contact_model_type), intent(in) :: model
+      type(prescribed_type), intent(in) :: prescribed
       type(right_side_type), intent(in) :: right
       real(wp), intent(in) :: unknowns(:)
-      type(contact_fields_type) :: fields
-      real(wp) :: motion(motion_count)
+      integer :: i
 
       fields = new_contact_fields(size(self%pressure))
-      motion = motion_of(self, right, unknowns)
-      fields%motion = motion_units(self)*motion
+      fields%motion = self%motion_unit*motion_of(self, right%motion, unknowns)
       fields%pressure = self%stress*self%found(:, 1)
       fields%shear = self%stress*self%found(:, 2)
       fields%normal = self%length*self%found(:, 3) - model%rigid_normal(fields)
       fields%tangential = self%length*self%found(:, 4) - model%rigid_tangential(fields)
-   end function fields_of
-
-   !> Forces: those that are prescribed, and the resultants of the others. Prescribed motions to the last digit.
-   subroutine meet_loads(self, model, constraints, fields, rates)
-      class(krylov_system_type), intent(in) :: self
-      type(contact_model_type), intent(in) :: model
-      type(constraints_type), intent(in) :: constraints
-      type(contact_fields_type), intent(inout) :: fields
-      logical, intent(in) :: rates
-      real(wp) :: prescribed
-      integer :: i
-
       do i = 1, motion_count
          if (.not. model%moves(i)) cycle
-         prescribed = merge(constraints%load(i)%rate, constraints%load(i)%value, rates)
          if (any(self%free == i)) then
-            fields%force(i) = prescribed
+            fields%force(i) = prescribed%load(i)
          else
-            fields%motion(i) = prescribed
+            fields%motion(i) = prescribed%load(i)
             fields%force(i) = model%resultant(i, fields%pressure, fields%shear)
          end if
       end do
-   end subroutine meet_loads
+   end function fields_of
 
 end module mfv_krylov_system

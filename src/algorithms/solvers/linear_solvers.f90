@@ -15,14 +15,17 @@ module mfv_linear_solvers
 
 contains
 
-   !> The linear solver that the model's scene asks for.
+   !> The linear solver that the model's scene asks for. 'auto': the reduced system up to a number of nodes that depends on the
+   !> structure (mfv_solver_costs), beyond it fft, whose memory does not grow with the square. A user's matrix has no fast products:
+   !> it takes the reduced system.
    subroutine new_contact_system(model, system)
       type(contact_model_type), intent(in) :: model
       class(contact_system_type), allocatable, intent(out) :: system
       integer :: solver
 
       solver = model%scene%method%linear_solver
-      if (solver == solver_auto) solver = chosen_solver(model)
+      if (solver == solver_auto) solver = merge(solver_reduced, solver_fft, model%scene%lower%shape == shape_matrix .or. &
+                                                model%nodes() <= most_reduced(model))
       select case (solver)
       case (solver_fft)
          allocate (krylov_system_type :: system)
@@ -34,16 +37,6 @@ contains
          allocate (augmented_system_type :: system)
       end select
    end subroutine new_contact_system
-
-   !> What 'auto' is: the reduced system up to a number of nodes that depends on the structure (mfv_solver_costs), beyond it
-   !> fft, whose memory does not grow with the square. A user's matrix has no fast products, and there is the reduced system.
-   pure integer function chosen_solver(model) result(solver)
-      type(contact_model_type), intent(in) :: model
-
-      solver = solver_reduced
-      if (model%scene%lower%shape == shape_matrix) return
-      if (model%nodes() > most_reduced(model)) solver = solver_fft
-   end function chosen_solver
 
    !> The number of nodes up to which the reduced system is taken.
    pure integer function most_reduced(model) result(most)

@@ -53,12 +53,13 @@ module mfv_reduced_system
       !> Normal and tangential problem where they are apart, else both in the first.
       type(part_type) :: part(2)
       logical :: apart = .false.
-      !> Where the unknowns of the nodes are in their part, shape (nodes, 2), and those of the motions; 0: nowhere.
-      integer, allocatable :: place(:, :)
-      integer :: motion_place(motion_count) = 0
-      !> Constraint of every node (shape (nodes)) and motion; 0: none.
-      integer, allocatable :: constraint_of(:)
-      integer :: motion_constraint(motion_count) = 0
+      !> Where the unknowns of nodes and motions are in their part, by sort; and the constraints of their shear tractions and
+      !> of the motions; 0: nowhere, none. Shape (at least nodes and motion_count, sorts).
+      integer, allocatable :: place(:, :), constraint_of(:, :)
+      !> Nodes that they are for; 0: they are of no use.
+      integer :: nodes = 0
+      !> What is prescribed of the fields that are solved for.
+      type(prescribed_type) :: prescribed
       !> Unit of length: half the mesh when the first unknown came; it stays while the mesh grows.
       real(wp) :: length = 1.0_wp
       !> What the inverses were built for.
@@ -69,23 +70,6 @@ module mfv_reduced_system
    contains
       procedure :: solve
       procedure :: rebuilds
-      procedure, private :: match
-      procedure, private :: undetermined
-      procedure, private :: follow
-      procedure, private :: lose_constraints
-      procedure, private :: change_unknowns
-      procedure, private :: change_motions
-      procedure, private :: set_constraints
-      procedure, private :: release
-      procedure, private :: add_unknowns
-      procedure, private :: add_named
-      procedure, private :: remove_unknown
-      procedure, private :: rebuild
-      procedure, private :: part_of
-      procedure, private :: refine
-      procedure, private :: set_known_motions
-      procedure, private :: find_residual
-      procedure, private :: correct
    end type reduced_system_type
 
 contains
@@ -112,10 +96,10 @@ contains
          call self%augmented%solve(model, constraints, start, response, singular)
          return
       end if
-      call self%match(model)
+      call match(self, model)
       call respond(self, model, constraints, start, .false., response, singular)
       ! The inverse may have lost its digits: once more with a new one.
-      if (singular .and. .not. self%undetermined(model, constraints)) &
+      if (singular .and. .not. undetermined(self, model, constraints)) &
          call respond(self, model, constraints, start, .true., response, singular)
    end subroutine solve
 
@@ -129,15 +113,15 @@ contains
       type(response_type), intent(inout) :: response
       logical, intent(out) :: singular
 
-      if (anew) call self%match(model)
-      call self%follow(model, constraints, anew, singular)
-      if (.not. singular) singular = self%undetermined(model, constraints)
+      if (anew) call match(self, model)
+      call follow(self, model, constraints, anew, singular)
+      if (.not. singular) singular = undetermined(self, model, constraints)
       if (singular) return
       call response%state%take(start)
-      call self%refine(model, constraints, .false., response%state, singular)
+      call refine(self, model, constraints, .false., response%state, singular)
       if (singular) return
       call response%rate%clear(size(constraints%status))
-      call self%refine(model, constraints, .true., response%rate, singular)
+      call refine(self, model, constraints, .true., response%rate, singular)
    end subroutine respond
 
    !> Whether a force is prescribed where nothing answers to it: without contact, or a moment on one node.
@@ -147,11 +131,8 @@ contains
       type(constraints_type), intent(in) :: constraints
       integer :: i
 
-      undetermined = .false.
-      do i = 1, motion_count
-         if (i == motion_shift .or. .not. model%moves(i)) cycle
-         undetermined = undetermined .or. (self%motion_place(i) == 0 .and. .not. is_held(constraints, i))
-      end do
+      undetermined = any([(i /= motion_shift .and. model%moves(i) .and. self%place(i, a_motion) == 0 .and. &
+                           constraints%load(i)%control == control_force, i=1, motion_count)])
    end function undetermined
 
    !> Forget what belongs to other blocks, or to a scene without rotation; follow the nodes where the mesh has grown. (An object
@@ -159,21 +140,25 @@ contains
    subroutine match(self, model)
       class(reduced_system_type), intent(inout) :: self
       type(contact_model_type), intent(in) :: model
-      integer, allocatable :: place(:, :), constraint_of(:)
+      integer, allocatable :: place(:, :), constraint_of(:, :)
       logical :: same
-      integer :: extra, i, n
+      integer :: extra, i, n, room
 
       n = model%nodes()
-      if (allocated(self%place)) then
+      room = max(n, motion_count)
+      if (self%nodes > 0) then
          same = all(self%block .eqv. model%compliance%has_block) .and. all(self%moves .eqv. model%moves)
-         if (same .and. size(self%place, 1) == n) return
-         if (same .and. n > size(self%place, 1)) then
-            extra = (n - size(self%place, 1))/2
-            allocate (place(n, 2), constraint_of(n), source=0)
-            place(extra + 1:n - extra, :) = self%place
-            constraint_of(extra + 1:n - extra) = self%constraint_of
+         if (same .and. self%nodes == n) return
+         if (same .and. n > self%nodes) then
+            extra = (n - self%nodes)/2
+            allocate (place(room, a_motion), constraint_of(room, a_motion), source=0)
+            place(extra + 1:n - extra, :a_shear) = self%place(:self%nodes, :a_shear)
+            constraint_of(extra + 1:n - extra, a_shear) = self%constraint_of(:self%nodes, a_shear)
+            place(:motion_count, a_motion) = self%place(:motion_count, a_motion)
+            constraint_of(:motion_count, a_motion) = self%constraint_of(:motion_count, a_motion)
             call move_alloc(place, self%place)
             call move_alloc(constraint_of, self%constraint_of)
+            self%nodes = n
             do i = 1, 2
                associate (part => self%part(i))
                   where (part%sort(:part%unknowns) /= a_motion) part%of(:part%unknowns) = part%of(:part%unknowns) + extra
@@ -181,15 +166,14 @@ contains
             end do
             return
          end if
-         deallocate (self%place, self%constraint_of)
       end if
       self%block = model%compliance%has_block
       self%moves = model%moves
       self%length = model%length()
       self%apart = .not. (self%block(block_wt) .or. model%has_rigid_parts())
-      self%motion_place = 0
-      self%motion_constraint = 0
-      allocate (self%place(n, 2), self%constraint_of(n), source=0)
+      self%nodes = n
+      if (allocated(self%place)) deallocate (self%place, self%constraint_of)
+      allocate (self%place(room, a_motion), self%constraint_of(room, a_motion), source=0)
       do i = 1, 2
          call self%part(i)%system%clear()
          self%part(i)%unknowns = 0
@@ -218,116 +202,96 @@ contains
       logical, intent(out) :: singular
       logical, parameter :: touches(0:6) = [.false., .true., .true., .true., .true., .true., .true.], &
                             has_shear(0:6) = [.false., .true., .true., .true., .false., .true., .true.]
-      logical :: wanted(size(constraints%status), 2), wanted_motion(motion_count)
+      logical :: wanted(size(self%place, 1), a_motion)
       integer :: i
 
-      wanted(:, a_pressure) = touches(constraints%status)
-      wanted(:, a_shear) = has_shear(constraints%status)
-      wanted_motion = .false.
-      wanted_motion(motion_approach) = any(wanted(:, a_pressure))
-      wanted_motion(motion_shift) = any(wanted(:, a_shear))
+      wanted = .false.
+      wanted(:self%nodes, a_pressure) = touches(constraints%status)
+      wanted(:self%nodes, a_shear) = has_shear(constraints%status)
+      wanted(motion_approach, a_motion) = any(wanted(:, a_pressure))
+      wanted(motion_shift, a_motion) = any(wanted(:, a_shear))
       ! What only slides, a rotation where normals are along the radius, nothing but friction determines.
       do i = 1, motion_count
          if (motions(i)%optional .and. model%moves(i)) &
-            wanted_motion(i) = count(wanted(:, a_pressure)) > 1 .and. (wanted_motion(motion_shift) .or. model%lifts(i))
+            wanted(i, a_motion) = count(wanted(:, a_pressure)) > 1 .and. (wanted(motion_shift, a_motion) .or. model%lifts(i))
       end do
-      call self%lose_constraints(constraints, wanted, wanted_motion)
+      call lose_constraints(self, constraints, wanted)
       if (anew) then
-         call self%rebuild(model, wanted, wanted_motion, singular)
+         call rebuild(self, model, wanted, singular)
       else
-         call self%change_unknowns(model, wanted, wanted_motion, singular)
+         call change_unknowns(self, model, wanted, singular)
       end if
-      if (singular) return
-      call self%set_constraints(model, constraints)
+      if (.not. singular) call set_constraints(self, model, constraints)
    end subroutine follow
 
    !> Release what is no longer constrained, or no longer there.
-   subroutine lose_constraints(self, constraints, wanted, wanted_motion)
+   subroutine lose_constraints(self, constraints, wanted)
       class(reduced_system_type), intent(inout) :: self
       type(constraints_type), intent(in) :: constraints
-      logical, intent(in) :: wanted(:, :), wanted_motion(motion_count)
-      integer :: going(size(wanted, 1)), i, number, part
+      logical, intent(in) :: wanted(:, :)
+      integer, allocatable :: going(:)
+      integer :: i, part
 
-      part = self%part_of(a_shear, 0)
-      number = 0
-      do i = 1, size(wanted, 1)
-         if (self%constraint_of(i) == 0) cycle
-         if (wanted(i, a_shear) .and. constraints%status(i) /= node_stick) cycle
-         number = number + 1
-         going(number) = i
-      end do
-      if (2*number > self%part(part)%system%constraints) call self%part(part)%system%postpone()
-      do i = 1, number
-         call self%release(part, self%constraint_of(going(i)))
+      part = part_of(self, a_shear, 0)
+      going = pack([(i, i=1, self%nodes)], self%constraint_of(:self%nodes, a_shear) > 0 .and. &
+                   .not. (wanted(:self%nodes, a_shear) .and. constraints%status /= node_stick))
+      if (2*size(going) > self%part(part)%system%constraints) call self%part(part)%system%postpone()
+      do i = 1, size(going)
+         call release(self, part, self%constraint_of(going(i), a_shear))
       end do
       do i = 1, motion_count
-         if (self%motion_constraint(i) == 0) cycle
-         if (is_held(constraints, i) .and. wanted_motion(i)) cycle
-         call self%release(self%part_of(a_motion, i), self%motion_constraint(i))
+         if (self%constraint_of(i, a_motion) == 0) cycle
+         if (constraints%load(i)%control /= control_force .and. wanted(i, a_motion)) cycle
+         call release(self, part_of(self, a_motion, i), self%constraint_of(i, a_motion))
       end do
    end subroutine lose_constraints
 
-   !> Whether a rigid motion is prescribed, and not its force.
-   pure logical function is_held(constraints, motion)
-      type(constraints_type), intent(in) :: constraints
-      integer, intent(in) :: motion
-
-      is_held = constraints%load(motion)%control /= control_force
-   end function is_held
-
    !> Add and remove unknowns one by one, or all of them anew where that is less work.
-   subroutine change_unknowns(self, model, wanted, wanted_motion, singular)
+   subroutine change_unknowns(self, model, wanted, singular)
       class(reduced_system_type), intent(inout) :: self
       type(contact_model_type), intent(in) :: model
-      logical, intent(in) :: wanted(:, :), wanted_motion(motion_count)
+      logical, intent(in) :: wanted(:, :)
       logical, intent(out) :: singular
       integer, parameter :: few = 16
       integer :: changes(2), i, sort, part
 
+      singular = .false.
+      if (all(wanted .eqv. self%place > 0)) return
       changes = 0
       do sort = a_pressure, a_shear
-         part = self%part_of(sort, 0)
-         do i = 1, size(wanted, 1)
-            if (wanted(i, sort) .neqv. self%place(i, sort) > 0) changes(part) = changes(part) + 1
-         end do
+         part = part_of(self, sort, 0)
+         changes(part) = changes(part) + count(wanted(:, sort) .neqv. self%place(:, sort) > 0)
       end do
-      singular = .false.
-      if (all(changes == 0) .and. all(wanted_motion .eqv. self%motion_place > 0)) return
       if (all(changes <= max(few, self%part%unknowns/2))) then
+         call remove_unknowns(self, a_motion, wanted, singular)
          ! What is added comes first: with little contact left in between the matrix would have no inverse.
-         call self%change_motions(model, wanted_motion, .false., singular)
          do part = 1, 2
-            if (.not. singular) call self%add_unknowns(model, part, wanted, singular)
+            if (.not. singular) call add_unknowns(self, model, part, wanted, singular)
          end do
-         if (.not. singular) call self%change_motions(model, wanted_motion, .true., singular)
-         do sort = a_shear, a_pressure, -1
-            do i = 1, size(wanted, 1)
-               if (singular) exit
-               if (self%place(i, sort) > 0 .and. .not. wanted(i, sort)) call self%remove_unknown(sort, i, singular)
-            end do
+         do i = 1, motion_count
+            if (.not. wanted(i, a_motion) .or. self%place(i, a_motion) > 0 .or. singular) cycle
+            call add_named(self, model, part_of(self, a_motion, i), [a_motion], [i], singular)
          end do
+         call remove_unknowns(self, a_shear, wanted, singular)
+         call remove_unknowns(self, a_pressure, wanted, singular)
          if (.not. singular) return
       end if
-      call self%rebuild(model, wanted, wanted_motion, singular)
+      call rebuild(self, model, wanted, singular)
    end subroutine change_unknowns
 
-   !> Motions that are no longer unknown, or (`adding`) that now are.
-   subroutine change_motions(self, model, wanted_motion, adding, singular)
+   !> Lose the unknowns of a sort that are no longer wanted, unless something is `singular` already.
+   subroutine remove_unknowns(self, sort, wanted, singular)
       class(reduced_system_type), intent(inout) :: self
-      type(contact_model_type), intent(in) :: model
-      logical, intent(in) :: wanted_motion(motion_count), adding
+      integer, intent(in) :: sort
+      logical, intent(in) :: wanted(:, :)
       logical, intent(inout) :: singular
       integer :: i
 
-      do i = 1, motion_count
+      do i = 1, size(wanted, 1)
          if (singular) return
-         if (adding .and. wanted_motion(i) .and. self%motion_place(i) == 0) then
-            call self%add_named(model, self%part_of(a_motion, i), [a_motion], [i], singular)
-         else if (.not. adding .and. self%motion_place(i) > 0 .and. .not. wanted_motion(i)) then
-            call self%remove_unknown(a_motion, i, singular)
-         end if
+         if (self%place(i, sort) > 0 .and. .not. wanted(i, sort)) call remove_unknown(self, sort, i, singular)
       end do
-   end subroutine change_motions
+   end subroutine remove_unknowns
 
    !> The unknowns of nodes that a part lacks.
    subroutine add_unknowns(self, model, p, wanted, singular)
@@ -336,20 +300,17 @@ contains
       integer, intent(in) :: p
       logical, intent(in) :: wanted(:, :)
       logical, intent(out) :: singular
-      integer :: new_sort(2*size(wanted, 1)), new_of(2*size(wanted, 1)), i, number, sort
+      integer, allocatable :: new_sort(:), new_of(:)
+      integer :: i, sort
 
       singular = .false.
-      number = 0
+      allocate (new_sort(0), new_of(0))
       do sort = a_pressure, a_shear
-         if (self%part_of(sort, 0) /= p) cycle
-         do i = 1, size(wanted, 1)
-            if (self%place(i, sort) > 0 .or. .not. wanted(i, sort)) cycle
-            number = number + 1
-            new_sort(number) = sort
-            new_of(number) = i
-         end do
+         if (part_of(self, sort, 0) /= p) cycle
+         new_of = [new_of, pack([(i, i=1, size(wanted, 1))], wanted(:, sort) .and. self%place(:, sort) == 0)]
+         new_sort = [new_sort, spread(sort, 1, size(new_of) - size(new_sort))]
       end do
-      if (number > 0) call self%add_named(model, p, new_sort(:number), new_of(:number), singular)
+      if (size(new_of) > 0) call add_named(self, model, p, new_sort, new_of, singular)
    end subroutine add_unknowns
 
    !> More unknowns of a part: their sorts and nodes or motions.
@@ -359,41 +320,38 @@ contains
       integer, intent(in) :: p, new_sort(:), new_of(:)
       logical, intent(out) :: singular
       real(wp), allocatable :: borders(:, :)
-      integer :: i, n
+      integer :: i
 
       do i = 1, size(new_sort)
-         call enlist(self%part(p), new_sort(i), new_of(i))
-         if (new_sort(i) == a_motion) then
-            self%motion_place(new_of(i)) = self%part(p)%unknowns
-         else
-            self%place(new_of(i), new_sort(i)) = self%part(p)%unknowns
-         end if
+         call enlist(self, new_sort(i), new_of(i))
       end do
-      n = self%part(p)%unknowns
-      allocate (borders(n, size(new_sort)))
+      allocate (borders(self%part(p)%unknowns, size(new_sort)))
       do i = 1, size(new_sort)
-         call entries_of(model, self%length, self%part(p)%sort(:n), self%part(p)%of(:n), new_sort(i), new_of(i), borders(:, i))
+         call entries_of(model, self%length, self%part(p), new_sort(i), new_of(i), borders(:, i))
       end do
       call self%part(p)%system%add_unknowns(borders, singular)
    end subroutine add_named
 
-   !> One more name in the list of a part's unknowns.
-   subroutine enlist(part, sort, number)
-      type(part_type), intent(inout) :: part
+   !> One more name in the list of the unknowns of its part.
+   subroutine enlist(self, sort, number)
+      class(reduced_system_type), intent(inout) :: self
       integer, intent(in) :: sort, number
       integer, parameter :: some = 32
       integer :: i, room
 
-      part%unknowns = part%unknowns + 1
-      if (part%unknowns > size(part%sort)) then
-         room = part%unknowns/2 + some
-         part%sort = [part%sort, (0, i=1, room)]
-         part%of = [part%of, (0, i=1, room)]
-         deallocate (part%right, part%solution)
-         allocate (part%right(size(part%sort)), part%solution(size(part%sort)))
-      end if
-      part%sort(part%unknowns) = sort
-      part%of(part%unknowns) = number
+      associate (part => self%part(part_of(self, sort, number)))
+         part%unknowns = part%unknowns + 1
+         if (part%unknowns > size(part%sort)) then
+            room = part%unknowns/2 + some
+            part%sort = [part%sort, (0, i=1, room)]
+            part%of = [part%of, (0, i=1, room)]
+            deallocate (part%right, part%solution)
+            allocate (part%right(size(part%sort)), part%solution(size(part%sort)))
+         end if
+         part%sort(part%unknowns) = sort
+         part%of(part%unknowns) = number
+         self%place(number, sort) = part%unknowns
+      end associate
    end subroutine enlist
 
    !> One unknown less; the last of the part takes its place.
@@ -401,130 +359,94 @@ contains
       class(reduced_system_type), intent(inout) :: self
       integer, intent(in) :: sort, number
       logical, intent(out) :: singular
-      integer :: here, last, p
+      integer :: here, last
 
-      p = self%part_of(sort, number)
-      if (sort == a_motion) then
-         here = self%motion_place(number)
-      else
-         here = self%place(number, sort)
-      end if
-      call self%part(p)%system%remove_unknown(here, singular)
-      if (singular) return
-      associate (part => self%part(p))
+      here = self%place(number, sort)
+      associate (part => self%part(part_of(self, sort, number)))
+         call part%system%remove_unknown(here, singular)
+         if (singular) return
          last = part%unknowns
          part%sort(here) = part%sort(last)
          part%of(here) = part%of(last)
-         if (part%sort(here) == a_motion) then
-            self%motion_place(part%of(here)) = here
-         else
-            self%place(part%of(here), part%sort(here)) = here
-         end if
+         self%place(part%of(here), part%sort(here)) = here
          part%unknowns = last - 1
       end associate
-      if (sort == a_motion) then
-         self%motion_place(number) = 0
-      else
-         self%place(number, sort) = 0
-      end if
+      self%place(number, sort) = 0
    end subroutine remove_unknown
 
-   !> All unknowns anew. Constraints stay with theirs; those whose unknown has another place follow it.
-   subroutine rebuild(self, model, wanted, wanted_motion, singular)
+   !> All unknowns anew, without constraints.
+   subroutine rebuild(self, model, wanted, singular)
       class(reduced_system_type), intent(inout) :: self
       type(contact_model_type), intent(in) :: model
-      logical, intent(in) :: wanted(:, :), wanted_motion(motion_count)
+      logical, intent(in) :: wanted(:, :)
       logical, intent(out) :: singular
       real(wp), allocatable :: matrix(:, :)
       integer :: i, j, p, sort
 
       self%constraint_of = 0
-      self%motion_constraint = 0
       self%place = 0
-      self%motion_place = 0
       do p = 1, 2
          call self%part(p)%system%release_all()
          self%part(p)%unknowns = 0
       end do
-      do sort = a_pressure, a_shear
+      do sort = a_pressure, a_motion
          do i = 1, size(wanted, 1)
-            if (.not. wanted(i, sort)) cycle
-            p = self%part_of(sort, i)
-            call enlist(self%part(p), sort, i)
-            self%place(i, sort) = self%part(p)%unknowns
+            if (wanted(i, sort)) call enlist(self, sort, i)
          end do
       end do
-      do i = 1, motion_count
-         if (.not. wanted_motion(i)) cycle
-         p = self%part_of(a_motion, i)
-         call enlist(self%part(p), a_motion, i)
-         self%motion_place(i) = self%part(p)%unknowns
-      end do
       do p = 1, 2
-         associate (n => self%part(p)%unknowns)
-            allocate (matrix(n, n))
-            do j = 1, n
-               call entries_of(model, self%length, self%part(p)%sort(:n), self%part(p)%of(:n), self%part(p)%sort(j), &
-                               self%part(p)%of(j), matrix(:, j))
+         associate (part => self%part(p))
+            allocate (matrix(part%unknowns, part%unknowns))
+            do j = 1, part%unknowns
+               call entries_of(model, self%length, part, part%sort(j), part%of(j), matrix(:, j))
             end do
-            call self%part(p)%system%refresh(matrix, singular)
+            call part%system%refresh(matrix, singular)
             deallocate (matrix)
          end associate
          if (.not. singular) cycle
          ! Nothing is left of it: the next solve begins again.
-         deallocate (self%place, self%constraint_of)
+         self%nodes = 0
          return
       end do
    end subroutine rebuild
 
-   !> Entries of the rows `sort`, `of` in the column of one unknown, in units of the compliance's modulus and the mesh's length.
-   subroutine entries_of(model, length, sort, of, column_sort, column_of, entries)
+   !> Entries of the rows of a part in the column of one unknown, in units of the compliance's modulus and the mesh's length; shape
+   !> (unknowns).
+   subroutine entries_of(model, length, part, column_sort, column_of, entries)
       type(contact_model_type), intent(in) :: model
       real(wp), intent(in) :: length
-      integer, intent(in) :: sort(:), of(:), column_sort, column_of
+      type(part_type), intent(in) :: part
+      integer, intent(in) :: column_sort, column_of
       real(wp), intent(out) :: entries(:)
-      real(wp) :: unit, block_entries(size(sort), 1)
-      integer :: rows(size(sort)), at(size(sort)), block, i, n, row_sort
+      !> Displacement of the row's sort by a traction of the column's.
+      integer, parameter :: block(2, 2) = reshape([block_wp, block_up, block_wt, block_ut], [2, 2])
+      real(wp) :: unit, block_entries(size(entries), 1)
+      integer, allocatable :: at(:)
+      integer :: i, row_sort
 
       entries = 0.0_wp
-      if (column_sort == a_motion) then
-         do i = 1, size(sort)
-            if (sort(i) == a_pressure) entries(i) = -model%normal_arm(of(i), column_of)/arm_unit(column_of, length)
-            if (sort(i) == a_shear) entries(i) = -model%tangential_arm(of(i), column_of)/arm_unit(column_of, length)
+      associate (n => size(entries), sort => part%sort, of => part%of)
+         if (column_sort == a_motion) then
+            do i = 1, n
+               if (sort(i) == a_pressure) entries(i) = -model%normal_arm(of(i), column_of)/arm_unit(column_of, length)
+               if (sort(i) == a_shear) entries(i) = -model%tangential_arm(of(i), column_of)/arm_unit(column_of, length)
+            end do
+            return
+         end if
+         unit = model%compliance%modulus/length*model%interval()/model%width(column_of)
+         do row_sort = a_pressure, a_shear
+            at = pack([(i, i=1, n)], sort(:n) == row_sort)
+            if (size(at) == 0 .or. .not. model%compliance%has_block(block(row_sort, column_sort))) cycle
+            call model%compliance%entries(block(row_sort, column_sort), of(at), [column_of], block_entries(:size(at), :))
+            entries(at) = unit*block_entries(:size(at), 1)
          end do
-         return
-      end if
-      unit = model%compliance%modulus/length*model%interval()/model%width(column_of)
-      do row_sort = a_pressure, a_shear
-         n = 0
-         do i = 1, size(sort)
-            if (sort(i) /= row_sort) cycle
-            n = n + 1
-            rows(n) = of(i)
-            at(n) = i
+         do i = 1, n
+            if (sort(i) /= a_motion) cycle
+            if (column_sort == a_pressure) entries(i) = -model%normal_arm(column_of, of(i))/arm_unit(of(i), length)
+            if (column_sort == a_shear) entries(i) = -model%tangential_arm(column_of, of(i))/arm_unit(of(i), length)
          end do
-         block = block_between(row_sort, column_sort)
-         if (n == 0 .or. .not. model%compliance%has_block(block)) cycle
-         call model%compliance%entries(block, rows(:n), [column_of], block_entries(:n, :))
-         entries(at(:n)) = unit*block_entries(:n, 1)
-      end do
-      do i = 1, size(sort)
-         if (sort(i) /= a_motion) cycle
-         if (column_sort == a_pressure) entries(i) = -model%normal_arm(column_of, of(i))/arm_unit(of(i), length)
-         if (column_sort == a_shear) entries(i) = -model%tangential_arm(column_of, of(i))/arm_unit(of(i), length)
-      end do
+      end associate
    end subroutine entries_of
-
-   !> Displacement of the rows' sort by a traction of the column's.
-   pure integer function block_between(row_sort, column_sort)
-      integer, intent(in) :: row_sort, column_sort
-
-      if (row_sort == a_pressure) then
-         block_between = merge(block_wp, block_wt, column_sort == a_pressure)
-      else
-         block_between = merge(block_up, block_ut, column_sort == a_pressure)
-      end if
-   end function block_between
 
    !> Constraints of the nodes that slip or creep, and of the motions that are held.
    subroutine set_constraints(self, model, constraints)
@@ -532,31 +454,33 @@ contains
       type(contact_model_type), intent(in) :: model
       type(constraints_type), intent(in) :: constraints
       real(wp) :: stiffness
-      integer :: i, p, partner
+      integer :: i, partner
 
-      p = self%part_of(a_shear, 0)
-      do i = 1, size(constraints%status)
-         if (self%place(i, a_shear) == 0 .or. constraints%status(i) == node_stick) cycle
-         partner = 0
-         if (.not. self%apart) partner = self%place(i, a_pressure)
-         stiffness = constraints%row(i)%stiffness*self%length/model%compliance%modulus*model%width(i)/model%interval()
-         if (self%constraint_of(i) == 0) then
-            call self%part(p)%system%constrain(self%place(i, a_shear), partner, constraints%row(i)%slope, stiffness)
-            self%constraint_of(i) = self%part(p)%system%constraints
-         else
-            associate (system => self%part(p)%system, c => self%constraint_of(i))
+      associate (system => self%part(part_of(self, a_shear, 0))%system)
+         do i = 1, self%nodes
+            if (self%place(i, a_shear) == 0 .or. constraints%status(i) == node_stick) cycle
+            partner = 0
+            if (.not. self%apart) partner = self%place(i, a_pressure)
+            stiffness = constraints%row(i)%stiffness*self%length/model%compliance%modulus*model%width(i)/model%interval()
+            associate (c => self%constraint_of(i, a_shear), slope => constraints%row(i)%slope)
+               if (c == 0) then
+                  call system%constrain(self%place(i, a_shear), partner, slope, stiffness)
+                  c = system%constraints
                ! Apart, the slope comes in with the known pressure.
-               if ((partner > 0 .and. abs(system%slope(c) - constraints%row(i)%slope) > 0.0_wp) .or. &
-                   abs(system%stiffness(c) - stiffness) > 0.0_wp) &
-                  call system%change_constraint(c, constraints%row(i)%slope, stiffness)
+               else if ((partner > 0 .and. abs(system%constraint(c)%slope - slope) > 0.0_wp) .or. &
+                        abs(system%constraint(c)%stiffness - stiffness) > 0.0_wp) then
+                  call system%change_constraint(c, slope, stiffness)
+               end if
             end associate
-         end if
-      end do
+         end do
+      end associate
       do i = 1, motion_count
-         if (self%motion_place(i) == 0 .or. self%motion_constraint(i) > 0 .or. .not. is_held(constraints, i)) cycle
-         p = self%part_of(a_motion, i)
-         call self%part(p)%system%constrain(self%motion_place(i), 0, 0.0_wp, 0.0_wp)
-         self%motion_constraint(i) = self%part(p)%system%constraints
+         if (self%place(i, a_motion) == 0 .or. self%constraint_of(i, a_motion) > 0) cycle
+         if (constraints%load(i)%control == control_force) cycle
+         associate (system => self%part(part_of(self, a_motion, i))%system)
+            call system%constrain(self%place(i, a_motion), 0, 0.0_wp, 0.0_wp)
+            self%constraint_of(i, a_motion) = system%constraints
+         end associate
       end do
    end subroutine set_constraints
 
@@ -564,28 +488,16 @@ contains
    subroutine release(self, p, number)
       class(reduced_system_type), intent(inout) :: self
       integer, intent(in) :: p, number
-      integer :: gone, last
+      integer :: gone, slot
 
+      gone = number
       associate (part => self%part(p))
-         last = part%system%constraints
-         gone = number
-         call name_constraint(part%system%slot(gone), 0)
-         if (last /= gone) call name_constraint(part%system%slot(last), gone)
+         slot = part%system%constraint(part%system%constraints)%slot
+         self%constraint_of(part%of(slot), part%sort(slot)) = gone
+         slot = part%system%constraint(gone)%slot
+         self%constraint_of(part%of(slot), part%sort(slot)) = 0
          call part%system%release(gone)
       end associate
-
-   contains
-
-      !> Note that the constraint of an unknown has a number.
-      subroutine name_constraint(slot, new_number)
-         integer, intent(in) :: slot, new_number
-
-         if (self%part(p)%sort(slot) == a_motion) then
-            self%motion_constraint(self%part(p)%of(slot)) = new_number
-         else
-            self%constraint_of(self%part(p)%of(slot)) = new_number
-         end if
-      end subroutine name_constraint
    end subroutine release
 
    !> Correct the fields until they satisfy the constraints, or (`rates`) their rates; they come with a guess. `singular`: that
@@ -601,15 +513,14 @@ contains
       real(wp), parameter :: fair = 1.0e-10_wp
       real(wp) :: residual, fine
       integer :: i, pass
-      type(load_type) :: load
       type(scales_type) :: scales, first
-      real(wp) :: value
       logical :: at_rest
 
       singular = .false.
       first = scales_type(0.0_wp, 0.0_wp, 0.0_wp, 0.0_wp, 0.0_wp)
       fine = merge(5.0e-14_wp, 1.0e-14_wp, rates)
-      call self%set_known_motions(model, constraints, rates, fields)
+      self%prescribed = prescribed_by(constraints, model, rates)
+      call set_known_motions(self, model, fields)
       if (.not. rates) call open_up(self, model, fields)
       do pass = 1, most_passes
          ! Rates begin at rest: nothing to measure by yet.
@@ -618,48 +529,41 @@ contains
             call find_scales(model, fields, first, scales)
             if (pass == 1) first = scales
          end if
-         call self%find_residual(model, constraints, rates, fields, scales, residual)
+         call find_residual(self, model, constraints, fields, scales, residual)
          if (at_rest) residual = huge(1.0_wp)
          if (residual <= fine) exit
          if (pass > 3 .and. residual <= fair) exit
          if (pass > 1 .or. .not. rates) self%refinements = self%refinements + 1
-         call self%correct(model, constraints, rates, scales, fields, singular)
+         call correct(self, model, constraints, scales, fields, singular)
          if (singular) return
       end do
       singular = .not. residual <= fair
       do i = 1, motion_count
          if (.not. model%moves(i)) cycle
-         load = constraints%load(i)
-         value = model%resultant(i, fields%pressure, fields%shear)
-         if (load%control == control_force .and. self%motion_place(i) > 0) value = merge(load%rate, load%value, rates)
-         fields%force(i) = value
+         fields%force(i) = model%resultant(i, fields%pressure, fields%shear)
+         if (constraints%load(i)%control == control_force .and. self%place(i, a_motion) > 0) &
+            fields%force(i) = self%prescribed%load(i)
       end do
    end subroutine refine
 
    !> Motions that are not among the unknowns, with what they do to the displacements.
-   subroutine set_known_motions(self, model, constraints, rates, fields)
+   subroutine set_known_motions(self, model, fields)
       class(reduced_system_type), intent(in) :: self
       type(contact_model_type), intent(in) :: model
-      type(constraints_type), intent(in) :: constraints
-      logical, intent(in) :: rates
       type(contact_fields_type), intent(inout) :: fields
-      type(load_type) :: load
-      integer :: i
 
-      if (all(self%motion_place > 0)) return
-      if (model%has_rigid_parts()) then
-         fields%normal = fields%normal + model%rigid_normal(fields)
-         fields%tangential = fields%tangential + model%rigid_tangential(fields)
-      end if
-      do i = 1, motion_count
-         if (self%motion_place(i) > 0 .or. .not. model%moves(i)) cycle
-         load = constraints%load(i)
-         fields%motion(i) = merge(load%rate, load%value, rates)
-      end do
-      if (model%has_rigid_parts()) then
-         fields%normal = fields%normal - model%rigid_normal(fields)
-         fields%tangential = fields%tangential - model%rigid_tangential(fields)
-      end if
+      associate (places => self%place(:motion_count, a_motion))
+         if (all(places > 0)) return
+         if (model%has_rigid_parts()) then
+            fields%normal = fields%normal + model%rigid_normal(fields)
+            fields%tangential = fields%tangential + model%rigid_tangential(fields)
+         end if
+         where (places == 0 .and. model%moves) fields%motion = self%prescribed%load
+         if (model%has_rigid_parts()) then
+            fields%normal = fields%normal - model%rigid_normal(fields)
+            fields%tangential = fields%tangential - model%rigid_tangential(fields)
+         end if
+      end associate
    end subroutine set_known_motions
 
    !> No tractions on nodes without unknowns.
@@ -690,29 +594,24 @@ contains
 
    !> What is missing in every row and constraint, in their units, as right sides for a correction; and the largest of them, in
    !> parts of the magnitude of their sort.
-   subroutine find_residual(self, model, constraints, rates, fields, scales, largest)
+   subroutine find_residual(self, model, constraints, fields, scales, largest)
       class(reduced_system_type), intent(inout) :: self
       type(contact_model_type), intent(in) :: model
       type(constraints_type), intent(in) :: constraints
-      logical, intent(in) :: rates
       type(contact_fields_type), intent(in) :: fields
       type(scales_type), intent(in) :: scales
       real(wp), intent(out) :: largest
-      real(wp) :: length, modulus, interval, missing, value, by_length, by_stress, gap_rest, slip_rest, traction_rest, stiffness
-      type(load_type) :: load
+      real(wp) :: missing, by_length, by_stress, gap_rest, slip_rest, traction_rest, stiffness
       integer :: i, node, p
 
-      length = self%length
-      modulus = model%compliance%modulus
-      interval = model%interval()
-      by_length = 1.0_wp/length
-      by_stress = 1.0_wp/(interval*modulus)
+      by_length = 1.0_wp/self%length
+      by_stress = 1.0_wp/(model%interval()*model%compliance%modulus)
       gap_rest = 0.0_wp
       slip_rest = 0.0_wp
       traction_rest = 0.0_wp
       largest = 0.0_wp
       do p = 1, 2
-         associate (part => self%part(p))
+         associate (part => self%part(p), prescribed => self%prescribed)
             if (size(part%values) < part%system%constraints) then
                deallocate (part%values)
                allocate (part%values(2*part%system%constraints))
@@ -720,47 +619,33 @@ contains
             do i = 1, part%unknowns
                node = part%of(i)
                if (part%sort(i) == a_pressure) then
-                  missing = fields%motion(motion_approach) - fields%normal(node)
-                  if (.not. rates) then
-                     missing = missing - model%initial_gap(node)
-                  else if (allocated(constraints%gap_rate)) then
-                     missing = missing + constraints%gap_rate(node)
-                  end if
+                  missing = fields%motion(motion_approach) - fields%normal(node) + prescribed%opening(node)
                   gap_rest = max(gap_rest, abs(missing))
                   part%right(i) = missing*by_length
+               else if (part%sort(i) == a_motion .and. self%constraint_of(node, a_motion) > 0) then
+                  missing = (prescribed%load(node) - fields%motion(node))*arm_unit(node, self%length)
+                  largest = max(largest, relative(abs(missing), scales%normal))
+                  part%values(self%constraint_of(node, a_motion)) = missing*by_length
+                  part%right(i) = 0.0_wp
                else if (part%sort(i) == a_motion) then
-                  load = constraints%load(node)
-                  value = merge(load%rate, load%value, rates)
-                  if (self%motion_constraint(node) > 0) then
-                     value = (value - fields%motion(node))*arm_unit(node, length)
-                     largest = max(largest, relative(abs(value), scales%normal))
-                     part%values(self%motion_constraint(node)) = value*by_length
-                     part%right(i) = 0.0_wp
-                  else
-                     missing = (model%resultant(node, fields%pressure, fields%shear) - value)/arm_unit(node, length)
-                     largest = max(largest, relative(abs(missing), merge(scales%shear_force, scales%force, &
-                                                                         node == motion_shift)))
-                     part%right(i) = missing*by_stress
-                  end if
+                  missing = (model%resultant(node, fields%pressure, fields%shear) - prescribed%load(node)) &
+                            /arm_unit(node, self%length)
+                  largest = max(largest, relative(abs(missing), merge(scales%shear_force, scales%force, node == motion_shift)))
+                  part%right(i) = missing*by_stress
                else if (constraints%status(node) == node_stick) then
-                  missing = fields%motion(motion_shift) - fields%tangential(node)
-                  if (.not. rates) then
-                     missing = missing + constraints%stuck_slip(node)
-                  else if (allocated(constraints%slip_rate)) then
-                     missing = missing + constraints%slip_rate(node)
-                  end if
+                  missing = fields%motion(motion_shift) - fields%tangential(node) + prescribed%slip(node)
                   slip_rest = max(slip_rest, abs(missing))
                   part%right(i) = missing*by_length
                else
-                  value = missing_shear(constraints, rates, fields, node)
+                  missing = missing_shear(self, constraints, fields, node)
                   stiffness = abs(constraints%row(node)%stiffness)
                   if (stiffness > 0.0_wp) then
                      ! Its slip is known as well as that of a stuck node.
-                     largest = max(largest, abs(value)/max(scales%traction, stiffness*scales%tangential))
+                     largest = max(largest, abs(missing)/max(scales%traction, stiffness*scales%tangential))
                   else
-                     traction_rest = max(traction_rest, abs(value))
+                     traction_rest = max(traction_rest, abs(missing))
                   end if
-                  part%values(self%constraint_of(node)) = value*model%width(node)*by_stress
+                  part%values(self%constraint_of(node, a_shear)) = missing*model%width(node)*by_stress
                   part%right(i) = 0.0_wp
                end if
             end do
@@ -812,9 +697,9 @@ contains
    end function relative
 
    !> What is missing to the shear traction of a slipping or creeping node.
-   pure real(wp) function missing_shear(constraints, rates, fields, node)
+   pure real(wp) function missing_shear(self, constraints, fields, node)
+      class(reduced_system_type), intent(in) :: self
       type(constraints_type), intent(in) :: constraints
-      logical, intent(in) :: rates
       type(contact_fields_type), intent(in) :: fields
       integer, intent(in) :: node
 
@@ -822,16 +707,15 @@ contains
          missing_shear = row%slope*fields%pressure(node) - fields%shear(node)
          if (abs(row%stiffness) > 0.0_wp) &
             missing_shear = missing_shear + row%stiffness*(fields%tangential(node) - fields%motion(motion_shift))
-         missing_shear = missing_shear + merge(constraints%offset_rate(node), row%offset, rates)
+         missing_shear = missing_shear + self%prescribed%offset(node)
       end associate
    end function missing_shear
 
    !> Solve for a correction by the residuals found, and apply it.
-   subroutine correct(self, model, constraints, rates, scales, fields, singular)
+   subroutine correct(self, model, constraints, scales, fields, singular)
       class(reduced_system_type), intent(inout) :: self
       type(contact_model_type), intent(in) :: model
       type(constraints_type), intent(in) :: constraints
-      logical, intent(in) :: rates
       type(scales_type), intent(in) :: scales
       type(contact_fields_type), intent(inout) :: fields
       logical, intent(out) :: singular
@@ -841,50 +725,46 @@ contains
       singular = .false.
       do p = 1, 2
          if (self%part(p)%unknowns == 0) cycle
-         if (p == 2) call self%find_residual(model, constraints, rates, fields, scales, residual)
+         if (p == 2) call find_residual(self, model, constraints, fields, scales, residual)
          associate (part => self%part(p), n => self%part(p)%unknowns)
             call part%system%solve(part%right(:n), part%values(:part%system%constraints), part%solution(:n), singular)
-            ! Of what is no number the residual would see nothing.
+            ! NaN would pass the residual check.
             if (.not. singular) singular = .not. all(abs(part%solution(:n)) <= huge(1.0_wp))
          end associate
          if (singular) return
-         call apply(self, model, constraints, rates, p, fields)
+         call apply(self, model, constraints, p, fields)
          if (self%apart .and. p == 1 .and. self%part(2)%unknowns > 0 .and. .not. self%block(block_up)) cycle
          call model%displace(fields)
       end do
    end subroutine correct
 
    !> Add the solution of a part to the fields; tractions of slipping nodes are what their lines say.
-   subroutine apply(self, model, constraints, rates, p, fields)
+   subroutine apply(self, model, constraints, p, fields)
       class(reduced_system_type), intent(in) :: self
       type(contact_model_type), intent(in) :: model
       type(constraints_type), intent(in) :: constraints
-      logical, intent(in) :: rates
       integer, intent(in) :: p
       type(contact_fields_type), intent(inout) :: fields
-      real(wp) :: unit
-      integer :: i, node
+      integer :: i
 
       associate (part => self%part(p), stress => model%compliance%modulus*model%interval())
          do i = 1, part%unknowns
-            node = part%of(i)
-            if (part%sort(i) == a_motion) then
-               fields%motion(node) = fields%motion(node) + part%solution(i)*self%length/arm_unit(node, self%length)
-               cycle
-            end if
-            unit = stress/model%width(node)
-            if (part%sort(i) == a_pressure) then
-               fields%pressure(node) = fields%pressure(node) + unit*part%solution(i)
-            else
-               fields%shear(node) = fields%shear(node) + unit*part%solution(i)
-            end if
-         end do
-         do i = 1, size(self%constraint_of)
-            if (self%constraint_of(i) == 0 .or. p /= self%part_of(a_shear, i)) cycle
-            if (abs(constraints%row(i)%stiffness) > 0.0_wp) cycle
-            fields%shear(i) = fields%shear(i) + missing_shear(constraints, rates, fields, i)
+            associate (node => part%of(i), change => part%solution(i))
+               if (part%sort(i) == a_motion) then
+                  fields%motion(node) = fields%motion(node) + change*self%length/arm_unit(node, self%length)
+               else if (part%sort(i) == a_pressure) then
+                  fields%pressure(node) = fields%pressure(node) + stress/model%width(node)*change
+               else
+                  fields%shear(node) = fields%shear(node) + stress/model%width(node)*change
+               end if
+            end associate
          end do
       end associate
+      if (p /= part_of(self, a_shear, 0)) return
+      do i = 1, self%nodes
+         if (self%constraint_of(i, a_shear) == 0 .or. abs(constraints%row(i)%stiffness) > 0.0_wp) cycle
+         fields%shear(i) = fields%shear(i) + missing_shear(self, constraints, fields, i)
+      end do
    end subroutine apply
 
 end module mfv_reduced_system

@@ -15,7 +15,6 @@ module mfv_toeplitz_inverse
    public :: toeplitz_inverse_type
 
    type :: toeplitz_inverse_type
-      private
       integer :: order = 0
       !> The predictor a, shape (at least order), and E.
       real(wp), allocatable :: predictor(:)
@@ -30,7 +29,6 @@ module mfv_toeplitz_inverse
       procedure :: set_order
       procedure :: apply
       procedure :: copy_order
-      procedure :: current_order
    end type toeplitz_inverse_type
 
 contains
@@ -71,12 +69,6 @@ contains
       self%error = other%error
       self%length = 0
    end subroutine copy_order
-
-   pure integer function current_order(self)
-      class(toeplitz_inverse_type), intent(in) :: self
-
-      current_order = self%order
-   end function current_order
 
    !> Room for a predictor of `order`, and some to grow; what is known stays.
    subroutine make_room(self, order)

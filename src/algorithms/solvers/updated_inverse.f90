@@ -42,9 +42,6 @@ module mfv_updated_inverse
       procedure :: column
       procedure :: multiply
       procedure :: rebuild
-      procedure, private :: reserve
-      procedure, private :: append
-      procedure, private :: add_pending
    end type updated_inverse_type
 
 contains
@@ -69,7 +66,7 @@ contains
       n = self%order
       total = size(borders, 1)
       number = size(borders, 2)
-      call self%reserve(total)
+      call reserve(self, total)
       self%prepared = 0
       self%borders = borders
       if (allocated(self%products)) deallocate (self%products, self%changes, self%weights)
@@ -85,7 +82,7 @@ contains
          end do
       end do
       do c = 1, number
-         call self%add_pending(self%borders(:n, c), self%products(:n, c))
+         call add_pending(self, self%borders(:n, c), self%products(:n, c))
       end do
    end subroutine prepare
 
@@ -116,7 +113,7 @@ contains
       self%base(n + 1, :n) = 0.0_wp
       self%vector(n + 1, :self%pending) = 0.0_wp
       self%order = n + 1
-      call self%append(1.0_wp/pivot)
+      call append(self, 1.0_wp/pivot)
    end subroutine add_prepared
 
    !> Lose row `row`; the last row then takes its place. `singular`: the smaller matrix has no inverse.
@@ -131,7 +128,7 @@ contains
       call self%column(row, self%change(:n))
       singular = abs(self%change(row)) <= nothing*maxval(abs(self%change(:n)))
       if (singular) return
-      call self%append(-1.0_wp/self%change(row))
+      call append(self, -1.0_wp/self%change(row))
       if (row < n) then
          self%base(:n, row) = self%base(:n, n)
          self%base(row, :n) = self%base(n, :n)
@@ -174,7 +171,7 @@ contains
       else
          call dgemv('N', n, n, 1.0_wp, self%base, size(self%base, 1), right, 1, 0.0_wp, product, 1)
       end if
-      call self%add_pending(right, product)
+      call add_pending(self, right, product)
    end subroutine multiply
 
    !> Add the pending products times `right` to `product`, shapes (order).
@@ -204,7 +201,7 @@ contains
 
       n = size(matrix, 1)
       call self%clear()
-      call self%reserve(max(n, 1))
+      call reserve(self, max(n, 1))
       self%rebuilds = self%rebuilds + 1
       singular = .false.
       if (n == 0) return

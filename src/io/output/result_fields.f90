@@ -5,7 +5,7 @@ module mfv_result_fields
    use mfv_body, only: body_type, shape_names
    use mfv_body_pair, only: part_lower, part_upper
    use mfv_case, only: case_type
-   use mfv_certificate, only: residual_count, residual_description, residual_name
+   use mfv_certificate, only: residual_count, residual_descriptions, residual_names
    use mfv_closed_form, only: closed_form_of, closed_form_type
    use mfv_compliance, only: block_up, block_ut, block_wp, block_wt
    use mfv_contact_state, only: contact_state_type
@@ -14,7 +14,7 @@ module mfv_result_fields
    use mfv_kinds, only: wp
    use mfv_motions, only: motions, motion_count, motion_approach, motion_shift, motion_rotation
    use mfv_node_status, only: event_names, holds, in_contact, node_status_names
-   use mfv_observables, only: observable_count, observable_meaning, observable_name, observable_unit, observables_of
+   use mfv_observables, only: observable_count, observables, observables_of
    use mfv_scene, only: stepping_leap
    use mfv_simulation, only: history_none, mark_cycle_start, mark_loading, mark_return, mark_reversal, &
                              sensitivity_type, simulation_type
@@ -534,8 +534,10 @@ contains
       call observables_of(simulation, values)
       do i = 1, observable_count
          if (ieee_is_nan(values(i))) cycle
-         call add_scalar(fields, observable_name(i), values(i), labelled_unit(observable_unit(i), units%length, units%energy), &
-                         observable_meaning(i))
+         associate (row => observables(i))
+            call add_scalar(fields, trim(row%name), values(i), labelled_unit(trim(row%unit), units%length, units%energy), &
+                            trim(row%meaning))
+         end associate
       end do
    end subroutine add_observables
 
@@ -687,8 +689,8 @@ contains
          call add_scalar_whole(fields, 'increments', certificate%increments, 'increments that were checked')
          do kind = 1, residual_count
             if (certificate%claimed(kind)) &
-               call add_scalar(fields, residual_name(kind), certificate%residual(kind), '1', &
-                               residual_description(kind)//', relative, largest over all increments')
+               call add_scalar(fields, trim(residual_names(kind)), certificate%residual(kind), '1', &
+                               trim(residual_descriptions(kind))//', relative, largest over all increments')
          end do
       end associate
    end subroutine add_certificate

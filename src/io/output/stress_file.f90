@@ -66,7 +66,7 @@ contains
          return
       end if
       result%half_width = interior%half_width()
-      result%largest_pressure = interior%largest_pressure()
+      result%largest_pressure = interior%peak
       result%length_unit = case%length_unit
       result%stress_unit = case%force_unit//'/'//case%length_unit//'^2'
       if (.not. result%half_width > 0.0_wp) then

@@ -1,0 +1,28 @@
+!> Products of single blocks of a compliance.
+module block_products
+   use mfv_compliance, only: block_up, block_wp, compliance_type
+   use mfv_kinds, only: wp
+   implicit none
+   private
+   public :: add_product
+
+contains
+
+   !> Add a block times `traction` to `displacement`, both of shape (nodes).
+   subroutine add_product(compliance, block, traction, displacement)
+      class(compliance_type), intent(in) :: compliance
+      integer, intent(in) :: block
+      real(wp), intent(in) :: traction(:)
+      real(wp), intent(inout) :: displacement(:)
+      real(wp) :: part(size(traction), 4), nothing(size(traction))
+
+      nothing = 0.0_wp
+      if (block == block_wp .or. block == block_up) then
+         call compliance%parts(traction, nothing, part)
+      else
+         call compliance%parts(nothing, traction, part)
+      end if
+      displacement = displacement + part(:, block)
+   end subroutine add_product
+
+end module block_products
