@@ -61,8 +61,8 @@ contains
       integer, allocatable :: pivots(:)
       integer :: i, info, n
 
-      state = prescribed_by(constraints, model, .false.)
-      rate = prescribed_by(constraints, model, .true.)
+      call find_prescribed(constraints, model, .false., state)
+      call find_prescribed(constraints, model, .true., rate)
       assembly = new_assembly(model, constraints%status)
       call add_elasticity(assembly, model, [state%load(motion_shift), rate%load(motion_shift)])
       do i = 1, motion_count

@@ -9,7 +9,7 @@ module mfv_contact_system
    use mfv_motions, only: motions, motion_count, control_force, control_displacement
    implicit none
    private
-   public :: contact_system_type, load_type, response_type, constraints_type, prescribed_type, prescribed_by, initial_loads
+   public :: contact_system_type, load_type, response_type, constraints_type, prescribed_type, find_prescribed, initial_loads
 
    !> One controlled load: force (moment) or rigid displacement (rotation), its value now and its rate per unit of load.
    type :: load_type
@@ -83,11 +83,12 @@ module mfv_contact_system
 
 contains
 
-   !> What the constraints prescribe of the state of a model, or (`rates`) of its rates.
-   pure type(prescribed_type) function prescribed_by(constraints, model, rates) result(prescribed)
+   !> What the constraints prescribe of the state of a model, or (`rates`) of its rates. `prescribed`: its storage is used again.
+   pure subroutine find_prescribed(constraints, model, rates, prescribed)
       type(constraints_type), intent(in) :: constraints
       type(contact_model_type), intent(in) :: model
       logical, intent(in) :: rates
+      type(prescribed_type), intent(inout) :: prescribed
 
       if (.not. rates) then
          prescribed%load = constraints%load%value
@@ -98,9 +99,25 @@ contains
       end if
       prescribed%load = constraints%load%rate
       prescribed%offset = constraints%offset_rate
-      allocate (prescribed%opening(size(constraints%status)), prescribed%slip(size(constraints%status)), source=0.0_wp)
-      if (allocated(constraints%gap_rate)) prescribed%opening = constraints%gap_rate
-      if (allocated(constraints%slip_rate)) prescribed%slip = constraints%slip_rate
-   end function prescribed_by
+      call set_rates(prescribed%opening, size(constraints%status), constraints%gap_rate)
+      call set_rates(prescribed%slip, size(constraints%status), constraints%slip_rate)
+   end subroutine find_prescribed
+
+   !> Rates of `nodes` nodes, zero if none are given.
+   pure subroutine set_rates(rates, nodes, given)
+      real(wp), allocatable, intent(inout) :: rates(:)
+      integer, intent(in) :: nodes
+      real(wp), allocatable, intent(in) :: given(:)
+
+      if (allocated(given)) then
+         rates = given
+         return
+      end if
+      if (allocated(rates)) then
+         if (size(rates) /= nodes) deallocate (rates)
+      end if
+      if (.not. allocated(rates)) allocate (rates(nodes))
+      rates = 0.0_wp
+   end subroutine set_rates
 
 end module mfv_contact_system

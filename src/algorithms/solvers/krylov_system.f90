@@ -96,7 +96,7 @@ contains
       call prepare_preconditioner(self, model, singular)
       if (singular) return
 
-      prescribed = prescribed_by(constraints, model, .false.)
+      call find_prescribed(constraints, model, .false., prescribed)
       right = right_side(self, model, constraints%status, prescribed)
       unknowns = [start%pressure(self%contact)/self%stress, start%shear(self%held)/self%stress, &
                   start%motion(self%free)/self%motion_unit(self%free)]
@@ -104,7 +104,7 @@ contains
       if (singular) return
       response%state = fields_of(self, model, prescribed, right, unknowns)
 
-      prescribed = prescribed_by(constraints, model, .true.)
+      call find_prescribed(constraints, model, .true., prescribed)
       right = right_side(self, model, constraints%status, prescribed)
       unknowns = guess_of_rates(self)
       call iterate(self, model, right, unknowns, singular)

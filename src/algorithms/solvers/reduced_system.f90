@@ -519,7 +519,7 @@ contains
       singular = .false.
       first = scales_type(0.0_wp, 0.0_wp, 0.0_wp, 0.0_wp, 0.0_wp)
       fine = merge(5.0e-14_wp, 1.0e-14_wp, rates)
-      self%prescribed = prescribed_by(constraints, model, rates)
+      call find_prescribed(constraints, model, rates, self%prescribed)
       call set_known_motions(self, model, fields)
       if (.not. rates) call open_up(self, model, fields)
       do pass = 1, most_passes
