@@ -19,6 +19,7 @@ module mfv_c
    use mfv_motions, only: motions, motion_count
    use mfv_observables, only: observable_count, observable_meaning, observable_name, observable_unit
    use mfv_observer, only: observer_type
+   use mfv_reference_c, only: evaluate_closed_form
    use mfv_result_fields, only: field_type
    use mfv_scene, only: step_type
    use mfv_status
@@ -162,6 +163,19 @@ contains
       call say(observable_meaning(number), description, description_size)
       status = MFV_COMPLETE
    end function mfv_observable_info
+
+   integer(c_int) function mfv_reference(name, count, arguments, value) result(status) bind(C)
+      type(c_ptr), value :: name
+      integer(c_size_t), value :: count
+      real(c_double), intent(in), optional :: arguments(count)
+      real(c_double), intent(inout), optional :: value
+      logical :: is_known
+
+      status = MFV_BAD_ARGUMENT
+      if (.not. (c_associated(name) .and. present(arguments) .and. present(value) .and. is_size(count))) return
+      call evaluate_closed_form(text_in(name), arguments, value, is_known)
+      if (is_known) status = MFV_COMPLETE
+   end function mfv_reference
 
    ! --- scenes ---
 
@@ -889,37 +903,21 @@ contains
       status = expected(self, count == 0 .or. is_size(count), 'count is too large: there must be that many points')
    end function expected_points
 
-   integer(c_int) function mfv_largest_von_mises_unguarded(handle, body, step, place) result(status) bind(C)
+   integer(c_int) function mfv_largest_stress_unguarded(handle, body, step, place, tension) result(status) bind(C)
       type(c_ptr), value :: handle
       integer(c_int), value :: body, step
-      real(c_double), intent(inout), optional :: place(3)
+      real(c_double), intent(inout), optional :: place(3), tension(3)
       type(handle_type), pointer :: self
       type(error_type), allocatable :: error
-      type(largest_type) :: largest
+      type(interior_type) :: interior
 
       call c_f_pointer(handle, self)
-      status = expected(self, present(place), 'place is null')
-      if (status /= MFV_COMPLETE) return
-      call self%contact%get_largest_von_mises(int(body), largest, error, int(step))
+      call self%contact%find_interior(int(body), interior, error, int(step))
       status = failed(self, error)
-      if (status == MFV_COMPLETE) place = place_of(largest)
-   end function mfv_largest_von_mises_unguarded
-
-   integer(c_int) function mfv_largest_tension_unguarded(handle, body, step, place) result(status) bind(C)
-      type(c_ptr), value :: handle
-      integer(c_int), value :: body, step
-      real(c_double), intent(inout), optional :: place(3)
-      type(handle_type), pointer :: self
-      type(error_type), allocatable :: error
-      type(largest_type) :: largest
-
-      call c_f_pointer(handle, self)
-      status = expected(self, present(place), 'place is null')
       if (status /= MFV_COMPLETE) return
-      call self%contact%get_largest_tension(int(body), largest, error, int(step))
-      status = failed(self, error)
-      if (status == MFV_COMPLETE) place = place_of(largest)
-   end function mfv_largest_tension_unguarded
+      if (present(place)) place = place_of(largest_von_mises(interior))
+      if (present(tension)) tension = place_of(largest_tension(interior))
+   end function mfv_largest_stress_unguarded
 
    !> A largest stress and where it is.
    pure function place_of(largest) result(place)
