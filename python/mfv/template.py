@@ -65,14 +65,20 @@ def write(name: str, path: Path, written: Callable[[Path], Any], overwrite: bool
 
 def _content(source: str, place: Path) -> bytes:
     """What a file of a template has in it; the commands in its comments name the place."""
-    if source == "compliance.h5":
-        return _matrix()
+    if source in _MADE:
+        return _MADE[source]()
     return (_FOLDER / source).read_bytes().replace(b"FILE", place.stem.encode())
 
 
 def _is_there(place: Path, companion: str) -> bool:
     """Whether a file that a template needs is there already, the same."""
     return companion != "compliance.h5" and place.is_file() and place.read_bytes() == _content(companion, place)
+
+
+def _profile() -> bytes:
+    """A punch with rounded edges as points: flat up to 0.3, then receding by the square of the distance."""
+    points = (f"{x:.2f} {max(abs(x) - 0.3, 0.0) ** 2:.6f}" for x in np.linspace(-0.6, 0.6, 121).round(2) + 0.0)
+    return "\n".join(["# A punch with rounded edges: x, how far it recedes (lengths)", *points, ""]).encode()
 
 
 def _matrix() -> bytes:
@@ -90,3 +96,7 @@ def _matrix() -> bytes:
         file["width"] = np.full(NODES, interval)
         file["compliance"] = np.block([[direct, coupling], [-coupling, direct]])
     return memory.getvalue()
+
+
+#: Files of templates that are not in the folder, but made.
+_MADE = {"profile.txt": _profile, "compliance.h5": _matrix}
