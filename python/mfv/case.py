@@ -202,9 +202,7 @@ class Case:
             return _html.table([("case", "closed")])
         rows = [("outcome", f"{self.outcome}: {self.message}")]
         rows += [(name.replace("_", " "), f"{value:.6g}") for name, value in self.loads._asdict().items()]
-        return _html.block(
-            _html.table(rows), _html.tractions(self.x, *(self[f"state/{name}"] for name in ("pressure", "shear")))
-        )
+        return _html.table(rows)
 
     def __copy__(self) -> Case:
         return self.copy()
