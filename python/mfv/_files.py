@@ -11,8 +11,8 @@ from pathlib import Path
 
 import h5py
 
-#: Suffixes of pictures and of comma-separated values.
-PICTURES, TABLES = (".png", ".pdf", ".svg", ".eps"), (".csv", ".txt")
+#: Suffixes of pictures.
+PICTURES = (".png", ".pdf", ".svg", ".eps")
 
 #: Numbers for the names of files that are being written: threads write under different ones.
 _numbers = itertools.count()

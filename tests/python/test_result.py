@@ -6,7 +6,6 @@ import copy
 import inspect
 import os
 import pickle
-import re
 import subprocess
 import sys
 import xml.etree.ElementTree
