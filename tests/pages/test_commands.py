@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import importlib.util
 import os
 import re
 import subprocess
@@ -20,7 +19,6 @@ from mfv import animate, comparison_figure, report, template
 from mfv.commands import main
 from mfv.compare import compare, relative_difference
 from mfv.load_history import kept_states, thinned, with_states_between
-from mfv.studies import namelist
 from mfv.views import curve_of
 
 sys.path.append(str(Path(__file__).resolve().parents[1] / "cli"))
@@ -403,20 +401,16 @@ def test_every_template_is_solved(name: str, tmp_path: Path, capsys: pytest.Capt
 
 
 def test_comments_of_templates_are_those_of_the_catalogue() -> None:
-    specification = importlib.util.spec_from_file_location("templates", PROJECT / "scripts" / "templates.py")
-    scripts = importlib.util.module_from_spec(specification)
-    specification.loader.exec_module(scripts)
-    comments = scripts.meanings_of(scripts.catalogues(MFV_RUN))
-    assert len(comments) > 50 and comments["mesh", "half_width"].endswith("in length)")
-    assert {key for group, key in comments if group == "vary"} == set(namelist.KEYS["vary"])
-    for name in template.names():
-        text = template.text(name)
-        assert scripts.commented(text, comments) == text, f"{name}.nml: run scripts/templates.py"
-    # A comment that is wrong is put right, and what is written behind keys stays.
-    text = template.text("cylinder")
-    assert scripts.commented(text.replace("number of equal", "amount of"), comments) == text
-    with pytest.raises(KeyError):
-        scripts.commented("&mesh\n   knots = 3\n/\n", comments)
+    printed = subprocess.run([MFV_RUN, "--keys"], capture_output=True, text=True, check=True).stdout
+    assert (Path(template.__file__).parent / "templates/keys.md").read_text() == printed, "mfv_run --keys > keys.md"
+    text = template.text("study")
+    assert "   ! number of equal intervals; nodes are their centres (a whole number from 1 to" in template.text("cylinder")
+    assert "(a number above 0, in length)\n" in template.text("matrix") and "'linear' by\n   ! default)" in text
+    for key in ("key", "values", "factor"):  # a comment above the first one alone
+        place = text.index(f"   {key} = ")
+        assert text[:place].splitlines()[-1].startswith("   ! ")
+    assert text.count("! the values, in the unit of the key") == 1
+    assert max(map(len, text.splitlines()[2:])) <= 100
 
 
 def test_the_matrix_of_the_template_is_a_half_plane(tmp_path: Path) -> None:
