@@ -7,6 +7,7 @@ from pathlib import Path
 
 from .._files import PICTURES, target, written
 from ..result import read
+from .shared import add_output
 
 NAME, HELP = "compare", "two results side by side"
 
@@ -32,13 +33,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     """What the command takes."""
     parser.add_argument("file", type=Path, metavar="FIRST.h5", help="result file")
     parser.add_argument("other", type=Path, metavar="SECOND.h5", help="result file")
-    parser.add_argument(
-        "-o",
-        "--output",
-        type=Path,
-        metavar="PICTURE",
-        help="png, pdf, svg or eps; else FIRST_SECOND.png beside the first file",
-    )
+    add_output(parser, "PICTURE", "png, pdf, svg or eps; else FIRST_SECOND.png beside the first file")
     parser.add_argument("--no-picture", action="store_true", help="draw nothing")
     parser.add_argument("--step", type=int, metavar="N", help="the states in steps/000N in place of the last ones")
     parser.add_argument(
