@@ -7,16 +7,11 @@ import json
 import os
 import sqlite3
 from collections.abc import Collection, Iterator
-from types import TracebackType
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from .. import errors
 from .cases import Solved
-
-if TYPE_CHECKING:
-    from typing_extensions import Self
 
 #: "MFVS": what SQLite's application_id says of a file that this module has made.
 APPLICATION = 0x4D465653
@@ -36,12 +31,8 @@ class Store:
             self._connection = sqlite3.connect(self.path, isolation_level=None, timeout=0.0)
             self._open()
 
-    def __enter__(self) -> Self:
-        return self
-
-    def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, traceback: TracebackType | None
-    ) -> None:
+    def close(self) -> None:
+        """Let others use the file."""
         self._connection.close()
 
     def read(self, keys: Collection[str]) -> dict[str, Solved]:
