@@ -315,12 +315,12 @@ def _cycle_figures(result: Result, inside: slice) -> dict[str, Any]:
 
 def _figure(across: dict[str, Any], up: dict[str, Any]) -> go.Figure:
     """An empty figure."""
-    frame = {"showline": True, "mirror": True, "ticks": "inside", "zeroline": False, "exponentformat": "power", "automargin": True}
+    frame = {"showline": True, "mirror": True, "ticks": "inside", "zeroline": False, "exponentformat": "power"}
     return go.Figure(
         layout={
             "template": "plotly_white",
-            "xaxis": {**frame, **across},
-            "yaxis": {**frame, **up},
+            "xaxis": {"automargin": True, **frame, **across},
+            "yaxis": {"automargin": True, **frame, **up},
             "margin": {"l": 56, "r": 12, "t": 30, "b": 44},
             "legend": {"orientation": "h", "x": 0, "y": 1.02, "yanchor": "bottom"},
             "showlegend": False,
