@@ -243,13 +243,12 @@ enum {
 
 /* Stresses inside a body (MFV_LOWER or MFV_UPPER) in the present state (step = 0) or in that of steps/000N (step = N), at
  * the points x[i], y[i] [length], y up from the contact: stresses[i*MFV_STRESS_COUNT + MFV_SIGMA_XX] and so on. NaN
- * outside the body. MFV_BAD_ARGUMENT for a rigid body or one given by a matrix. Since 0.1.0. */
-int mfv_stress(mfv_case *handle, int body, int step, size_t count, const double *x, const double *y, double *stresses);
-
-/* The largest von Mises stress of the body, found by refinement, as place = {stress, x, y}, and the largest tension along its
- * surface; either may be NULL. The tension is NaN where it is singular (the surface of a body ends where it carries shear); its
- * x and y are NaN where there is none. Since 0.1.0. */
-int mfv_largest_stress(mfv_case *handle, int body, int step, double *place, double *tension);
+ * outside the body. The largest von Mises stress, found by refinement: place = {stress, x, y}. The largest tension along the
+ * surface: tension likewise; NaN where it is singular (the surface of a body ends where it carries shear), its x and y where
+ * there is none. stresses (then with count = 0), place and tension may be NULL. MFV_BAD_ARGUMENT for a rigid body or one given
+ * by a matrix. Since 0.1.0. */
+int mfv_stress(mfv_case *handle, int body, int step, size_t count, const double *x, const double *y, double *stresses,
+               double *place, double *tension);
 
 /* All of these for tractions of the caller's, such as those of a result file: pressure and shear (on the lower body, to the
  * right) at `nodes` nodes with intervals of the lengths width[] around the positions arc[] along the surface. contact_edge,

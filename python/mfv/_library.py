@@ -62,9 +62,7 @@ class StepStructure(ctypes.Structure):
         ("target", _per_motion),
         ("steady_tolerance", c_double),
         ("control", c_int * len(MOTIONS)),
-        ("friction", c_int),
-        ("cycles", c_int),
-        ("relative", c_int),
+        *((name, c_int) for name in ("friction", "cycles", "relative")),
         ("unused", c_int * 2),
     ]
 
@@ -80,11 +78,7 @@ class LoadsStructure(ctypes.Structure):
         ("force", _per_motion),
         ("motion", _per_motion),
         ("dissipation", c_double),
-        ("contact_nodes", c_int),
-        ("stick_nodes", c_int),
-        ("slip_nodes", c_int),
-        ("events", c_int),
-        ("linear_solves", c_int),
+        *((name, c_int) for name in ("contact_nodes", "stick_nodes", "slip_nodes", "events", "linear_solves")),
         ("unused", c_int),
     ]
 
@@ -98,10 +92,7 @@ class ProgressStructure(ctypes.Structure):
     _fields_ = [
         ("size", c_size_t),
         ("fraction", c_double),
-        ("segment", c_int),
-        ("segments", c_int),
-        ("contact_nodes", c_int),
-        ("stick_nodes", c_int),
+        *((name, c_int) for name in ("segment", "segments", "contact_nodes", "stick_nodes")),
         ("force", _per_motion),
         ("motion", _per_motion),
     ]
@@ -164,8 +155,7 @@ SIGNATURES: dict[str, tuple[type, ...]] = {
     "mfv_attribute": (c_int, _handle, _text, _text, c_size_t, _length),
     "mfv_copy_real": (c_int, _handle, _text, _array, c_size_t),
     "mfv_copy_integer": (c_int, _handle, _text, POINTER(c_int32), c_size_t),
-    "mfv_stress": (c_int, _handle, c_int, c_int, c_size_t, _array, _array, _array),
-    "mfv_largest_stress": (c_int, _handle, c_int, c_int, _array, _array),
+    "mfv_stress": (c_int, _handle, c_int, c_int, c_size_t, *(_array,) * 5),
     "mfv_stress_under": (c_int, _handle, c_int, c_size_t, *(_array,) * 6, c_size_t, *(_array,) * 5),
     "mfv_write": (c_int, _handle, _text),
 }

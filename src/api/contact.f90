@@ -16,7 +16,7 @@ module mfv_contact
    use mfv_draft, only: draft_type
    use mfv_error, only: error_type, set_error
    use mfv_features, only: has_hdf5
-   use mfv_interior, only: interior_type, stress_count
+   use mfv_interior, only: interior_type
    use mfv_kept_state, only: kept_state_type
    use mfv_kinds, only: wp
    use mfv_observer, only: observer_type
@@ -81,7 +81,6 @@ module mfv_contact
       !> Error MFV_BAD_ARGUMENT.
       generic :: get => get_reals, get_integers, get_real, get_integer
       procedure :: attributes
-      procedure :: get_stresses
       procedure :: find_interior
       procedure :: make_interior
       procedure :: write
@@ -620,33 +619,9 @@ contains
       if (.not. allocated(self%warnings)) call validity_warnings(self%simulation, self%warnings)
    end subroutine find_warnings
 
-   !> Stresses inside a body (body_lower, body_upper) at points x, y (lengths, y up from the contact), force/length^2, shape
-   !> (stress_count, points): see mfv_interior. `step`: in the state that steps/000N has, 0 for the present one (also left out).
-   !> NaN outside the body. Error MFV_BAD_ARGUMENT: a rigid body or a matrix, or no such step.
-   subroutine get_stresses(self, body, x, y, stresses, error, step)
-      class(contact_type), intent(in) :: self
-      integer, intent(in) :: body
-      real(wp), intent(in) :: x(:), y(:)
-      real(wp), intent(out) :: stresses(:, :)
-      type(error_type), allocatable, intent(out) :: error
-      integer, intent(in), optional :: step
-      type(interior_type) :: interior
-      integer :: i
-
-      if (size(y) /= size(x) .or. size(stresses, 1) /= stress_count .or. size(stresses, 2) /= size(x)) then
-         call set_error(error, MFV_BAD_ARGUMENT, 'x and y must have one size, and stresses the shape ('//to_text(stress_count)// &
-                        ', that size)')
-         return
-      end if
-      call self%find_interior(body, interior, error, step)
-      if (allocated(error)) return
-      do i = 1, size(x)
-         stresses(:, i) = interior%all_stresses(x(i), y(i))
-      end do
-   end subroutine get_stresses
-
-   !> A body under the tractions of the present state or of a step, for largest_von_mises and largest_tension; arguments and errors
-   !> as of get_stresses.
+   !> A body (body_lower, body_upper) under the tractions of the state that steps/000N has, N = `step`, or of the present one (0, and
+   !> by default): for interior%all_stresses(x, y), largest_von_mises, largest_tension; see mfv_interior. Error MFV_BAD_ARGUMENT: a
+   !> rigid body or a matrix, or no such step.
    subroutine find_interior(self, body, interior, error, step)
       class(contact_type), intent(in) :: self
       integer, intent(in) :: body

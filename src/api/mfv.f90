@@ -4,7 +4,7 @@
 !> - contact_type: a contact to be led and asked, from new_contact (of a draft), read_contact (of a file), read_contact_text
 !> - contact%run, contact%advance with step_to(...); contact%loads(), contact%get('state/pressure', values, error)
 !> - contact%get_tangent; contact%keep and contact%come_back with a kept_state_type
-!> - contact%get_stresses; contact%find_interior with largest_von_mises, largest_tension; contact%write
+!> - contact%find_interior: interior%all_stresses, largest_von_mises, largest_tension; contact%write
 !> - observer_type: to be extended by who wants to be told of every increment
 !> - error_type: what went wrong; the MFV_... statuses with status_outcome and status_explanation
 !>

@@ -874,50 +874,45 @@ contains
       end if
    end function values_of
 
-   integer(c_int) function mfv_stress_unguarded(handle, body, step, count, x, y, stresses) result(status) bind(C)
+   integer(c_int) function mfv_stress_unguarded(handle, body, step, count, x, y, stresses, place, tension) result(status) bind(C)
       type(c_ptr), value :: handle
       integer(c_int), value :: body, step
       integer(c_size_t), value :: count
       real(c_double), intent(in), optional :: x(count), y(count)
-      real(c_double), intent(inout), optional :: stresses(stress_count, count)
+      real(c_double), intent(inout), optional :: stresses(stress_count, count), place(3), tension(3)
       type(handle_type), pointer :: self
-      type(error_type), allocatable :: error
-
-      call c_f_pointer(handle, self)
-      status = MFV_COMPLETE
-      if (count == 0) return
-      status = expected_points(self, count, present(x) .and. present(y) .and. present(stresses))
-      if (status /= MFV_COMPLETE) return
-      call self%contact%get_stresses(int(body), x, y, stresses, error, int(step))
-      status = failed(self, error)
-   end function mfv_stress_unguarded
-
-   !> MFV_BAD_ARGUMENT unless there are arrays for that many points.
-   integer(c_int) function expected_points(self, count, has_arrays) result(status)
-      type(handle_type), intent(inout) :: self
-      integer(c_size_t), intent(in) :: count
-      logical, intent(in) :: has_arrays
-
-      status = expected(self, has_arrays, 'an array is null')
-      if (status /= MFV_COMPLETE) return
-      status = expected(self, count == 0 .or. is_size(count), 'count is too large: there must be that many points')
-   end function expected_points
-
-   integer(c_int) function mfv_largest_stress_unguarded(handle, body, step, place, tension) result(status) bind(C)
-      type(c_ptr), value :: handle
-      integer(c_int), value :: body, step
-      real(c_double), intent(inout), optional :: place(3), tension(3)
-      type(handle_type), pointer :: self
-      type(error_type), allocatable :: error
       type(interior_type) :: interior
+      type(error_type), allocatable :: error
 
       call c_f_pointer(handle, self)
       call self%contact%find_interior(int(body), interior, error, int(step))
       status = failed(self, error)
-      if (status /= MFV_COMPLETE) return
+      if (status == MFV_COMPLETE) status = answered(self, interior, count, x, y, stresses, place, tension)
+   end function mfv_stress_unguarded
+
+   !> Stresses at points, the largest von Mises stress and the largest tension of a body, as far as they are asked for.
+   !> MFV_BAD_ARGUMENT.
+   integer(c_int) function answered(self, interior, count, x, y, stresses, place, tension) result(status)
+      type(handle_type), intent(inout) :: self
+      type(interior_type), intent(in) :: interior
+      integer(c_size_t), intent(in) :: count
+      real(c_double), intent(in), optional :: x(count), y(count)
+      real(c_double), intent(inout), optional :: stresses(stress_count, count), place(3), tension(3)
+      integer(c_size_t) :: i
+
+      status = MFV_COMPLETE
+      if (present(stresses) .and. count /= 0) then
+         status = expected(self, present(x) .and. present(y), 'an array is null')
+         if (status /= MFV_COMPLETE) return
+         status = expected(self, is_size(count), 'count is too large: there must be that many points')
+         if (status /= MFV_COMPLETE) return
+         do i = 1, count
+            stresses(:, i) = interior%all_stresses(x(i), y(i))
+         end do
+      end if
       if (present(place)) place = place_of(largest_von_mises(interior))
       if (present(tension)) tension = place_of(largest_tension(interior))
-   end function mfv_largest_stress_unguarded
+   end function answered
 
    !> A largest stress and where it is.
    pure function place_of(largest) result(place)
@@ -938,7 +933,6 @@ contains
       type(handle_type), pointer :: self
       type(interior_type) :: interior
       type(error_type), allocatable :: error
-      integer(c_size_t) :: i
       logical :: usable
 
       call c_f_pointer(handle, self)
@@ -954,16 +948,7 @@ contains
       call self%contact%make_interior(int(body), arc, width, pressure, shear, edges_or_nan(nodes, contact_edge), &
                                       edges_or_nan(nodes, stick_edge), interior, error)
       status = failed(self, error)
-      if (status == MFV_COMPLETE .and. present(stresses)) &
-         status = expected_points(self, count, present(x) .and. present(y))
-      if (status /= MFV_COMPLETE) return
-      if (present(stresses)) then
-         do i = 1, count
-            stresses(:, i) = interior%all_stresses(x(i), y(i))
-         end do
-      end if
-      if (present(place)) place = place_of(largest_von_mises(interior))
-      if (present(tension)) tension = place_of(largest_tension(interior))
+      if (status == MFV_COMPLETE) status = answered(self, interior, count, x, y, stresses, place, tension)
    end function mfv_stress_under_unguarded
 
    !> Edges of the caller's, or NaN for each node if there are none.

@@ -192,10 +192,8 @@ ROW(mfv_attribute) {
 ROW(mfv_copy_real) { return mfv_copy_real(OR_NULL(0, b->handle), OR_NULL(1, "state/shear"), OR_NULL(2, b->numbers), NODES); }
 ROW(mfv_copy_integer) { return mfv_copy_integer(OR_NULL(0, b->handle), OR_NULL(1, "state/status"), OR_NULL(2, b->whole), NODES); }
 ROW(mfv_stress) {
-  return mfv_stress(OR_NULL(0, b->handle), MFV_LOWER, 0, NODES, OR_NULL(1, b->x), OR_NULL(2, b->x), OR_NULL(3, b->numbers));
-}
-ROW(mfv_largest_stress) {
-  return mfv_largest_stress(OR_NULL(0, b->handle), MFV_LOWER, 0, OR_NULL(1, b->numbers), OR_NULL(2, b->direction));
+  return mfv_stress(OR_NULL(0, b->handle), MFV_LOWER, 0, NODES, OR_NULL(1, b->x), OR_NULL(2, b->x), OR_NULL(3, b->numbers),
+                    OR_NULL(4, b->direction), OR_NULL(5, b->direction));
 }
 ROW(mfv_stress_under) {
   return mfv_stress_under(OR_NULL(0, b->handle), MFV_LOWER, NODES, OR_NULL(1, b->x), OR_NULL(2, b->width), OR_NULL(3, b->pressure),
@@ -259,8 +257,7 @@ static const row rows[] = {
     {"mfv_attribute", row_mfv_attribute, CASE, 0, OK, 4, {H, A, OK, OK}},
     {"mfv_copy_real", row_mfv_copy_real, CASE, 0, OK, 3, {H, A, A}},
     {"mfv_copy_integer", row_mfv_copy_integer, CASE, 0, OK, 3, {H, A, A}},
-    {"mfv_stress", row_mfv_stress, CASE, 0, OK, 4, {H, A, A, A}},
-    {"mfv_largest_stress", row_mfv_largest_stress, CASE, 0, OK, 3, {H, OK, OK}},
+    {"mfv_stress", row_mfv_stress, CASE, 0, OK, 6, {H, A, A, OK, OK, OK}},
     {"mfv_stress_under", row_mfv_stress_under, CASE, 0, OK, 12, {H, A, A, A, A, OK, OK, A, A, OK, OK, OK}},
     {"mfv_write", row_mfv_write, CASE, 0, F, 2, {H, A}},
 };
@@ -421,7 +418,7 @@ static void wrong_sizes(void) {
     refused(&b, mfv_field_path(b.handle, size, b.buffer, ROOM), "fields");
     refused(&b, mfv_attribute_name(b.handle, size, b.buffer, ROOM), "attributes");
     if (size == INT_MAX) continue;
-    refused(&b, mfv_stress(b.handle, MFV_LOWER, 0, size, b.x, b.x, b.numbers), "count");
+    refused(&b, mfv_stress(b.handle, MFV_LOWER, 0, size, b.x, b.x, b.numbers, NULL, NULL), "count");
     refused(&b, mfv_stress_under(b.handle, MFV_LOWER, size, b.x, b.width, b.pressure, b.pressure, NULL, NULL, 0, NULL, NULL, NULL, b.numbers, NULL),
             "nodes");
     refused(&b, mfv_stress_under(b.handle, MFV_LOWER, NODES, b.x, b.width, b.pressure, b.pressure, NULL, NULL, size, b.x, b.x, b.numbers, NULL, NULL),
@@ -431,7 +428,7 @@ static void wrong_sizes(void) {
     CHECK(mfv_scene_set_data(b.scene, "file", "x", 1, size, b.x) == MFV_BAD_ARGUMENT);
   }
   CHECK(mfv_scene_set_reals(b.scene, "friction%mu", b.x, 0) == MFV_BAD_ARGUMENT);
-  CHECK(mfv_stress(b.handle, MFV_LOWER, 0, 0, NULL, NULL, NULL) == MFV_COMPLETE);
+  CHECK(mfv_stress(b.handle, MFV_LOWER, 0, 0, NULL, NULL, NULL, NULL, NULL) == MFV_COMPLETE);
   refused(&b, mfv_stress_under(b.handle, MFV_LOWER, 0, b.x, b.width, b.pressure, b.pressure, NULL, NULL, 0, NULL, NULL, NULL, b.numbers, NULL),
             "nodes");
   /* Texts are cut to the room that there is. */
@@ -467,7 +464,7 @@ static void wrong_numbers(void) {
     status = mfv_advance(b.handle, &step);
     CHECK((status == MFV_BAD_ARGUMENT) == !(isfinite(odd[i]) && odd[i] >= 0));
     CHECK(mfv_restore(b.handle, b.state) == MFV_COMPLETE);
-    CHECK(mfv_stress(b.handle, MFV_LOWER, 0, 2, points, down, stresses) == MFV_COMPLETE);
+    CHECK(mfv_stress(b.handle, MFV_LOWER, 0, 2, points, down, stresses, NULL, NULL) == MFV_COMPLETE);
     CHECK(isfinite(odd[i]) || (isnan(stresses[0]) && isnan(stresses[MFV_STRESS_COUNT + MFV_VON_MISES])));
     status = mfv_tangent(b.handle, 2, direction, b.numbers);
     CHECK((status == MFV_BAD_ARGUMENT) || isfinite(odd[i]));
@@ -516,10 +513,10 @@ static void wrong_numbers(void) {
     CHECK(whole[i] == 3 || whole[i] == 7 || status == MFV_BAD_ARGUMENT);
     CHECK(mfv_restore(b.handle, b.state) == MFV_COMPLETE);
     if (whole[i] != 3) refused(&b, mfv_tangent(b.handle, whole[i], NULL, b.numbers), "motions");
-    refused(&b, mfv_stress(b.handle, whole[i], 0, 1, b.x, b.x, b.numbers), "MFV_LOWER");
-    refused(&b, mfv_stress(b.handle, MFV_LOWER, whole[i], 1, b.x, b.x, b.numbers), "step");
-    refused(&b, mfv_largest_stress(b.handle, whole[i], 0, b.numbers, NULL), "MFV_LOWER");
-    refused(&b, mfv_largest_stress(b.handle, MFV_LOWER, whole[i], b.numbers, NULL), "step");
+    refused(&b, mfv_stress(b.handle, whole[i], 0, 1, b.x, b.x, b.numbers, NULL, NULL), "MFV_LOWER");
+    refused(&b, mfv_stress(b.handle, MFV_LOWER, whole[i], 1, b.x, b.x, b.numbers, NULL, NULL), "step");
+    refused(&b, mfv_stress(b.handle, whole[i], 0, 0, NULL, NULL, NULL, b.numbers, NULL), "MFV_LOWER");
+    refused(&b, mfv_stress(b.handle, MFV_LOWER, whole[i], 0, NULL, NULL, NULL, b.numbers, NULL), "step");
     CHECK((mfv_status_text(whole[i], b.buffer, ROOM, b.other, ROOM) == MFV_COMPLETE) == (whole[i] == 3 || whole[i] == 7));
     CHECK(mfv_scene_set_integer(b.scene, "friction%mu", whole[i]) == MFV_COMPLETE);
   }
@@ -621,8 +618,8 @@ static void before_and_after(void) {
   CHECK(mfv_copy_real(handle, "state/pressure", numbers, NODES) == MFV_COMPLETE && numbers[7] == 0);
   int status = mfv_tangent(handle, 2, NULL, tangent);
   CHECK(status == MFV_COMPLETE || status == MFV_BAD_ARGUMENT);
-  CHECK(mfv_largest_stress(handle, MFV_LOWER, 0, place, NULL) == MFV_COMPLETE && place[0] == 0);
-  CHECK(mfv_largest_stress(handle, MFV_LOWER, 1, place, NULL) == MFV_BAD_ARGUMENT);
+  CHECK(mfv_stress(handle, MFV_LOWER, 0, 0, NULL, NULL, NULL, place, NULL) == MFV_COMPLETE && place[0] == 0);
+  CHECK(mfv_stress(handle, MFV_LOWER, 1, 0, NULL, NULL, NULL, place, NULL) == MFV_BAD_ARGUMENT);
   CHECK(mfv_message(handle, buffer, ROOM) == MFV_COMPLETE);
   CHECK(mfv_write(handle, NULL) == MFV_BAD_ARGUMENT);
   CHECK(mfv_save(handle, &state) == MFV_COMPLETE);
