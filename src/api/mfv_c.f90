@@ -874,7 +874,8 @@ contains
       end if
    end function values_of
 
-   integer(c_int) function mfv_stress_unguarded(handle, body, step, count, x, y, stresses, place, tension) result(status) bind(C)
+   integer(c_int) function mfv_stress_unguarded(handle, body, step, count, x, y, stresses, place, tension) result(status) &
+      bind(C)
       type(c_ptr), value :: handle
       integer(c_int), value :: body, step
       integer(c_size_t), value :: count
