@@ -243,15 +243,12 @@ enum {
 
 /* Stresses inside a body (MFV_LOWER or MFV_UPPER) in the present state (step = 0) or in that of steps/000N (step = N), at
  * the points x[i], y[i] [length], y up from the contact: stresses[i*MFV_STRESS_COUNT + MFV_SIGMA_XX] and so on. NaN
- * outside the body. MFV_BAD_ARGUMENT for a rigid body or one given by a matrix. Since 0.1.0. */
-int mfv_stress(mfv_case *handle, int body, int step, size_t count, const double *x, const double *y, double *stresses);
-
-/* The largest von Mises stress of the body, found by refinement: place = {stress, x, y}. Since 0.1.0. */
-int mfv_largest_von_mises(mfv_case *handle, int body, int step, double *place);
-
-/* The largest tension along the surface of the body: place = {stress, x, y}. The stress is NaN where it is singular (the
- * surface of a body ends where it carries shear); x and y are NaN where there is no tension. Since 0.1.0. */
-int mfv_largest_tension(mfv_case *handle, int body, int step, double *place);
+ * outside the body. The largest von Mises stress, found by refinement: place = {stress, x, y}. The largest tension along the
+ * surface: tension likewise; NaN where it is singular (the surface of a body ends where it carries shear), its x and y where
+ * there is none. stresses (then with count = 0), place and tension may be NULL. MFV_BAD_ARGUMENT for a rigid body or one given
+ * by a matrix. Since 0.1.0. */
+int mfv_stress(mfv_case *handle, int body, int step, size_t count, const double *x, const double *y, double *stresses,
+               double *place, double *tension);
 
 /* All of these for tractions of the caller's, such as those of a result file: pressure and shear (on the lower body, to the
  * right) at `nodes` nodes with intervals of the lengths width[] around the positions arc[] along the surface. contact_edge,
@@ -266,50 +263,30 @@ int mfv_stress_under(mfv_case *handle, int body, size_t nodes, const double *arc
  * replaced only by a complete one. Since 0.1.0. */
 int mfv_write(mfv_case *handle, const char *path);
 
-/* Closed forms, for tests and pictures; NaN outside their domain. P, Q: forces per unit thickness; a: contact half-width;
- * mu: coefficient of friction; beta: Dundurs' parameter (kappa-1)/(kappa+1). Sources: docs/theory.md. Since 0.1.0. */
-double mfv_hertz_half_width(double normal_force, double radius, double shear_modulus, double kolosov_constant);
-double mfv_hertz_pressure(double x, double normal_force, double half_width);
-double mfv_flat_punch_pressure(double x, double normal_force, double half_width);
-double mfv_spence_stick_ratio(double friction_coefficient, double beta);
-double mfv_spence_cylinder_shear(double x, double normal_force, double half_width, double friction_coefficient, double beta);
-double mfv_spence_flat_punch_shear(double x, double normal_force, double half_width, double friction_coefficient, double beta);
-double mfv_mindlin_stick_ratio(double tangential_force, double normal_force, double friction_coefficient);
-double mfv_mindlin_shear(double x, double tangential_force, double normal_force, double half_width, double friction_coefficient);
-double mfv_mindlin_dissipation(double tangential_force, double normal_force, double half_width, double radius,
-                               double friction_coefficient);
-
-/* Two elastically similar cylinders in steady rolling under constant P and Q (Carter 1926). The contact rolls to the right, x is
+/* The closed form `name` with `count` arguments; value: NaN outside its domain. MFV_BAD_ARGUMENT for a name that is none, or with
+ * another number of arguments. P, Q: forces per unit thickness; a: contact half-width; mu: coefficient of friction; R: radius; G, E:
+ * shear and Young's modulus; nu: Poisson's ratio; kappa: Kolosov's constant; beta: Dundurs' parameter (kappa-1)/(kappa+1); d: datum
+ * of the approach. Sources: docs/theory.md.
+ *   "hertz_half_width" {P, R, G, kappa}, "hertz_pressure", "flat_punch_pressure" {x, P, a}
+ *   "spence_stick_ratio" {mu, beta}, "spence_cylinder_shear", "spence_flat_punch_shear" {x, P, a, mu, beta}
+ *   "mindlin_stick_ratio" {Q, P, mu}, "mindlin_shear" {x, Q, P, a, mu}, "mindlin_dissipation" {Q, P, a, R, mu}
+ * Two elastically similar cylinders in steady rolling under constant P and Q (Carter 1926). The contact rolls to the right, x is
  * measured from its middle; rolling to the left: shear at -x, -creepage. Creepage: sliding of the upper surface over the lower one
- * per rolled distance. 1/radius = 1/R1 + 1/R2. NaN beyond |Q| = mu P. Since 0.1.0. */
-double mfv_carter_creepage(double tangential_force, double normal_force, double half_width, double radius,
-                           double friction_coefficient);
-double mfv_carter_shear(double x, double tangential_force, double normal_force, double half_width, double friction_coefficient);
-
-/* Bodies of the shape C |x|^exponent, exponent from 1 (a wedge with flanks of the angle atan C) to 100, and flat ones of the
- * half-width flat_half_width with edges of edge_radius (Ciavarella, Hills and Monno 1998), pressed, then sheared. approach: as of
- * a half-plane's surface point at the distance datum. stick_ratio: width of the stick zone over that of the contact. Since 0.1.0. */
-double mfv_power_half_width(double normal_force, double coefficient, double exponent, double shear_modulus,
-                            double kolosov_constant);
-double mfv_power_approach(double half_width, double coefficient, double exponent, double datum);
-double mfv_power_pressure(double x, double normal_force, double half_width, double exponent);
-double mfv_power_stick_ratio(double tangential_force, double normal_force, double friction_coefficient, double exponent);
-double mfv_power_shear(double x, double tangential_force, double normal_force, double half_width, double friction_coefficient,
-                       double exponent);
-double mfv_rounded_punch_half_width(double normal_force, double flat_half_width, double edge_radius, double shear_modulus,
-                                    double kolosov_constant);
-double mfv_rounded_punch_approach(double half_width, double flat_half_width, double edge_radius, double datum);
-double mfv_rounded_punch_pressure(double x, double normal_force, double half_width, double flat_half_width);
-double mfv_rounded_punch_stick_ratio(double tangential_force, double normal_force, double friction_coefficient,
-                                     double half_width, double flat_half_width);
-double mfv_rounded_punch_shear(double x, double tangential_force, double normal_force, double half_width,
-                               double friction_coefficient, double flat_half_width);
-
-/* Pin in a bore of one material in plane strain, without friction (Persson): force at which the contact reaches half_angle
+ * per rolled distance. 1/R = 1/R1 + 1/R2. NaN beyond |Q| = mu P.
+ *   "carter_creepage" {Q, P, a, R, mu}, "carter_shear" {x, Q, P, a, mu}
+ * Bodies of the shape C |x|^n, n from 1 (a wedge with flanks of the angle atan C) to 100, and flat ones of the half-width b with
+ * edges of the radius R (Ciavarella, Hills and Monno 1998), pressed, then sheared. Stick ratio: width of the stick zone over that of
+ * the contact.
+ *   "power_half_width" {P, C, n, G, kappa}, "power_approach" {a, C, n, d}, "power_pressure" {x, P, a, n}
+ *   "power_stick_ratio" {Q, P, mu, n}, "power_shear" {x, Q, P, a, mu, n}
+ *   "rounded_punch_half_width" {P, b, R, G, kappa}, "rounded_punch_approach" {a, b, R, d}, "rounded_punch_pressure" {x, P, a, b}
+ *   "rounded_punch_stick_ratio" {Q, P, mu, a, b}, "rounded_punch_shear" {x, Q, P, a, mu, b}
+ * Pin in a bore of one material in plane strain, without friction (Persson): force at which the contact reaches half_angle
  * [radians] to either side; clearance: by how much the bore's radius is larger. NaN beyond some 85 degrees. Contact arc
- * 2a/R [radians] of a disk on a rigid plane, plane strain, without friction, at which it yields (Table 4.1). Since 0.1.0. */
-double mfv_persson_force(double half_angle, double clearance, double youngs_modulus, double poisson_ratio);
-double mfv_yield_contact_arc(double youngs_modulus, double poisson_ratio, double yield_strength);
+ * 2a/R [radians] of a disk on a rigid plane, plane strain, without friction, at which it yields (Table 4.1).
+ *   "persson_force" {half_angle, clearance, E, nu}, "yield_contact_arc" {E, nu, yield strength}
+ * Since 0.1.0. */
+int mfv_reference(const char *name, size_t count, const double *arguments, double *value);
 
 #ifdef __cplusplus
 }

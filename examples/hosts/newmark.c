@@ -60,7 +60,9 @@ static void check(const host *self, int status, const char *what) {
 static void make_contact(host *self, const settings *wanted) {
   mfv_scene *scene = NULL;
   char message[500] = "";
-  const double kolosov_constant = 3.0 - 4.0 * wanted->poisson_ratio;
+  const double hertz[] = {FORCE, RADIUS, MODULUS, 3.0 - 4.0 * wanted->poisson_ratio};
+  double half_width = 0.0;
+  mfv_reference("hertz_half_width", 4, hertz, &half_width);
   mfv_scene_create(&scene);
   mfv_scene_set_text(scene, "body(1)%shape", "half_plane");
   mfv_scene_set_real(scene, "body(1)%shear_modulus", MODULUS);
@@ -70,7 +72,7 @@ static void make_contact(host *self, const settings *wanted) {
   mfv_scene_set_logical(scene, "body(2)%rigid", 1);
   mfv_scene_set_text(scene, "mesh%gap", "parabolic"); /* as the closed forms have it */
   mfv_scene_set_integer(scene, "mesh%nodes", wanted->nodes);
-  mfv_scene_set_real(scene, "mesh%half_width", 1.3 * mfv_hertz_half_width(FORCE, RADIUS, MODULUS, kolosov_constant));
+  mfv_scene_set_real(scene, "mesh%half_width", 1.3 * half_width);
   mfv_scene_set_text(scene, "friction%law", "coulomb");
   mfv_scene_set_real(scene, "friction%mu", MU);
   mfv_scene_set_text(scene, "output%history", "none"); /* nothing grows from step to step, */

@@ -2,24 +2,10 @@
 
 from __future__ import annotations
 
+import functools
 import os
 import sys
 from pathlib import Path
-
-
-def mfv_run() -> None:
-    """Become mfv_run: solve a case."""
-    _become("mfv_run")
-
-
-def mfv_conventional() -> None:
-    """Become mfv_conventional: solve a case by the conventional algorithm."""
-    _become("mfv_conventional")
-
-
-def mfv_stress() -> None:
-    """Become mfv_stress: put the stresses inside a body into a result."""
-    _become("mfv_stress")
 
 
 def _become(name: str) -> None:
@@ -28,3 +14,8 @@ def _become(name: str) -> None:
     if not program.is_file():
         sys.exit(f"{name}: there is no {program}: install mfv with 'pip install .', or a wheel")
     os.execv(program, [str(program), *sys.argv[1:]])
+
+
+mfv_run = functools.partial(_become, "mfv_run")
+mfv_conventional = functools.partial(_become, "mfv_conventional")
+mfv_stress = functools.partial(_become, "mfv_stress")

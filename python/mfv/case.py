@@ -202,9 +202,7 @@ class Case:
             return _html.table([("case", "closed")])
         rows = [("outcome", f"{self.outcome}: {self.message}")]
         rows += [(name.replace("_", " "), f"{value:.6g}") for name, value in self.loads._asdict().items()]
-        return _html.block(
-            _html.table(rows), _html.tractions(self.x, *(self[f"state/{name}"] for name in ("pressure", "shear")))
-        )
+        return _html.table(rows)
 
     def __copy__(self) -> Case:
         return self.copy()
@@ -526,14 +524,8 @@ class Case:
 
 def _not_numbers(targets: dict[str, Any]) -> str:
     """Which of the targets, None where they were not given, are no numbers."""
-
-    def is_number(value: Any) -> bool:
-        try:
-            return bool(struct.pack("d", value))
-        except struct.error:
-            return False
-
-    return ", ".join(f"{name}={value!r}" for name, value in targets.items() if value is not None and not is_number(value))
+    wrong = {name: value for name, value in targets.items() if value is not None and not hasattr(value, "__float__")}
+    return ", ".join(f"{name}={value!r}" for name, value in wrong.items())
 
 
 def _freed_with(owner: object, free: Callable[..., object], handle: c_void_p) -> weakref.finalize[..., Any]:

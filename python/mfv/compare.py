@@ -5,10 +5,9 @@
 
 from __future__ import annotations
 
-import csv
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Any, NamedTuple, TextIO
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -118,22 +117,6 @@ class Comparison:
             f"{_html.unit(number.unit)}".rstrip()
             for number in numbers
         ]
-
-    def write_csv(self, file: TextIO) -> None:
-        """Write everything as comma-separated values, with a line of names."""
-        writer = csv.writer(file, lineterminator="\n")
-        writer.writerow(("group", "name", "unit", "first", "second", "relative_difference", "meaning"))
-        inputs = [] if isinstance(self.inputs, str) else self.inputs
-        for group, settings in (("settings", self.settings), ("input", inputs)):
-            writer.writerows((group, name, "", first, second, "", "") for name, first, second in settings)
-        for number in self.numbers:
-            group, name, unit, meaning, first, second = number
-            writer.writerow((group, name, unit, first, second, number.relative_difference, meaning))
-        meaning = "largest absolute values; largest difference in parts of the larger"
-        for name, unit, first, second, largest, _ in self.tractions:
-            writer.writerow(("tractions", name, unit, first, second, largest, meaning))
-        meaning = "largest difference of a traction in parts of the largest traction"
-        writer.writerow(("tractions", "largest_difference", "1", "", "", self.largest_difference, meaning))
 
 
 def compare(first: Result, second: Result, step: int | None = None) -> Comparison:

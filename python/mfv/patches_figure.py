@@ -57,11 +57,7 @@ def figure(result: Result, step: int | None = None) -> Figure:
         axes[0, 0].set_title(f"{len(patches)} patches")
         axes[0, 1].set_title(f"patch {chosen + 1}, which bears most")
         picture.suptitle(plot._heading(result, step), fontsize=12, parse_math=False)
-        legend = picture.legend(
-            *plot._legend_entries(picture, lines_first=False), ncols=6, fontsize=10, loc="outside lower center",
-            title=plot._caption(result, step), title_fontsize=9,
-        )  # fmt: skip
-        legend.get_title().set(color="0.35", parse_math=False)
+        plot._add_legend(picture, plot._caption(result, step), lines_first=False)
     return picture
 
 

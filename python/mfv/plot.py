@@ -17,7 +17,6 @@ from matplotlib import patheffects
 from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from matplotlib.layout_engine import ConstrainedLayoutEngine
 from matplotlib.patches import Patch
 from matplotlib.ticker import MaxNLocator
 
@@ -74,11 +73,8 @@ STRESS_LABELS = {
 TENSIONS = ("sigma_xx", "sigma_thetatheta", "principal_1")
 AXES = ("normalised", "physical")
 
-#: Sizes in inch: a panel with its labels, the space below it, a row of the legend, a row of the caption.
-PANEL_WIDTH, PANEL_HEIGHT, SPACE, LEGEND_ROW, CAPTION_ROW = 3.6, 3.3, 0.08, 0.22, 0.17
-
-#: Letters of the caption that are as wide as a panel.
-CAPTION_LETTERS = 68
+#: Sizes of a panel with its labels in inch; letters of the caption in an inch.
+PANEL_WIDTH, PANEL_HEIGHT, LETTERS_PER_INCH = 3.6, 3.3, 19
 
 #: Step ends at one place of a load-displacement curve that are all named; of more, the first and the last.
 NAMED_TOGETHER = 4
@@ -135,13 +131,13 @@ def cycles_figure(result: Result) -> Figure:
 def _panels_in_a_row(panels: Sequence[Panel], result: Result, step: int | None, caption: str) -> Figure:
     """A picture of panels beside each other, with a heading, a legend and a caption."""
     with matplotlib.rc_context(STYLE):
-        picture = Figure()
+        picture = Figure(figsize=(len(panels) * PANEL_WIDTH, PANEL_HEIGHT + 1.0), layout="constrained")
         axes = picture.subplots(1, len(panels), squeeze=False)[0]
         for panel, ax, letter in zip(panels, axes, "abcd"):
             panel(result, ax, step)
             ax.set_title(f"({letter})")
         picture.suptitle(_heading(result, step), fontsize=12, parse_math=False)
-        _add_legend_and_caption(picture, caption)
+        _add_legend(picture, caption, 2 * len(panels))
     return picture
 
 
@@ -579,27 +575,18 @@ def _legend_entries(picture: Figure, lines_first: bool = True) -> tuple[list[Art
     return [handles[label] for label in labels], labels
 
 
-def _add_legend_and_caption(picture: Figure, caption: str) -> None:
-    """One legend below all panels, lines before zones, and the caption below it; sets the size of the picture."""
-    handles, labels = _legend_entries(picture)
-    columns = 2 * len(picture.axes)
-    caption = "\n".join(textwrap.fill(line, CAPTION_LETTERS * len(picture.axes)) for line in caption.splitlines())
-    legend_top = 2.0 * SPACE + CAPTION_ROW * (1 + caption.count("\n")) + LEGEND_ROW * -(-len(labels) // columns)
-    height = PANEL_HEIGHT + SPACE + legend_top
-    picture.set_size_inches(PANEL_WIDTH * len(picture.axes), height)
-    panels = (0.0, 1.0 - PANEL_HEIGHT / height, 1.0, PANEL_HEIGHT / height)
-    picture.set_layout_engine(ConstrainedLayoutEngine(rect=panels, w_pad=0.08))
-    picture.legend(
-        handles,
-        labels,
+def _add_legend(picture: Figure, caption: str, columns: int = 6, lines_first: bool = True) -> None:
+    """One legend below all panels of a picture with a constrained layout, lines before zones, with the caption above it."""
+    letters = int(LETTERS_PER_INCH * picture.get_figwidth())
+    legend = picture.legend(
+        *_legend_entries(picture, lines_first),
         ncols=columns,
         fontsize=10,
-        borderaxespad=0.0,
-        borderpad=0.0,
-        loc="upper center",
-        bbox_to_anchor=(0.5, legend_top / height),
+        loc="outside lower center",
+        title="\n".join(textwrap.fill(line, letters) for line in caption.splitlines()),
+        title_fontsize=9,
     )
-    picture.text(0.5, SPACE / height, caption, ha="center", va="bottom", fontsize=9, color="0.35", parse_math=False)
+    legend.get_title().set(color="0.35", parse_math=False, multialignment="center")
 
 
 def _heading(result: Result, step: int | None) -> str:

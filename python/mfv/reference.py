@@ -9,12 +9,13 @@ from __future__ import annotations
 
 import functools
 import inspect
+from ctypes import byref, c_double
 from typing import Any, Callable, TypeVar, cast
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ._library import library
+from ._library import library, text_for
 
 #: A number, or an array of them.
 Number = ArrayLike
@@ -24,13 +25,18 @@ _Function = TypeVar("_Function", bound=Callable[..., Array])
 
 
 def _closed_form(declared: _Function) -> _Function:
-    """Evaluate the library's function of the same name, mfv_NAME, over arrays; a plain number for plain numbers."""
+    """Evaluate the library's closed form of the same name over arrays; a plain number for plain numbers."""
     signature = inspect.signature(declared)
+    name, count = text_for(declared.__name__), len(signature.parameters)
+
+    def value_of(*numbers: float) -> float:
+        value = c_double()
+        library().mfv_reference(name, count, (c_double * count)(*numbers), byref(value))
+        return value.value
 
     @functools.wraps(declared)
     def evaluated(*arguments: Number, **named: Number) -> Any:
-        function = np.vectorize(getattr(library(), f"mfv_{declared.__name__}"), otypes=[np.float64])
-        return function(*signature.bind(*arguments, **named).args)[()]
+        return np.vectorize(value_of, otypes=[np.float64])(*signature.bind(*arguments, **named).args)[()]
 
     return cast(_Function, evaluated)
 

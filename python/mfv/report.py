@@ -44,15 +44,15 @@ MOST_TICKS = 12
 #: Digits of the numbers in the curves.
 DIGITS = 7
 
-#: How the page names what a node is, and its colour in the style sheet.
+#: How the page names what a node is, and its colour.
 STATUSES = {
     NodeStatus.OPEN: ("open", "rgba(0,0,0,0)"),
-    NodeStatus.STICK: ("stick", "var(--stick)"),
-    NodeStatus.SLIP_RIGHT: ("slip to the right", "var(--right)"),
-    NodeStatus.SLIP_LEFT: ("slip to the left", "var(--left)"),
-    NodeStatus.FRICTIONLESS: ("frictionless contact", "var(--frictionless)"),
-    NodeStatus.CREEP_RIGHT: ("creep to the right", "var(--creep-right)"),
-    NodeStatus.CREEP_LEFT: ("creep to the left", "var(--creep-left)"),
+    NodeStatus.STICK: ("stick", "#cfe3f1"),
+    NodeStatus.SLIP_RIGHT: ("slip to the right", "#f8d998"),
+    NodeStatus.SLIP_LEFT: ("slip to the left", "#e6c3d8"),
+    NodeStatus.FRICTIONLESS: ("frictionless contact", "#e2e4e6"),
+    NodeStatus.CREEP_RIGHT: ("creep to the right", "#b5d6e6"),
+    NodeStatus.CREEP_LEFT: ("creep to the left", "#c3cdec"),
 }
 
 #: Key numbers of the page: group, name, what it is called. Those that a result is without are left out.
@@ -90,12 +90,10 @@ CYCLE_COLUMNS = (
 #: How the page writes the limits of friction, by the index of their coefficients.
 LIMITS = {"": "μp", "s": "μₛp", "k": "μₖp"}
 
-SUPERSCRIPTS = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
-
-NUMBERS = {"color": "var(--numbers)", "width": 1.5}
-SECOND = {"color": "var(--second)", "width": 1.5}
-CLOSED_FORM = {"color": "var(--closed-form)", "width": 1.5}
-LIMIT = {"color": "var(--limit)", "width": 1}
+NUMBERS = {"color": "#0072b2", "width": 1.5}
+SECOND = {"color": "#009e73", "width": 1.5}
+CLOSED_FORM = {"color": "#d55e00", "width": 1.5}
+LIMIT = {"color": "#5b6570", "width": 1}
 
 #: Computed values at the nodes.
 POINTS = {"mode": "lines+markers", "line": {**NUMBERS, "width": 0.75}, "marker": {"size": 4}}
@@ -247,7 +245,7 @@ def _curve_figure(result: Result, curve: Curve) -> dict[str, Any]:
         closed = {**CLOSED_FORM, "dash": "dash"}
         shift = _list(result.reference.shift[chosen])
         figure.add_scatter(x=shift, y=loads, name="closed form", mode="lines", line=closed)
-    figure.add_scatter(name="this state", mode="markers", marker={"size": 13, "color": "var(--point)"})
+    figure.add_scatter(name="this state", mode="markers", marker={"size": 13, "color": "#d55e00"})
     return _plain(figure)
 
 
@@ -316,23 +314,15 @@ def _cycle_figures(result: Result, inside: slice) -> dict[str, Any]:
 
 
 def _figure(across: dict[str, Any], up: dict[str, Any]) -> go.Figure:
-    """An empty figure in the colours of the page."""
-    frame = {
-        "showline": True, "mirror": True, "ticks": "inside", "zeroline": False, "exponentformat": "power", "automargin": True,
-        "linecolor": "var(--frame)", "tickcolor": "var(--frame)", "gridcolor": "var(--grid)",
-    }  # fmt: skip
+    """An empty figure."""
+    frame = {"showline": True, "mirror": True, "ticks": "inside", "zeroline": False, "exponentformat": "power"}
     return go.Figure(
         layout={
-            "template": {},
-            "xaxis": {**frame, **across},
-            "yaxis": {**frame, **up},
-            "font": {"color": "var(--text)", "size": 13},
-            "paper_bgcolor": "rgba(0,0,0,0)",
-            "plot_bgcolor": "rgba(0,0,0,0)",
-            "hoverlabel": {"bgcolor": "var(--card)", "bordercolor": "var(--frame)", "font": {"color": "var(--text)"}},
-            "modebar": {"bgcolor": "rgba(0,0,0,0)", "color": "var(--faint)", "activecolor": "var(--text)"},
+            "template": "plotly_white",
+            "xaxis": {"automargin": True, **frame, **across},
+            "yaxis": {"automargin": True, **frame, **up},
             "margin": {"l": 56, "r": 12, "t": 30, "b": 44},
-            "legend": {"orientation": "h", "x": 0, "y": 1.02, "yanchor": "bottom", "font": {"size": 12}},
+            "legend": {"orientation": "h", "x": 0, "y": 1.02, "yanchor": "bottom"},
             "showlegend": False,
         }
     )
@@ -363,12 +353,8 @@ def _status_colours() -> dict[str, Any]:
 
 def _edges(result: Result, inside: slice) -> list[float]:
     """Where the surface of one node ends and that of the next begins."""
-    x = result.mesh.x[inside]
-    if x.size == 1:
-        half = 0.5 * float(result.mesh.width[inside][0])
-        return [float(x[0]) - half, float(x[0]) + half]
-    middles = 0.5 * (x[1:] + x[:-1])
-    return [float(2.0 * x[0] - middles[0]), *map(float, middles), float(2.0 * x[-1] - middles[-1])]
+    x, half = result.mesh.x[inside], 0.5 * result.mesh.width[inside]
+    return [*(x - half).tolist(), float(x[-1] + half[-1])]
 
 
 def _key_numbers(result: Result) -> list[dict[str, str]]:
@@ -437,14 +423,8 @@ def _unit(unit: str) -> str:
 
 
 def _number(value: Any) -> str:
-    """A number for a reader, with a power of ten where it is very large or small."""
-    if math.isnan(value):
-        return "none"
-    digits, _, exponent = f"{value + 0:.6g}".replace("-", "\N{MINUS SIGN}").partition("e")
-    if not exponent:
-        return digits
-    power = str(int(exponent.replace("\N{MINUS SIGN}", "-")))
-    return f"{digits}\N{NO-BREAK SPACE}\N{MULTIPLICATION SIGN}\N{NO-BREAK SPACE}10{power.translate(SUPERSCRIPTS)}"
+    """A number for a reader."""
+    return "none" if math.isnan(value) else f"{value + 0:.6g}".replace("-", "\N{MINUS SIGN}")
 
 
 def _list(values: Any) -> list[float | None]:

@@ -220,10 +220,7 @@ class Result:
         return "\n".join(lines) + ">"
 
     def _repr_html_(self) -> str:
-        return _html.block(
-            _html.table(self._words(), self.title),
-            _html.tractions(self.mesh.x, self.state.pressure, self.state.shear),
-        )
+        return _html.table(self._words(), self.title)
 
     def _words(self) -> list[tuple[str, str]]:
         """The result in a few lines, each with its name."""

@@ -14,7 +14,7 @@ import sys
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from ctypes import byref, c_void_p
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Callable, ClassVar, Literal, TypeVar, Union
+from typing import TYPE_CHECKING, Any, Callable, ClassVar, Literal, TypedDict, TypeVar, Union
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -24,6 +24,7 @@ from ._library import LARGEST_INTEGER, library, real_pointer, text_buffer, text_
 from .inputs import groups
 
 if TYPE_CHECKING:
+    from typing_extensions import Unpack
     from typing_extensions import dataclass_transform as _dataclass_transform
 
     from .case import Case
@@ -97,6 +98,34 @@ class KeyGroup:
         return _html.table([(name, _shown(value)) for name, value in self._everything().items()], type(self).__name__)
 
 
+class Elastic(TypedDict, total=False):
+    """Keys of every body that may be elastic."""
+
+    shear_modulus: float | None
+    youngs_modulus: float | None
+    poisson_ratio: float | None
+    rigid: bool | None
+    yield_strength: float | None
+    datum: float | None
+
+
+class Round(Elastic, total=False):
+    """Those of a disk or a hole."""
+
+    kernel: Literal["exact", "fourier"] | None
+    harmonics: int | None
+
+
+class OfProfile(Elastic, total=False):
+    """Those of a profile."""
+
+    interpolation: Literal["linear", "monotone_cubic"] | None
+    position_scale: float | None
+    height_scale: float | None
+    level: Literal["none", "mean", "line"] | None
+    centred: bool | None
+
+
 @_keywords_only
 class Body(KeyGroup):
     """A body: the keys of &body. `data`: arrays in place of the `file` of a profile or a matrix."""
@@ -127,52 +156,19 @@ class Body(KeyGroup):
     _not_keys: ClassVar[tuple[str, ...]] = ("data",)
 
     @classmethod
-    def half_plane(
-        cls,
-        *,
-        shear_modulus: float | None = None,
-        youngs_modulus: float | None = None,
-        poisson_ratio: float | None = None,
-        rigid: bool | None = None,
-        yield_strength: float | None = None,
-        datum: float | None = None,
-    ) -> Body:
+    def half_plane(cls, **elastic: Unpack[Elastic]) -> Body:
         """Flat and without end. Elastic: `shear_modulus` or `youngs_modulus` [force/length^2], and `poisson_ratio`."""
-        return cls(shape="half_plane", **_given(locals()))
+        return cls(shape="half_plane", **elastic)
 
     @classmethod
-    def disk(
-        cls,
-        radius: float,
-        *,
-        shear_modulus: float | None = None,
-        youngs_modulus: float | None = None,
-        poisson_ratio: float | None = None,
-        rigid: bool | None = None,
-        yield_strength: float | None = None,
-        datum: float | None = None,
-        kernel: Literal["exact", "fourier"] | None = None,
-        harmonics: int | None = None,
-    ) -> Body:
+    def disk(cls, radius: float, **others: Unpack[Round]) -> Body:
         """A solid disk of a radius [length]; a force on it is balanced in its centre."""
-        return cls(shape="disk", **_given(locals()))
+        return cls(shape="disk", radius=radius, **others)
 
     @classmethod
-    def hole(
-        cls,
-        radius: float,
-        *,
-        shear_modulus: float | None = None,
-        youngs_modulus: float | None = None,
-        poisson_ratio: float | None = None,
-        rigid: bool | None = None,
-        yield_strength: float | None = None,
-        datum: float | None = None,
-        kernel: Literal["exact", "fourier"] | None = None,
-        harmonics: int | None = None,
-    ) -> Body:
+    def hole(cls, radius: float, **others: Unpack[Round]) -> Body:
         """The infinite plane around a hole of a radius [length]."""
-        return cls(shape="hole", **_given(locals()))
+        return cls(shape="hole", radius=radius, **others)
 
     @classmethod
     def flat_punch(cls, half_width: float) -> Body:
@@ -180,76 +176,27 @@ class Body(KeyGroup):
         return cls(shape="flat_punch", rigid=True, half_width=half_width)
 
     @classmethod
-    def rounded_punch(
-        cls,
-        half_width: float,
-        edge_radius: float,
-        *,
-        shear_modulus: float | None = None,
-        youngs_modulus: float | None = None,
-        poisson_ratio: float | None = None,
-        rigid: bool | None = None,
-        yield_strength: float | None = None,
-        datum: float | None = None,
-    ) -> Body:
+    def rounded_punch(cls, half_width: float, edge_radius: float, **elastic: Unpack[Elastic]) -> Body:
         """Flat over |x| < `half_width`; the edges recede by (|x| - half_width)^2/(2 edge_radius) [length]."""
-        return cls(shape="rounded_punch", **_given(locals()))
+        return cls(shape="rounded_punch", half_width=half_width, edge_radius=edge_radius, **elastic)
 
     @classmethod
-    def wedge(
-        cls,
-        angle: float,
-        *,
-        shear_modulus: float | None = None,
-        youngs_modulus: float | None = None,
-        poisson_ratio: float | None = None,
-        rigid: bool | None = None,
-        yield_strength: float | None = None,
-        datum: float | None = None,
-    ) -> Body:
+    def wedge(cls, angle: float, **elastic: Unpack[Elastic]) -> Body:
         """Two flanks that meet at x = 0; `angle`: of either flank to the common tangent [degrees]."""
-        return cls(shape="wedge", **_given(locals()))
+        return cls(shape="wedge", angle=angle, **elastic)
 
     @classmethod
-    def power(
-        cls,
-        coefficient: float,
-        exponent: float,
-        *,
-        shear_modulus: float | None = None,
-        youngs_modulus: float | None = None,
-        poisson_ratio: float | None = None,
-        rigid: bool | None = None,
-        yield_strength: float | None = None,
-        datum: float | None = None,
-    ) -> Body:
+    def power(cls, coefficient: float, exponent: float, **elastic: Unpack[Elastic]) -> Body:
         """The surface recedes by coefficient |x|^exponent; `coefficient` [length^(1-exponent)], `exponent` at least 1."""
-        return cls(shape="power", **_given(locals()))
+        return cls(shape="power", coefficient=coefficient, exponent=exponent, **elastic)
 
     @classmethod
-    def profile(
-        cls,
-        x: ArrayLike,
-        height: ArrayLike,
-        *,
-        interpolation: Literal["linear", "monotone_cubic"] | None = None,
-        position_scale: float | None = None,
-        height_scale: float | None = None,
-        level: Literal["none", "mean", "line"] | None = None,
-        centred: bool | None = None,
-        shear_modulus: float | None = None,
-        youngs_modulus: float | None = None,
-        poisson_ratio: float | None = None,
-        rigid: bool | None = None,
-        yield_strength: float | None = None,
-        datum: float | None = None,
-    ) -> Body:
+    def profile(cls, x: ArrayLike, height: ArrayLike, **others: Unpack[OfProfile]) -> Body:
         """A nearly flat surface through points: positions `x`, increasing, and how far it recedes from the other body [length].
 
         A `height_scale` below 0 is for heights that are counted outwards, as those of a stylus.
         """
-        keys = _given(locals(), but=("x", "height"))
-        return cls(shape="profile", data={"x": _numbers(x, "x"), "height": _numbers(height, "height")}, **keys)
+        return cls(shape="profile", data={"x": _numbers(x, "x"), "height": _numbers(height, "height")}, **others)
 
     @classmethod
     def matrix(
@@ -551,11 +498,6 @@ def _numbers(values: ArrayLike, name: str = "an array") -> NDArray[np.float64]:
     if np.ma.is_masked(values):
         raise TypeError(f"{name}: an array without masked values is wanted")
     return np.ascontiguousarray(values, dtype=np.float64)
-
-
-def _given(arguments: Mapping[str, Any], but: Sequence[str] = ()) -> dict[str, Any]:
-    """Arguments of a constructor that are keys."""
-    return {name: value for name, value in arguments.items() if name not in ("cls", *but)}
 
 
 def _coefficients(x: ArrayLike | None, **coefficients: Coefficient) -> dict[str, Any]:

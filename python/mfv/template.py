@@ -1,13 +1,15 @@
 """Commented cases to begin with: the templates of `python -m mfv new`.
 
-`names` tells which there are, `write` writes one with the files that it needs. The comments come from the catalogue of keys
-(scripts/templates.py).
+`names` tells which there are, `write` writes one with the files that it needs. The comments come from the catalogues of keys: of cases
+that in templates/keys.md, which is what mfv_run --keys prints.
 """
 
 from __future__ import annotations
 
+import functools
 import io
 import re
+import textwrap
 from collections.abc import Callable
 from importlib.resources import files
 from pathlib import Path
@@ -16,11 +18,16 @@ from typing import Any
 import h5py
 import numpy as np
 
+from .studies.namelist import keys_in_markdown
+
 #: Files that a template needs beside itself.
 COMPANIONS = {"profile": ("profile.txt",), "matrix": ("compliance.h5",), "study": ("cylinder.nml",)}
 
 #: The half-plane of compliance.h5: shear modulus, Poisson's ratio, where its displacements are measured from, nodes on either side.
 SHEAR_MODULUS, POISSON_RATIO, DATUM, HALF_WIDTH, NODES = 1.0, 0.3, 0.25, 0.0127, 81
+
+#: Width of a comment, and what stands before it.
+WIDTH, INDENT = 100, "   ! "
 
 _FOLDER = files(__package__) / "templates"
 
@@ -32,8 +39,36 @@ def names() -> dict[str, str]:
 
 
 def text(name: str) -> str:
-    """The text of a template."""
-    return (_FOLDER / f"{name}.nml").read_text(encoding="utf-8")
+    """The text of a template, with the meaning of every key above it where it comes for the first time."""
+    group, lines, told = "", [], set()
+    for line in (_FOLDER / f"{name}.nml").read_text(encoding="utf-8").splitlines():
+        starts, key = re.match(r"&(\w+)", line), re.match(r" +(?:! )?(\w+) = ", line)
+        group = starts[1] if starts else group
+        if key and (group, key[1]) not in told:
+            told.add((group, key[1]))
+            comment = textwrap.wrap(_meanings()[group, key[1]], WIDTH - len(INDENT), break_on_hyphens=False)
+            lines += [INDENT + part for part in comment]
+        lines.append(line)
+    return "\n".join(lines) + "\n"
+
+
+@functools.cache
+def _meanings() -> dict[tuple[str, str], str]:
+    """What keys.md (mfv_run --keys) and the keys of studies say of every key, by group and key."""
+    found = {}
+    group, columns = "", [""]
+    for line in ((_FOLDER / "keys.md").read_text(encoding="utf-8") + keys_in_markdown()).splitlines():
+        cells = [cell.strip().strip("`") for cell in line.removeprefix("|").removesuffix("|").split(" | ")]
+        if line.startswith("### &"):
+            group = line[5:].split()[0]
+        elif line.startswith("| key |"):
+            columns = cells
+        elif line.startswith("| `"):
+            row = dict(zip(columns, cells))
+            unit = f", in {row['unit']}" if row.get("unit") else ""
+            default = f", {row['default']} by default" if row["default"] != "-" else ""
+            found[group, row["key"]] = f"{row['meaning']} ({row['value']}{unit}{default})"
+    return found
 
 
 def is_study(name: str) -> bool:
@@ -65,14 +100,20 @@ def write(name: str, path: Path, written: Callable[[Path], Any], overwrite: bool
 
 def _content(source: str, place: Path) -> bytes:
     """What a file of a template has in it; the commands in its comments name the place."""
-    if source == "compliance.h5":
-        return _matrix()
-    return (_FOLDER / source).read_bytes().replace(b"FILE", place.stem.encode())
+    if source in _MADE:
+        return _MADE[source]()
+    return text(source.removesuffix(".nml")).replace("FILE", place.stem).encode()
 
 
 def _is_there(place: Path, companion: str) -> bool:
     """Whether a file that a template needs is there already, the same."""
     return companion != "compliance.h5" and place.is_file() and place.read_bytes() == _content(companion, place)
+
+
+def _profile() -> bytes:
+    """A punch with rounded edges as points: flat up to 0.3, then receding by the square of the distance."""
+    points = (f"{x:.2f} {max(abs(x) - 0.3, 0.0) ** 2:.6f}" for x in np.linspace(-0.6, 0.6, 121).round(2) + 0.0)
+    return "\n".join(["# A punch with rounded edges: x, how far it recedes (lengths)", *points, ""]).encode()
 
 
 def _matrix() -> bytes:
@@ -90,3 +131,7 @@ def _matrix() -> bytes:
         file["width"] = np.full(NODES, interval)
         file["compliance"] = np.block([[direct, coupling], [-coupling, direct]])
     return memory.getvalue()
+
+
+#: Files of templates that are not in the folder, but made.
+_MADE = {"profile.txt": _profile, "compliance.h5": _matrix}

@@ -16,7 +16,7 @@ module mfv_contact
    use mfv_draft, only: draft_type
    use mfv_error, only: error_type, set_error
    use mfv_features, only: has_hdf5
-   use mfv_interior, only: interior_type, stress_count
+   use mfv_interior, only: interior_type
    use mfv_kept_state, only: kept_state_type
    use mfv_kinds, only: wp
    use mfv_observer, only: observer_type
@@ -27,7 +27,6 @@ module mfv_contact
    use mfv_simulation, only: new_simulation, simulation_type
    use mfv_state_interior, only: state_interior
    use mfv_status
-   use mfv_stress_search, only: largest_tension, largest_type, largest_von_mises
    use mfv_strings, only: add_text, string_type, to_text
    use mfv_summary, only: summarize
    use mfv_tangent, only: find_tangent
@@ -82,12 +81,10 @@ module mfv_contact
       !> Error MFV_BAD_ARGUMENT.
       generic :: get => get_reals, get_integers, get_real, get_integer
       procedure :: attributes
-      procedure :: get_stresses
-      procedure :: get_largest_von_mises
-      procedure :: get_largest_tension
+      procedure :: find_interior
       procedure :: make_interior
       procedure :: write
-      procedure, private :: get_reals, get_integers, get_real, get_integer, begin, interior_of, forget, expect_made, &
+      procedure, private :: get_reals, get_integers, get_real, get_integer, begin, forget, expect_made, &
                             write_checkpoint
    end type contact_type
 
@@ -622,59 +619,10 @@ contains
       if (.not. allocated(self%warnings)) call validity_warnings(self%simulation, self%warnings)
    end subroutine find_warnings
 
-   !> Stresses inside a body (body_lower, body_upper) at points x, y (lengths, y up from the contact), force/length^2, shape
-   !> (stress_count, points): see mfv_interior. `step`: in the state that steps/000N has, 0 for the present one (also left out).
-   !> NaN outside the body. Error MFV_BAD_ARGUMENT: a rigid body or a matrix, or no such step.
-   subroutine get_stresses(self, body, x, y, stresses, error, step)
-      class(contact_type), intent(in) :: self
-      integer, intent(in) :: body
-      real(wp), intent(in) :: x(:), y(:)
-      real(wp), intent(out) :: stresses(:, :)
-      type(error_type), allocatable, intent(out) :: error
-      integer, intent(in), optional :: step
-      type(interior_type) :: interior
-      integer :: i
-
-      if (size(y) /= size(x) .or. size(stresses, 1) /= stress_count .or. size(stresses, 2) /= size(x)) then
-         call set_error(error, MFV_BAD_ARGUMENT, 'x and y must have one size, and stresses the shape ('//to_text(stress_count)// &
-                        ', that size)')
-         return
-      end if
-      call self%interior_of(body, interior, error, step)
-      if (allocated(error)) return
-      do i = 1, size(x)
-         stresses(:, i) = interior%all_stresses(x(i), y(i))
-      end do
-   end subroutine get_stresses
-
-   !> The largest von Mises stress of a body with its place; as get_stresses.
-   subroutine get_largest_von_mises(self, body, largest, error, step)
-      class(contact_type), intent(in) :: self
-      integer, intent(in) :: body
-      type(largest_type), intent(out) :: largest
-      type(error_type), allocatable, intent(out) :: error
-      integer, intent(in), optional :: step
-      type(interior_type) :: interior
-
-      call self%interior_of(body, interior, error, step)
-      if (.not. allocated(error)) largest = largest_von_mises(interior)
-   end subroutine get_largest_von_mises
-
-   !> The largest tension along the surface of a body with its place; as get_stresses. Not a number where it is singular.
-   subroutine get_largest_tension(self, body, largest, error, step)
-      class(contact_type), intent(in) :: self
-      integer, intent(in) :: body
-      type(largest_type), intent(out) :: largest
-      type(error_type), allocatable, intent(out) :: error
-      integer, intent(in), optional :: step
-      type(interior_type) :: interior
-
-      call self%interior_of(body, interior, error, step)
-      if (.not. allocated(error)) largest = largest_tension(interior)
-   end subroutine get_largest_tension
-
-   !> A body under the tractions of the present state or of a step. Error MFV_BAD_ARGUMENT.
-   subroutine interior_of(self, body, interior, error, step)
+   !> A body (body_lower, body_upper) under the tractions of the state that steps/000N has, N = `step`, or of the present one (0, and
+   !> by default): for interior%all_stresses(x, y), largest_von_mises, largest_tension; see mfv_interior. Error MFV_BAD_ARGUMENT: a
+   !> rigid body or a matrix, or no such step.
+   subroutine find_interior(self, body, interior, error, step)
       class(contact_type), intent(in) :: self
       integer, intent(in) :: body
       type(interior_type), intent(out) :: interior
@@ -697,7 +645,7 @@ contains
       if (number > 0) state = self%simulation%padded_state(number)
       call state_interior(self%simulation%contact%model, state, body == body_upper, interior, available)
       call expect_inside(body, available, error)
-   end subroutine interior_of
+   end subroutine find_interior
 
    !> A body under tractions (on the lower body, to the right; force/length^2) at nodes with the intervals `width` around `arc`
    !> along the surface; `contact_edge`, `stick_edge`: edges between them, as in the state of a result, not a number where there

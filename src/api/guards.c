@@ -50,10 +50,10 @@ CASE(mfv_attribute, (const mfv_case *handle, const char *name, char *buffer, siz
      (object, name, buffer, size, length))
 CASE(mfv_copy_real, (const mfv_case *handle, const char *path, double *values, size_t count), (object, path, values, count))
 CASE(mfv_copy_integer, (const mfv_case *handle, const char *path, int32_t *values, size_t count), (object, path, values, count))
-CASE(mfv_stress, (mfv_case *handle, int body, int step, size_t count, const double *x, const double *y, double *stresses),
-     (object, body, step, count, x, y, stresses))
-CASE(mfv_largest_von_mises, (mfv_case *handle, int body, int step, double *place), (object, body, step, place))
-CASE(mfv_largest_tension, (mfv_case *handle, int body, int step, double *place), (object, body, step, place))
+CASE(mfv_stress,
+     (mfv_case *handle, int body, int step, size_t count, const double *x, const double *y, double *stresses, double *place,
+      double *tension),
+     (object, body, step, count, x, y, stresses, place, tension))
 CASE(mfv_stress_under,
      (mfv_case *handle, int body, size_t nodes, const double *arc, const double *width, const double *pressure, const double *shear,
       const double *contact_edge, const double *stick_edge, size_t count, const double *x, const double *y, double *stresses,

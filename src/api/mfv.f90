@@ -4,7 +4,7 @@
 !> - contact_type: a contact to be led and asked, from new_contact (of a draft), read_contact (of a file), read_contact_text
 !> - contact%run, contact%advance with step_to(...); contact%loads(), contact%get('state/pressure', values, error)
 !> - contact%get_tangent; contact%keep and contact%come_back with a kept_state_type
-!> - contact%get_stresses, contact%get_largest_von_mises, contact%get_largest_tension; contact%write
+!> - contact%find_interior: interior%all_stresses, largest_von_mises, largest_tension; contact%write
 !> - observer_type: to be extended by who wants to be told of every increment
 !> - error_type: what went wrong; the MFV_... statuses with status_outcome and status_explanation
 !>
@@ -16,8 +16,8 @@ module mfv
    use mfv_draft, only: draft_type, read_draft
    use mfv_error, only: error_type
    use mfv_features, only: has_hdf5
-   use mfv_interior, only: stress_count, stress_names
-   use mfv_stress_search, only: largest_type
+   use mfv_interior, only: interior_type, stress_count, stress_names
+   use mfv_stress_search, only: largest_tension, largest_type, largest_von_mises
    use mfv_kept_state, only: kept_state_type
    use mfv_kinds, only: wp
    use mfv_motions, only: motion_count, motion_approach, motion_shift, motion_rotation, control_keep, control_force, &

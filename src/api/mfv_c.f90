@@ -19,6 +19,7 @@ module mfv_c
    use mfv_motions, only: motions, motion_count
    use mfv_observables, only: observable_count, observables
    use mfv_observer, only: observer_type
+   use mfv_reference_c, only: evaluate_closed_form
    use mfv_result_fields, only: field_type
    use mfv_scene, only: step_type
    use mfv_status
@@ -162,6 +163,19 @@ contains
       call say(trim(observables(number)%meaning), description, description_size)
       status = MFV_COMPLETE
    end function mfv_observable_info
+
+   integer(c_int) function mfv_reference(name, count, arguments, value) result(status) bind(C)
+      type(c_ptr), value :: name
+      integer(c_size_t), value :: count
+      real(c_double), intent(in), optional :: arguments(count)
+      real(c_double), intent(inout), optional :: value
+      logical :: is_known
+
+      status = MFV_BAD_ARGUMENT
+      if (.not. (c_associated(name) .and. present(arguments) .and. present(value) .and. is_size(count))) return
+      call evaluate_closed_form(text_in(name), arguments, value, is_known)
+      if (is_known) status = MFV_COMPLETE
+   end function mfv_reference
 
    ! --- scenes ---
 
@@ -860,66 +874,46 @@ contains
       end if
    end function values_of
 
-   integer(c_int) function mfv_stress_unguarded(handle, body, step, count, x, y, stresses) result(status) bind(C)
+   integer(c_int) function mfv_stress_unguarded(handle, body, step, count, x, y, stresses, place, tension) result(status) &
+      bind(C)
       type(c_ptr), value :: handle
       integer(c_int), value :: body, step
       integer(c_size_t), value :: count
       real(c_double), intent(in), optional :: x(count), y(count)
-      real(c_double), intent(inout), optional :: stresses(stress_count, count)
+      real(c_double), intent(inout), optional :: stresses(stress_count, count), place(3), tension(3)
       type(handle_type), pointer :: self
+      type(interior_type) :: interior
       type(error_type), allocatable :: error
 
       call c_f_pointer(handle, self)
-      status = MFV_COMPLETE
-      if (count == 0) return
-      status = expected_points(self, count, present(x) .and. present(y) .and. present(stresses))
-      if (status /= MFV_COMPLETE) return
-      call self%contact%get_stresses(int(body), x, y, stresses, error, int(step))
+      call self%contact%find_interior(int(body), interior, error, int(step))
       status = failed(self, error)
+      if (status == MFV_COMPLETE) status = answered(self, interior, count, x, y, stresses, place, tension)
    end function mfv_stress_unguarded
 
-   !> MFV_BAD_ARGUMENT unless there are arrays for that many points.
-   integer(c_int) function expected_points(self, count, has_arrays) result(status)
+   !> Stresses at points, the largest von Mises stress and the largest tension of a body, as far as they are asked for.
+   !> MFV_BAD_ARGUMENT.
+   integer(c_int) function answered(self, interior, count, x, y, stresses, place, tension) result(status)
       type(handle_type), intent(inout) :: self
+      type(interior_type), intent(in) :: interior
       integer(c_size_t), intent(in) :: count
-      logical, intent(in) :: has_arrays
+      real(c_double), intent(in), optional :: x(count), y(count)
+      real(c_double), intent(inout), optional :: stresses(stress_count, count), place(3), tension(3)
+      integer(c_size_t) :: i
 
-      status = expected(self, has_arrays, 'an array is null')
-      if (status /= MFV_COMPLETE) return
-      status = expected(self, count == 0 .or. is_size(count), 'count is too large: there must be that many points')
-   end function expected_points
-
-   integer(c_int) function mfv_largest_von_mises_unguarded(handle, body, step, place) result(status) bind(C)
-      type(c_ptr), value :: handle
-      integer(c_int), value :: body, step
-      real(c_double), intent(inout), optional :: place(3)
-      type(handle_type), pointer :: self
-      type(error_type), allocatable :: error
-      type(largest_type) :: largest
-
-      call c_f_pointer(handle, self)
-      status = expected(self, present(place), 'place is null')
-      if (status /= MFV_COMPLETE) return
-      call self%contact%get_largest_von_mises(int(body), largest, error, int(step))
-      status = failed(self, error)
-      if (status == MFV_COMPLETE) place = place_of(largest)
-   end function mfv_largest_von_mises_unguarded
-
-   integer(c_int) function mfv_largest_tension_unguarded(handle, body, step, place) result(status) bind(C)
-      type(c_ptr), value :: handle
-      integer(c_int), value :: body, step
-      real(c_double), intent(inout), optional :: place(3)
-      type(handle_type), pointer :: self
-      type(error_type), allocatable :: error
-      type(largest_type) :: largest
-
-      call c_f_pointer(handle, self)
-      status = expected(self, present(place), 'place is null')
-      if (status /= MFV_COMPLETE) return
-      call self%contact%get_largest_tension(int(body), largest, error, int(step))
-      status = failed(self, error)
-      if (status == MFV_COMPLETE) place = place_of(largest)
-   end function mfv_largest_tension_unguarded
+      status = MFV_COMPLETE
+      if (present(stresses) .and. count /= 0) then
+         status = expected(self, present(x) .and. present(y), 'an array is null')
+         if (status /= MFV_COMPLETE) return
+         status = expected(self, is_size(count), 'count is too large: there must be that many points')
+         if (status /= MFV_COMPLETE) return
+         do i = 1, count
+            stresses(:, i) = interior%all_stresses(x(i), y(i))
+         end do
+      end if
+      if (present(place)) place = place_of(largest_von_mises(interior))
+      if (present(tension)) tension = place_of(largest_tension(interior))
+   end function answered
 
    !> A largest stress and where it is.
    pure function place_of(largest) result(place)
@@ -940,7 +934,6 @@ contains
       type(handle_type), pointer :: self
       type(interior_type) :: interior
       type(error_type), allocatable :: error
-      integer(c_size_t) :: i
       logical :: usable
 
       call c_f_pointer(handle, self)
@@ -956,16 +949,7 @@ contains
       call self%contact%make_interior(int(body), arc, width, pressure, shear, edges_or_nan(nodes, contact_edge), &
                                       edges_or_nan(nodes, stick_edge), interior, error)
       status = failed(self, error)
-      if (status == MFV_COMPLETE .and. present(stresses)) &
-         status = expected_points(self, count, present(x) .and. present(y))
-      if (status /= MFV_COMPLETE) return
-      if (present(stresses)) then
-         do i = 1, count
-            stresses(:, i) = interior%all_stresses(x(i), y(i))
-         end do
-      end if
-      if (present(place)) place = place_of(largest_von_mises(interior))
-      if (present(tension)) tension = place_of(largest_tension(interior))
+      if (status == MFV_COMPLETE) status = answered(self, interior, count, x, y, stresses, place, tension)
    end function mfv_stress_under_unguarded
 
    !> Edges of the caller's, or NaN for each node if there are none.

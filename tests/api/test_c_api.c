@@ -188,19 +188,27 @@ static void statuses_and_version(void) {
   CHECK(mfv_version(NULL, 3) == MFV_BAD_ARGUMENT);
 }
 
+/* A closed form of up to five numbers. */
+static double form(const char *name, size_t count, double a, double b, double c, double d, double e) {
+  const double numbers[] = {a, b, c, d, e};
+  double value = 0;
+  CHECK(mfv_reference(name, count, numbers, &value) == MFV_COMPLETE);
+  return value;
+}
+
 static void closed_forms(void) {
-  double a = mfv_hertz_half_width(1e-3, 0.25, 1.0, 1.8);
+  double a = form("hertz_half_width", 4, 1e-3, 0.25, 1.0, 1.8, 0);
   CHECK(fabs(a - sqrt(1e-3 * 2.8 * 0.25 / (2 * 3.14159265358979323846))) < 1e-16);
-  CHECK(fabs(mfv_mindlin_stick_ratio(2.8e-4, 1e-3, 0.7) - sqrt(0.6)) < 1e-15);
-  CHECK(mfv_mindlin_shear(0.0, 2.8e-4, 1e-3, a, 0.7) > 0);
-  CHECK(mfv_spence_stick_ratio(0.3, 0.0) == 1.0);
-  CHECK(mfv_spence_cylinder_shear(0.5 * a, 1e-3, a, 0.3, 0.2) > 0);
-  CHECK(mfv_spence_flat_punch_shear(-0.5 * a, 1e-3, a, 0.3, 0.2) < 0);
-  CHECK(mfv_mindlin_dissipation(2.8e-4, 1e-3, a, 0.25, 0.7) > 0);
-  CHECK(isnan(mfv_hertz_half_width(-1.0, 0.25, 1.0, 1.8)));
-  CHECK(isnan(mfv_hertz_pressure(0.0, 1.0, 0.0)));
-  CHECK(isnan(mfv_flat_punch_pressure(0.0, 1.0, -1.0)));
-  CHECK(isnan(mfv_spence_stick_ratio(-0.1, 0.2)));
+  CHECK(fabs(form("mindlin_stick_ratio", 3, 2.8e-4, 1e-3, 0.7, 0, 0) - sqrt(0.6)) < 1e-15);
+  CHECK(form("mindlin_shear", 5, 0.0, 2.8e-4, 1e-3, a, 0.7) > 0);
+  CHECK(form("spence_stick_ratio", 2, 0.3, 0.0, 0, 0, 0) == 1.0);
+  CHECK(form("spence_cylinder_shear", 5, 0.5 * a, 1e-3, a, 0.3, 0.2) > 0);
+  CHECK(form("spence_flat_punch_shear", 5, -0.5 * a, 1e-3, a, 0.3, 0.2) < 0);
+  CHECK(form("mindlin_dissipation", 5, 2.8e-4, 1e-3, a, 0.25, 0.7) > 0);
+  CHECK(isnan(form("hertz_half_width", 4, -1.0, 0.25, 1.0, 1.8, 0)));
+  CHECK(isnan(form("hertz_pressure", 3, 0.0, 1.0, 0.0, 0, 0)));
+  CHECK(isnan(form("flat_punch_pressure", 3, 0.0, 1.0, -1.0, 0, 0)));
+  CHECK(isnan(form("spence_stick_ratio", 2, -0.1, 0.2, 0, 0, 0)));
 }
 
 /* Stresses on the surface are the tractions; the largest is no smaller than anything below it; misuse is told. */
@@ -213,28 +221,27 @@ static void stresses_inside(void) {
   double *x = array(handle, "mesh/x", &nodes), *width = array(handle, "mesh/width", &nodes);
   double *pressure = array(handle, "state/pressure", &nodes), *shear = array(handle, "state/shear", &nodes);
   const double across[2] = {x[20], 0.001}, up[2] = {0.0, -0.008};
-  CHECK(mfv_stress(handle, MFV_LOWER, 0, 2, across, up, stress) == MFV_COMPLETE);
+  CHECK(mfv_stress(handle, MFV_LOWER, 0, 2, across, up, stress, NULL, NULL) == MFV_COMPLETE);
   CHECK(fabs(stress[MFV_SIGMA_YY] / pressure[20] + 1) < 5e-3 && fabs(stress[MFV_SIGMA_XY] / shear[20] - 1) < 1e-2);
   CHECK(isnan(stress[MFV_SIGMA_RR]) && stress[MFV_PRINCIPAL_1] >= stress[MFV_PRINCIPAL_2]);
-  CHECK(mfv_largest_von_mises(handle, MFV_LOWER, 1, place) == MFV_COMPLETE);
+  CHECK(mfv_stress(handle, MFV_LOWER, 1, 0, NULL, NULL, NULL, place, NULL) == MFV_COMPLETE);
   CHECK(place[0] > stress[MFV_STRESS_COUNT + MFV_VON_MISES] / 2 && place[2] < 0 && fabs(place[1]) < 1e-4);
-  CHECK(mfv_largest_von_mises(handle, MFV_LOWER, 0, place) == MFV_COMPLETE);
+  CHECK(mfv_stress(handle, MFV_LOWER, 0, 0, NULL, NULL, NULL, place, NULL) == MFV_COMPLETE);
   double *contact_edge = array(handle, "state/contact_edge", &nodes), *stick_edge = array(handle, "state/stick_edge", &nodes);
   CHECK(mfv_stress_under(handle, MFV_LOWER, nodes, x, width, pressure, shear, contact_edge, stick_edge, 0, NULL, NULL, NULL, again,
                          NULL) == MFV_COMPLETE);
   CHECK(memcmp(place, again, sizeof place) == 0);
-  CHECK(mfv_largest_tension(handle, MFV_LOWER, 0, place) == MFV_COMPLETE && place[0] > 0 && place[2] == 0);
+  CHECK(mfv_stress(handle, MFV_LOWER, 0, 0, NULL, NULL, NULL, NULL, place) == MFV_COMPLETE && place[0] > 0 && place[2] == 0);
   CHECK(mfv_stress_under(handle, MFV_LOWER, nodes, x, width, pressure, shear, contact_edge, stick_edge, 0, NULL, NULL, NULL, NULL,
                          again) == MFV_COMPLETE);
   CHECK(memcmp(place, again, sizeof place) == 0);
   free(contact_edge);
   free(stick_edge);
-  CHECK(mfv_stress(handle, MFV_UPPER, 0, 2, across, up, stress) == MFV_BAD_ARGUMENT);
-  CHECK(mfv_stress(handle, 2, 0, 2, across, up, stress) == MFV_BAD_ARGUMENT);
-  CHECK(mfv_stress(handle, MFV_LOWER, 3, 2, across, up, stress) == MFV_BAD_ARGUMENT);
-  CHECK(mfv_stress(handle, MFV_LOWER, 0, 2, NULL, up, stress) == MFV_BAD_ARGUMENT);
-  CHECK(mfv_largest_von_mises(handle, MFV_LOWER, 0, NULL) == MFV_BAD_ARGUMENT);
-  CHECK(mfv_stress(NULL, MFV_LOWER, 0, 2, across, up, stress) == MFV_BAD_HANDLE);
+  CHECK(mfv_stress(handle, MFV_UPPER, 0, 2, across, up, stress, NULL, NULL) == MFV_BAD_ARGUMENT);
+  CHECK(mfv_stress(handle, 2, 0, 2, across, up, stress, NULL, NULL) == MFV_BAD_ARGUMENT);
+  CHECK(mfv_stress(handle, MFV_LOWER, 3, 2, across, up, stress, NULL, NULL) == MFV_BAD_ARGUMENT);
+  CHECK(mfv_stress(handle, MFV_LOWER, 0, 2, NULL, up, stress, NULL, NULL) == MFV_BAD_ARGUMENT);
+  CHECK(mfv_stress(NULL, MFV_LOWER, 0, 2, across, up, stress, NULL, NULL) == MFV_BAD_HANDLE);
   free(x);
   free(width);
   free(pressure);

@@ -281,8 +281,8 @@ static void success_leaves_the_message(void) {
   CHECK(mfv_attribute_name(handle, 0, buffer, sizeof buffer) == MFV_COMPLETE);
   CHECK(mfv_attribute(handle, "outcome", buffer, sizeof buffer, NULL) == MFV_COMPLETE && strcmp(buffer, "complete") == 0);
   CHECK(mfv_copy_real(handle, "state/shear", shear, NODES) == MFV_COMPLETE);
-  CHECK(mfv_stress(handle, MFV_LOWER, 0, 1, x, y, stresses) == MFV_COMPLETE);
-  CHECK(mfv_largest_von_mises(handle, MFV_LOWER, 0, place) == MFV_COMPLETE);
+  CHECK(mfv_stress(handle, MFV_LOWER, 0, 1, x, y, stresses, NULL, NULL) == MFV_COMPLETE);
+  CHECK(mfv_stress(handle, MFV_LOWER, 0, 0, NULL, NULL, NULL, place, NULL) == MFV_COMPLETE);
   CHECK(mfv_message(handle, message, sizeof message) == MFV_COMPLETE && strcmp(message, reached) == 0);
   CHECK(mfv_attribute(handle, "colour", buffer, sizeof buffer, NULL) == MFV_BAD_ARGUMENT);
   CHECK(mfv_message(handle, message, sizeof message) == MFV_COMPLETE && strstr(message, "colour") != NULL);

@@ -113,8 +113,8 @@ static void put_case(record *self, mfv_case *handle) {
   for (size_t i = 0; mfv_attribute_name(handle, i, name, sizeof name) == MFV_COMPLETE; ++i) put_attribute(self, handle, name);
   put_message(self, handle, mfv_attribute_name(handle, 99, name, sizeof name));
   put_field(self, handle, "state/presure");
-  put_message(self, handle, mfv_largest_von_mises(handle, MFV_UPPER, 1, place));
-  put_message(self, handle, mfv_largest_von_mises(handle, MFV_LOWER, 77, place));
+  put_message(self, handle, mfv_stress(handle, MFV_UPPER, 1, 0, NULL, NULL, NULL, place, NULL));
+  put_message(self, handle, mfv_stress(handle, MFV_LOWER, 77, 0, NULL, NULL, NULL, place, NULL));
 }
 
 static void put_statuses(record *self) {

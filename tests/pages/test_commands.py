@@ -2,9 +2,6 @@
 
 from __future__ import annotations
 
-import csv
-import importlib.util
-import io
 import os
 import re
 import subprocess
@@ -22,7 +19,6 @@ from mfv import animate, comparison_figure, report, template
 from mfv.commands import main
 from mfv.compare import compare, relative_difference
 from mfv.load_history import kept_states, thinned, with_states_between
-from mfv.studies import namelist
 from mfv.views import curve_of
 
 sys.path.append(str(Path(__file__).resolve().parents[1] / "cli"))
@@ -107,20 +103,14 @@ def test_relative_differences() -> None:
     assert relative_difference(np.inf, 1.0) == relative_difference(-1.0, -np.inf) == np.inf
 
 
-def test_compare_writes_picture_and_table(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_compare_writes_picture_and_numbers(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     solved(tmp_path / "a.h5")
     second = solved(tmp_path / "b.h5", coupling="full", nodes=81)
     arguments = ["compare", str(tmp_path / "a.h5"), str(tmp_path / "b.h5")]
-    assert main([*arguments, "--tolerance", "1e-3", "--csv", str(tmp_path / "d.csv")]) == 1
-    assert capsys.readouterr().out.rstrip().endswith(str(tmp_path / "a_b.png"))
+    assert main([*arguments, "--tolerance", "1e-3"]) == 1
+    printed = capsys.readouterr().out
+    assert printed.rstrip().endswith(str(tmp_path / "a_b.png")) and f"{second.summary.dissipation:.6g}" in printed
     assert (tmp_path / "a_b.png").stat().st_size > 50000
-    text = (tmp_path / "d.csv").read_text()
-    rows = list(csv.DictReader(io.StringIO(text)))
-    (dissipation,) = (row for row in rows if row["group"] == "summary" and row["name"] == "dissipation")
-    assert float(dissipation["second"]) == second.summary.dissipation
-    assert {row["name"] for row in rows if row["group"] == "input"} == {"scene%coupling", "mesh%nodes"}
-    assert main([*arguments, "--no-picture", "--csv", "-"]) == 0
-    assert capsys.readouterr().out == text
 
 
 def test_the_picture_has_both_results_and_both_over_each_other(tmp_path: Path) -> None:
@@ -197,7 +187,6 @@ def test_results_are_not_overwritten_by_what_is_drawn_of_them(
         (["plot", first, "--body", "upper"], "give --stress NAME too"),
         (["plot", first, "--cycles", "--step", "1"], "give one of them"),
         (["report", first, "-o", first], f"{first}: the name of what is written must end with .html or .htm"),
-        (["compare", first, first, "--csv", first], f"{first}: the name of what"),
         (["animate", first, "--kept", "-o", first], f"{first}: the name of what"),
         (["new", "--force", "-o", first], f"{first}: the name of what"),
         (["study", study, "-o", first], f"{first}: is HDF5"),
@@ -412,20 +401,16 @@ def test_every_template_is_solved(name: str, tmp_path: Path, capsys: pytest.Capt
 
 
 def test_comments_of_templates_are_those_of_the_catalogue() -> None:
-    specification = importlib.util.spec_from_file_location("templates", PROJECT / "scripts" / "templates.py")
-    scripts = importlib.util.module_from_spec(specification)
-    specification.loader.exec_module(scripts)
-    comments = scripts.meanings_of(scripts.catalogues(MFV_RUN))
-    assert len(comments) > 50 and comments["mesh", "half_width"].endswith("in length)")
-    assert {key for group, key in comments if group == "vary"} == set(namelist.KEYS["vary"])
-    for name in template.names():
-        text = template.text(name)
-        assert scripts.commented(text, comments) == text, f"{name}.nml: run scripts/templates.py"
-    # A comment that is wrong is put right, and what is written behind keys stays.
-    text = template.text("cylinder")
-    assert scripts.commented(text.replace("number of equal", "amount of"), comments) == text
-    with pytest.raises(KeyError):
-        scripts.commented("&mesh\n   knots = 3\n/\n", comments)
+    printed = subprocess.run([MFV_RUN, "--keys"], capture_output=True, text=True, check=True).stdout
+    assert (Path(template.__file__).parent / "templates/keys.md").read_text() == printed, "mfv_run --keys > keys.md"
+    text = template.text("study")
+    assert "   ! number of equal intervals; nodes are their centres (a whole number from 1 to" in template.text("cylinder")
+    assert "(a number above 0, in length)\n" in template.text("matrix") and "'linear' by\n   ! default)" in text
+    for key in ("key", "values", "factor"):  # a comment above the first one alone
+        place = text.index(f"   {key} = ")
+        assert text[:place].splitlines()[-1].startswith("   ! ")
+    assert text.count("! the values, in the unit of the key") == 1
+    assert max(map(len, text.splitlines()[2:])) <= 100
 
 
 def test_the_matrix_of_the_template_is_a_half_plane(tmp_path: Path) -> None:

@@ -6,7 +6,6 @@ import copy
 import inspect
 import os
 import pickle
-import re
 import subprocess
 import sys
 import xml.etree.ElementTree
@@ -147,7 +146,7 @@ def test_groups_know_what_their_quantities_run_along(cycled: mfv.Result) -> None
 
 def test_notebooks_show_results_without_scripts(cycled: mfv.Result) -> None:
     shown = cycled._repr_html_()
-    for word in ("to &amp; fro", "complete: step 3 was reached", "certificate", "<svg", "<polyline"):
+    for word in ("to &amp; fro", "complete: step 3 was reached", "certificate"):
         assert word in shown
     group = cycled.state._repr_html_()
     for word in ("pressure", "(61)", "N/mm^2", "compressive"):
@@ -155,26 +154,6 @@ def test_notebooks_show_results_without_scripts(cycled: mfv.Result) -> None:
     for page in (shown, group, cycled.summary._repr_html_()):
         assert "<script" not in page and "to & fro" not in page
         xml.etree.ElementTree.fromstring(page)  # well-formed
-
-
-def test_the_picture_of_tractions_is_the_tractions(cycled: mfv.Result) -> None:
-    x, pressure = cycled.mesh.x, cycled.state.pressure
-    lines = re.findall(r"<polyline points='(.*?)'", cycled._repr_html_())
-    _, curve, _ = (np.array([point.split(",") for point in line.split()], dtype=float) for line in lines)
-    assert (
-        np.corrcoef(np.interp(np.linspace(0, 1, 50), np.linspace(0, 1, len(curve)), curve[:, 0]), np.arange(50))[0, 1]
-        > 0.999
-    )
-    loaded = np.flatnonzero((pressure != 0.0) | (cycled.state.shear != 0.0))
-    shown = slice(loaded[0] - 1, loaded[-1] + 2)
-    assert np.corrcoef(curve[:, 1], pressure[shown])[0, 1] < -0.9999  # upwards in an svg is down
-    assert np.corrcoef(curve[:, 0], x[shown])[0, 1] > 0.9999
-
-
-def test_nothing_is_drawn_where_nothing_is_loaded() -> None:
-    with cylinder().contact() as case:
-        assert "<svg" not in case.result()._repr_html_()
-        assert "<table" in case.result()._repr_html_()
 
 
 # --- panels ---

@@ -302,7 +302,7 @@ def test_a_long_case_is_interrupted_within_an_increment(tmp_path):
 
 def test_two_at_once(tmp_path):
     write(tmp_path)
-    with Store(tmp_path / "study.sqlite"):
+    with contextlib.closing(Store(tmp_path / "study.sqlite")):
         done = run("study.nml", cwd=tmp_path)
     assert done.returncode == INPUT and "study.sqlite: solved cases cannot be kept here: another study is at work with it" in done.stderr
 

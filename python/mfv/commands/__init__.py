@@ -103,8 +103,8 @@ def _give_up_output() -> None:
 
 def _with_file(message: str, options: argparse.Namespace) -> str:
     """A message that names the file it is about: the one that was read, unless it names one of those given already."""
-    values = (getattr(options, name, None) for name in ("file", "other", "output", "csv"))
-    given = [str(value) for value in values if value and value != "-"]
+    values = (getattr(options, name, None) for name in ("file", "other", "output"))
+    given = [str(value) for value in values if value]
     if not given or any(name in message for name in given):
         return message
     return f"{given[0]}: {message}"

@@ -7,7 +7,7 @@ from pathlib import Path
 
 from .._files import target, written
 from ..result import read
-from .shared import at_least, solved_between
+from .shared import add_output, at_least, solved_between
 
 NAME, HELP = "animate", "the load history as a GIF or an MP4"
 
@@ -31,9 +31,7 @@ examples:
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """What the command takes."""
     parser.add_argument("file", type=Path, metavar="RESULT.h5", help="result file")
-    parser.add_argument(
-        "-o", "--output", type=Path, metavar="PICTURE", help="gif or mp4; else RESULT.gif beside the file"
-    )
+    add_output(parser, "PICTURE", "gif or mp4; else RESULT.gif beside the file")
     parser.add_argument("--frames", type=at_least(2), default=120, metavar="N", help="about how many pictures (120)")
     parser.add_argument("--rate", type=at_least(1), default=20, metavar="N", help="pictures a second (20)")
     parser.add_argument("--kept", action="store_true", help="only the states in the file; solve nothing again")

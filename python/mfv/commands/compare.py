@@ -3,15 +3,11 @@
 from __future__ import annotations
 
 import argparse
-import sys
 from pathlib import Path
-from typing import TYPE_CHECKING
 
-from .._files import PICTURES, TABLES, target, written
+from .._files import PICTURES, target, written
 from ..result import read
-
-if TYPE_CHECKING:
-    from ..compare import Comparison
+from .shared import add_output
 
 NAME, HELP = "compare", "two results side by side"
 
@@ -25,7 +21,7 @@ difference of a traction in parts of the largest traction. Tractions on differen
 EXAMPLES = """\
 examples:
   python -m mfv compare goodman.h5 full.h5  print what differs, draw goodman_full.png
-  python -m mfv compare coarse.h5 fine.h5 --csv differences.csv -o mesh.pdf
+  python -m mfv compare coarse.h5 fine.h5 -o mesh.pdf
   python -m mfv compare yesterday.h5 today.h5 --no-picture --tolerance 1e-9
                                             exit code 1 when the tractions differ by more
 """
@@ -37,18 +33,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     """What the command takes."""
     parser.add_argument("file", type=Path, metavar="FIRST.h5", help="result file")
     parser.add_argument("other", type=Path, metavar="SECOND.h5", help="result file")
-    parser.add_argument(
-        "-o",
-        "--output",
-        type=Path,
-        metavar="PICTURE",
-        help="png, pdf, svg or eps; else FIRST_SECOND.png beside the first file",
-    )
+    add_output(parser, "PICTURE", "png, pdf, svg or eps; else FIRST_SECOND.png beside the first file")
     parser.add_argument("--no-picture", action="store_true", help="draw nothing")
     parser.add_argument("--step", type=int, metavar="N", help="the states in steps/000N in place of the last ones")
-    parser.add_argument(
-        "--csv", metavar="FILE", help="write the numbers as comma-separated values; - for the standard output, alone"
-    )
     parser.add_argument(
         "--tolerance", type=float, metavar="PART", help="end with code 1 when the tractions differ by more than this"
     )
@@ -60,28 +47,14 @@ def run(options: argparse.Namespace) -> int:
 
     comparison = compare(read(options.file), read(options.other), options.step)
     sources = [options.file, options.other]
-    beside = options.file.with_name(f"{options.file.stem}_{options.other.stem}")
-    picture = None if options.no_picture else target(options.output, Path(f"{beside}.png"), PICTURES, sources)
-    if options.csv == "-":
-        comparison.write_csv(sys.stdout)
-    else:
-        table = None if options.csv is None else target(options.csv, Path(f"{beside}.csv"), TABLES, sources)
-        print(f"first   {options.file}\nsecond  {options.other}\n\n{comparison.describe()}")
-        if table is not None:
-            with written(table) as part, open(part, "w", newline="", encoding="utf-8") as file:
-                comparison.write_csv(file)
-            print(f"\n{table}")
+    usual = options.file.with_name(f"{options.file.stem}_{options.other.stem}.png")
+    picture = None if options.no_picture else target(options.output, usual, PICTURES, sources)
+    print(f"first   {options.file}\nsecond  {options.other}\n\n{comparison.describe()}")
     if picture is not None:
-        _draw(comparison, picture, options)
+        from ..comparison_figure import figure  # here: it loads matplotlib
+
+        with written(picture) as part:
+            figure(comparison, str(options.file), str(options.other)).savefig(part, dpi=150)
+        print(f"\n{picture}")
     too_different = options.tolerance is not None and not comparison.largest_difference <= options.tolerance
     return DIFFERENT if too_different else 0
-
-
-def _draw(comparison: Comparison, output: Path, options: argparse.Namespace) -> None:
-    """Write the picture, and say where it is unless the standard output is a table."""
-    from ..comparison_figure import figure
-
-    with written(output) as part:
-        figure(comparison, str(options.file), str(options.other)).savefig(part, dpi=150)
-    if options.csv != "-":
-        print(f"\n{output}")

@@ -7,6 +7,7 @@ from pathlib import Path
 
 from .._files import PICTURES, target, written
 from ..result import read
+from .shared import add_output
 
 NAME, HELP = "plot", "draw a result"
 
@@ -34,13 +35,8 @@ examples:
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """What the command takes."""
     parser.add_argument("file", type=Path, metavar="RESULT.h5", help="result file")
-    parser.add_argument(
-        "-o",
-        "--output",
-        type=Path,
-        metavar="PICTURE",
-        help="png, pdf, svg or eps; else RESULT.png, or RESULT_NAME_BODY.png for a stress, beside the file",
-    )
+    where = "png, pdf, svg or eps; else RESULT.png, or RESULT_NAME_BODY.png for a stress, beside the file"
+    add_output(parser, "PICTURE", where)
     parser.add_argument(
         "--step", type=int, metavar="N", help="the state in the file's group steps/000N in place of the last"
     )

@@ -5,6 +5,7 @@ from __future__ import annotations
 import argparse
 import sys
 from collections.abc import Callable
+from pathlib import Path
 
 from ..load_history import LoadHistory, with_states_between
 from ..result import Result
@@ -23,6 +24,11 @@ def at_least(least: int) -> Callable[[str], int]:
         return value
 
     return whole_number
+
+
+def add_output(parser: argparse.ArgumentParser, metavar: str, meaning: str) -> None:
+    """The option that says where to write."""
+    parser.add_argument("-o", "--output", type=Path, metavar=metavar, help=meaning)
 
 
 def solved_between(options: argparse.Namespace, result: Result, states: int) -> LoadHistory:

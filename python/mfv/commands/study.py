@@ -12,7 +12,7 @@ from .._files import target
 from ..studies.executors import NAMES
 from ..studies.namelist import check_study, keys_in_markdown, read_study
 from ..studies.plan import SUFFIXES, Study, is_table
-from .shared import at_least
+from .shared import add_output, at_least
 
 if TYPE_CHECKING:
     import xarray
@@ -48,13 +48,7 @@ examples:
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Describe the options."""
     parser.add_argument("file", type=Path, metavar="STUDY.nml", nargs="?", help="text of the study")
-    parser.add_argument(
-        "-o",
-        "--output",
-        type=Path,
-        metavar="FILE",
-        help="table to write: .nc or .h5 (NetCDF), .csv (default: STUDY.nc)",
-    )
+    add_output(parser, "FILE", "table to write: .nc or .h5 (NetCDF), .csv (default: STUDY.nc)")
     parser.add_argument(
         "--executor",
         default="threads",

@@ -9,7 +9,7 @@ import hashlib
 import os
 import time
 from collections.abc import Iterator, Sequence
-from ctypes import byref, c_double, c_int, c_int32, c_size_t, c_void_p
+from ctypes import byref, c_double, c_int, c_void_p
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -19,7 +19,8 @@ from numpy.typing import NDArray
 
 from .. import errors
 from .._library import OBSERVER, library, library_version, text_buffer, text_for, text_of
-from ..case import writing
+from ..case import Case, writing
+from ..result import Field
 from ..scene import _scene_handle, _set_data, _set_key, _text_of_scene, created
 
 #: Stands for the materials of both bodies; see mfv_scene_set_real in the header.
@@ -70,7 +71,7 @@ class Job:
 class Solved:
     """What is kept of a case: a status, its message, counts, numbers, and arrays by the path of their field.
 
-    `about`: what each field runs along (Along), its unit and description.
+    `about`: what each field runs along (as of mfv.result.Field), its unit and description.
     """
 
     status: int
@@ -79,7 +80,7 @@ class Solved:
     largest_residual: float = _NAN
     observables: list[float] = field(default_factory=list)
     arrays: dict[str, NDArray[Any]] = field(default_factory=dict)
-    about: dict[str, tuple[int, str, str]] = field(default_factory=dict)
+    about: dict[str, tuple[str, str, str]] = field(default_factory=dict)
 
 
 @functools.cache
@@ -190,24 +191,21 @@ def solve_here(stop: c_int | None, jobs: Sequence[Job]) -> tuple[float, list[Sol
 
 def solve_unless(stop: c_int | None, job: Job) -> Solved | None:
     """Solve a case; None when `stop` has been set meanwhile. Raises FileError where its result cannot be written."""
-    handle = None
     try:
         with scene_handle(job.base, job.settings) as scene, _reading(job.base, job.settings):
             handle = created("mfv_create", scene)
+    except errors.InputError as error:
+        assert error.status is not None
+        return Solved(error.status, error.message, observables=[_NAN] * len(observables()))
+    with Case._of_handle(handle) as case:
         if stop is not None:
             library().mfv_observe(handle, ctypes.cast(library().mfv_stop_when_set, OBSERVER), byref(stop))
         status = library().mfv_run(handle)
         if stop is not None and stop.value != 0:
             return None
         if job.result is not None:
-            _write(handle, job.result)
-        return _kept(handle, status, job)
-    except errors.InputError as error:
-        assert error.status is not None
-        return Solved(error.status, error.message, observables=[_NAN] * len(observables()))
-    finally:
-        if handle is not None:
-            library().mfv_free(byref(handle))
+            case.write(job.result)
+        return _kept(case, status, job)
 
 
 def _reading(base: Base, settings: Sequence[tuple[str, Any]]) -> contextlib.AbstractContextManager[Any]:
@@ -216,27 +214,22 @@ def _reading(base: Base, settings: Sequence[tuple[str, Any]]) -> contextlib.Abst
     return writing if has_matrix else contextlib.nullcontext()
 
 
-def _write(handle: c_void_p, path: str) -> None:
-    """Write the whole result of a case. Raises FileError."""
-    with writing:
-        status = library().mfv_write(handle, text_for(path))
-    if status != 0:
-        raise errors.failure(status, _message(handle))
-
-
-def _kept(handle: c_void_p, status: int, job: Job) -> Solved:
+def _kept(case: Case, status: int, job: Job) -> Solved:
     """What is kept of a case that has been run."""
     # The library keeps the group that was looked at last: what is of one group comes together.
-    counts = {name: _whole(handle, f"summary/{name}") for name in COUNTS}
-    solved = Solved(status, _message(handle), counts, _real(handle, b"summary/largest_residual"))
-    solved.observables = [_real(handle, path) for path in _observable_paths()]
-    count = c_size_t()
-    library().mfv_field_info(handle, b"mesh/x", byref(count), None, None, None, 0, None, 0)
-    counts["nodes"] = count.value
+    counts = {name: int(case[f"summary/{name}"]) for name in COUNTS}
+    solved = Solved(status, case._library_message(), counts, _real(case, b"summary/largest_residual"))
+    solved.observables = [_real(case, path) for path in _observable_paths()]
+    counts["nodes"] = case._count("mesh/x")
     for path in COMPARED if job.compared else ():
-        _add_values(handle, path, 1 if path == "mesh/interval" else count.value, solved)
+        found = _field(case, path)
+        if found is not None:
+            solved.arrays[path] = np.atleast_1d(found.values)
     for path in job.fields:
-        _add_field(handle, path, solved)
+        found = _field(case, path)
+        if found is not None:
+            solved.arrays[path] = np.atleast_1d(found.values).astype(float)
+            solved.about[path] = "".join(found.dimensions), found.unit, found.description
     return solved
 
 
@@ -245,45 +238,18 @@ def _observable_paths() -> list[bytes]:
     return [text_for(f"observables/{name}") for name in observables()]
 
 
-def _real(handle: c_void_p, path: bytes) -> float:
+def _real(case: Case, path: bytes) -> float:
     """A number; NaN where the case does not have it."""
     value = c_double(_NAN)
-    return value.value if library().mfv_copy_real(handle, path, byref(value), 1) == 0 else _NAN
+    return value.value if library().mfv_copy_real(case._handle, path, byref(value), 1) == 0 else _NAN
 
 
-def _whole(handle: c_void_p, path: str) -> int:
-    value = c_int32()
-    library().mfv_copy_integer(handle, text_for(path), byref(value), 1)
-    return value.value
-
-
-def _add_values(handle: c_void_p, path: str, count: int, solved: Solved) -> None:
-    """Keep the values of a field of real numbers, where the case has so many."""
-    values = np.empty(count)
-    if library().mfv_copy_real(handle, text_for(path), values.ctypes.data_as(ctypes.POINTER(c_double)), count) == 0:
-        solved.arrays[path] = values
-
-
-def _add_field(handle: c_void_p, path: str, solved: Solved) -> None:
-    """Keep the values of a field as real numbers, where the case has it."""
-    name, count, is_integer, along = text_for(path), c_size_t(), c_int(), c_int()
-    unit, description = text_buffer(), text_buffer()
-    about = byref(count), byref(is_integer), byref(along), unit, len(unit), description, len(description)
-    if library().mfv_field_info(handle, name, *about) != 0:
-        return
-    if is_integer:
-        whole = np.empty(count.value, np.int32)
-        library().mfv_copy_integer(handle, name, whole.ctypes.data_as(ctypes.POINTER(c_int32)), whole.size)
-        solved.arrays[path] = whole.astype(float)
-    else:
-        _add_values(handle, path, count.value, solved)
-    solved.about[path] = along.value, text_of(unit), text_of(description)
-
-
-def _message(handle: c_void_p) -> str:
-    buffer = text_buffer()
-    library().mfv_message(handle, buffer, len(buffer))
-    return text_of(buffer)
+def _field(case: Case, path: str) -> Field | None:
+    """A field, where the case has it."""
+    try:
+        return case._field(path)
+    except errors.BadArgument:
+        return None
 
 
 @functools.cache

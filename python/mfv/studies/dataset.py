@@ -17,7 +17,7 @@ import xarray
 from numpy.typing import NDArray
 
 from .._files import written
-from .._library import Along, library_version, outcome_of
+from .._library import library_version, outcome_of
 from .axes import Coordinate, as_written
 from .cases import COUNTS, DUNDURS_BETA, MOMENTS, TRACTIONS, Solved, key_info, observables
 from .plan import TITLE, Study, result_name
@@ -29,13 +29,7 @@ if TYPE_CHECKING:
 NOT_SOLVED, NO_STATUS = "not solved", -1
 
 #: Dimensions of fields by what they run along.
-DIMENSIONS = {
-    Along.NODES: "node",
-    Along.RECORDS: "record",
-    Along.COMPANIONS: "companion_node",
-    Along.CYCLES: "cycle",
-    Along.PATCHES: "patch",
-}
+DIMENSIONS = {"x": "node", "record": "record", "companion_nodes": "companion_node", "cycle": "cycle", "patch": "patch"}
 
 #: Types of columns by those of their values; numbers are float.
 COLUMN_TYPES = {str: object, int: np.int32}
@@ -196,7 +190,7 @@ def _fields(study: Study, solved: Sequence[Solved | None]) -> dict[str, Any]:
     """The fields that were asked for, where any case has them: NaN beyond the values of a case. Along nodes, mesh_x tells where."""
     fields: dict[str, Any] = {}
     dimensions = [dimension.name for dimension in study.dimensions]
-    longest: dict[int, int] = {}
+    longest: dict[str, int] = {}
     for one in (one for one in solved if one is not None):
         for path, (along, _, _) in one.about.items():
             longest[along] = max(one.arrays[path].size, longest.get(along, 0))
@@ -211,8 +205,8 @@ def _fields(study: Study, solved: Sequence[Solved | None]) -> dict[str, Any]:
             values[place, : one.arrays[path].size] = one.arrays[path]
         about = {"units": unit, "long_name": meaning, "path": path}
         shape, names = (study.shape, dimensions)
-        if along != Along.NOTHING:
-            shape, names = ((*shape, longest[along]), [*dimensions, DIMENSIONS[Along(along)]])
+        if along:
+            shape, names = ((*shape, longest[along]), [*dimensions, DIMENSIONS[along]])
         fields[path.replace("/", "_")] = (names, values.reshape(shape), about)
     return fields
 

@@ -156,23 +156,9 @@ def _end_with_the_study() -> None:
         os._exit(1)
 
 
-#: Studies that are at work in threads of this process, and the limit of BLAS's threads that they share; BLAS is the process's.
-_at_work: list[Any] = []
-_changing = threading.Lock()
-
-
-@contextlib.contextmanager
-def _one_blas_thread_meanwhile() -> Iterator[None]:
+def _one_blas_thread_meanwhile() -> Any:
     """BLAS has one thread in this process: the threads of the study have the processors, and all studies the same bits."""
     import threadpoolctl
 
     library()  # threadpoolctl sees what has been loaded
-    with _changing:
-        _at_work.append(_at_work[0] if _at_work else threadpoolctl.threadpool_limits(1, user_api="blas"))
-    try:
-        yield
-    finally:
-        with _changing:
-            limit = _at_work.pop()
-            if not _at_work:
-                limit.restore_original_limits()
+    return threadpoolctl.threadpool_limits(1, user_api="blas")

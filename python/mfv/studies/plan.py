@@ -225,7 +225,7 @@ class Study:
         if self.results is not None:
             self.results.mkdir(parents=True, exist_ok=True)
 
-        with contextlib.nullcontext() if store is None else Store(store) as kept:
+        with contextlib.nullcontext() if store is None else contextlib.closing(Store(store)) as kept:
             if kept is not None and again:
                 kept.clear()
             names, jobs, solved = self._cases(kept)
@@ -253,7 +253,7 @@ class Study:
 
         if not os.path.isfile(store):
             raise FileNotFoundError(errno.ENOENT, "there is no file of solved cases", os.fspath(store))
-        with Store(store) as kept:
+        with contextlib.closing(Store(store)) as kept:
             names, _, solved = self._cases(kept)
         return dataset_of(self, names, [solved.get(name) for name in names])
 

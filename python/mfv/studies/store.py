@@ -4,20 +4,14 @@ from __future__ import annotations
 
 import contextlib
 import json
-import math
 import os
 import sqlite3
 from collections.abc import Collection, Iterator
-from types import TracebackType
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from .. import errors
 from .cases import Solved
-
-if TYPE_CHECKING:
-    from typing_extensions import Self
 
 #: "MFVS": what SQLite's application_id says of a file that this module has made.
 APPLICATION = 0x4D465653
@@ -37,12 +31,8 @@ class Store:
             self._connection = sqlite3.connect(self.path, isolation_level=None, timeout=0.0)
             self._open()
 
-    def __enter__(self) -> Self:
-        return self
-
-    def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, traceback: TracebackType | None
-    ) -> None:
+    def close(self) -> None:
+        """Let others use the file."""
         self._connection.close()
 
     def read(self, keys: Collection[str]) -> dict[str, Solved]:
@@ -89,16 +79,10 @@ class Store:
 
 
 def _text(solved: Solved) -> str:
-    """What is kept but the arrays; null stands for NaN, which JSON does not have."""
+    """What is kept but the arrays."""
     kept = {name: value for name, value in vars(solved).items() if name != "arrays"}
-    kept["largest_residual"] = _finite(solved.largest_residual)
-    kept["observables"] = [_finite(value) for value in solved.observables]
     kept["sizes"] = {path: values.size for path, values in solved.arrays.items()}
     return json.dumps(kept)
-
-
-def _finite(value: float) -> float | None:
-    return None if math.isnan(value) else value
 
 
 def _bytes(solved: Solved) -> bytes | None:
@@ -109,8 +93,6 @@ def _bytes(solved: Solved) -> bytes | None:
 
 def _solved(text: str, arrays: bytes | None) -> Solved:
     kept = json.loads(text)
-    kept["largest_residual"] = _number(kept["largest_residual"])
-    kept["observables"] = [_number(value) for value in kept["observables"]]
     kept["about"] = {path: tuple(about) for path, about in kept["about"].items()}
     sizes = kept.pop("sizes")
     solved = Solved(**kept)
@@ -118,7 +100,3 @@ def _solved(text: str, arrays: bytes | None) -> Solved:
         parts = np.split(np.frombuffer(arrays, "<f8").astype(float), np.cumsum(list(sizes.values()))[:-1])
         solved.arrays = dict(zip(sizes, parts))
     return solved
-
-
-def _number(value: float | None) -> float:
-    return float("nan") if value is None else value
