@@ -4,21 +4,13 @@ module mfv_checksum
    use, intrinsic :: iso_fortran_env, only: int8, int64
    implicit none
    private
-   public :: checksum_of, add_to_checksum, add_text_to_checksum
+   public :: add_to_checksum, add_text_to_checksum
 
    !> The polynomial, its lowest power first: C96C5795D7870F42 in hexadecimal digits.
    integer(int64), parameter :: polynomial = ior(shiftl(int(z'C96C5795', int64), 32), int(z'D7870F42', int64))
    integer, parameter :: half_byte = 4
 
 contains
-
-   !> The checksum of some bytes.
-   pure integer(int64) function checksum_of(bytes)
-      integer(int8), intent(in) :: bytes(:)
-
-      checksum_of = 0
-      call add_to_checksum(bytes, checksum_of)
-   end function checksum_of
 
    !> From the checksum of what came before to that with these bytes after it; it begins with 0.
    pure subroutine add_to_checksum(bytes, checksum)
