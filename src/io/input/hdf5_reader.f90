@@ -213,7 +213,8 @@ contains
       integer(hid_t), intent(out) :: dataset
       integer(hsize_t), intent(out) :: extent(:)
       type(error_type), allocatable, intent(out) :: error
-      integer :: code
+      integer(hid_t) :: type
+      integer :: class, code, ignored
 
       extent = 0
       if (.not. has(file, name)) then
@@ -225,7 +226,14 @@ contains
          call set_error(error, MFV_INPUT_ERROR, name//' is no dataset of this file')
          return
       end if
-      call check_type(dataset, name, error)
+      class = -1
+      call h5dget_type_f(dataset, type, code)
+      if (code == 0) then
+         call h5tget_class_f(type, class, code)
+         call h5tclose_f(type, ignored)
+      end if
+      if (code /= 0 .or. .not. any(class == [H5T_INTEGER_F, H5T_FLOAT_F])) &
+         call set_error(error, MFV_INPUT_ERROR, name//' does not hold numbers')
       if (.not. allocated(error)) call find_extent(dataset, name, extent, error)
       if (.not. allocated(error)) call check_storage(dataset, name, extent, error)
       if (allocated(error)) call h5dclose_f(dataset, code)
@@ -255,24 +263,6 @@ contains
 
       refuse_link = -1
    end function refuse_link
-
-   !> Error where a dataset does not hold numbers.
-   subroutine check_type(dataset, name, error)
-      integer(hid_t), intent(in) :: dataset
-      character(*), intent(in) :: name
-      type(error_type), allocatable, intent(out) :: error
-      integer(hid_t) :: type
-      integer :: class, code, ignored
-
-      class = -1
-      call h5dget_type_f(dataset, type, code)
-      if (code == 0) then
-         call h5tget_class_f(type, class, code)
-         call h5tclose_f(type, ignored)
-      end if
-      if (code /= 0 .or. .not. any(class == [H5T_INTEGER_F, H5T_FLOAT_F])) &
-         call set_error(error, MFV_INPUT_ERROR, name//' does not hold numbers')
-   end subroutine check_type
 
    !> How large a dataset is; one value is a vector too. Error where it has not as many dimensions as `extent` has places.
    subroutine find_extent(dataset, name, extent, error)

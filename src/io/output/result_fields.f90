@@ -7,7 +7,6 @@ module mfv_result_fields
    use mfv_case, only: case_type
    use mfv_certificate, only: residual_count, residual_description, residual_name
    use mfv_closed_form, only: closed_form_of, closed_form_type
-   use mfv_compliance, only: block_up, block_ut, block_wp, block_wt
    use mfv_contact_state, only: contact_state_type
    use mfv_error_bar
    use mfv_cycle, only: cycle_type
@@ -303,26 +302,19 @@ contains
    subroutine add_compliance(list, simulation)
       type(list_type), intent(inout) :: list
       type(simulation_type), intent(in) :: simulation
+      character(*), parameter :: blocks(4) = ['wp', 'wt', 'up', 'ut'], bodies(2) = ['lower', 'upper']
+      integer :: i, bytes
 
       associate (pair => simulation%contact%model%compliance)
-         call list%add('wp', merge(1, 0, pair%elastic_block(block_wp)), 'whether C_wp exists')
-         call list%add('wt', merge(1, 0, pair%elastic_block(block_wt)), 'whether C_wt exists')
-         call list%add('up', merge(1, 0, pair%elastic_block(block_up)), 'whether C_up exists')
-         call list%add('ut', merge(1, 0, pair%elastic_block(block_ut)), 'whether C_ut exists')
-         call list%add('lower_bytes', stored(part_lower), 'bytes of the lower body''s kernels or matrix')
-         call list%add('upper_bytes', stored(part_upper), 'bytes of the upper body''s kernels or matrix')
+         do i = 1, size(blocks)
+            call list%add(blocks(i), merge(1, 0, pair%elastic_block(i)), 'whether C_'//blocks(i)//' exists')
+         end do
+         do i = 1, size(bodies)
+            bytes = 0
+            if (pair%deforms(i)) bytes = int(pair%part(i)%compliance%bytes())
+            call list%add(bodies(i)//'_bytes', bytes, 'bytes of the '//bodies(i)//" body's kernels or matrix")
+         end do
       end associate
-
-   contains
-
-      integer function stored(part)
-         integer, intent(in) :: part
-
-         stored = 0
-         associate (pair => simulation%contact%model%compliance)
-            if (pair%deforms(part)) stored = int(pair%part(part)%compliance%bytes())
-         end associate
-      end function stored
    end subroutine add_compliance
 
    subroutine add_mesh(list, simulation)
@@ -345,11 +337,14 @@ contains
       end associate
    end subroutine add_mesh
 
-   !> The fields of a state.
+   !> The fields of a state, with the edges of all zones, of which the tractions between nodes are made.
    subroutine add_state(list, simulation, state)
       type(list_type), intent(inout) :: list
       type(simulation_type), intent(in) :: simulation
       type(contact_state_type), intent(in) :: state
+      real(wp), dimension(simulation%contact%model%nodes()) :: contact_edge, stick_edge
+      character(*), parameter :: where_from = ' zones between nodes, along the surface from the origin: the left edge at the '// &
+         'first node of a zone, the right one at its last node; NaN at all others'
 
       call add_displacements(list, simulation, state)
       associate (model => simulation%contact%model)
@@ -363,23 +358,11 @@ contains
          if (model%tangential) call list%add('friction_work', state%friction_work, along_nodes, 'force/length', 'energy '// &
                                              'dissipated so far per unit of surface')
       end associate
-      call add_zone_edges(list, simulation, state)
-   end subroutine add_state
-
-   !> Edges of all zones, of which the tractions between nodes are made.
-   subroutine add_zone_edges(list, simulation, state)
-      type(list_type), intent(inout) :: list
-      type(simulation_type), intent(in) :: simulation
-      type(contact_state_type), intent(in) :: state
-      real(wp), dimension(simulation%contact%model%nodes()) :: contact_edge, stick_edge
-      character(*), parameter :: where_from = ' zones between nodes, along the surface from the origin: the left edge at the '// &
-         'first node of a zone, the right one at its last node; NaN at all others'
-
       call find_edges_at_nodes(simulation%contact%model, state, contact_edge, stick_edge)
       call list%add('contact_edge', contact_edge, along_nodes, 'length', 'edges of contact'//where_from)
       if (simulation%contact%model%tangential) call list%add('stick_edge', stick_edge, along_nodes, 'length', 'edges of stick'// &
                                                              where_from)
-   end subroutine add_zone_edges
+   end subroutine add_state
 
    !> Displacements of the surface of each elastic body.
    subroutine add_displacements(list, simulation, state)
@@ -458,6 +441,7 @@ contains
       type(simulation_type), intent(in) :: simulation
       type(contact_state_type), intent(in) :: state
       type(zone_edges_type) :: edges
+      real(wp) :: half_width
 
       call find_zone_edges(simulation%contact%model, state, edges)
       associate (f => state%fields)
@@ -471,23 +455,14 @@ contains
          call list%add('slip_nodes', state%slip_nodes(), 'slipping nodes')
          call list%add('patches', [edges%patches], along_nothing, 'contact patches, with open nodes between them')
          associate (model => simulation%contact%model)
-            call list%add('contact_half_width', one_patch(0.5_wp*model%interval()*model%intervals(in_contact(state%status))), &
-                          'length', 'half the length of all intervals in contact'//nan_of_several)
+            half_width = 0.5_wp*model%interval()*model%intervals(in_contact(state%status))
+            if (edges%patches > 1) half_width = ieee_value(1.0_wp, ieee_quiet_nan)
+            call list%add('contact_half_width', half_width, 'length', 'half the length of all intervals in contact'//nan_of_several)
             call list%add('stick_ratio', model%intervals(holds(state%status))/max(model%intervals(in_contact(state%status)), &
                           tiny(1.0_wp)), '1', 'length of the intervals of stuck nodes over that of nodes in contact')
          end associate
       end associate
       call add_edges(list, simulation, edges)
-
-   contains
-
-      !> A half-width where there is one patch, or none; else not a number.
-      pure real(wp) function one_patch(half_width)
-         real(wp), intent(in) :: half_width
-
-         one_patch = half_width
-         if (edges%patches > 1) one_patch = ieee_value(1.0_wp, ieee_quiet_nan)
-      end function one_patch
    end subroutine add_loads
 
    !> Edges between nodes.

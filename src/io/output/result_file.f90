@@ -97,31 +97,21 @@ contains
       type(error_type), allocatable, intent(out) :: error
       logical, intent(in), optional :: with_restart
       type(writer_type) :: writer
+      type(string_type), allocatable :: names(:), texts(:)
+      integer :: i
 
       call create_file(path, writer, error)
       if (allocated(error)) return
       if (writer%code == 0) then
-         call write_attributes(writer, case, simulation, warnings)
+         call result_attributes(case, simulation, warnings, names, texts)
+         do i = 1, size(names)
+            call write_text(writer, writer%file, names(i)%text, texts(i)%text)
+         end do
+         call write_hdf5_version(writer)
          call write_groups(writer, case, simulation, with_restart)
       end if
       call finish_file(path, 'the result', writer, error)
    end subroutine write_result
-
-   !> Attributes of the whole file.
-   subroutine write_attributes(writer, case, simulation, warnings)
-      type(writer_type), intent(inout) :: writer
-      type(case_type), intent(in) :: case
-      type(simulation_type), intent(in) :: simulation
-      type(string_type), intent(in) :: warnings(:)
-      type(string_type), allocatable :: names(:), texts(:)
-      integer :: i
-
-      call result_attributes(case, simulation, warnings, names, texts)
-      do i = 1, size(names)
-         call write_text(writer, writer%file, names(i)%text, texts(i)%text)
-      end do
-      call write_hdf5_version(writer)
-   end subroutine write_attributes
 
    !> All groups with their datasets.
    subroutine write_groups(writer, case, simulation, with_restart)
