@@ -30,60 +30,6 @@ module mfv_gsl
    type(c_ptr), protected, bind(C, name='gsl_interp_steffen') :: gsl_interp_steffen
    type(c_ptr), protected, bind(C, name='gsl_multimin_fminimizer_nmsimplex2') :: gsl_multimin_fminimizer_nmsimplex2
 
-   abstract interface
-      function make_solver(kind) bind(C)
-         import :: c_ptr
-         type(c_ptr), value :: kind
-         type(c_ptr) :: make_solver
-      end function make_solver
-
-      function make_of_kind(kind, n) bind(C)
-         import :: c_ptr, c_size_t
-         type(c_ptr), value :: kind
-         integer(c_size_t), value :: n
-         type(c_ptr) :: make_of_kind
-      end function make_of_kind
-
-      function make_of_size(n) bind(C)
-         import :: c_ptr, c_size_t
-         integer(c_size_t), value :: n
-         type(c_ptr) :: make_of_size
-      end function make_of_size
-
-      subroutine free_object(object) bind(C)
-         import :: c_ptr
-         type(c_ptr), value :: object
-      end subroutine free_object
-
-      function iterate(solver) bind(C)
-         import :: c_int, c_ptr
-         type(c_ptr), value :: solver
-         integer(c_int) :: iterate
-      end function iterate
-
-      function number_of(solver) bind(C)
-         import :: c_double, c_ptr
-         type(c_ptr), value :: solver
-         real(c_double) :: number_of
-      end function number_of
-   end interface
-
-   !> Points and weights of Gauss-Legendre quadrature.
-   procedure(make_of_size), bind(C, name='gsl_integration_glfixed_table_alloc') :: gsl_integration_glfixed_table_alloc
-   procedure(free_object), bind(C, name='gsl_integration_glfixed_table_free') :: gsl_integration_glfixed_table_free
-   procedure(make_solver), bind(C, name='gsl_root_fsolver_alloc') :: gsl_root_fsolver_alloc
-   procedure(iterate), bind(C, name='gsl_root_fsolver_iterate') :: gsl_root_fsolver_iterate
-   procedure(number_of), bind(C, name='gsl_root_fsolver_root') :: gsl_root_fsolver_root
-   procedure(free_object), bind(C, name='gsl_root_fsolver_free') :: gsl_root_fsolver_free
-   procedure(make_of_kind), bind(C, name='gsl_interp_alloc') :: gsl_interp_alloc
-   procedure(free_object), bind(C, name='gsl_interp_free') :: gsl_interp_free
-   procedure(make_of_kind), bind(C, name='gsl_multimin_fminimizer_alloc') :: gsl_multimin_fminimizer_alloc
-   procedure(iterate), bind(C, name='gsl_multimin_fminimizer_iterate') :: gsl_multimin_fminimizer_iterate
-   procedure(number_of), bind(C, name='gsl_multimin_fminimizer_size') :: gsl_multimin_fminimizer_size
-   procedure(free_object), bind(C, name='gsl_multimin_fminimizer_free') :: gsl_multimin_fminimizer_free
-   procedure(make_of_size), bind(C, name='gsl_vector_alloc') :: gsl_vector_alloc
-   procedure(free_object), bind(C, name='gsl_vector_free') :: gsl_vector_free
-
    interface
       !> Carlson's symmetric elliptic integral of the first kind.
       pure function gsl_sf_ellint_RF(x, y, z, mode) bind(C, name='gsl_sf_ellint_RF')
@@ -92,6 +38,18 @@ module mfv_gsl
          integer(c_int), value :: mode
          real(c_double) :: gsl_sf_ellint_RF
       end function gsl_sf_ellint_RF
+
+      !> Points and weights of Gauss-Legendre quadrature.
+      function gsl_integration_glfixed_table_alloc(n) bind(C, name='gsl_integration_glfixed_table_alloc')
+         import :: c_ptr, c_size_t
+         integer(c_size_t), value :: n
+         type(c_ptr) :: gsl_integration_glfixed_table_alloc
+      end function gsl_integration_glfixed_table_alloc
+
+      subroutine gsl_integration_glfixed_table_free(table) bind(C, name='gsl_integration_glfixed_table_free')
+         import :: c_ptr
+         type(c_ptr), value :: table
+      end subroutine gsl_integration_glfixed_table_free
 
       function gsl_integration_glfixed_point(a, b, i, x, weight, table) bind(C, name='gsl_integration_glfixed_point')
          import :: c_double, c_int, c_ptr, c_size_t
@@ -102,6 +60,17 @@ module mfv_gsl
          integer(c_int) :: gsl_integration_glfixed_point
       end function gsl_integration_glfixed_point
 
+      function gsl_root_fsolver_alloc(kind) bind(C, name='gsl_root_fsolver_alloc')
+         import :: c_ptr
+         type(c_ptr), value :: kind
+         type(c_ptr) :: gsl_root_fsolver_alloc
+      end function gsl_root_fsolver_alloc
+
+      subroutine gsl_root_fsolver_free(solver) bind(C, name='gsl_root_fsolver_free')
+         import :: c_ptr
+         type(c_ptr), value :: solver
+      end subroutine gsl_root_fsolver_free
+
       function gsl_root_fsolver_set(solver, f, lower, upper) bind(C, name='gsl_root_fsolver_set')
          import :: c_double, c_int, c_ptr, gsl_function
          type(c_ptr), value :: solver
@@ -109,6 +78,30 @@ module mfv_gsl
          real(c_double), value :: lower, upper
          integer(c_int) :: gsl_root_fsolver_set
       end function gsl_root_fsolver_set
+
+      function gsl_root_fsolver_iterate(solver) bind(C, name='gsl_root_fsolver_iterate')
+         import :: c_int, c_ptr
+         type(c_ptr), value :: solver
+         integer(c_int) :: gsl_root_fsolver_iterate
+      end function gsl_root_fsolver_iterate
+
+      function gsl_root_fsolver_root(solver) bind(C, name='gsl_root_fsolver_root')
+         import :: c_double, c_ptr
+         type(c_ptr), value :: solver
+         real(c_double) :: gsl_root_fsolver_root
+      end function gsl_root_fsolver_root
+
+      function gsl_interp_alloc(kind, n) bind(C, name='gsl_interp_alloc')
+         import :: c_ptr, c_size_t
+         type(c_ptr), value :: kind
+         integer(c_size_t), value :: n
+         type(c_ptr) :: gsl_interp_alloc
+      end function gsl_interp_alloc
+
+      subroutine gsl_interp_free(interpolation) bind(C, name='gsl_interp_free')
+         import :: c_ptr
+         type(c_ptr), value :: interpolation
+      end subroutine gsl_interp_free
 
       function gsl_interp_init(interpolation, x, y, n) bind(C, name='gsl_interp_init')
          import :: c_double, c_int, c_ptr, c_size_t
@@ -126,6 +119,13 @@ module mfv_gsl
          real(c_double) :: gsl_interp_eval
       end function gsl_interp_eval
 
+      function gsl_multimin_fminimizer_alloc(kind, n) bind(C, name='gsl_multimin_fminimizer_alloc') result(solver)
+         import :: c_ptr, c_size_t
+         type(c_ptr), value :: kind
+         integer(c_size_t), value :: n
+         type(c_ptr) :: solver
+      end function gsl_multimin_fminimizer_alloc
+
       function gsl_multimin_fminimizer_set(solver, f, x, step) bind(C, name='gsl_multimin_fminimizer_set') result(code)
          import :: c_int, c_ptr, gsl_multimin_function
          type(c_ptr), value :: solver, x, step
@@ -133,11 +133,39 @@ module mfv_gsl
          integer(c_int) :: code
       end function gsl_multimin_fminimizer_set
 
+      function gsl_multimin_fminimizer_iterate(solver) bind(C, name='gsl_multimin_fminimizer_iterate') result(code)
+         import :: c_int, c_ptr
+         type(c_ptr), value :: solver
+         integer(c_int) :: code
+      end function gsl_multimin_fminimizer_iterate
+
       function gsl_multimin_fminimizer_x(solver) bind(C, name='gsl_multimin_fminimizer_x') result(x)
          import :: c_ptr
          type(c_ptr), value :: solver
          type(c_ptr) :: x
       end function gsl_multimin_fminimizer_x
+
+      function gsl_multimin_fminimizer_size(solver) bind(C, name='gsl_multimin_fminimizer_size') result(size)
+         import :: c_double, c_ptr
+         type(c_ptr), value :: solver
+         real(c_double) :: size
+      end function gsl_multimin_fminimizer_size
+
+      subroutine gsl_multimin_fminimizer_free(solver) bind(C, name='gsl_multimin_fminimizer_free')
+         import :: c_ptr
+         type(c_ptr), value :: solver
+      end subroutine gsl_multimin_fminimizer_free
+
+      function gsl_vector_alloc(n) bind(C, name='gsl_vector_alloc') result(vector)
+         import :: c_ptr, c_size_t
+         integer(c_size_t), value :: n
+         type(c_ptr) :: vector
+      end function gsl_vector_alloc
+
+      subroutine gsl_vector_free(vector) bind(C, name='gsl_vector_free')
+         import :: c_ptr
+         type(c_ptr), value :: vector
+      end subroutine gsl_vector_free
 
       function gsl_vector_get(vector, i) bind(C, name='gsl_vector_get') result(value)
          import :: c_double, c_ptr, c_size_t

@@ -56,9 +56,9 @@ contains
       call replace(path, error)
    end subroutine check_replaceable
 
-   !> Put these bytes in place of the file at `path`. Error MFV_FILE_ERROR, as of check_replaceable, or a full disk for one: the file
-   !> that was there still is; or, as the message then says, the new one is there and only its entry in the folder is perhaps not
-   !> on the disk.
+   !> Put these bytes in place of the file at `path`. Error MFV_FILE_ERROR, as of check_replaceable, or a full disk for one: the
+   !> file that was there still is; or, as the message then says, the new one is there and only its entry in the folder is
+   !> perhaps not on the disk.
    subroutine replace_file(path, bytes, error)
       character(*), intent(in) :: path
       integer(int8), intent(in) :: bytes(:)
