@@ -4,7 +4,7 @@ module mfv_command_line
    use, intrinsic :: iso_fortran_env, only: error_unit
    use mfv_error, only: error_type
    use mfv_status, only: MFV_INPUT_ERROR, status_exit_code
-   use mfv_strings, only: add_text, list_of_words, nearest_name, shortened, string_type
+   use mfv_strings, only: add_text, list_of_words, find_nearest_name, shortened, string_type
    implicit none
    private
    public :: get_argument, refuse, refuse_option, fail, end_program
@@ -62,7 +62,7 @@ contains
       character(:), allocatable :: nearest
 
       call find_options(help, names)
-      nearest = nearest_name(option(max(verify(option, '-'), 1):), names)
+      call find_nearest_name(option(max(verify(option, '-'), 1):), names, nearest)
       if ('--'//nearest == option) call refuse(program, usage, option//' does not go with the arguments before it')
       if (nearest /= '') nearest = '; did you mean --'//nearest//'?'
       call refuse(program, usage, "unknown option '"//shortened(option)//"'"//nearest)

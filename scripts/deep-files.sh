@@ -1,6 +1,6 @@
 #!/bin/sh
-# Files that are written: every call to the disk of every program fails in turn, or is where it is killed, and 50 kills at random
-# moments of each of two programs; after each there must be the old file or the new one (tests/cli/test_files.py).
+# Files that are written: 50 kills at random moments of each of two programs, among the other tests of tests/cli/test_files.py;
+# after each there must be the old file or the new one.
 . "$(dirname "$0")/common.sh"
 install_missing
 python_environment test

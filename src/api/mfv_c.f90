@@ -13,8 +13,7 @@ module mfv_c
    use mfv_handles
    use mfv_interior, only: interior_type, stress_count
    use mfv_kept_state, only: kept_state_type
-   use mfv_key_path, only: read_key_name
-   use mfv_keys, only: catalogue_type, kind_integer
+   use mfv_keys, only: catalogue_type, kind_integer, read_key_name
    use mfv_kinds, only: wp
    use mfv_motions, only: motions, motion_count
    use mfv_observables, only: observable_count, observables

@@ -4,34 +4,29 @@ module mfv_checksum
    use, intrinsic :: iso_fortran_env, only: int8, int64
    implicit none
    private
-   public :: checksum_of, add_to_checksum, add_text_to_checksum
+   public :: add_to_checksum, add_text_to_checksum
 
    !> The polynomial, its lowest power first: C96C5795D7870F42 in hexadecimal digits.
    integer(int64), parameter :: polynomial = ior(shiftl(int(z'C96C5795', int64), 32), int(z'D7870F42', int64))
-   integer, parameter :: half_byte = 4
 
 contains
-
-   !> The checksum of some bytes.
-   pure integer(int64) function checksum_of(bytes)
-      integer(int8), intent(in) :: bytes(:)
-
-      checksum_of = 0
-      call add_to_checksum(bytes, checksum_of)
-   end function checksum_of
 
    !> From the checksum of what came before to that with these bytes after it; it begins with 0.
    pure subroutine add_to_checksum(bytes, checksum)
       integer(int8), intent(in) :: bytes(:)
       integer(int64), intent(inout) :: checksum
-      integer(int64) :: table(0:2**half_byte - 1), rest, i
+      integer(int64) :: rest, i
+      integer :: bit
+      logical :: is_odd
 
-      table = [(remainder_of(i), i=0, size(table) - 1)]
       rest = not(checksum)
       do i = 1, size(bytes, kind=int64)
          rest = ieor(rest, iand(int(bytes(i), int64), 255_int64))
-         rest = ieor(shiftr(rest, half_byte), table(iand(rest, 15_int64)))
-         rest = ieor(shiftr(rest, half_byte), table(iand(rest, 15_int64)))
+         do bit = 1, 8
+            is_odd = btest(rest, 0)
+            rest = shiftr(rest, 1)
+            if (is_odd) rest = ieor(rest, polynomial)
+         end do
       end do
       checksum = not(rest)
    end subroutine add_to_checksum
@@ -45,20 +40,5 @@ contains
       call add_to_checksum(transfer(int(len(text), int64), mold), checksum)
       call add_to_checksum(transfer(text, mold, len(text)), checksum)
    end subroutine add_text_to_checksum
-
-   !> What is left of half a byte after division by the polynomial.
-   pure integer(int64) function remainder_of(bits) result(rest)
-      integer(int64), intent(in) :: bits
-      integer :: i
-
-      rest = bits
-      do i = 1, half_byte
-         if (btest(rest, 0)) then
-            rest = ieor(shiftr(rest, 1), polynomial)
-         else
-            rest = shiftr(rest, 1)
-         end if
-      end do
-   end function remainder_of
 
 end module mfv_checksum

@@ -8,14 +8,14 @@ module mfv_fourier
    use mfv_kinds, only: pi, wp
    implicit none
    private
-   public :: fourier_sum, fourier_coefficients, complex_transform, real_transform, back_transform, fast_length, &
+   public :: fourier_sum, complex_transform, real_transform, back_transform, fast_length, &
              forward, backward, plans_kept
 
    include 'fftw3.f03'
 
-   integer, parameter :: to_values = 1, to_coefficients = 2
-   !> Directions of complex_transform: exp(-2 pi i j k/N) and exp(2 pi i j k/N).
-   integer, parameter :: forward = 3, backward = 4
+   !> Directions of transforms: from coefficients to real values, and those of complex_transform, exp(-2 pi i j k/N) and
+   !> exp(2 pi i j k/N).
+   integer, parameter :: to_values = 1, forward = 2, backward = 3
    integer, parameter :: most_plans = 256
    !> The boundary, bytes, at which an array is aligned.
    integer(c_intptr_t), parameter :: boundary = 16
@@ -72,23 +72,6 @@ contains
       call fftw_execute_dft_c2r(plan, coefficients, values)
       if (.not. kept) call throw_away(plan)
    end subroutine fourier_sum
-
-   !> The coefficients (a_m, -b_m), m = 0 to N/2, of the sum that takes `values`: the inverse of fourier_sum.
-   !> `values` is used as work space.
-   subroutine fourier_coefficients(values, coefficients)
-      real(wp), intent(inout) :: values(:)
-      complex(wp), intent(out) :: coefficients(:)
-      type(c_ptr) :: plan
-      logical :: kept
-      integer :: n
-
-      n = size(values)
-      call get_plan(n, to_coefficients, plan, kept, .false.)
-      call fftw_execute_dft_r2c(plan, values, coefficients)
-      if (.not. kept) call throw_away(plan)
-      coefficients = coefficients/n
-      coefficients(2:(n + 1)/2) = 2.0_wp*coefficients(2:(n + 1)/2)
-   end subroutine fourier_coefficients
 
    !> `transformed(k+1)` = sum over j = 0 to N-1 of values(j+1) exp(-/+ 2 pi i j k/N), N = size(values) = size(transformed);
    !> `direction`: forward (-) or backward (+). There and back multiplies by N. `values` is used as work space.
@@ -265,17 +248,13 @@ contains
 
       flags = FFTW_ESTIMATE
       if (.not. aligned) flags = ior(FFTW_ESTIMATE, FFTW_UNALIGNED)
-      if (direction == forward .or. direction == backward) then
+      if (direction == to_values) then
+         allocate (coefficients(size/2 + 1), values(size))
+         plan = fftw_plan_dft_c2r_1d(int(size, c_int), coefficients, values, flags)
+      else
          allocate (coefficients(size), transformed(size))
          plan = fftw_plan_dft_1d(int(size, c_int), coefficients, transformed, &
                                  merge(FFTW_FORWARD, FFTW_BACKWARD, direction == forward), flags)
-         return
-      end if
-      allocate (coefficients(size/2 + 1), values(size))
-      if (direction == to_values) then
-         plan = fftw_plan_dft_c2r_1d(int(size, c_int), coefficients, values, flags)
-      else
-         plan = fftw_plan_dft_r2c_1d(int(size, c_int), values, coefficients, flags)
       end if
    end function new_plan
 

@@ -5,16 +5,7 @@
 module mfv_gsl
    use, intrinsic :: iso_c_binding, only: c_double, c_int, c_ptr, c_funptr, c_size_t
    implicit none
-   private
-   public :: gsl_sf_ellint_RF, gsl_integration_glfixed_table_alloc, gsl_integration_glfixed_table_free, &
-             gsl_integration_glfixed_point, gsl_root_fsolver_brent, gsl_root_fsolver_alloc, gsl_root_fsolver_free, &
-             gsl_root_fsolver_set, gsl_root_fsolver_iterate, gsl_root_fsolver_root, gsl_function, &
-             gsl_multimin_function, gsl_multimin_fminimizer_nmsimplex2, gsl_multimin_fminimizer_alloc, &
-             gsl_multimin_fminimizer_free, gsl_multimin_fminimizer_set, gsl_multimin_fminimizer_iterate, &
-             gsl_multimin_fminimizer_x, gsl_multimin_fminimizer_size, gsl_vector_alloc, gsl_vector_free, &
-             gsl_vector_get, gsl_vector_set, &
-             gsl_interp_linear, gsl_interp_steffen, gsl_interp_alloc, gsl_interp_free, gsl_interp_init, gsl_interp_eval, &
-             GSL_PREC_DOUBLE
+   private :: c_double, c_int, c_ptr, c_funptr, c_size_t
 
    !> Precision mode of the elliptic integrals: full double precision.
    integer(c_int), parameter :: GSL_PREC_DOUBLE = 0

@@ -8,7 +8,7 @@ module mfv_strings
    use mfv_kinds, only: wp
    implicit none
    private
-   public :: string_type, to_text, lower_case, nearest_name, from_c, copy_to_c, quoted, shortened, add_text, &
+   public :: string_type, to_text, lower_case, find_nearest_name, from_c, copy_to_c, quoted, shortened, add_text, &
              list_of_words, has_word
 
    !> A text of any length, for arrays of texts.
@@ -45,25 +45,8 @@ contains
    pure function padded_integer(value) result(text)
       integer, intent(in) :: value
       character(len=longest_number) :: text
-      character(len=*), parameter :: digits = '0123456789'
-      character(len=longest_number) :: right_aligned
-      integer :: rest, place, digit
 
-      ! By hand: an internal write takes thousands of instructions, and every step of a load history has a message.
-      rest = value
-      place = longest_number
-      do
-         digit = abs(mod(rest, 10)) + 1
-         right_aligned(place:place) = digits(digit:digit)
-         rest = rest/10
-         if (rest == 0) exit
-         place = place - 1
-      end do
-      if (value < 0) then
-         place = place - 1
-         right_aligned(place:place) = '-'
-      end if
-      text = right_aligned(place:)
+      write (text, '(i0)') value
    end function padded_integer
 
    !> A real with up to `usual_digits` significant digits.
@@ -238,39 +221,21 @@ contains
    end function length_of_shortened
 
    !> The entry of `names` that is fewest letter changes (Levenshtein) away from `name`; empty when none is near.
-   pure function nearest_name(name, names) result(nearest)
+   pure subroutine find_nearest_name(name, names, nearest)
       character(*), intent(in) :: name
       type(string_type), intent(in) :: names(:)
-      character(len=length_at(names, nearest_place(name, names))) :: nearest
-
-      if (len(nearest) > 0) nearest = names(nearest_place(name, names))%text
-   end function nearest_name
-
-   !> Place of the nearest name, 0 when none is near.
-   pure integer function nearest_place(name, names) result(place)
-      character(*), intent(in) :: name
-      type(string_type), intent(in) :: names(:)
+      character(:), allocatable, intent(out) :: nearest
       integer :: i, distance, best
 
-      place = 0
+      nearest = ''
       best = max(len(name)/2, 2) + 1
       do i = 1, size(names)
          distance = edit_distance(name, names(i)%text)
-         if (distance < best) then
-            best = distance
-            place = i
-         end if
+         if (distance >= best) cycle
+         best = distance
+         nearest = names(i)%text
       end do
-   end function nearest_place
-
-   !> Length of the text at a place of a list, 0 for place 0.
-   pure integer function length_at(texts, place) result(length)
-      type(string_type), intent(in) :: texts(:)
-      integer, intent(in) :: place
-
-      length = 0
-      if (place > 0) length = len(texts(place)%text)
-   end function length_at
+   end subroutine find_nearest_name
 
    pure integer function edit_distance(a, b) result(distance)
       character(*), intent(in) :: a, b

@@ -35,18 +35,9 @@ def run(command, folder, **options):
     return subprocess.run(list(map(str, command)), cwd=folder, capture_output=True, text=True, timeout=300, **options)
 
 
-def run_on_disk(shim, command, folder, at=0, number=0, stays=False):
-    """The program, and what it did to the files of the folder, one list of words a call: what, path, and where a file was
-    renamed to. `at`: call that fails, with errno `number`, or is a kill where that is 0; see fault.c."""
-    log = shim.with_suffix(".log")
-    log.unlink(missing_ok=True)
-    settings = {"LD_PRELOAD": str(shim), "MFV_FAULT_FOLDER": str(folder), "MFV_FAULT_LOG": str(log)}
-    if at:
-        settings |= {"MFV_FAULT_AT": str(at), "MFV_FAULT_ERRNO": str(number)}
-    if stays:
-        settings["MFV_FAULT_STAYS"] = "1"
-    done = run(command, folder, env=settings)
-    return done, [line.split(" ") for line in log.read_text().splitlines()] if log.exists() else []
+def run_on_disk(shim, command, folder, call, number=0):
+    """The program with a `call` that fails with errno `number`, or is a kill where that is 0; see fault.c."""
+    return run(command, folder, env={"LD_PRELOAD": str(shim), "MFV_FAULT_CALL": call, "MFV_FAULT_ERRNO": str(number)})
 
 
 def go_on_with(process, number):

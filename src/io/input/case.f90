@@ -2,7 +2,7 @@
 module mfv_case
    use mfv_kinds, only: wp
    use mfv_motions, only: motion_count, control_keep, controlled_key
-   use mfv_scene, only: scene_type, step_type
+   use mfv_scene, only: scene_type
    use mfv_simulation, only: history_events, simulation_type, states_reversals
    use mfv_strings, only: to_text
    implicit none
@@ -38,26 +38,20 @@ contains
       class(case_type), intent(in) :: self
       type(simulation_type), intent(inout) :: simulation
       character(:), allocatable :: text
+      integer :: i
 
       text = self%source//': '
       if (simulation%failed_scene_step > 0) then
          text = text//'&step '//to_text(simulation%failed_scene_step)
-         call add_targets(self%scene%steps(simulation%failed_scene_step), text)
+         associate (step => self%scene%steps(simulation%failed_scene_step))
+            do i = 1, motion_count
+               if (step%control(i) == control_keep) cycle
+               text = text//' '//trim(controlled_key(i, step%control(i)))//'='//to_text(step%target(i), 10)
+            end do
+         end associate
          text = text//' not reached: '
       end if
       simulation%message = text//simulation%message
    end subroutine explain
-
-   !> Append the targets of a step, as the user wrote them, to a text.
-   subroutine add_targets(step, text)
-      type(step_type), intent(in) :: step
-      character(:), allocatable, intent(inout) :: text
-      integer :: i
-
-      do i = 1, motion_count
-         if (step%control(i) == control_keep) cycle
-         text = text//' '//trim(controlled_key(i, step%control(i)))//'='//to_text(step%target(i), 10)
-      end do
-   end subroutine add_targets
 
 end module mfv_case

@@ -26,193 +26,187 @@ contains
 
       catalogue%group_list = group_list
       catalogue%repeated_groups = repeated_groups
-      call list_keys(catalogue%keys)
+      allocate (catalogue%keys(most_keys))
+      call add_scene_keys(catalogue)
+      call add_body_keys(catalogue)
+      call add_mesh_keys(catalogue)
+      call add_friction_keys(catalogue)
+      call add_step_keys(catalogue)
+      call add_solver_keys(catalogue)
+      call add_output_keys(catalogue)
+      catalogue%keys = catalogue%keys(:catalogue%size)
    end function case_catalogue
 
-   subroutine list_keys(keys)
-      type(key_type), allocatable, intent(out) :: keys(:)
-
-      allocate (keys(0))
-      call add_scene_keys(keys)
-      call add_body_keys(keys)
-      call add_mesh_keys(keys)
-      call add_friction_keys(keys)
-      call add_step_keys(keys)
-      call add_solver_keys(keys)
-      call add_output_keys(keys)
-   end subroutine list_keys
-
    subroutine add_scene_keys(keys)
-      type(key_type), allocatable, intent(inout) :: keys(:)
+      type(catalogue_type), intent(inout) :: keys
 
-      call add_text_key(keys, 'scene', 'title', '', 'title of the scene, for summary, file and pictures')
-      call add_choice_key(keys, 'scene', 'plane', 'strain', 'strain stress', 'plane strain or plane stress')
-      call add_choice_key(keys, 'scene', 'coupling', 'full', 'full goodman none', 'elastic coupling: full, without the '// &
-                          'effect of shear on the normal problem (Goodman), or none')
-      call add_text_key(keys, 'scene', 'length_unit', 'length', 'name of the unit of length, for labels only')
-      call add_text_key(keys, 'scene', 'force_unit', 'force', 'name of the unit of force, for labels only')
+      call keys%add('scene', 'title', kind_text, 'title of the scene, for summary, file and pictures')
+      call keys%add('scene', 'plane', kind_choice, 'plane strain or plane stress', default='strain', choices='strain stress')
+      call keys%add('scene', 'coupling', kind_choice, 'elastic coupling: full, without the effect of shear on the normal '// &
+                    'problem (Goodman), or none', default='full', choices='full goodman none')
+      call keys%add('scene', 'length_unit', kind_text, 'name of the unit of length, for labels only', default='length')
+      call keys%add('scene', 'force_unit', kind_text, 'name of the unit of force, for labels only', default='force')
    end subroutine add_scene_keys
 
    subroutine add_body_keys(keys)
-      type(key_type), allocatable, intent(inout) :: keys(:)
+      type(catalogue_type), intent(inout) :: keys
 
-      call add_choice_key(keys, 'body', 'shape', '', shape_names, 'needed; first body below, second body above')
-      call add_logical_key(keys, 'body', 'rigid', '.false.', 'whether the body is rigid; at least one is not; a '// &
-                           'flat_punch must be')
-      call add_positive_key(keys, 'body', 'shear_modulus', 'force/length^2', 'shear modulus G of an elastic body')
-      call add_positive_key(keys, 'body', 'youngs_modulus', 'force/length^2', &
-                            'E = 2 G (1 + nu), in place of shear_modulus')
-      call add_real_key(keys, 'body', 'poisson_ratio', '', "Poisson's ratio, needed for an elastic body", &
-                        lower=-1.0_wp, lower_open=.true., upper=0.5_wp)
-      call add_positive_key(keys, 'body', 'yield_strength', 'force/length^2', 'elastic body: a warning is given when '// &
-                            'the largest von Mises stress is beyond it')
-      call add_positive_key(keys, 'body', 'datum', 'length', 'elastic body: distance from the contact at which '// &
-                            'displacements are measured; if omitted: the radius of a disk or hole; else the radius, '// &
-                            'half-width or extent of the other body; else the half-width of the contact, see below')
-      call add_positive_key(keys, 'body', 'radius', 'length', 'disk, hole: radius, needed')
-      call add_positive_key(keys, 'body', 'half_width', 'length', 'flat_punch: half its width; rounded_punch: half the width '// &
-                            'of its flat part; needed')
-      call add_positive_key(keys, 'body', 'edge_radius', 'length', 'rounded_punch: radius of its edges, which are parabolas, '// &
-                            'needed')
-      call add_real_key(keys, 'body', 'angle', 'degrees', 'wedge: angle of either flank to the common tangent, needed', &
-                        lower=0.0_wp, lower_open=.true., upper=80.0_wp)
-      call add_positive_key(keys, 'body', 'coefficient', 'length^(1-exponent)', 'power: the surface recedes '// &
-                            'by coefficient*abs(x)^exponent, needed')
-      call add_real_key(keys, 'body', 'exponent', '', 'power: exponent of the shape, needed; 1: a wedge, 2: a cylinder', &
-                        lower=1.0_wp, upper=100.0_wp)
-      call add_choice_key(keys, 'body', 'kernel', 'exact', 'exact fourier', 'elastic disk, hole: closed forms, or the '// &
-                          'Fourier series')
-      call add_integer_key(keys, 'body', 'harmonics', '', "kernel='fourier': terms of the series; if omitted: 4 for each "// &
-                           'interval of the whole circle; at least half as many as these intervals', 2.0_wp, most_harmonics)
-      call add_text_key(keys, 'body', 'file', '', 'profile: text file with two columns, x and height; matrix: HDF5 file; see '// &
-                        'below; beside the case file; needed')
-      call add_choice_key(keys, 'body', 'interpolation', 'linear', 'linear monotone_cubic', 'profile: straight lines '// &
-                          'between its points, which keep corners, or a smooth curve without overshoot')
-      call add_real_key(keys, 'body', 'position_scale', '', 'profile: x of the file is multiplied by it', lower=0.0_wp, &
-                        lower_open=.true., default='1')
-      call add_real_key(keys, 'body', 'height_scale', '', 'profile: heights of the file are multiplied by it; they are how far '// &
-                        'the surface recedes from the other body: negative where the file counts them outwards', default='1')
-      call add_choice_key(keys, 'body', 'level', 'none', 'none mean line', 'profile: subtracted from its heights: nothing, '// &
-                          'their mean, or their least-squares line')
-      call add_logical_key(keys, 'body', 'centred', '.false.', 'profile: whether the middle of its positions is moved to x = 0')
+      call keys%add('body', 'shape', kind_choice, 'needed; first body below, second body above', choices=shape_names)
+      call keys%add('body', 'rigid', kind_logical, 'whether the body is rigid; at least one is not; a flat_punch must be', &
+                    default='.false.')
+      call keys%add('body', 'shear_modulus', kind_real, 'shear modulus G of an elastic body', unit='force/length^2', above=0.0_wp)
+      call keys%add('body', 'youngs_modulus', kind_real, 'E = 2 G (1 + nu), in place of shear_modulus', unit='force/length^2', &
+                    above=0.0_wp)
+      call keys%add('body', 'poisson_ratio', kind_real, "Poisson's ratio, needed for an elastic body", above=-1.0_wp, upper=0.5_wp)
+      call keys%add('body', 'yield_strength', kind_real, 'elastic body: a warning is given when the largest von Mises stress '// &
+                    'is beyond it', unit='force/length^2', above=0.0_wp)
+      call keys%add('body', 'datum', kind_real, 'elastic body: distance from the contact at which displacements are measured; '// &
+                    'if omitted: the radius of a disk or hole; else the radius, half-width or extent of the other body; else '// &
+                    'the half-width of the contact, see below', unit='length', above=0.0_wp)
+      call keys%add('body', 'radius', kind_real, 'disk, hole: radius, needed', unit='length', above=0.0_wp)
+      call keys%add('body', 'half_width', kind_real, 'flat_punch: half its width; rounded_punch: half the width of its flat '// &
+                    'part; needed', unit='length', above=0.0_wp)
+      call keys%add('body', 'edge_radius', kind_real, 'rounded_punch: radius of its edges, which are parabolas, needed', &
+                    unit='length', above=0.0_wp)
+      call keys%add('body', 'angle', kind_real, 'wedge: angle of either flank to the common tangent, needed', unit='degrees', &
+                    above=0.0_wp, upper=80.0_wp)
+      call keys%add('body', 'coefficient', kind_real, 'power: the surface recedes by coefficient*abs(x)^exponent, needed', &
+                    unit='length^(1-exponent)', above=0.0_wp)
+      call keys%add('body', 'exponent', kind_real, 'power: exponent of the shape, needed; 1: a wedge, 2: a cylinder', &
+                    lower=1.0_wp, upper=100.0_wp)
+      call keys%add('body', 'kernel', kind_choice, 'elastic disk, hole: closed forms, or the Fourier series', default='exact', &
+                    choices='exact fourier')
+      call keys%add('body', 'harmonics', kind_integer, "kernel='fourier': terms of the series; if omitted: 4 for each "// &
+                    "interval of the whole circle; at least half as many as these intervals", default='', lower=2.0_wp, &
+                    upper=most_harmonics)
+      call keys%add('body', 'file', kind_text, 'profile: text file with two columns, x and height; matrix: HDF5 file; see '// &
+                    'below; beside the case file; needed')
+      call keys%add('body', 'interpolation', kind_choice, 'profile: straight lines between its points, which keep corners, or '// &
+                    'a smooth curve without overshoot', default='linear', choices='linear monotone_cubic')
+      call keys%add('body', 'position_scale', kind_real, 'profile: x of the file is multiplied by it', above=0.0_wp, default='1')
+      call keys%add('body', 'height_scale', kind_real, 'profile: heights of the file are multiplied by it; they are how far '// &
+                    'the surface recedes from the other body: negative where the file counts them outwards', default='1')
+      call keys%add('body', 'level', kind_choice, 'profile: subtracted from its heights: nothing, their mean, or their '// &
+                    'least-squares line', default='none', choices='none mean line')
+      call keys%add('body', 'centred', kind_logical, 'profile: whether the middle of its positions is moved to x = 0', &
+                    default='.false.')
    end subroutine add_body_keys
 
    subroutine add_mesh_keys(keys)
-      type(key_type), allocatable, intent(inout) :: keys(:)
+      type(catalogue_type), intent(inout) :: keys
 
-      call add_integer_key(keys, 'mesh', 'nodes', '101', 'number of equal intervals; nodes are their centres', &
-                           1.0_wp, most_nodes)
-      call add_positive_key(keys, 'mesh', 'half_width', 'length', 'the intervals cover [-half_width, half_width] along '// &
-                            'the surface; if omitted: chosen from an estimate of the contact, and grown when the contact needs it')
-      call add_real_key(keys, 'mesh', 'half_angle', 'degrees', 'in place of half_width where a body is an elastic disk or '// &
-                        'hole: the intervals cover this angle on either side; 180: the whole circle, of which only '// &
-                        'what is near the contact is carried', lower=0.0_wp, lower_open=.true., upper=180.0_wp)
-      call add_choice_key(keys, 'mesh', 'gap', 'exact', 'exact parabolic', &
-                          'gap of disks and holes: exact circles, or the parabolas x^2/(2R) of Hertz')
-      call add_choice_key(keys, 'mesh', 'normals', 'vertical', 'vertical radial', 'vertical: pressure, gap and approach are '// &
-                          'vertical at every node; radial: along the radius, for a disk in a hole, whatever the angle; '// &
-                          'lengths along the surface and tractions are then those of the hole')
+      call keys%add('mesh', 'nodes', kind_integer, 'number of equal intervals; nodes are their centres', default='101', &
+                    lower=1.0_wp, upper=most_nodes)
+      call keys%add('mesh', 'half_width', kind_real, 'the intervals cover [-half_width, half_width] along the surface; if '// &
+                    'omitted: chosen from an estimate of the contact, and grown when the contact needs it', unit='length', &
+                    above=0.0_wp)
+      call keys%add('mesh', 'half_angle', kind_real, 'in place of half_width where a body is an elastic disk or hole: the '// &
+                    'intervals cover this angle on either side; 180: the whole circle, of which only what is near the contact '// &
+                    'is carried', unit='degrees', above=0.0_wp, upper=180.0_wp)
+      call keys%add('mesh', 'gap', kind_choice, 'gap of disks and holes: exact circles, or the parabolas x^2/(2R) of Hertz', &
+                    default='exact', choices='exact parabolic')
+      call keys%add('mesh', 'normals', kind_choice, 'vertical: pressure, gap and approach are vertical at every node; radial: '// &
+                    'along the radius, for a disk in a hole, whatever the angle; lengths along the surface and tractions are '// &
+                    'then those of the hole', default='vertical', choices='vertical radial')
    end subroutine add_mesh_keys
 
    subroutine add_friction_keys(keys)
-      type(key_type), allocatable, intent(inout) :: keys(:)
+      type(catalogue_type), intent(inout) :: keys
 
-      call add_choice_key(keys, 'friction', 'law', 'none', 'none '//friction_law_names, 'friction law')
+      call keys%add('friction', 'law', kind_choice, 'friction law', default='none', choices='none '//friction_law_names)
       call add_coefficient_key(keys, 'mu', 'coulomb, dahl: coefficient of friction')
       call add_coefficient_key(keys, 'mu_static', 'static_kinetic, weakening: coefficient up to which a node sticks')
       call add_coefficient_key(keys, 'mu_kinetic', 'static_kinetic, weakening: coefficient with which it slips, at the end; '// &
                                'not above mu_static')
-      call add_text_key(keys, 'friction', 'mu_file', '', 'in place of the coefficients: text file with the columns x and mu, '// &
-                        'or x, mu_static and mu_kinetic; linear between its lines, constant beyond them; beside the case file')
-      call add_positive_key(keys, 'friction', 'weakening_distance', 'length', 'weakening: slip over which the coefficient '// &
-                            'falls from mu_static to mu_kinetic, needed')
-      call add_positive_key(keys, 'friction', 'stiffness', 'force/length^3', 'dahl: stiffness sigma of the bristles, traction '// &
-                            'over slip, needed')
-      call add_real_key(keys, 'friction', 'exponent', '', 'dahl: exponent gamma; if omitted: 1', lower=0.0_wp, &
-                        upper=100.0_wp)
+      call keys%add('friction', 'mu_file', kind_text, 'in place of the coefficients: text file with the columns x and mu, or '// &
+                    'x, mu_static and mu_kinetic; linear between its lines, constant beyond them; beside the case file')
+      call keys%add('friction', 'weakening_distance', kind_real, 'weakening: slip over which the coefficient falls from '// &
+                    'mu_static to mu_kinetic, needed', unit='length', above=0.0_wp)
+      call keys%add('friction', 'stiffness', kind_real, 'dahl: stiffness sigma of the bristles, traction over slip, needed', &
+                    unit='force/length^3', above=0.0_wp)
+      call keys%add('friction', 'exponent', kind_real, 'dahl: exponent gamma; if omitted: 1', lower=0.0_wp, upper=100.0_wp)
    end subroutine add_friction_keys
 
    !> A coefficient of friction: one value, or one a node.
    subroutine add_coefficient_key(keys, name, meaning)
-      type(key_type), allocatable, intent(inout) :: keys(:)
+      type(catalogue_type), intent(inout) :: keys
       character(*), intent(in) :: name, meaning
 
-      call add_real_key(keys, 'friction', name, '', meaning//'; one value, or one a node of a mesh with half_width or '// &
-                        'half_angle', lower=0.0_wp)
-      keys(size(keys))%is_list = .true.
+      call keys%add('friction', name, kind_real, meaning//'; one value, or one a node of a mesh with half_width or half_angle', &
+                    lower=0.0_wp)
+      keys%keys(keys%size)%is_list = .true.
    end subroutine add_coefficient_key
 
    subroutine add_step_keys(keys)
-      type(key_type), allocatable, intent(inout) :: keys(:)
+      type(catalogue_type), intent(inout) :: keys
       integer :: i
 
       do i = 1, motion_count
          associate (motion => motions(i))
-            call add_real_key(keys, 'step', trim(motion%force_key), trim(motion%force_unit), trim(motion%force_target))
-            if (motion%pushes) keys(size(keys))%lower = 0.0_wp
-            call add_real_key(keys, 'step', trim(motion%key), trim(motion%unit), trim(motion%target))
+            call keys%add('step', trim(motion%force_key), kind_real, trim(motion%force_target), unit=trim(motion%force_unit))
+            if (motion%pushes) keys%keys(keys%size)%lower = 0.0_wp
+            call keys%add('step', trim(motion%key), kind_real, trim(motion%target), unit=trim(motion%unit))
          end associate
-         if (i == motion_shift) &
-            call add_real_key(keys, 'step', 'force_ratio', '', 'target Q/(mu P) in place of tangential_force: mu the largest '// &
-                              'coefficient of &friction, P the normal_force that this step or the last one before it names', &
-                              lower=-1.0e6_wp, upper=1.0e6_wp)
+         if (i == motion_shift) call keys%add('step', 'force_ratio', kind_real, 'target Q/(mu P) in place of '// &
+                                              'tangential_force: mu the largest coefficient of &friction, P the normal_force '// &
+                                              'that this step or the last one before it names', lower=-1.0e6_wp, upper=1.0e6_wp)
       end do
-      call add_logical_key(keys, 'step', 'friction', '.true.', 'whether friction acts during this step')
-      call add_integer_key(keys, 'step', 'cycles', '0', '0: go to the targets; n: go there and back to where the step '// &
-                           'began, n times', 0.0_wp, real(most_cycles, wp))
-      call add_positive_key(keys, 'step', 'steady_tolerance', '', 'cycles end early when the state after two in a row is the '// &
-                            'same to within this part of the largest traction; if omitted: never')
+      call keys%add('step', 'friction', kind_logical, 'whether friction acts during this step', default='.true.')
+      call keys%add('step', 'cycles', kind_integer, '0: go to the targets; n: go there and back to where the step began, n times', &
+                    default='0', lower=0.0_wp, upper=real(most_cycles, wp))
+      call keys%add('step', 'steady_tolerance', kind_real, 'cycles end early when the state after two in a row is the same to '// &
+                    'within this part of the largest traction; if omitted: never', above=0.0_wp)
    end subroutine add_step_keys
 
    subroutine add_solver_keys(keys)
-      type(key_type), allocatable, intent(inout) :: keys(:)
+      type(catalogue_type), intent(inout) :: keys
 
-      call add_choice_key(keys, 'solver', 'algorithm', 'mfv', 'mfv conventional', 'mfv: Method of First Violation; '// &
-                          'conventional: load steps with repairs of statuses, for comparison')
-      call add_choice_key(keys, 'solver', 'stepping', 'event', 'event nominal leap', 'mfv: events from rates, or from trial '// &
-                          'load steps and interpolation; both lead to the same states (coulomb, static_kinetic); leap: '// &
-                          'large increments, events where these would cost more (coulomb)')
+      call keys%add('solver', 'algorithm', kind_choice, 'mfv: Method of First Violation; conventional: load steps with '// &
+                    'repairs of statuses, for comparison', default='mfv', choices='mfv conventional')
+      call keys%add('solver', 'stepping', kind_choice, 'mfv: events from rates, or from trial load steps and interpolation; '// &
+                    'both lead to the same states (coulomb, static_kinetic); leap: large increments, events where these would '// &
+                    'cost more (coulomb)', default='event', choices='event nominal leap')
       call add_part_key(keys, 'leap_tolerance', '1e-3', "stepping='leap': tolerance of the tractions, relative to the largest "// &
-                        'traction, and of the dissipation of each load segment, relative to that')
-      call add_part_key(keys, 'load_step', '0.05', 'nominal load step, part of each load segment: for '// &
+                        "traction, and of the dissipation of each load segment, relative to that")
+      call add_part_key(keys, 'load_step', '0.05', "nominal load step, part of each load segment: for "// &
                         "algorithm='conventional', stepping='nominal', integration='explicit'")
-      call add_choice_key(keys, 'solver', 'integration', 'second_order', 'second_order explicit', 'dahl: second order with '// &
-                          'controlled error, or explicit with load_step (appendix B)')
+      call keys%add('solver', 'integration', kind_choice, 'dahl: second order with controlled error, or explicit with '// &
+                    'load_step (appendix B)', default='second_order', choices='second_order explicit')
       call add_part_key(keys, 'friction_tolerance', '1e-4', 'dahl, weakening: error that an increment may make, part of the '// &
                         'largest traction')
-      call add_integer_key(keys, 'solver', 'iterations', '1000', 'conventional: repairs that may be made at one load', &
-                           1.0_wp, 1.0e6_wp)
-      call add_choice_key(keys, 'solver', 'linear_solver', 'auto', 'auto dgesv reduced fft', 'auto: chosen by size and '// &
-                          'structure; dgesv: augmented system with LAPACK, the reference; reduced: factorisation that is '// &
-                          'updated at every event; fft: products through FFTW and iteration, no matrix')
+      call keys%add('solver', 'iterations', kind_integer, 'conventional: repairs that may be made at one load', default='1000', &
+                    lower=1.0_wp, upper=1.0e6_wp)
+      call keys%add('solver', 'linear_solver', kind_choice, 'auto: chosen by size and structure; dgesv: augmented system with '// &
+                    'LAPACK, the reference; reduced: factorisation that is updated at every event; fft: products through FFTW '// &
+                    'and iteration, no matrix', default='auto', choices='auto dgesv reduced fft')
       call add_part_key(keys, 'linear_tolerance', '1e-12', "linear_solver='fft': relative residual to which it iterates")
    end subroutine add_solver_keys
 
    !> A number of the solver from 1e-12 to 1, with a default.
    subroutine add_part_key(keys, name, default, meaning)
-      type(key_type), allocatable, intent(inout) :: keys(:)
+      type(catalogue_type), intent(inout) :: keys
       character(*), intent(in) :: name, default, meaning
 
-      call add_real_key(keys, 'solver', name, '', meaning, lower=1.0e-12_wp, upper=1.0_wp, default=default)
+      call keys%add('solver', name, kind_real, meaning, lower=1.0e-12_wp, upper=1.0_wp, default=default)
    end subroutine add_part_key
 
    subroutine add_output_keys(keys)
-      type(key_type), allocatable, intent(inout) :: keys(:)
+      type(catalogue_type), intent(inout) :: keys
 
-      call add_text_key(keys, 'output', 'file', '', 'result file (HDF5); if omitted: the name of the case file with .h5, '// &
-                        'in the working directory')
-      call add_choice_key(keys, 'output', 'history', 'events', 'events steps none', &
-                          'a history record an event, a step end, or none')
-      call add_choice_key(keys, 'output', 'states', 'reversals', 'reversals steps none', 'state kept at every reversal of a '// &
-                          'step with cycles, only at the end of every step, or none but the last')
-      call add_logical_key(keys, 'output', 'error_estimate', '.false.', 'whether the case is also solved on coarser meshes, to '// &
-                           'tell the discretisation error of half-width, stick ratio, peak tractions and dissipation')
-      call add_logical_key(keys, 'output', 'sensitivity', '.false.', 'whether the case is run once more with all '// &
-                           'coefficients of friction times 1 + 1e-12, to report how much that changes tractions, '// &
-                           'dissipation and stick ratio')
-      call add_real_key(keys, 'output', 'checkpoint_minutes', 'minutes', 'mfv_run: least time between two checkpoints, '// &
-                        'from which mfv_run --resume continues; 0: only when the run is interrupted', lower=0.0_wp, &
-                        upper=1.0e6_wp, default='10')
+      call keys%add('output', 'file', kind_text, 'result file (HDF5); if omitted: the name of the case file with .h5, in the '// &
+                    'working directory')
+      call keys%add('output', 'history', kind_choice, 'a history record an event, a step end, or none', default='events', &
+                    choices='events steps none')
+      call keys%add('output', 'states', kind_choice, 'state kept at every reversal of a step with cycles, only at the end of '// &
+                    'every step, or none but the last', default='reversals', choices='reversals steps none')
+      call keys%add('output', 'error_estimate', kind_logical, 'whether the case is also solved on coarser meshes, to tell the '// &
+                    'discretisation error of half-width, stick ratio, peak tractions and dissipation', default='.false.')
+      call keys%add('output', 'sensitivity', kind_logical, 'whether the case is run once more with all coefficients of '// &
+                    'friction times 1 + 1e-12, to report how much that changes tractions, dissipation and stick ratio', &
+                    default='.false.')
+      call keys%add('output', 'checkpoint_minutes', kind_real, 'mfv_run: least time between two checkpoints, from which '// &
+                    'mfv_run --resume continues; 0: only when the run is interrupted', unit='minutes', lower=0.0_wp, &
+                    upper=1.0e6_wp, default='10')
    end subroutine add_output_keys
 
 end module mfv_case_keys

@@ -7,8 +7,7 @@ module mfv_draft
    use mfv_case_keys, only: case_catalogue
    use mfv_case_reader, only: read_case_groups
    use mfv_error, only: error_type, set_error
-   use mfv_key_path, only: read_key_name
-   use mfv_keys, only: catalogue_type
+   use mfv_keys, only: catalogue_type, read_key_name
    use mfv_kinds, only: wp
    use mfv_material, only: flexibilities
    use mfv_motions, only: motions, motion_count

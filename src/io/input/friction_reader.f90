@@ -20,22 +20,19 @@ contains
       type(reader_type), intent(in) :: reader
       type(scene_type), intent(inout) :: scene
       type(error_type), allocatable, intent(out) :: error
-      type(string_type), allocatable :: needed(:), optional_ones(:)
+      type(string_type), allocatable :: keys(:)
+      character(:), allocatable :: coefficients, needed, known
       integer :: i
 
       scene%friction = no_friction()
       call new_friction_law(reader%text_value('friction', 1, 'law'), scene%friction%law)
       if (.not. allocated(scene%friction%law)) return
-      associate (law => scene%friction%law)
-         call law%parameters(needed, optional_ones)
-         do i = 1, size(needed)
-            call law%set_parameter(needed(i)%text, reader%real_value('friction', 1, needed(i)%text))
-         end do
-         do i = 1, size(optional_ones)
-            if (reader%has('friction', 1, optional_ones(i)%text)) &
-               call law%set_parameter(optional_ones(i)%text, reader%real_value('friction', 1, optional_ones(i)%text))
-         end do
-      end associate
+      keys = reader%catalogue%names('friction')
+      call find_keys_of_law(reader%text_value('friction', 1, 'law'), coefficients, needed, known)
+      do i = 1, size(keys)
+         if (has_word(known, keys(i)%text) .and. keys(i)%text /= 'mu_file' .and. reader%has('friction', 1, keys(i)%text)) &
+            call scene%friction%law%set_parameter(keys(i)%text, reader%real_value('friction', 1, keys(i)%text))
+      end do
       call read_coefficients(reader, scene%friction, error)
       if (.not. allocated(error)) call scene%friction%simplify()
    end subroutine read_friction
@@ -192,15 +189,15 @@ contains
       type(reader_type), intent(in) :: reader
       type(error_type), allocatable, intent(out) :: error
       real(wp), allocatable :: coefficients(:)
+      character(:), allocatable :: key
       logical :: law
       integer :: i
 
       law = reader%text_value('friction', 1, 'law') /= 'none'
-      if (law .and. reader%has('friction', 1, 'mu')) then
-         call reader%real_values('friction', 1, 'mu', coefficients)
-         law = any(coefficients > 0.0_wp)
-      else if (law .and. reader%has('friction', 1, 'mu_static')) then
-         call reader%real_values('friction', 1, 'mu_static', coefficients)
+      key = 'mu_static'
+      if (reader%has('friction', 1, 'mu')) key = 'mu'
+      if (law .and. reader%has('friction', 1, key)) then
+         call reader%real_values('friction', 1, key, coefficients)
          law = any(coefficients > 0.0_wp)
       end if
       do i = 1, count_groups(reader, 'step')

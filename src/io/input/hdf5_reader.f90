@@ -167,12 +167,13 @@ contains
          if (allocated(values)) deallocate (values)
          allocate (values(extent(1)), stat=code)
          if (code == 0) then
-            call read_values(dataset, name, values, extent, error)
+            call h5dread_f(dataset, H5T_NATIVE_DOUBLE, values, extent, code)
+            if (code /= 0) call set_error(error, MFV_INPUT_ERROR, name//' does not hold numbers')
          else
             call set_error(error, MFV_INPUT_ERROR, name//' does not fit into memory')
          end if
       end if
-      call close_dataset(dataset)
+      call h5dclose_f(dataset, code)
       if (allocated(error) .or. present(gaps)) return
       if (.not. all(ieee_is_finite(values))) call set_error(error, MFV_INPUT_ERROR, name//' is not finite at node '// &
                                                             to_text(findloc(ieee_is_finite(values), .false., dim=1)))
@@ -196,12 +197,13 @@ contains
       else
          allocate (values(extent(1), extent(2)), stat=code)
          if (code == 0) then
-            call read_values(dataset, name, values, extent, error)
+            call h5dread_f(dataset, H5T_NATIVE_DOUBLE, values, extent, code)
+            if (code /= 0) call set_error(error, MFV_INPUT_ERROR, name//' does not hold numbers')
          else
             call set_error(error, MFV_INPUT_ERROR, name//' does not fit into memory')
          end if
       end if
-      call close_dataset(dataset)
+      call h5dclose_f(dataset, code)
    end subroutine read_matrix
 
    !> Open a dataset of numbers with as many dimensions as `extent` has places, whose values are in this file.
@@ -211,7 +213,8 @@ contains
       integer(hid_t), intent(out) :: dataset
       integer(hsize_t), intent(out) :: extent(:)
       type(error_type), allocatable, intent(out) :: error
-      integer :: code
+      integer(hid_t) :: type
+      integer :: class, code, ignored
 
       extent = 0
       if (.not. has(file, name)) then
@@ -223,10 +226,17 @@ contains
          call set_error(error, MFV_INPUT_ERROR, name//' is no dataset of this file')
          return
       end if
-      call check_type(dataset, name, error)
+      class = -1
+      call h5dget_type_f(dataset, type, code)
+      if (code == 0) then
+         call h5tget_class_f(type, class, code)
+         call h5tclose_f(type, ignored)
+      end if
+      if (code /= 0 .or. .not. any(class == [H5T_INTEGER_F, H5T_FLOAT_F])) &
+         call set_error(error, MFV_INPUT_ERROR, name//' does not hold numbers')
       if (.not. allocated(error)) call find_extent(dataset, name, extent, error)
       if (.not. allocated(error)) call check_storage(dataset, name, extent, error)
-      if (allocated(error)) call close_dataset(dataset)
+      if (allocated(error)) call h5dclose_f(dataset, code)
    end subroutine open_dataset
 
    !> Open a dataset without following links to other files: HDF5 would open whatever these name. `code`: not 0 where it fails.
@@ -253,24 +263,6 @@ contains
 
       refuse_link = -1
    end function refuse_link
-
-   !> Error where a dataset does not hold numbers.
-   subroutine check_type(dataset, name, error)
-      integer(hid_t), intent(in) :: dataset
-      character(*), intent(in) :: name
-      type(error_type), allocatable, intent(out) :: error
-      integer(hid_t) :: type
-      integer :: class, code, ignored
-
-      class = -1
-      call h5dget_type_f(dataset, type, code)
-      if (code == 0) then
-         call h5tget_class_f(type, class, code)
-         call h5tclose_f(type, ignored)
-      end if
-      if (code /= 0 .or. .not. any(class == [H5T_INTEGER_F, H5T_FLOAT_F])) &
-         call set_error(error, MFV_INPUT_ERROR, name//' does not hold numbers')
-   end subroutine check_type
 
    !> How large a dataset is; one value is a vector too. Error where it has not as many dimensions as `extent` has places.
    subroutine find_extent(dataset, name, extent, error)
@@ -333,24 +325,5 @@ contains
          call set_error(error, MFV_INPUT_ERROR, name//' has fewer values in the file than its size says')
       end if
    end subroutine check_storage
-
-   subroutine read_values(dataset, name, values, extent, error)
-      integer(hid_t), intent(in) :: dataset
-      character(*), intent(in) :: name
-      real(wp), intent(out) :: values(*)
-      integer(hsize_t), intent(in) :: extent(:)
-      type(error_type), allocatable, intent(out) :: error
-      integer :: code
-
-      call h5dread_f(dataset, H5T_NATIVE_DOUBLE, values(:product(extent)), [product(extent)], code)
-      if (code /= 0) call set_error(error, MFV_INPUT_ERROR, name//' does not hold numbers')
-   end subroutine read_values
-
-   subroutine close_dataset(dataset)
-      integer(hid_t), intent(in) :: dataset
-      integer :: code
-
-      call h5dclose_f(dataset, code)
-   end subroutine close_dataset
 
 end module mfv_hdf5_reader

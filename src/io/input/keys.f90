@@ -1,13 +1,12 @@
 !> What a list of keys is made of: kinds, defaults, ranges and meanings of keys, in groups. A reader checks against such a list
-!> (mfv_key_reader), and the reference is printed from it.
+!> (mfv_key_reader), and the reference is printed from it. Names of keys with their groups: `friction%mu`, `body(2)%radius`.
 module mfv_keys
    use mfv_kinds, only: wp
-   use mfv_strings, only: add_text, has_word, list_of_words, nearest_name, quoted, string_type, to_text
+   use mfv_strings, only: add_text, has_word, list_of_words, lower_case, find_nearest_name, quoted, string_type, to_text
    implicit none
    private
    public :: key_type, catalogue_type, kind_real, kind_integer, kind_logical, kind_text, kind_choice, &
-             add_text_key, add_logical_key, add_choice_key, add_integer_key, add_real_key, add_positive_key, &
-             list_keys_as_markdown, describe_allowed, suggest
+             most_keys, list_keys_as_markdown, describe_allowed, suggest, read_key_name
 
    integer, parameter :: kind_real = 1, kind_integer = 2, kind_logical = 3, kind_text = 4, kind_choice = 5
 
@@ -32,103 +31,46 @@ module mfv_keys
    type :: catalogue_type
       character(:), allocatable :: group_list, repeated_groups
       type(key_type), allocatable :: keys(:)
+      !> Keys that have been added.
+      integer :: size = 0
    contains
+      procedure :: add => add_key
       procedure :: groups
       procedure :: place
       procedure :: names
    end type catalogue_type
 
+   !> Room for keys while they are added.
+   integer, parameter :: most_keys = 100
    character(len=1), parameter :: line_feed = achar(10)
 
 contains
 
-   subroutine add_text_key(keys, group, name, default, meaning)
-      type(key_type), allocatable, intent(inout) :: keys(:)
-      character(*), intent(in) :: group, name, default, meaning
-
-      call add_key(keys, group, name, kind_text, default, '', meaning)
-   end subroutine add_text_key
-
-   subroutine add_logical_key(keys, group, name, default, meaning)
-      type(key_type), allocatable, intent(inout) :: keys(:)
-      character(*), intent(in) :: group, name, default, meaning
-
-      call add_key(keys, group, name, kind_logical, default, '', meaning)
-   end subroutine add_logical_key
-
-   subroutine add_choice_key(keys, group, name, default, choices, meaning)
-      type(key_type), allocatable, intent(inout) :: keys(:)
-      character(*), intent(in) :: group, name, default, choices, meaning
-
-      call add_key(keys, group, name, kind_choice, default, '', meaning)
-      keys(size(keys))%choices = choices
-   end subroutine add_choice_key
-
-   !> A whole number from `lower` to `upper`.
-   subroutine add_integer_key(keys, group, name, default, meaning, lower, upper)
-      type(key_type), allocatable, intent(inout) :: keys(:)
-      character(*), intent(in) :: group, name, default, meaning
-      real(wp), intent(in) :: lower, upper
-
-      call add_key(keys, group, name, kind_integer, default, '', meaning)
-      keys(size(keys))%lower = lower
-      keys(size(keys))%upper = upper
-   end subroutine add_integer_key
-
-   !> A real from `lower` (itself allowed unless `lower_open`) to `upper`, and with a default, each where present.
-   subroutine add_real_key(keys, group, name, unit, meaning, lower, lower_open, upper, default)
-      type(key_type), allocatable, intent(inout) :: keys(:)
-      character(*), intent(in) :: group, name, unit, meaning
-      real(wp), intent(in), optional :: lower, upper
-      logical, intent(in), optional :: lower_open
-      character(*), intent(in), optional :: default
-
-      call add_key(keys, group, name, kind_real, '', unit, meaning)
-      if (present(default)) keys(size(keys))%default = default
-      if (present(lower)) keys(size(keys))%lower = lower
-      if (present(lower_open)) keys(size(keys))%lower_open = lower_open
-      if (present(upper)) keys(size(keys))%upper = upper
-   end subroutine add_real_key
-
-   subroutine add_positive_key(keys, group, name, unit, meaning)
-      type(key_type), allocatable, intent(inout) :: keys(:)
-      character(*), intent(in) :: group, name, unit, meaning
-
-      call add_real_key(keys, group, name, unit, meaning, lower=0.0_wp, lower_open=.true.)
-   end subroutine add_positive_key
-
-   !> Append a key. By move_alloc: a list of keys is made for every case that is read, and gfortran leaks the components of
-   !> arrays that a constructor joins.
-   subroutine add_key(keys, group, name, kind, default, unit, meaning)
-      type(key_type), allocatable, intent(inout) :: keys(:)
-      character(*), intent(in) :: group, name, default, unit, meaning
+   !> Append a key to a list with room for it. `above`, `lower`, `upper`: range of a number, for which the first is an open end.
+   subroutine add_key(self, group, name, kind, meaning, default, unit, choices, above, lower, upper)
+      class(catalogue_type), intent(inout) :: self
+      character(*), intent(in) :: group, name, meaning
       integer, intent(in) :: kind
-      type(key_type), allocatable :: longer(:)
-      integer :: i, n
+      character(*), intent(in), optional :: default, unit, choices
+      real(wp), intent(in), optional :: above, lower, upper
 
-      n = size(keys)
-      allocate (longer(n + 1))
-      do i = 1, n
-         call move_alloc(keys(i)%group, longer(i)%group)
-         call move_alloc(keys(i)%name, longer(i)%name)
-         call move_alloc(keys(i)%default, longer(i)%default)
-         call move_alloc(keys(i)%choices, longer(i)%choices)
-         call move_alloc(keys(i)%unit, longer(i)%unit)
-         call move_alloc(keys(i)%meaning, longer(i)%meaning)
-         longer(i)%kind = keys(i)%kind
-         longer(i)%lower = keys(i)%lower
-         longer(i)%upper = keys(i)%upper
-         longer(i)%lower_open = keys(i)%lower_open
-         longer(i)%is_list = keys(i)%is_list
-      end do
-      longer(n + 1)%group = group
-      longer(n + 1)%name = name
-      longer(n + 1)%kind = kind
-      longer(n + 1)%default = default
-      longer(n + 1)%choices = ''
-      longer(n + 1)%unit = unit
-      longer(n + 1)%meaning = meaning
-      call move_alloc(longer, keys)
+      self%size = self%size + 1
+      associate (key => self%keys(self%size))
+         key%group = group
+         key%name = name
+         key%kind = kind
+         key%meaning = meaning
+         key%default = ''
+         key%unit = ''
+         key%choices = ''
+         if (present(default)) key%default = default
+         if (present(unit)) key%unit = unit
+         if (present(choices)) key%choices = choices
+         if (present(lower)) key%lower = lower
+         if (present(above)) key%lower = above
+         key%lower_open = present(above)
+         if (present(upper)) key%upper = upper
+      end associate
    end subroutine add_key
 
    !> What values a key takes, in words, for messages and the reference.
@@ -165,7 +107,7 @@ contains
       type(string_type), intent(in) :: names(:)
       character(:), allocatable, intent(out) :: text
 
-      text = nearest_name(name, names)
+      call find_nearest_name(name, names, text)
       if (text /= '') text = '; did you mean '//prefix//text//'?'
    end subroutine suggest
 
@@ -233,5 +175,55 @@ contains
       if (key%default /= '' .and. any(key%kind == [kind_text, kind_choice])) default = '`'//quoted(key%default)//'`'
       text = text//'| `'//key%name//'` | '//allowed//' | '//default//' | '//key%unit//' | '//key%meaning//' |'//line_feed
    end subroutine add_row
+
+   !> Group, number of the group (1 unless written) and key of a name, which must be in a catalogue; in lower case. `why`: what is
+   !> wrong with it, empty where nothing is; whether there is a group of this number is for the caller to tell.
+   subroutine read_key_name(written, catalogue, group, number, key, why)
+      character(*), intent(in) :: written
+      type(catalogue_type), intent(in) :: catalogue
+      character(:), allocatable, intent(out) :: group, key, why
+      integer, intent(out) :: number
+      character(:), allocatable :: text
+      integer :: percent, bracket
+      logical :: repeats
+
+      why = ''
+      text = lower_case(written)
+      percent = index(text, '%')
+      bracket = index(text(:max(percent - 1, 0))//'(', '(')
+      group = text(:bracket - 1)
+      key = text(percent + 1:)
+      repeats = has_word(catalogue%repeated_groups, group)
+      number = 1
+      if (bracket < percent) number = number_in(text(bracket:percent - 1))
+      if (percent == 0) then
+         why = "must be 'group%key', 'group(number)%key'"
+      else if (number < 0) then
+         why = quoted(text(bracket:percent - 1))//' is no number of a group, such as (2)'
+      else if (.not. has_word(catalogue%group_list, group)) then
+         call suggest(group, catalogue%groups(), '', why)
+         why = 'unknown group'//why//'; groups are '//catalogue%group_list
+      else if (catalogue%place(group, key) == 0) then
+         call suggest(key, catalogue%names(group), '', why)
+         why = 'unknown key of &'//group//why
+      else if (repeats .and. bracket == percent) then
+         why = 'which &'//group//'? write '//group//'(1)%'//key
+      else if (.not. repeats .and. number /= 1) then
+         why = 'there is one &'//group//' only'
+      end if
+      if (why /= '') why = quoted(written)//': '//why
+   end subroutine read_key_name
+
+   !> The number in a pair of brackets, -1 where there is none.
+   pure integer function number_in(text)
+      character(*), intent(in) :: text
+      integer, parameter :: longest = 11
+      integer :: last
+
+      number_in = -1
+      last = len(text)
+      if (last < 3 .or. last > longest) return
+      if (text(last:) == ')' .and. verify(text(2:last - 1), '0123456789') == 0) read (text(2:last - 1), *) number_in
+   end function number_in
 
 end module mfv_keys

@@ -4,10 +4,10 @@ module mfv_advice_text
    use mfv_case, only: case_type
    use mfv_error, only: error_type
    use mfv_kinds, only: wp
-   use mfv_namelist, only: entry_type, group_type, parse_namelists, write_entry
+   use mfv_namelist, only: group_type, parse_namelists, write_entry
    use mfv_numbers, only: read_real
    use mfv_scene, only: solver_dgesv, solver_fft, solver_reduced
-   use mfv_strings, only: list_of_words, quoted, shortened, string_type, to_text
+   use mfv_strings, only: has_word, list_of_words, quoted, shortened, string_type, to_text
    implicit none
    private
    public :: write_advice, read_wanted_error, read_wanted_quantities
@@ -142,27 +142,20 @@ contains
       character(:), allocatable, intent(inout) :: text
       type(group_type), intent(in) :: groups(:)
       character(*), intent(in) :: name, keys, values
+      character(:), allocatable :: written
       integer :: i, j
 
       text = text//'&'//name//' '//values
       do i = 1, size(groups)
          if (groups(i)%name /= name) cycle
          do j = 1, size(groups(i)%entries)
-            if (index(' '//keys//' ', ' '//groups(i)%entries(j)%key//' ') == 0) call add_entry(text, groups(i)%entries(j))
+            if (has_word(keys, groups(i)%entries(j)%key)) cycle
+            call write_entry(groups(i)%entries(j), written)
+            text = text//', '//written
          end do
       end do
       text = text//' /'//line_feed
    end subroutine add_group
-
-   !> Append a key with its value as written.
-   subroutine add_entry(text, entry)
-      character(:), allocatable, intent(inout) :: text
-      type(entry_type), intent(in) :: entry
-      character(:), allocatable :: written
-
-      call write_entry(entry, written)
-      text = text//', '//written
-   end subroutine add_entry
 
    !> Append a comment.
    subroutine add_line(text, words)

@@ -42,7 +42,7 @@ module mfv_hdf5_restart
    contains
       generic :: exchange => exchange_reals, exchange_real, exchange_integers, exchange_integer
       procedure, private :: exchange_reals, exchange_real, exchange_integers, exchange_integer
-      procedure, private :: read_list, complain
+      procedure, private :: complain
    end type exchange_type
 
 contains
@@ -134,7 +134,13 @@ contains
          call exchange_state(self, 'state_', nodes, r%path%state)
       end associate
       do i = 1, mark_count
-         call exchange_mark(self, 'mark_'//to_text(i), nodes, simulation%restart%added, simulation%marks(i))
+         associate (mark => simulation%marks(i), name => 'mark_'//to_text(i))
+            call self%exchange(name//'_step', mark%step, 'step of the states '//name, 0, most)
+            call self%exchange(name//'_reversal', mark%reversal, 'reversal of the states '//name, 0, most)
+            if (mark%step == 0) cycle
+            mark%added = simulation%restart%added
+            call exchange_state(self, name//'_', nodes, mark%state)
+         end associate
       end do
       if (allocated(self%error) .or. .not. simulation%contact%model%tangential) return
       do i = 1, simulation%snapshot_count
@@ -142,20 +148,6 @@ contains
                             'slip at which stuck nodes hold in '//step_group(i))
       end do
    end subroutine exchange_restart
-
-   !> A state that the cycles need.
-   subroutine exchange_mark(self, name, nodes, added, mark)
-      type(exchange_type), intent(inout) :: self
-      character(*), intent(in) :: name
-      integer, intent(in) :: nodes, added
-      type(snapshot_type), intent(inout) :: mark
-
-      call self%exchange(name//'_step', mark%step, 'step of the states '//name, 0, most)
-      call self%exchange(name//'_reversal', mark%reversal, 'reversal of the states '//name, 0, most)
-      if (mark%step == 0) return
-      mark%added = added
-      call exchange_state(self, name//'_', nodes, mark%state)
-   end subroutine exchange_mark
 
    !> By what another scene is recognised: positions, gaps, coefficients of friction, and what uneven tractions make of the compliance;
    !> of the nodes that the mesh had at first.
@@ -351,16 +343,20 @@ contains
       character(*), intent(in) :: name, meaning
       integer, intent(inout) :: values(:)
       integer, intent(in), optional :: least, most
-      integer, allocatable :: theirs(:)
+      real(wp), allocatable :: theirs(:)
 
       if (allocated(self%error)) return
       if (self%reading) then
-         call self%read_list(name, size(values), theirs)
+         call read_vector(self%file, self%group//'/'//self%prefix//name, size(values), theirs, self%error)
          if (allocated(self%error)) return
-         if (present(least) .and. present(most)) then
-            if (any(theirs < least .or. theirs > most)) call self%complain(name)
+         if (any(abs(theirs) > real(huge(1), wp) + 1.0_wp)) then
+            call self%complain(name)
+            return
          end if
-         values = theirs
+         values = nint(theirs)
+         if (present(least) .and. present(most)) then
+            if (any(values < least .or. values > most)) call self%complain(name)
+         end if
       else
          call add_whole(self%fields, self%prefix//name, values, along_nothing, meaning)
       end if
@@ -390,23 +386,6 @@ contains
       call self%exchange(name, value, meaning)
       counter = nint(max(min(value, most), 0.0_wp), int64)
    end subroutine exchange_counter
-
-   !> `length` whole numbers of the file.
-   subroutine read_list(self, name, length, list)
-      class(exchange_type), intent(inout) :: self
-      character(*), intent(in) :: name
-      integer, intent(in) :: length
-      integer, allocatable, intent(out) :: list(:)
-      real(wp), allocatable :: values(:)
-
-      call read_vector(self%file, self%group//'/'//self%prefix//name, length, values, self%error)
-      if (allocated(self%error)) return
-      if (any(abs(values) > real(huge(1), wp) + 1.0_wp)) then
-         call self%complain(name)
-      else
-         list = nint(values)
-      end if
-   end subroutine read_list
 
    !> A value that no run writes.
    subroutine complain(self, name)

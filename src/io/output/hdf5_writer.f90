@@ -1,20 +1,20 @@
-!> Writing HDF5 files so that nothing half-written is left behind. HDF5 writes into memory; the bytes then go beside the file,
-!> and in its place when they are on the disk (mfv_safe_file). HDF5 itself never meets a full disk: it does not come back from
-!> one, it ends the process with a segmentation fault when that ends. What a failed run leaves of an earlier file is that file.
+!> Writing HDF5 files so that nothing half-written is left behind. HDF5 writes into memory; the bytes then replace the file
+!> (mfv_safe_file). HDF5 itself never meets a full disk: it does not come back from one, it ends the process with a segmentation
+!> fault when that ends. What a failed run leaves of an earlier file is that file.
 module mfv_hdf5_writer
    use, intrinsic :: iso_c_binding, only: c_char, c_loc, c_null_char, c_null_ptr, c_ptr
    use, intrinsic :: iso_fortran_env, only: int8, int64
    use hdf5
    use mfv_error, only: error_type, set_error
    use mfv_hdf5_start, only: start_hdf5
-   use mfv_kinds, only: wp
    use mfv_result_fields, only: along_nothing, field_type
-   use mfv_safe_file
+   use mfv_safe_file, only: check_replaceable, replace_file
    use mfv_status, only: MFV_FILE_ERROR, MFV_INPUT_ERROR
    use mfv_strings, only: to_text
+   use mfv_text_file, only: check_is_file
    implicit none
    private
-   public :: writer_type, check_writable, create_file, copy_and_open, finish_file, create_group, write_dataset, write_values, &
+   public :: writer_type, check_writable, create_file, read_bytes, open_copy, finish_file, create_group, write_dataset, &
              write_text, write_hdf5_version, note
 
    !> An open file.
@@ -22,15 +22,14 @@ module mfv_hdf5_writer
       integer(hid_t) :: file = -1
       !> First failure of an HDF5 call, 0 for none.
       integer :: code = 0
-      type(replacement_type), private :: replacement
       !> What the file must still be when it is replaced, for a copy with additions.
-      integer(int64), allocatable, private :: expected(:)
+      integer(int8), allocatable, private :: expected(:)
    end type writer_type
 
    !> Every result has this attribute of the root, and no other file.
    character(*), parameter :: mark_of_result = 'outcome'
-   !> Bytes by which a file in memory grows.
-   integer(size_t), parameter :: growth = 1048576
+   !> After a path: a name that no file has.
+   character(*), parameter :: in_memory_only = '/in_memory'
 
 contains
 
@@ -39,26 +38,13 @@ contains
    subroutine check_writable(path, error)
       character(*), intent(in) :: path
       type(error_type), allocatable, intent(out) :: error
-      type(replacement_type) :: replacement
-
-      call begin_checked(path, replacement, error)
-      call drop_replacement(replacement)
-      if (allocated(error)) error%status = MFV_INPUT_ERROR
-   end subroutine check_writable
-
-   !> Begin a file that is to become `path`. Error MFV_FILE_ERROR; see check_writable.
-   subroutine begin_checked(path, replacement, error)
-      character(*), intent(in) :: path
-      type(replacement_type), intent(out) :: replacement
-      type(error_type), allocatable, intent(out) :: error
       logical :: is_there
 
-      call begin_replacement(path, replacement, error)
-      if (allocated(error)) return
+      call check_replaceable(path, error)
       inquire (file=path, exist=is_there)
-      if (is_there) call check_is_result(path, error)
-      if (allocated(error)) call drop_replacement(replacement)
-   end subroutine begin_checked
+      if (is_there .and. .not. allocated(error)) call check_is_result(path, error)
+      if (allocated(error)) error%status = MFV_INPUT_ERROR
+   end subroutine check_writable
 
    !> Whether the file that is there may be replaced. Error MFV_FILE_ERROR.
    subroutine check_is_result(path, error)
@@ -87,7 +73,7 @@ contains
       call h5fclose_f(file, code)
    end subroutine check_is_result
 
-   !> Begin the file that is to become `path`, empty. Error MFV_FILE_ERROR; see check_writable for what is not replaced.
+   !> Begin an empty file, which is to become `path`. Error MFV_FILE_ERROR; see check_writable for what is not replaced.
    subroutine create_file(path, writer, error)
       character(*), intent(in) :: path
       type(writer_type), intent(out) :: writer
@@ -95,58 +81,60 @@ contains
       integer(hid_t) :: access
       integer :: code
 
-      call begin_checked(path, writer%replacement, error)
-      if (allocated(error)) return
-      call start_hdf5()
-      call in_memory(access, writer)
-      call h5fcreate_f(writer%replacement%part, H5F_ACC_TRUNC_F, writer%file, code, access_prp=access)
-      call note(writer, code)
-      call h5pclose_f(access, code)
-   end subroutine create_file
-
-   !> Copy the HDF5 file at `path` and open the copy, which is to take its place. `identity`: the file as it was when what is
-   !> to be added was made from it, see identify_file; where it is another one in the end, it is not replaced. Error
-   !> MFV_FILE_ERROR.
-   subroutine copy_and_open(path, identity, writer, error)
-      character(*), intent(in) :: path
-      integer(int64), intent(in) :: identity(:)
-      type(writer_type), intent(out) :: writer
-      type(error_type), allocatable, intent(out) :: error
-      character(len=200) :: why
-      integer(int8), allocatable, target :: bytes(:)
-      integer(int64) :: length
-      integer(hid_t) :: access
-      integer :: code, unit
-
-      call begin_replacement(path, writer%replacement, error)
-      if (allocated(error)) return
-      writer%expected = identity
-      open (newunit=unit, file=path, access='stream', form='unformatted', action='read', status='old', iostat=code, iomsg=why)
-      if (code == 0) then
-         inquire (unit=unit, size=length)
-         allocate (bytes(length), stat=code, errmsg=why)
-         if (code == 0) read (unit, iostat=code, iomsg=why) bytes
-         close (unit)
-      end if
-      if (code /= 0) then
-         call drop_replacement(writer%replacement)
-         call set_error(error, MFV_FILE_ERROR, path//' cannot be read: '//trim(why))
+      call check_writable(path, error)
+      if (allocated(error)) then
+         error%status = MFV_FILE_ERROR
          return
       end if
       call start_hdf5()
       call in_memory(access, writer)
-      call h5pset_file_image_f(access, c_loc(bytes), size(bytes, kind=size_t), code)
-      call note(writer, code)
-      ! HDF5 wants a name that no file has.
-      call h5fopen_f(writer%replacement%part//'/in_memory', H5F_ACC_RDWR_F, writer%file, code, access_prp=access)
+      call h5fcreate_f(path//in_memory_only, H5F_ACC_TRUNC_F, writer%file, code, access_prp=access)
       call note(writer, code)
       call h5pclose_f(access, code)
-   end subroutine copy_and_open
+   end subroutine create_file
+
+   !> Open a copy of a file, given by its `bytes`, which is to take its place if it still is this file then.
+   subroutine open_copy(path, bytes, writer)
+      character(*), intent(in) :: path
+      integer(int8), intent(in), target :: bytes(:)
+      type(writer_type), intent(out) :: writer
+      integer(hid_t) :: access
+      integer :: code
+
+      writer%expected = bytes
+      call start_hdf5()
+      call in_memory(access, writer)
+      call h5pset_file_image_f(access, c_loc(bytes), size(bytes, kind=size_t), code)
+      call note(writer, code)
+      call h5fopen_f(path//in_memory_only, H5F_ACC_RDWR_F, writer%file, code, access_prp=access)
+      call note(writer, code)
+      call h5pclose_f(access, code)
+   end subroutine open_copy
+
+   !> The bytes of a file; not allocated where it cannot be read.
+   subroutine read_bytes(path, bytes)
+      character(*), intent(in) :: path
+      integer(int8), allocatable, intent(out) :: bytes(:)
+      type(error_type), allocatable :: error
+      integer(int64) :: length
+      integer :: code, unit
+
+      call check_is_file(path, error)
+      if (allocated(error)) return
+      open (newunit=unit, file=path, access='stream', form='unformatted', action='read', status='old', iostat=code)
+      if (code /= 0) return
+      inquire (unit=unit, size=length)
+      allocate (bytes(length), stat=code)
+      if (code == 0) read (unit, iostat=code) bytes
+      close (unit)
+      if (code /= 0 .and. allocated(bytes)) deallocate (bytes)
+   end subroutine read_bytes
 
    !> Properties of a file that is in memory only; to be closed.
    subroutine in_memory(access, writer)
       integer(hid_t), intent(out) :: access
       type(writer_type), intent(inout) :: writer
+      integer(size_t), parameter :: growth = 1048576
       logical, parameter :: is_written_at_the_end = .false.
       integer :: code
 
@@ -171,13 +159,27 @@ contains
          call note(writer, code)
       end if
       if (writer%code /= 0) then
-         call drop_replacement(writer%replacement)
          call set_error(error, MFV_FILE_ERROR, path//': '//what//' could not be written: HDF5 failed, perhaps for want of memory')
-         return
+      else if (has_changed(path, writer)) then
+         call set_error(error, MFV_FILE_ERROR, path//' cannot be written: another process has replaced it in the meantime; '// &
+                        'start again')
+      else
+         call replace_file(path, bytes, error)
       end if
-      call write_replacement(writer%replacement, bytes, error)
-      if (.not. allocated(error)) call finish_replacement(writer%replacement, error, writer%expected)
    end subroutine finish_file
+
+   !> Whether a file that has been copied is another one now.
+   logical function has_changed(path, writer)
+      character(*), intent(in) :: path
+      type(writer_type), intent(in) :: writer
+      integer(int8), allocatable :: bytes(:)
+
+      has_changed = allocated(writer%expected)
+      if (.not. has_changed) return
+      call read_bytes(path, bytes)
+      if (.not. allocated(bytes)) return
+      if (size(bytes) == size(writer%expected)) has_changed = any(bytes /= writer%expected)
+   end function has_changed
 
    !> The bytes of the file in memory.
    subroutine find_bytes(writer, bytes)
@@ -213,36 +215,39 @@ contains
       if (code == 0) call h5gclose_f(id, code)
    end subroutine create_group
 
-   !> One dataset with its unit, description and flags; it is left open.
-   subroutine write_dataset(writer, group, field, dataset)
+   !> The dataset of a field at `path`, with its unit, description and flags; it is left open. `shape`: its dimensions, the fastest
+   !> first, where it has more than one.
+   subroutine write_dataset(writer, path, field, dataset, shape)
       type(writer_type), intent(inout) :: writer
-      character(*), intent(in) :: group
+      character(*), intent(in) :: path
       type(field_type), intent(in) :: field
       integer(hid_t), intent(out) :: dataset
+      integer, intent(in), optional :: shape(:)
       integer(hid_t) :: space, stored_type
-      integer(hsize_t) :: extent(1)
+      integer(hsize_t), allocatable :: extent(:)
       integer :: code
 
       if (allocated(field%whole)) then
-         extent = size(field%whole)
+         extent = [size(field%whole, kind=hsize_t)]
          stored_type = H5T_STD_I32LE
       else
-         extent = size(field%values)
+         extent = [size(field%values, kind=hsize_t)]
          stored_type = H5T_IEEE_F64LE
       end if
+      if (present(shape)) extent = int(shape, hsize_t)
       if (field%along == along_nothing .and. extent(1) == 1) then
          call h5screate_f(H5S_SCALAR_F, space, code)
       else
-         call h5screate_simple_f(1, extent, space, code)
+         call h5screate_simple_f(size(extent), extent, space, code)
       end if
       call note(writer, code)
-      call h5dcreate_f(writer%file, '/'//group//'/'//field%name, stored_type, space, dataset, code)
+      call h5dcreate_f(writer%file, path, stored_type, space, dataset, code)
       call note(writer, code)
       if (code /= 0) return
       if (allocated(field%whole)) then
          call h5dwrite_f(dataset, H5T_NATIVE_INTEGER, field%whole, extent, code)
       else
-         call h5dwrite_f(dataset, H5T_NATIVE_DOUBLE, field%values, extent, code)
+         call h5dwrite_f(dataset, H5T_NATIVE_DOUBLE, field%values, [product(extent)], code)
       end if
       call note(writer, code)
       call h5sclose_f(space, code)
@@ -250,33 +255,6 @@ contains
       call write_text(writer, dataset, 'long_name', field%description)
       if (field%flags /= '') call write_flags(writer, dataset, field%flags)
    end subroutine write_dataset
-
-   !> A dataset of real values with its unit and description; `extent`: its dimensions, the fastest first, none for a
-   !> scalar. It is left open.
-   subroutine write_values(writer, path, values, extent, unit, description, dataset)
-      type(writer_type), intent(inout) :: writer
-      character(*), intent(in) :: path, unit, description
-      real(wp), intent(in) :: values(:)
-      integer, intent(in) :: extent(:)
-      integer(hid_t), intent(out) :: dataset
-      integer(hid_t) :: space
-      integer :: code
-
-      if (size(extent) == 0) then
-         call h5screate_f(H5S_SCALAR_F, space, code)
-      else
-         call h5screate_simple_f(size(extent), int(extent, hsize_t), space, code)
-      end if
-      call note(writer, code)
-      call h5dcreate_f(writer%file, path, H5T_IEEE_F64LE, space, dataset, code)
-      call note(writer, code)
-      if (code /= 0) return
-      call h5dwrite_f(dataset, H5T_NATIVE_DOUBLE, values, [int(size(values), hsize_t)], code)
-      call note(writer, code)
-      call h5sclose_f(space, code)
-      call write_text(writer, dataset, 'units', unit)
-      call write_text(writer, dataset, 'long_name', description)
-   end subroutine write_values
 
    !> The meaning of coded values, as the CF conventions have it: flag_values and flag_meanings.
    subroutine write_flags(writer, dataset, flags)

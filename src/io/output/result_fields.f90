@@ -7,7 +7,6 @@ module mfv_result_fields
    use mfv_case, only: case_type
    use mfv_certificate, only: residual_count, residual_descriptions, residual_names
    use mfv_closed_form, only: closed_form_of, closed_form_type
-   use mfv_compliance, only: block_up, block_ut, block_wp, block_wt
    use mfv_contact_state, only: contact_state_type
    use mfv_error_bar
    use mfv_cycle, only: cycle_type
@@ -27,12 +26,15 @@ module mfv_result_fields
    implicit none
    private
    public :: field_type, result_groups, group_fields, field_named, step_group, along_nodes, along_records, &
-             along_companions, along_cycles, along_patches, along_nothing, scale_count
+             along_companions, along_cycles, along_patches, along_nothing, scale_count, scale_group, scale_name
    public :: result_attributes, add_real, add_whole
 
    !> What the values of a field run along.
    integer, parameter :: along_nothing = 0, along_nodes = 1, along_records = 2, along_companions = 3, along_cycles = 4, &
                          along_patches = 5, scale_count = 5
+   !> Group and name of the field that numbers them.
+   character(*), parameter :: scale_group(scale_count) = [character(14) :: 'mesh', 'history', 'error_estimate', 'cycles', 'patches']
+   character(*), parameter :: scale_name(scale_count) = [character(15) :: 'x', 'record', 'companion_nodes', 'cycle', 'patch']
 
    !> One named quantity: real `values` or whole numbers `whole`, the other not allocated.
    type :: field_type
@@ -44,10 +46,15 @@ module mfv_result_fields
       character(:), allocatable :: flags
    end type field_type
 
-   !> Units of a case, as labels.
-   type :: units_type
-      character(:), allocatable :: length, force, traction, energy
-   end type units_type
+   !> Fields that are being gathered. Units are given in terms of length and force, such as force/length^2; the fields have the user's
+   !> names for those two.
+   type :: list_type
+      type(field_type), allocatable :: fields(:)
+      character(:), allocatable :: length_unit, force_unit
+   contains
+      generic :: add => add_number, add_count, add_numbers, add_counts
+      procedure, private :: add_number, add_count, add_numbers, add_counts
+   end type list_type
 
    !> Moments whose tractions can be asked for: where the cycles begin; the far end of the last cycle; its end.
    character(*), parameter :: moment_names(3) = [character(8) :: 'loading', 'reversal', 'return']
@@ -106,48 +113,50 @@ contains
       type(simulation_type), intent(in) :: simulation
       character(*), intent(in) :: group
       type(field_type), allocatable, intent(out) :: fields(:)
-      type(units_type) :: units
+      type(list_type) :: list
       integer :: number, code, i
 
-      call name_units(case%length_unit, case%force_unit, units)
-      allocate (fields(0))
+      list%length_unit = case%length_unit
+      list%force_unit = case%force_unit
+      allocate (list%fields(0))
       select case (group)
       case ('scene')
-         call add_scene(fields, simulation, units)
+         call add_scene(list, simulation)
       case ('compliance')
-         call add_compliance(fields, simulation)
+         call add_compliance(list, simulation)
       case ('mesh')
-         call add_mesh(fields, simulation, units)
+         call add_mesh(list, simulation)
       case ('state')
-         call add_state(fields, simulation, simulation%contact%state, units)
+         call add_state(list, simulation, simulation%contact%state)
       case ('summary')
-         call add_summary(fields, simulation, simulation%contact%state, units)
+         call add_summary(list, simulation, simulation%contact%state)
       case ('certificate')
-         call add_certificate(fields, simulation)
+         call add_certificate(list, simulation)
       case ('observables')
-         call add_observables(fields, simulation, units)
+         call add_observables(list, simulation)
       case ('patches')
-         call add_patches(fields, simulation, units)
+         call add_patches(list, simulation)
       case ('cycles')
-         if (simulation%cycle_count > 0) call add_cycles(fields, simulation, units)
+         if (simulation%cycle_count > 0) call add_cycles(list, simulation)
       case ('reference')
-         call add_reference(fields, simulation, units)
+         call add_reference(list, simulation)
       case ('error_estimate')
-         if (has_estimate(simulation)) call add_estimate(fields, simulation, simulation%estimate, units)
+         if (has_estimate(simulation)) call add_estimate(list, simulation, simulation%estimate)
       case ('sensitivity')
-         if (has_sensitivity(simulation)) call add_sensitivity(fields, simulation%sensitivity)
+         if (has_sensitivity(simulation)) call add_sensitivity(list, simulation%sensitivity)
       case ('history')
-         if (simulation%keep_history /= history_none) call add_history(fields, simulation, units)
+         if (simulation%keep_history /= history_none) call add_history(list, simulation)
       case default
          do i = 1, size(moment_names)
-            if (group == 'moments/'//moment_names(i)) call add_moment(fields, simulation, moment_marks(i), units)
+            if (group == 'moments/'//moment_names(i)) call add_moment(list, simulation, moment_marks(i))
          end do
-         if (index(group, 'steps/') /= 1) return
-         read (group(len('steps/') + 1:), '(i10)', iostat=code) number
-         if (code /= 0) return
-         if (number < 1 .or. number > simulation%snapshot_count) return
-         if (group == step_group(number)) call add_step(fields, simulation, number, units)
+         number = 0
+         if (index(group, 'steps/') == 1) read (group(len('steps/') + 1:), '(i10)', iostat=code) number
+         if (number >= 1 .and. number <= simulation%snapshot_count) then
+            if (group == step_group(number)) call add_step(list, simulation, number)
+         end if
       end select
+      call move_alloc(list%fields, fields)
    end subroutine group_fields
 
    !> Whether there are error bars.
@@ -255,143 +264,113 @@ contains
       text = list(number)%text
    end function word
 
-   subroutine add_scene(fields, simulation, units)
-      type(field_type), allocatable, intent(inout) :: fields(:)
+   subroutine add_scene(list, simulation)
+      type(list_type), intent(inout) :: list
       type(simulation_type), intent(in) :: simulation
-      type(units_type), intent(in) :: units
 
       associate (scene => simulation%contact%model%scene)
-         call add_body(fields, 'lower', scene%lower, units)
-         call add_body(fields, 'upper', scene%upper, units)
+         call add_body(list, 'lower', scene%lower)
+         call add_body(list, 'upper', scene%upper)
          if (scene%modulus() > 0.0_wp) then
-            call add_scalar(fields, 'contact_modulus', scene%modulus(), units%traction, &
-                            'modulus m of both bodies, 1/m = sum of (kappa + 1)/(4 G)')
-            call add_scalar(fields, 'dundurs_beta', scene%dundurs_beta(), '1', &
-                            "Dundurs' parameter beta, positive where the lower body couples more")
+            call list%add('contact_modulus', scene%modulus(), 'force/length^2', 'modulus m of both bodies, 1/m = sum of '// &
+                          '(kappa + 1)/(4 G)')
+            call list%add('dundurs_beta', scene%dundurs_beta(), '1', "Dundurs' parameter beta, positive where the lower body "// &
+                          "couples more")
          end if
-         call add_scalar(fields, 'curvature', scene%curvature(), '1/'//units%length, &
-                         'relative curvature of disks and holes at the pole')
-         call add_scalar(fields, 'friction_coefficient', scene%friction%static%largest(), '1', &
-                         'largest (static) coefficient of friction, 0 without friction')
+         call list%add('curvature', scene%curvature(), '1/length', 'relative curvature of disks and holes at the pole')
+         call list%add('friction_coefficient', scene%friction%static%largest(), '1', 'largest (static) coefficient of '// &
+                       'friction, 0 without friction')
       end associate
    end subroutine add_scene
 
    !> What is known of one body.
-   subroutine add_body(fields, name, body, units)
-      type(field_type), allocatable, intent(inout) :: fields(:)
+   subroutine add_body(list, name, body)
+      type(list_type), intent(inout) :: list
       character(*), intent(in) :: name
       type(body_type), intent(in) :: body
-      type(units_type), intent(in) :: units
 
-      if (body%circular()) call add_scalar(fields, name//'_radius', body%radius, units%length, &
-                                           'radius of the '//name//' body')
+      if (body%circular()) call list%add(name//'_radius', body%radius, 'length', 'radius of the '//name//' body')
       if (.not. body%material%shear_modulus > 0.0_wp) return
-      call add_scalar(fields, name//'_shear_modulus', body%material%shear_modulus, units%traction, &
-                      'shear modulus of the '//name//' body')
-      call add_scalar(fields, name//'_poisson_ratio', body%material%poisson_ratio, '1', &
-                      "Poisson's ratio of the "//name//' body')
-      call add_scalar(fields, name//'_kolosov_constant', body%material%kolosov, '1', &
-                      "Kolosov's constant of the "//name//' body')
-      call add_scalar(fields, name//'_datum', body%datum, units%length, &
-                      'distance from the origin at which displacements of the '//name//' body are measured')
+      call list%add(name//'_shear_modulus', body%material%shear_modulus, 'force/length^2', 'shear modulus of the '//name//' body')
+      call list%add(name//'_poisson_ratio', body%material%poisson_ratio, '1', "Poisson's ratio of the "//name//' body')
+      call list%add(name//'_kolosov_constant', body%material%kolosov, '1', "Kolosov's constant of the "//name//' body')
+      call list%add(name//'_datum', body%datum, 'length', 'distance from the origin at which displacements of the '//name// &
+                    ' body are measured')
    end subroutine add_body
 
    !> Which compliance blocks the scene needed, and the memory of what they are made from.
-   subroutine add_compliance(fields, simulation)
-      type(field_type), allocatable, intent(inout) :: fields(:)
+   subroutine add_compliance(list, simulation)
+      type(list_type), intent(inout) :: list
       type(simulation_type), intent(in) :: simulation
+      character(*), parameter :: blocks(4) = ['wp', 'wt', 'up', 'ut'], bodies(2) = ['lower', 'upper']
+      integer :: i, bytes
 
       associate (pair => simulation%contact%model%compliance)
-         call add_scalar_whole(fields, 'wp', merge(1, 0, pair%elastic_block(block_wp)), 'whether C_wp exists')
-         call add_scalar_whole(fields, 'wt', merge(1, 0, pair%elastic_block(block_wt)), 'whether C_wt exists')
-         call add_scalar_whole(fields, 'up', merge(1, 0, pair%elastic_block(block_up)), 'whether C_up exists')
-         call add_scalar_whole(fields, 'ut', merge(1, 0, pair%elastic_block(block_ut)), 'whether C_ut exists')
-         call add_scalar_whole(fields, 'lower_bytes', stored(part_lower), 'bytes of the lower body''s kernels or matrix')
-         call add_scalar_whole(fields, 'upper_bytes', stored(part_upper), 'bytes of the upper body''s kernels or matrix')
+         do i = 1, size(blocks)
+            call list%add(blocks(i), merge(1, 0, pair%elastic_block(i)), 'whether C_'//blocks(i)//' exists')
+         end do
+         do i = 1, size(bodies)
+            bytes = 0
+            if (pair%deforms(i)) bytes = int(pair%part(i)%compliance%bytes())
+            call list%add(bodies(i)//'_bytes', bytes, 'bytes of the '//bodies(i)//" body's kernels or matrix")
+         end do
       end associate
-
-   contains
-
-      integer function stored(part)
-         integer, intent(in) :: part
-
-         stored = 0
-         associate (pair => simulation%contact%model%compliance)
-            if (pair%deforms(part)) stored = int(pair%part(part)%compliance%bytes())
-         end associate
-      end function stored
    end subroutine add_compliance
 
-   subroutine add_mesh(fields, simulation, units)
-      type(field_type), allocatable, intent(inout) :: fields(:)
+   subroutine add_mesh(list, simulation)
+      type(list_type), intent(inout) :: list
       type(simulation_type), intent(in) :: simulation
-      type(units_type), intent(in) :: units
 
       associate (model => simulation%contact%model)
-         call add_real(fields, 'x', model%x, along_nodes, units%length, 'position of the nodes')
-         call add_real(fields, 'initial_gap', visible_gap(simulation, model%initial_gap), along_nodes, units%length, &
-                       'gap of the undeformed bodies, infinite where one of them has no surface')
-         if (model%scene%arc_radius() > 0.0_wp) &
-            call add_real(fields, 'arc', model%arc, along_nodes, units%length, 'distance of the nodes from the origin along '// &
-                          'the surface')
-         call add_scalar(fields, 'interval', model%interval(), units%length, 'width of an interval')
-         call add_real(fields, 'width', model%width, along_nodes, units%length, 'surface that belongs to each node')
+         call list%add('x', model%x, along_nodes, 'length', 'position of the nodes')
+         call list%add('initial_gap', visible_gap(simulation, model%initial_gap), along_nodes, 'length', 'gap of the '// &
+                       'undeformed bodies, infinite where one of them has no surface')
+         if (model%scene%arc_radius() > 0.0_wp) call list%add('arc', model%arc, along_nodes, 'length', 'distance of the nodes '// &
+                                                              'from the origin along the surface')
+         call list%add('interval', model%interval(), 'length', 'width of an interval')
+         call list%add('width', model%width, along_nodes, 'length', 'surface that belongs to each node')
          if (model%scene%friction%acts()) then
-            call add_real(fields, 'static_friction', model%static_friction, along_nodes, '1', &
-                          'coefficient of friction of nodes that hold')
-            call add_real(fields, 'kinetic_friction', model%kinetic_friction, along_nodes, '1', &
-                          'coefficient of friction of nodes that slip, in the end')
+            call list%add('static_friction', model%static_friction, along_nodes, '1', 'coefficient of friction of nodes that hold')
+            call list%add('kinetic_friction', model%kinetic_friction, along_nodes, '1', 'coefficient of friction of nodes '// &
+                          'that slip, in the end')
          end if
       end associate
    end subroutine add_mesh
 
-   !> The fields of a state.
-   subroutine add_state(fields, simulation, state, units)
-      type(field_type), allocatable, intent(inout) :: fields(:)
+   !> The fields of a state, with the edges of all zones, of which the tractions between nodes are made.
+   subroutine add_state(list, simulation, state)
+      type(list_type), intent(inout) :: list
       type(simulation_type), intent(in) :: simulation
       type(contact_state_type), intent(in) :: state
-      type(units_type), intent(in) :: units
+      real(wp), dimension(simulation%contact%model%nodes()) :: contact_edge, stick_edge
+      character(*), parameter :: where_from = ' zones between nodes, along the surface from the origin: the left edge at the '// &
+         'first node of a zone, the right one at its last node; NaN at all others'
 
-      call add_displacements(fields, simulation, state, units)
+      call add_displacements(list, simulation, state)
       associate (model => simulation%contact%model)
-         call add_real(fields, 'pressure', state%fields%pressure, along_nodes, units%traction, pressure_meaning)
-         call add_real(fields, 'shear', state%fields%shear, along_nodes, units%traction, shear_meaning)
-         call add_real(fields, 'gap', visible_gap(simulation, model%gap(state%fields)), along_nodes, units%length, &
-                       'gap between the bodies, infinite where one of them has no surface')
-         call add_real(fields, 'slip', modelled(simulation, state%fields%slip()), along_nodes, units%length, &
-                       'slip s = u - U of the lower surface against the upper body (not modelled without friction)')
-         call add_whole(fields, 'status', state%status, along_nodes, 'contact status of the nodes', node_status_names)
-         if (model%tangential) call add_real(fields, 'friction_work', state%friction_work, along_nodes, units%force, &
-                       'energy dissipated so far per unit of surface')
+         call list%add('pressure', state%fields%pressure, along_nodes, 'force/length^2', pressure_meaning)
+         call list%add('shear', state%fields%shear, along_nodes, 'force/length^2', shear_meaning)
+         call list%add('gap', visible_gap(simulation, model%gap(state%fields)), along_nodes, 'length', 'gap between the '// &
+                       'bodies, infinite where one of them has no surface')
+         call list%add('slip', modelled(simulation, state%fields%slip()), along_nodes, 'length', 'slip s = u - U of the lower '// &
+                       'surface against the upper body (not modelled without friction)')
+         call list%add('status', state%status, along_nodes, 'contact status of the nodes', node_status_names)
+         if (model%tangential) call list%add('friction_work', state%friction_work, along_nodes, 'force/length', 'energy '// &
+                                             'dissipated so far per unit of surface')
       end associate
-      call add_zone_edges(fields, simulation, state, units)
+      call find_edges_at_nodes(simulation%contact%model, state, contact_edge, stick_edge)
+      call list%add('contact_edge', contact_edge, along_nodes, 'length', 'edges of contact'//where_from)
+      if (simulation%contact%model%tangential) call list%add('stick_edge', stick_edge, along_nodes, 'length', 'edges of stick'// &
+                                                             where_from)
    end subroutine add_state
 
-   !> Edges of all zones, of which the tractions between nodes are made.
-   subroutine add_zone_edges(fields, simulation, state, units)
-      type(field_type), allocatable, intent(inout) :: fields(:)
-      type(simulation_type), intent(in) :: simulation
-      type(contact_state_type), intent(in) :: state
-      type(units_type), intent(in) :: units
-      real(wp), dimension(simulation%contact%model%nodes()) :: contact_edge, stick_edge
-      character(*), parameter :: where_from = ' zones between nodes, along the surface from the origin: the left '// &
-                                 'edge at the first node of a zone, the right one at its last node; NaN at all others'
-
-      call find_edges_at_nodes(simulation%contact%model, state, contact_edge, stick_edge)
-      call add_real(fields, 'contact_edge', contact_edge, along_nodes, units%length, 'edges of contact'//where_from)
-      if (simulation%contact%model%tangential) &
-         call add_real(fields, 'stick_edge', stick_edge, along_nodes, units%length, 'edges of stick'//where_from)
-   end subroutine add_zone_edges
-
    !> Displacements of the surface of each elastic body.
-   subroutine add_displacements(fields, simulation, state, units)
-      type(field_type), allocatable, intent(inout) :: fields(:)
+   subroutine add_displacements(list, simulation, state)
+      type(list_type), intent(inout) :: list
       type(simulation_type), intent(in) :: simulation
       type(contact_state_type), intent(in) :: state
-      type(units_type), intent(in) :: units
       real(wp), dimension(simulation%contact%model%nodes()) :: normal, tangential
-      character(*), parameter :: prefix(2) = [character(6) :: '', 'upper_'], &
-                                              body(2) = [character(5) :: 'lower', 'upper']
+      character(*), parameter :: prefix(2) = [character(6) :: '', 'upper_'], body(2) = [character(5) :: 'lower', 'upper']
       integer :: part
 
       do part = part_lower, part_upper
@@ -399,11 +378,10 @@ contains
             if (.not. pair%deforms(part)) cycle
             call pair%part_displacements(part, state%fields%pressure, state%fields%shear, normal, tangential)
          end associate
-         call add_real(fields, trim(prefix(part))//'normal_displacement', normal, along_nodes, units%length, &
-                       'displacement w of the '//body(part)//' surface into its body')
-         call add_real(fields, trim(prefix(part))//'tangential_displacement', modelled(simulation, tangential), along_nodes, &
-                       units%length, 'displacement u of the '//body(part)//' surface to the right (not modelled without '// &
-                       'friction)')
+         call list%add(trim(prefix(part))//'normal_displacement', normal, along_nodes, 'length', 'displacement w of the '// &
+                       body(part)//' surface into its body')
+         call list%add(trim(prefix(part))//'tangential_displacement', modelled(simulation, tangential), along_nodes, 'length', &
+                       'displacement u of the '//body(part)//' surface to the right (not modelled without friction)')
       end do
    end subroutine add_displacements
 
@@ -428,106 +406,91 @@ contains
    end function visible_gap
 
    !> The state at the end of a step or reversal, with its loads.
-   subroutine add_step(fields, simulation, number, units)
-      type(field_type), allocatable, intent(inout) :: fields(:)
+   subroutine add_step(list, simulation, number)
+      type(list_type), intent(inout) :: list
       type(simulation_type), intent(in) :: simulation
       integer, intent(in) :: number
-      type(units_type), intent(in) :: units
       type(contact_state_type) :: state
 
       state = simulation%padded_state(number)
-      call add_state(fields, simulation, state, units)
-      call add_loads(fields, simulation, state, units)
-      call add_scalar_whole(fields, 'step', simulation%snapshots(number)%step, 'number of the step')
-      call add_scalar_whole(fields, 'reversal', simulation%snapshots(number)%reversal, &
-                            'number of the reversal in the step, 1 for a step without cycles')
+      call add_state(list, simulation, state)
+      call add_loads(list, simulation, state)
+      call list%add('step', simulation%snapshots(number)%step, 'number of the step')
+      call list%add('reversal', simulation%snapshots(number)%reversal, 'number of the reversal in the step, 1 for a step '// &
+                    'without cycles')
    end subroutine add_step
 
    !> The tractions at a moment of the last cycle; nothing where there is no such moment.
-   subroutine add_moment(fields, simulation, mark, units)
-      type(field_type), allocatable, intent(inout) :: fields(:)
+   subroutine add_moment(list, simulation, mark)
+      type(list_type), intent(inout) :: list
       type(simulation_type), intent(in) :: simulation
       integer, intent(in) :: mark
-      type(units_type), intent(in) :: units
       type(contact_state_type) :: state
 
       associate (snapshot => simulation%marks(mark))
          if (snapshot%step == 0 .or. (mark /= mark_loading .and. snapshot%reversal == 0)) return
          state = simulation%padded(snapshot)
       end associate
-      call add_real(fields, 'pressure', state%fields%pressure, along_nodes, units%traction, pressure_meaning)
-      call add_real(fields, 'shear', state%fields%shear, along_nodes, units%traction, shear_meaning)
+      call list%add('pressure', state%fields%pressure, along_nodes, 'force/length^2', pressure_meaning)
+      call list%add('shear', state%fields%shear, along_nodes, 'force/length^2', shear_meaning)
    end subroutine add_moment
 
    !> Loads, rigid motions and counts of a state.
-   subroutine add_loads(fields, simulation, state, units)
-      type(field_type), allocatable, intent(inout) :: fields(:)
+   subroutine add_loads(list, simulation, state)
+      type(list_type), intent(inout) :: list
       type(simulation_type), intent(in) :: simulation
       type(contact_state_type), intent(in) :: state
-      type(units_type), intent(in) :: units
       type(zone_edges_type) :: edges
+      real(wp) :: half_width
 
       call find_zone_edges(simulation%contact%model, state, edges)
       associate (f => state%fields)
-         call add_motions(fields, .not. motions%optional, reshape(f%force, [1, motion_count]), &
-                          reshape(f%motion, [1, motion_count]), along_nothing, units)
-         call add_motions(fields, motions%optional .and. simulation%contact%model%moves, reshape(f%force, [1, motion_count]), &
-                          reshape(f%motion, [1, motion_count]), along_nothing, units)
-         call add_scalar(fields, 'dissipation', state%dissipation, units%energy, dissipation_meaning)
-         call add_scalar_whole(fields, 'contact_nodes', state%contact_nodes(), contact_nodes_meaning)
-         call add_scalar_whole(fields, 'stick_nodes', state%stick_nodes(), stick_nodes_meaning)
-         call add_scalar_whole(fields, 'slip_nodes', state%slip_nodes(), 'slipping nodes')
-         call add_whole(fields, 'patches', [edges%patches], along_nothing, 'contact patches, with open nodes between them')
+         call add_motions(list, .not. motions%optional, reshape(f%force, [1, motion_count]), reshape(f%motion, [1, motion_count]), &
+                          along_nothing)
+         call add_motions(list, motions%optional .and. simulation%contact%model%moves, reshape(f%force, [1, motion_count]), &
+                          reshape(f%motion, [1, motion_count]), along_nothing)
+         call list%add('dissipation', state%dissipation, 'force', dissipation_meaning)
+         call list%add('contact_nodes', state%contact_nodes(), contact_nodes_meaning)
+         call list%add('stick_nodes', state%stick_nodes(), stick_nodes_meaning)
+         call list%add('slip_nodes', state%slip_nodes(), 'slipping nodes')
+         call list%add('patches', [edges%patches], along_nothing, 'contact patches, with open nodes between them')
          associate (model => simulation%contact%model)
-            call add_scalar(fields, 'contact_half_width', one_patch(0.5_wp*model%interval()*model%intervals( &
-                            in_contact(state%status))), units%length, 'half the length of all intervals in contact'//nan_of_several)
-            call add_scalar(fields, 'stick_ratio', model%intervals(holds(state%status))/ &
-                            max(model%intervals(in_contact(state%status)), tiny(1.0_wp)), '1', &
-                            'length of the intervals of stuck nodes over that of nodes in contact')
+            half_width = 0.5_wp*model%interval()*model%intervals(in_contact(state%status))
+            if (edges%patches > 1) half_width = ieee_value(1.0_wp, ieee_quiet_nan)
+            call list%add('contact_half_width', half_width, 'length', 'half the length of all intervals in contact'//nan_of_several)
+            call list%add('stick_ratio', model%intervals(holds(state%status))/max(model%intervals(in_contact(state%status)), &
+                          tiny(1.0_wp)), '1', 'length of the intervals of stuck nodes over that of nodes in contact')
          end associate
       end associate
-      call add_edges(fields, simulation, edges, units)
-
-   contains
-
-      !> A half-width where there is one patch, or none; else not a number.
-      pure real(wp) function one_patch(half_width)
-         real(wp), intent(in) :: half_width
-
-         one_patch = half_width
-         if (edges%patches > 1) one_patch = ieee_value(1.0_wp, ieee_quiet_nan)
-      end function one_patch
+      call add_edges(list, simulation, edges)
    end subroutine add_loads
 
    !> Edges between nodes.
-   subroutine add_edges(fields, simulation, edges, units)
-      type(field_type), allocatable, intent(inout) :: fields(:)
+   subroutine add_edges(list, simulation, edges)
+      type(list_type), intent(inout) :: list
       type(simulation_type), intent(in) :: simulation
       type(zone_edges_type), intent(in) :: edges
-      type(units_type), intent(in) :: units
       character(*), parameter :: where_from = ', between nodes, along the surface from the origin'
 
       if (.not. edges%contact) return
-      call add_scalar(fields, 'contact_left', edges%contact_left, units%length, 'left edge of the contact'//where_from)
-      call add_scalar(fields, 'contact_right', edges%contact_right, units%length, 'right edge of the contact'//where_from)
-      call add_scalar(fields, 'contact_length', edges%contact_length, units%length, 'length of the contact, of all patches '// &
-                      'together, from edges between nodes')
-      call add_scalar(fields, 'edge_half_width', edges%half_width(), units%length, 'half the length of the contact from its '// &
-                      'edges between nodes'//nan_of_several)
+      call list%add('contact_left', edges%contact_left, 'length', 'left edge of the contact'//where_from)
+      call list%add('contact_right', edges%contact_right, 'length', 'right edge of the contact'//where_from)
+      call list%add('contact_length', edges%contact_length, 'length', 'length of the contact, of all patches together, from '// &
+                    'edges between nodes')
+      call list%add('edge_half_width', edges%half_width(), 'length', 'half the length of the contact from its edges between '// &
+                    'nodes'//nan_of_several)
       if (.not. simulation%contact%model%tangential) return
       if (edges%stick) then
-         call add_scalar(fields, 'stick_left', edges%stick_left, units%length, 'left edge of the stick zones'//where_from)
-         call add_scalar(fields, 'stick_right', edges%stick_right, units%length, 'right edge of the stick zones'//where_from)
+         call list%add('stick_left', edges%stick_left, 'length', 'left edge of the stick zones'//where_from)
+         call list%add('stick_right', edges%stick_right, 'length', 'right edge of the stick zones'//where_from)
       end if
-      call add_scalar(fields, 'edge_stick_ratio', edges%stick_ratio(), '1', 'stick zones over contact length, '// &
-                      'from edges between nodes')
+      call list%add('edge_stick_ratio', edges%stick_ratio(), '1', 'stick zones over contact length, from edges between nodes')
    end subroutine add_edges
 
    !> What an engineer reads off the load history, where it can be told.
-   subroutine add_observables(fields, simulation, units)
-      type(field_type), allocatable, intent(inout) :: fields(:)
+   subroutine add_observables(list, simulation)
+      type(list_type), intent(inout) :: list
       type(simulation_type), intent(in) :: simulation
-      type(units_type), intent(in) :: units
       real(wp) :: values(observable_count)
       integer :: i
 
@@ -535,17 +498,15 @@ contains
       do i = 1, observable_count
          if (ieee_is_nan(values(i))) cycle
          associate (row => observables(i))
-            call add_scalar(fields, trim(row%name), values(i), labelled_unit(trim(row%unit), units%length, units%energy), &
-                            trim(row%meaning))
+            call list%add(trim(row%name), values(i), trim(row%unit), trim(row%meaning))
          end associate
       end do
    end subroutine add_observables
 
    !> The contact patches of the present state, from left to right; none without contact.
-   subroutine add_patches(fields, simulation, units)
-      type(field_type), allocatable, intent(inout) :: fields(:)
+   subroutine add_patches(list, simulation)
+      type(list_type), intent(inout) :: list
       type(simulation_type), intent(in) :: simulation
-      type(units_type), intent(in) :: units
       integer, parameter :: along = along_patches
       character(*), parameter :: where_from = ', between nodes, along the surface from the origin'
       type(patch_type), allocatable :: patches(:)
@@ -553,22 +514,21 @@ contains
 
       call find_patches(simulation%contact%model, simulation%contact%state, patches)
       if (size(patches) == 0) return
-      call add_whole(fields, 'patch', [(i, i=1, size(patches))], along, 'number of the contact patch, from left to right')
-      call add_whole(fields, 'first_node', patches%first, along, 'number, from 1, of its first node')
-      call add_whole(fields, 'last_node', patches%last, along, 'number, from 1, of its last node')
-      call add_real(fields, 'contact_left', patches%left, along, units%length, 'left edge'//where_from)
-      call add_real(fields, 'contact_right', patches%right, along, units%length, 'right edge'//where_from)
-      call add_real(fields, 'contact_length', patches%length(), along, units%length, 'length, from its edges between nodes')
-      call add_patch_loads(fields, simulation, patches, units)
+      call list%add('patch', [(i, i=1, size(patches))], along, 'number of the contact patch, from left to right')
+      call list%add('first_node', patches%first, along, 'number, from 1, of its first node')
+      call list%add('last_node', patches%last, along, 'number, from 1, of its last node')
+      call list%add('contact_left', patches%left, along, 'length', 'left edge'//where_from)
+      call list%add('contact_right', patches%right, along, 'length', 'right edge'//where_from)
+      call list%add('contact_length', patches%length(), along, 'length', 'length, from its edges between nodes')
+      call add_patch_loads(list, simulation, patches)
       if (.not. simulation%contact%model%tangential) return
-      call add_whole(fields, 'stick_zones', [(size(patches(i)%stick), i=1, size(patches))], along, &
-                     'number of stick zones in the patch')
-      call add_real(fields, 'stick_left', [(outermost(patches(i), .false.), i=1, size(patches))], along, units%length, &
-                    'left edge of its first stick zone'//where_from//'; NaN without stick zones')
-      call add_real(fields, 'stick_right', [(outermost(patches(i), .true.), i=1, size(patches))], along, units%length, &
-                    'right edge of its last stick zone'//where_from//'; NaN without stick zones')
-      call add_real(fields, 'stick_length', [(sum(patches(i)%stick%length()), i=1, size(patches))], along, units%length, &
-                    'length of all its stick zones, from edges between nodes')
+      call list%add('stick_zones', [(size(patches(i)%stick), i=1, size(patches))], along, 'number of stick zones in the patch')
+      call list%add('stick_left', [(outermost(patches(i), .false.), i=1, size(patches))], along, 'length', 'left edge of its '// &
+                    'first stick zone'//where_from//'; NaN without stick zones')
+      call list%add('stick_right', [(outermost(patches(i), .true.), i=1, size(patches))], along, 'length', 'right edge of its '// &
+                    'last stick zone'//where_from//'; NaN without stick zones')
+      call list%add('stick_length', [(sum(patches(i)%stick%length()), i=1, size(patches))], along, 'length', 'length of all '// &
+                    'its stick zones, from edges between nodes')
 
    contains
 
@@ -585,11 +545,10 @@ contains
    end subroutine add_patches
 
    !> What every patch bears; the forces of all add up to those of the contact.
-   subroutine add_patch_loads(fields, simulation, patches, units)
-      type(field_type), allocatable, intent(inout) :: fields(:)
+   subroutine add_patch_loads(list, simulation, patches)
+      type(list_type), intent(inout) :: list
       type(simulation_type), intent(in) :: simulation
       type(patch_type), intent(in) :: patches(:)
-      type(units_type), intent(in) :: units
       integer, parameter :: along = along_patches
       real(wp), dimension(simulation%contact%model%nodes()) :: pressure, shear
       real(wp), dimension(size(patches)) :: normal_force, tangential_force, peak_pressure, peak_shear
@@ -609,247 +568,230 @@ contains
             peak_shear(i) = maxval(abs(shear))
          end do
       end associate
-      call add_real(fields, 'normal_force', normal_force, along, units%force, 'normal force of the patch per unit thickness')
-      call add_real(fields, 'tangential_force', tangential_force, along, units%force, 'tangential force of the patch on the '// &
-                    'lower body per unit thickness')
-      call add_real(fields, 'peak_pressure', peak_pressure, along, units%traction, 'largest pressure in the patch')
-      if (simulation%contact%model%tangential) call add_real(fields, 'peak_shear', peak_shear, along, units%traction, &
-                                                             'largest size of the shear traction in the patch')
+      call list%add('normal_force', normal_force, along, 'force/length', 'normal force of the patch per unit thickness')
+      call list%add('tangential_force', tangential_force, along, 'force/length', 'tangential force of the patch on the lower '// &
+                    'body per unit thickness')
+      call list%add('peak_pressure', peak_pressure, along, 'force/length^2', 'largest pressure in the patch')
+      if (simulation%contact%model%tangential) call list%add('peak_shear', peak_shear, along, 'force/length^2', 'largest size '// &
+                                                             'of the shear traction in the patch')
    end subroutine add_patch_loads
 
    !> The cycles, one by one; and where the last one dissipated.
-   subroutine add_cycles(fields, simulation, units)
-      type(field_type), allocatable, intent(inout) :: fields(:)
+   subroutine add_cycles(list, simulation)
+      type(list_type), intent(inout) :: list
       type(simulation_type), intent(in) :: simulation
-      type(units_type), intent(in) :: units
       integer, parameter :: along = along_cycles
       type(cycle_type), allocatable :: c(:)
       type(contact_state_type) :: before, after
 
       c = simulation%cycles(:simulation%cycle_count)
-      call add_whole(fields, 'cycle', c%overall, along, 'number of the cycle, over all steps')
-      call add_whole(fields, 'step', c%step, along, 'number of its step')
-      call add_real(fields, 'dissipation', c%dissipation(), along, units%energy, 'energy dissipated in the cycle per unit '// &
-                    'thickness')
-      call add_real(fields, 'change', c%change, along, '1', 'largest change of a traction over the cycle, in parts of the '// &
-                    'largest traction')
-      call add_real(fields, 'force_amplitude', c%force_amplitude(), along, units%force, 'half of what the tangential force '// &
-                    'changes by')
-      call add_real(fields, 'shift_amplitude', c%shift_amplitude(), along, units%length, 'half of what the shift changes by')
-      call add_real(fields, 'tangential_stiffness', c%return%stiffness_on_leaving, along, units%traction, &
-                    'tangential force over shift right after the reversal, where all sticks')
-      call add_real(fields, 'secant_stiffness', c%secant_stiffness(), along, units%traction, 'tangential force over shift '// &
-                    'from end to end')
-      call add_real(fields, 'loss_factor', c%loss_factor(), along, '1', 'dissipation over 2 pi times the elastic energy of '// &
-                    'the secant stiffness, at constant normal force and rotation')
-      call add_real(fields, 'stick_ratio_reversal', c%reversal%edges%stick_ratio(), along, '1', 'stick ratio at the far end')
-      call add_real(fields, 'stick_ratio_return', c%return%edges%stick_ratio(), along, '1', 'stick ratio at the end')
-      call add_real(fields, 'contact_centre_reversal', c%reversal%edges%centre(), along, units%length, 'middle of the '// &
-                    'contact at the far end, along the surface from the origin')
-      call add_real(fields, 'contact_centre_return', c%return%edges%centre(), along, units%length, 'middle of the contact at '// &
-                    'the end, along the surface from the origin')
+      call list%add('cycle', c%overall, along, 'number of the cycle, over all steps')
+      call list%add('step', c%step, along, 'number of its step')
+      call list%add('dissipation', c%dissipation(), along, 'force', 'energy dissipated in the cycle per unit thickness')
+      call list%add('change', c%change, along, '1', 'largest change of a traction over the cycle, in parts of the largest traction')
+      call list%add('force_amplitude', c%force_amplitude(), along, 'force/length', 'half of what the tangential force changes by')
+      call list%add('shift_amplitude', c%shift_amplitude(), along, 'length', 'half of what the shift changes by')
+      call list%add('tangential_stiffness', c%return%stiffness_on_leaving, along, 'force/length^2', 'tangential force over '// &
+                    'shift right after the reversal, where all sticks')
+      call list%add('secant_stiffness', c%secant_stiffness(), along, 'force/length^2', 'tangential force over shift from end '// &
+                    'to end')
+      call list%add('loss_factor', c%loss_factor(), along, '1', 'dissipation over 2 pi times the elastic energy of the secant '// &
+                    'stiffness, at constant normal force and rotation')
+      call list%add('stick_ratio_reversal', c%reversal%edges%stick_ratio(), along, '1', 'stick ratio at the far end')
+      call list%add('stick_ratio_return', c%return%edges%stick_ratio(), along, '1', 'stick ratio at the end')
+      call list%add('contact_centre_reversal', c%reversal%edges%centre(), along, 'length', 'middle of the contact at the far '// &
+                    'end, along the surface from the origin')
+      call list%add('contact_centre_return', c%return%edges%centre(), along, 'length', 'middle of the contact at the end, '// &
+                    'along the surface from the origin')
       if (simulation%marks(mark_cycle_start)%step == 0 .or. simulation%marks(mark_return)%reversal == 0) return
       before = simulation%padded(simulation%marks(mark_cycle_start))
       after = simulation%padded(simulation%marks(mark_return))
-      call add_real(fields, 'friction_work', after%friction_work - before%friction_work, along_nodes, units%force, &
-                    'energy that the last cycle dissipated per unit of surface')
+      call list%add('friction_work', after%friction_work - before%friction_work, along_nodes, 'force/length', 'energy that '// &
+                    'the last cycle dissipated per unit of surface')
    end subroutine add_cycles
 
-   subroutine add_summary(fields, simulation, state, units)
-      type(field_type), allocatable, intent(inout) :: fields(:)
+   subroutine add_summary(list, simulation, state)
+      type(list_type), intent(inout) :: list
       type(simulation_type), intent(in) :: simulation
       type(contact_state_type), intent(in) :: state
-      type(units_type), intent(in) :: units
 
-      call add_loads(fields, simulation, state, units)
-      call add_scalar_whole(fields, 'steps_done', simulation%steps_done, 'steps reached')
-      call add_scalar_whole(fields, 'events', simulation%contact%events, 'loads at which nodes changed their status')
-      call add_scalar_whole(fields, 'leaps', simulation%contact%certificate%leaps, &
-                            'large increments of the load history, without looking for events')
+      call add_loads(list, simulation, state)
+      call list%add('steps_done', simulation%steps_done, 'steps reached')
+      call list%add('events', simulation%contact%events, 'loads at which nodes changed their status')
+      call list%add('leaps', simulation%contact%certificate%leaps, 'large increments of the load history, without looking for '// &
+                    'events')
       if (simulation%contact%model%scene%method%stepping == stepping_leap) then
-         call add_scalar(fields, 'increment_traction_error', simulation%contact%certificate%increment_traction_error, '1', &
-                         "stepping='leap': largest estimated error of the tractions by large increments, in parts of the "// &
-                         'largest traction')
-         call add_scalar(fields, 'increment_dissipation_error', simulation%contact%certificate%increment_dissipation_error, &
-                         '1', "stepping='leap': largest estimated error of the dissipation of a load segment by large "// &
-                         'increments, in parts of that dissipation')
+         call list%add('increment_traction_error', simulation%contact%certificate%increment_traction_error, '1', &
+                       "stepping='leap': largest estimated error of the tractions by large increments, in parts of the "// &
+                       "largest traction")
+         call list%add('increment_dissipation_error', simulation%contact%certificate%increment_dissipation_error, '1', &
+                       "stepping='leap': largest estimated error of the dissipation of a load segment by large increments, in "// &
+                       "parts of that dissipation")
       end if
-      call add_scalar_whole(fields, 'linear_solves', simulation%contact%system%solves, linear_solves_meaning)
-      call add_scalar(fields, 'largest_residual', simulation%contact%certificate%largest(), '1', &
-                      'largest relative residual of the certificate')
+      call list%add('linear_solves', simulation%contact%system%solves, linear_solves_meaning)
+      call list%add('largest_residual', simulation%contact%certificate%largest(), '1', 'largest relative residual of the '// &
+                    'certificate')
    end subroutine add_summary
 
-   subroutine add_certificate(fields, simulation)
-      type(field_type), allocatable, intent(inout) :: fields(:)
+   subroutine add_certificate(list, simulation)
+      type(list_type), intent(inout) :: list
       type(simulation_type), intent(in) :: simulation
       integer :: kind
 
       associate (certificate => simulation%contact%certificate)
-         call add_scalar(fields, 'largest', certificate%largest(), '1', 'largest of the residuals below')
-         call add_scalar_whole(fields, 'increments', certificate%increments, 'increments that were checked')
+         call list%add('largest', certificate%largest(), '1', 'largest of the residuals below')
+         call list%add('increments', certificate%increments, 'increments that were checked')
          do kind = 1, residual_count
-            if (certificate%claimed(kind)) &
-               call add_scalar(fields, trim(residual_names(kind)), certificate%residual(kind), '1', &
-                               trim(residual_descriptions(kind))//', relative, largest over all increments')
+            if (certificate%claimed(kind)) call list%add(trim(residual_names(kind)), certificate%residual(kind), '1', &
+                                                         trim(residual_descriptions(kind))// &
+                                                         ', relative, largest over all increments')
          end do
       end associate
    end subroutine add_certificate
 
    !> The closed form, where one exists.
-   subroutine add_reference(fields, simulation, units)
-      type(field_type), allocatable, intent(inout) :: fields(:)
+   subroutine add_reference(list, simulation)
+      type(list_type), intent(inout) :: list
       type(simulation_type), intent(in) :: simulation
-      type(units_type), intent(in) :: units
       type(closed_form_type) :: form
 
       form = closed_form_of(simulation)
       if (form%pressure_source /= '') then
-         call add_real(fields, 'pressure', form%pressure, along_nodes, units%traction, form%pressure_source)
-         call add_scalar(fields, 'contact_half_width', form%half_width, units%length, form%pressure_source)
+         call list%add('pressure', form%pressure, along_nodes, 'force/length^2', form%pressure_source)
+         call list%add('contact_half_width', form%half_width, 'length', form%pressure_source)
       end if
-      if (form%shear_source /= '') &
-         call add_real(fields, 'shear', form%shear, along_nodes, units%traction, form%shear_source)
-      if (allocated(form%shift) .and. simulation%keep_history /= history_none) &
-         call add_real(fields, 'shift', form%shift, along_records, units%length, form%shear_source)
+      if (form%shear_source /= '') call list%add('shear', form%shear, along_nodes, 'force/length^2', form%shear_source)
+      if (allocated(form%shift) .and. simulation%keep_history /= history_none) call list%add('shift', form%shift, along_records, &
+            'length', form%shear_source)
    end subroutine add_reference
 
    !> Error bars: of each quantity its value, error, order, and its values on the coarser meshes.
-   subroutine add_estimate(fields, simulation, estimate, units)
-      type(field_type), allocatable, intent(inout) :: fields(:)
+   subroutine add_estimate(list, simulation, estimate)
+      type(list_type), intent(inout) :: list
       type(simulation_type), intent(in) :: simulation
       type(error_estimate_type), intent(in) :: estimate
-      type(units_type), intent(in) :: units
       type(zone_edges_type) :: edges
       type(error_bar_type) :: length
 
       call find_zone_edges(simulation%contact%model, simulation%contact%state, edges)
-      call add_scalar_whole(fields, 'nodes', estimate%nodes, 'intervals of the mesh, as &mesh nodes counts them')
-      call add_whole(fields, 'companion_nodes', estimate%companion_nodes, along_companions, 'intervals of the coarser meshes')
+      call list%add('nodes', estimate%nodes, 'intervals of the mesh, as &mesh nodes counts them')
+      call list%add('companion_nodes', estimate%companion_nodes, along_companions, 'intervals of the coarser meshes')
       associate (bar => estimate%bar)
          if (edges%patches > 1) then
             length = bar(quantity_half_width)
             length%value = 2.0_wp*length%value
             length%error = 2.0_wp*length%error
             length%companions = 2.0_wp*length%companions
-            call add_bar(fields, length, 'contact_length', units%length, 'length of all intervals in contact')
+            call add_bar(list, length, 'contact_length', 'length', 'length of all intervals in contact')
          else
-            call add_bar(fields, bar(quantity_half_width), 'contact_half_width', units%length, &
-                         'half the length of all intervals in contact')
+            call add_bar(list, bar(quantity_half_width), 'contact_half_width', 'length', 'half the length of all intervals in '// &
+                         'contact')
          end if
-         call add_bar(fields, bar(quantity_stick_ratio), 'stick_ratio', '1', 'stuck nodes over nodes in contact')
-         call add_bar(fields, bar(quantity_peak_pressure), 'peak_pressure', units%traction, 'largest pressure')
-         call add_bar(fields, bar(quantity_peak_shear), 'peak_shear', units%traction, 'largest size of the shear traction')
-         call add_bar(fields, bar(quantity_dissipation), 'dissipation', units%energy, dissipation_meaning)
+         call add_bar(list, bar(quantity_stick_ratio), 'stick_ratio', '1', 'stuck nodes over nodes in contact')
+         call add_bar(list, bar(quantity_peak_pressure), 'peak_pressure', 'force/length^2', 'largest pressure')
+         call add_bar(list, bar(quantity_peak_shear), 'peak_shear', 'force/length^2', 'largest size of the shear traction')
+         call add_bar(list, bar(quantity_dissipation), 'dissipation', 'force', dissipation_meaning)
       end associate
    end subroutine add_estimate
 
    !> What a perturbation of friction changes.
-   subroutine add_sensitivity(fields, sensitivity)
-      type(field_type), allocatable, intent(inout) :: fields(:)
+   subroutine add_sensitivity(list, sensitivity)
+      type(list_type), intent(inout) :: list
       type(sensitivity_type), intent(in) :: sensitivity
 
-      call add_scalar(fields, 'perturbation', sensitivity%perturbation, '1', &
-                      'relative change of all coefficients of friction in a second run')
-      call add_scalar(fields, 'pressure_change', sensitivity%pressure, '1', &
-                      'largest change of a pressure over the largest traction, in the second run')
-      call add_scalar(fields, 'shear_change', sensitivity%shear, '1', &
-                      'largest change of a shear traction over the largest traction, in the second run')
-      call add_scalar(fields, 'dissipation_change', sensitivity%dissipation, '1', 'relative change of the dissipation, in the '// &
-                      'second run')
-      call add_scalar(fields, 'stick_ratio_change', sensitivity%stick_ratio, '1', &
-                      'change of the stick ratio between nodes, in the second run')
+      call list%add('perturbation', sensitivity%perturbation, '1', 'relative change of all coefficients of friction in a '// &
+                    'second run')
+      call list%add('pressure_change', sensitivity%pressure, '1', 'largest change of a pressure over the largest traction, in '// &
+                    'the second run')
+      call list%add('shear_change', sensitivity%shear, '1', 'largest change of a shear traction over the largest traction, in '// &
+                    'the second run')
+      call list%add('dissipation_change', sensitivity%dissipation, '1', 'relative change of the dissipation, in the '//'second run')
+      call list%add('stick_ratio_change', sensitivity%stick_ratio, '1', 'change of the stick ratio between nodes, in the '// &
+                    'second run')
    end subroutine add_sensitivity
 
    !> One quantity of the error estimate, where the scene has it.
-   subroutine add_bar(fields, bar, name, unit, meaning)
-      type(field_type), allocatable, intent(inout) :: fields(:)
+   subroutine add_bar(list, bar, name, unit, meaning)
+      type(list_type), intent(inout) :: list
       type(error_bar_type), intent(in) :: bar
       character(*), intent(in) :: name, unit, meaning
 
       if (.not. bar%known) return
-      call add_scalar(fields, name, bar%value, unit, meaning)
-      call add_scalar(fields, name//'_error', bar%error, unit, 'estimated discretisation error: '//meaning// &
-                      '; infinite where there is no limit, NaN where slip zones with too few nodes do not resolve it')
-      call add_scalar(fields, name//'_order', bar%order, '1', 'observed order of convergence, from 1 to 2 (negative: there '// &
-                      'is no limit; NaN: not resolved): '//meaning)
-      call add_real(fields, name//'_companions', bar%companions, along_companions, unit, 'on the coarser meshes: '//meaning)
+      call list%add(name, bar%value, unit, meaning)
+      call list%add(name//'_error', bar%error, unit, 'estimated discretisation error: '//meaning//'; infinite where there is '// &
+                    'no limit, NaN where slip zones with too few nodes do not resolve it')
+      call list%add(name//'_order', bar%order, '1', 'observed order of convergence, from 1 to 2 (negative: there is no limit; '// &
+                    'NaN: not resolved): '//meaning)
+      call list%add(name//'_companions', bar%companions, along_companions, unit, 'on the coarser meshes: '//meaning)
    end subroutine add_bar
 
    !> Some of the motions and their forces (shape (values, motion_count)), first the forces.
-   subroutine add_motions(fields, which, force, motion, along, units)
-      type(field_type), allocatable, intent(inout) :: fields(:)
+   subroutine add_motions(list, which, force, motion, along)
+      type(list_type), intent(inout) :: list
       logical, intent(in) :: which(motion_count)
       real(wp), intent(in) :: force(:, :), motion(:, :)
       integer, intent(in) :: along
-      type(units_type), intent(in) :: units
       integer :: i
 
       do i = 1, motion_count
-         if (which(i)) call add_real(fields, trim(motions(i)%force_key), force(:, i), along, &
-                                     labelled_unit(trim(motions(i)%force_unit), units%length, units%energy), &
+         if (which(i)) call list%add(trim(motions(i)%force_key), force(:, i), along, trim(motions(i)%force_unit), &
                                      trim(motions(i)%force_meaning))
       end do
       do i = 1, motion_count
-         if (which(i)) call add_real(fields, trim(motions(i)%key), motion(:, i), along, &
-                                     labelled_unit(trim(merge('1      ', motions(i)%unit, motions(i)%unit == 'radians')), &
-                                                   units%length, units%energy), trim(motions(i)%meaning))
+         if (which(i)) call list%add(trim(motions(i)%key), motion(:, i), along, trim(merge('1      ', motions(i)%unit, &
+                                     motions(i)%unit == 'radians')), trim(motions(i)%meaning))
       end do
    end subroutine add_motions
 
-   subroutine add_history(fields, simulation, units)
-      type(field_type), allocatable, intent(inout) :: fields(:)
+   subroutine add_history(list, simulation)
+      type(list_type), intent(inout) :: list
       type(simulation_type), intent(in) :: simulation
-      type(units_type), intent(in) :: units
       integer, parameter :: along = along_records
       real(wp), dimension(simulation%contact%history%records, motion_count) :: force, motion
       integer :: i
 
       associate (r => simulation%contact%history%record(:simulation%contact%history%records))
-         call add_whole(fields, 'record', [(i, i=0, size(r) - 1)], along, 'number of the record')
+         call list%add('record', [(i, i=0, size(r) - 1)], along, 'number of the record')
          do i = 1, motion_count
             force(:, i) = r%force(i)
             motion(:, i) = r%motion(i)
          end do
          associate (moves => simulation%contact%model%moves)
-            call add_motions(fields, .not. motions%optional, force, motion, along, units)
-            call add_nonlinear_shift(fields, simulation, units)
-            call add_motions(fields, motions%optional .and. moves, force, motion, along, units)
-            if (moves(motion_rotation)) call add_rolling(fields, simulation, units)
+            call add_motions(list, .not. motions%optional, force, motion, along)
+            call add_nonlinear_shift(list, simulation)
+            call add_motions(list, motions%optional .and. moves, force, motion, along)
+            if (moves(motion_rotation)) call add_rolling(list, simulation)
          end associate
-         call add_real(fields, 'dissipation', r%dissipation, along, units%energy, dissipation_meaning)
-         call add_whole(fields, 'contact_nodes', r%contact_nodes, along, contact_nodes_meaning)
-         call add_whole(fields, 'stick_nodes', r%stick_nodes, along, stick_nodes_meaning)
-         call add_whole(fields, 'event_kind', r%event_kind, along, 'what happened', event_names)
-         call add_whole(fields, 'event_node', r%event_node, along, &
-                        'number, from 1, of the first node it happened to; 0 for none')
-         call add_whole(fields, 'event_count', r%event_count, along, 'number of nodes it happened to together')
-         call add_whole(fields, 'step', r%step, along, 'number of the step, 0 before the first')
-         call add_whole(fields, 'linear_solves', r%linear_solves, along, linear_solves_meaning)
+         call list%add('dissipation', r%dissipation, along, 'force', dissipation_meaning)
+         call list%add('contact_nodes', r%contact_nodes, along, contact_nodes_meaning)
+         call list%add('stick_nodes', r%stick_nodes, along, stick_nodes_meaning)
+         call list%add('event_kind', r%event_kind, along, 'what happened', event_names)
+         call list%add('event_node', r%event_node, along, 'number, from 1, of the first node it happened to; 0 for none')
+         call list%add('event_count', r%event_count, along, 'number of nodes it happened to together')
+         call list%add('step', r%step, along, 'number of the step, 0 before the first')
+         call list%add('linear_solves', r%linear_solves, along, linear_solves_meaning)
       end associate
    end subroutine add_history
 
    !> How far the bodies have rolled, and slid while they did; where they can roll.
-   subroutine add_rolling(fields, simulation, units)
-      type(field_type), allocatable, intent(inout) :: fields(:)
+   subroutine add_rolling(list, simulation)
+      type(list_type), intent(inout) :: list
       type(simulation_type), intent(in) :: simulation
-      type(units_type), intent(in) :: units
 
-      associate (model => simulation%contact%model, &
-                 r => simulation%contact%history%record(:simulation%contact%history%records))
+      associate (model => simulation%contact%model, r => simulation%contact%history%record(:simulation%contact%history%records))
          if (.not. model%rolls()) return
-         call add_real(fields, 'rolled', -r%motion(motion_rotation)/model%scene%curvature(), along_records, units%length, &
-                       'how far the contact has rolled to the right along the surfaces')
-         call add_real(fields, 'slid', r%motion(motion_shift) + model%centre_height()*r%motion(motion_rotation), along_records, &
-                       units%length, 'how far the upper surface has slid to the right over the lower one, as rigid bodies')
+         call list%add('rolled', -r%motion(motion_rotation)/model%scene%curvature(), along_records, 'length', 'how far the '// &
+                       'contact has rolled to the right along the surfaces')
+         call list%add('slid', r%motion(motion_shift) + model%centre_height()*r%motion(motion_rotation), along_records, 'length', &
+                       'how far the upper surface has slid to the right over the lower one, as rigid bodies')
       end associate
    end subroutine add_rolling
 
    !> The non-linear part of the hysteresis loop, as in dissertation Fig. 6.2b: the linear part, that of a contact where all
    !> sticks, is taken out. Where there are cycles whose stiffness is known.
-   subroutine add_nonlinear_shift(fields, simulation, units)
-      type(field_type), allocatable, intent(inout) :: fields(:)
+   subroutine add_nonlinear_shift(list, simulation)
+      type(list_type), intent(inout) :: list
       type(simulation_type), intent(in) :: simulation
-      type(units_type), intent(in) :: units
       real(wp) :: stiffness
 
       if (simulation%cycle_count == 0) return
@@ -857,77 +799,69 @@ contains
       if (ieee_is_nan(stiffness)) return
       if (.not. abs(stiffness) > 0.0_wp) return
       associate (r => simulation%contact%history%record(:simulation%contact%history%records))
-         call add_real(fields, 'nonlinear_shift', r%motion(motion_shift) - r%force(motion_shift)/stiffness, along_records, &
-                       units%length, 'shift less tangential_force over the tangential stiffness right after the last reversal')
+         call list%add('nonlinear_shift', r%motion(motion_shift) - r%force(motion_shift)/stiffness, along_records, 'length', &
+                       'shift less tangential_force over the tangential stiffness right after the last reversal')
       end associate
    end subroutine add_nonlinear_shift
 
-   !> Labels of units from the user's names of two.
-   subroutine name_units(length_unit, force_unit, units)
-      character(*), intent(in) :: length_unit, force_unit
-      type(units_type), intent(out) :: units
-
-      units%length = length_unit
-      units%force = force_unit//'/'//length_unit
-      units%traction = force_unit//'/'//length_unit//'^2'
-      units%energy = force_unit
-   end subroutine name_units
-
-   !> A unit in terms of length and force, such as force/length^2, with the user's names for those two.
-   pure function labelled_unit(unit, length_unit, force_unit) result(label)
-      character(*), intent(in) :: unit, length_unit, force_unit
-      character(len=length_of_label(unit, length_unit, force_unit)) :: label
-      character(:), allocatable :: text
-
-      call find_label(unit, length_unit, force_unit, text)
-      label = text
-   end function labelled_unit
-
-   pure integer function length_of_label(unit, length_unit, force_unit) result(length)
-      character(*), intent(in) :: unit, length_unit, force_unit
-      character(:), allocatable :: text
-
-      call find_label(unit, length_unit, force_unit, text)
-      length = len(text)
-   end function length_of_label
-
-   !> See labelled_unit.
-   pure subroutine find_label(unit, length_unit, force_unit, label)
-      character(*), intent(in) :: unit, length_unit, force_unit
+   !> A unit in terms of length and force, with the user's names for those two.
+   pure subroutine find_label(list, unit, label)
+      type(list_type), intent(in) :: list
+      character(*), intent(in) :: unit
       character(:), allocatable, intent(out) :: label
       integer :: i, length
 
       label = ''
       i = 1
       do while (i <= len(unit))
-         length = verify(unit(i:)//'/', 'abcdefghijklmnopqrstuvwxyz') - 1
-         select case (unit(i:i + max(length, 1) - 1))
+         length = max(verify(unit(i:)//'/', 'abcdefghijklmnopqrstuvwxyz') - 1, 1)
+         select case (unit(i:i + length - 1))
          case ('length')
-            label = label//length_unit
+            label = label//list%length_unit
          case ('force')
-            label = label//force_unit
+            label = label//list%force_unit
          case default
-            label = label//unit(i:i + max(length, 1) - 1)
+            label = label//unit(i:i + length - 1)
          end select
-         i = i + max(length, 1)
+         i = i + length
       end do
    end subroutine find_label
 
-   subroutine add_scalar(fields, name, value, unit, description)
-      type(field_type), allocatable, intent(inout) :: fields(:)
+   subroutine add_number(list, name, value, unit, description)
+      class(list_type), intent(inout) :: list
       character(*), intent(in) :: name, unit, description
       real(wp), intent(in) :: value
 
-      call add_real(fields, name, [value], along_nothing, unit, description)
-   end subroutine add_scalar
+      call list%add(name, [value], along_nothing, unit, description)
+   end subroutine add_number
 
-   subroutine add_scalar_whole(fields, name, value, description)
-      type(field_type), allocatable, intent(inout) :: fields(:)
+   subroutine add_count(list, name, value, description)
+      class(list_type), intent(inout) :: list
       character(*), intent(in) :: name, description
       integer, intent(in) :: value
 
-      call add_whole(fields, name, [value], along_nothing, description)
-   end subroutine add_scalar_whole
+      call list%add(name, [value], along_nothing, description)
+   end subroutine add_count
+
+   subroutine add_numbers(list, name, values, along, unit, description)
+      class(list_type), intent(inout) :: list
+      character(*), intent(in) :: name, unit, description
+      real(wp), intent(in) :: values(:)
+      integer, intent(in) :: along
+      character(:), allocatable :: label
+
+      call find_label(list, unit, label)
+      call add_real(list%fields, name, values, along, label, description)
+   end subroutine add_numbers
+
+   subroutine add_counts(list, name, values, along, description, flags)
+      class(list_type), intent(inout) :: list
+      character(*), intent(in) :: name, description
+      integer, intent(in) :: values(:), along
+      character(*), intent(in), optional :: flags
+
+      call add_whole(list%fields, name, values, along, description, flags)
+   end subroutine add_counts
 
    subroutine add_real(fields, name, values, along, unit, description)
       type(field_type), allocatable, intent(inout) :: fields(:)

@@ -97,31 +97,21 @@ contains
       type(error_type), allocatable, intent(out) :: error
       logical, intent(in), optional :: with_restart
       type(writer_type) :: writer
+      type(string_type), allocatable :: names(:), texts(:)
+      integer :: i
 
       call create_file(path, writer, error)
       if (allocated(error)) return
       if (writer%code == 0) then
-         call write_attributes(writer, case, simulation, warnings)
+         call result_attributes(case, simulation, warnings, names, texts)
+         do i = 1, size(names)
+            call write_text(writer, writer%file, names(i)%text, texts(i)%text)
+         end do
+         call write_hdf5_version(writer)
          call write_groups(writer, case, simulation, with_restart)
       end if
       call finish_file(path, 'the result', writer, error)
    end subroutine write_result
-
-   !> Attributes of the whole file.
-   subroutine write_attributes(writer, case, simulation, warnings)
-      type(writer_type), intent(inout) :: writer
-      type(case_type), intent(in) :: case
-      type(simulation_type), intent(in) :: simulation
-      type(string_type), intent(in) :: warnings(:)
-      type(string_type), allocatable :: names(:), texts(:)
-      integer :: i
-
-      call result_attributes(case, simulation, warnings, names, texts)
-      do i = 1, size(names)
-         call write_text(writer, writer%file, names(i)%text, texts(i)%text)
-      end do
-      call write_hdf5_version(writer)
-   end subroutine write_attributes
 
    !> All groups with their datasets.
    subroutine write_groups(writer, case, simulation, with_restart)
@@ -153,22 +143,14 @@ contains
       type(simulation_type), intent(in) :: simulation
       type(field_type), allocatable, intent(out) :: scales(:)
       type(field_type), allocatable :: fields(:)
+      integer :: i
 
       allocate (scales(scale_count))
-      call group_fields(case, simulation, 'mesh', fields)
-      scales(along_nodes) = fields(field_named(fields, 'x'))
-      call group_fields(case, simulation, 'history', fields)
-      scales(along_records)%name = ''
-      if (size(fields) > 0) scales(along_records) = fields(field_named(fields, 'record'))
-      call group_fields(case, simulation, 'error_estimate', fields)
-      scales(along_companions)%name = ''
-      if (size(fields) > 0) scales(along_companions) = fields(field_named(fields, 'companion_nodes'))
-      call group_fields(case, simulation, 'cycles', fields)
-      scales(along_cycles)%name = ''
-      if (size(fields) > 0) scales(along_cycles) = fields(field_named(fields, 'cycle'))
-      call group_fields(case, simulation, 'patches', fields)
-      scales(along_patches)%name = ''
-      if (size(fields) > 0) scales(along_patches) = fields(field_named(fields, 'patch'))
+      do i = 1, scale_count
+         scales(i)%name = ''
+         call group_fields(case, simulation, trim(scale_group(i)), fields)
+         if (size(fields) > 0) scales(i) = fields(field_named(fields, trim(scale_name(i))))
+      end do
    end subroutine find_scales
 
    !> One group, with dimension scales of its own: a group can be read alone, and no scale has to list all the datasets of a
@@ -184,13 +166,13 @@ contains
       scale = -1
       do i = 1, size(scales)
          if (.not. any(fields%along == i)) cycle
-         call write_dataset(writer, group, scales(i), scale(i))
+         call write_dataset(writer, group//'/'//scales(i)%name, scales(i), scale(i))
          call h5dsset_scale_f(scale(i), code, scales(i)%name)
          call note(writer, code)
       end do
       do i = 1, size(fields)
          if (field_named(scales, fields(i)%name) > 0) cycle
-         call write_dataset(writer, group, fields(i), dataset)
+         call write_dataset(writer, group//'/'//fields(i)%name, fields(i), dataset)
          if (fields(i)%along /= along_nothing) then
             call h5dsattach_scale_f(dataset, scale(fields(i)%along), 1, code)
             call note(writer, code)

@@ -1,7 +1,7 @@
 !> Stresses inside the bodies of a result, put into its file: /stress/<state>/<body>, on a grid or at points.
 module mfv_stress_file
    use, intrinsic :: ieee_arithmetic, only: ieee_is_nan, ieee_quiet_nan, ieee_value
-   use, intrinsic :: iso_fortran_env, only: int64
+   use, intrinsic :: iso_fortran_env, only: int8
    use hdf5
    use h5ds
    use mfv_case, only: case_type
@@ -11,9 +11,8 @@ module mfv_stress_file
    use mfv_hdf5_writer
    use mfv_interior
    use mfv_kinds, only: wp
-   use mfv_result_fields, only: step_group
-   use mfv_safe_file, only: identify_file, identity_length
-   use mfv_status, only: MFV_INPUT_ERROR
+   use mfv_result_fields, only: add_real, along_nodes, along_nothing, field_type, step_group
+   use mfv_status, only: MFV_FILE_ERROR, MFV_INPUT_ERROR
    use mfv_stress_search, only: largest_tension, largest_type, largest_von_mises
    use mfv_strings, only: list_of_words, string_type
    use mfv_text_file, only: path_from
@@ -57,9 +56,9 @@ contains
       type(error_type), allocatable, intent(out) :: error
       type(interior_type) :: interior
       type(case_type) :: case
-      integer(int64) :: identity(identity_length)
+      integer(int8), allocatable :: bytes(:)
 
-      call identify_file(path, identity)
+      call read_bytes(path, bytes)
       call read_interior(path, request, case, interior, result, error)
       if (allocated(error)) then
          error%message = path//': '//error%message
@@ -74,7 +73,7 @@ contains
          return
       end if
       call compute(request, interior, result)
-      call write_stresses(path, identity, request, case, result, error)
+      call write_stresses(path, bytes, request, case, result, error)
    end subroutine add_stresses
 
    !> The body and its tractions from the file.
@@ -86,7 +85,7 @@ contains
       type(stress_result_type), intent(inout) :: result
       type(error_type), allocatable, intent(out) :: error
       integer(hid_t) :: file
-      character(:), allocatable :: text, source, directory, state
+      character(:), allocatable :: text, source, directory, state, position
       !> No result has larger numbers; products of them would overflow.
       real(wp), parameter :: largest_size = 1.0e100_wp
       real(wp), allocatable, dimension(:) :: arc, width, pressure, shear, contact_edge, stick_edge
@@ -99,20 +98,12 @@ contains
       call read_text_attribute(file, 'input', text, error)
       if (.not. allocated(error)) call read_text_attribute(file, 'input_file', source, error)
       if (.not. allocated(error)) call read_text_attribute(file, 'working_directory', directory, error)
-      if (.not. allocated(error) .and. request%step > 0) then
-         if (.not. has(file, 'steps')) then
-            call set_error(error, MFV_INPUT_ERROR, 'there is no state '//state)
-         else if (.not. has(file, state)) then
-            call set_error(error, MFV_INPUT_ERROR, 'there is no state '//state)
-         end if
-      end if
       if (.not. allocated(error)) then
-         if (has(file, 'mesh/arc')) then
-            call read_vector(file, 'mesh/arc', -1, arc, error)
-         else
-            call read_vector(file, 'mesh/x', -1, arc, error)
-         end if
+         if (.not. has(file, state)) call set_error(error, MFV_INPUT_ERROR, 'there is no state '//state)
       end if
+      position = 'mesh/x'
+      if (has(file, 'mesh/arc')) position = 'mesh/arc'
+      if (.not. allocated(error)) call read_vector(file, position, -1, arc, error)
       if (.not. allocated(error)) call read_vector(file, 'mesh/width', size(arc), width, error)
       if (.not. allocated(error)) call read_vector(file, state//'/pressure', size(arc), pressure, error)
       if (.not. allocated(error)) call read_vector(file, state//'/shear', size(arc), shear, error)
@@ -190,10 +181,10 @@ contains
       end do
    end subroutine compute
 
-   !> Put them into a copy of the file that takes its place, if that is still the one that they were computed from.
-   subroutine write_stresses(path, identity, request, case, result, error)
+   !> Put them into a copy of the file that takes its place, if that still has the `bytes` that it had before.
+   subroutine write_stresses(path, bytes, request, case, result, error)
       character(*), intent(in) :: path
-      integer(int64), intent(in) :: identity(:)
+      integer(int8), allocatable, intent(in) :: bytes(:)
       type(stress_request_type), intent(in) :: request
       type(case_type), intent(in) :: case
       type(stress_result_type), intent(inout) :: result
@@ -201,6 +192,10 @@ contains
       type(writer_type) :: writer
       character(:), allocatable :: state
 
+      if (.not. allocated(bytes)) then
+         call set_error(error, MFV_FILE_ERROR, path//' cannot be read')
+         return
+      end if
       state = 'stress/last'
       if (request%step > 0) then
          state = step_group(request%step)
@@ -208,11 +203,10 @@ contains
       end if
       result%group = state//'/'//body_name(request)
       if (allocated(request%x)) result%group = result%group//'_points'
-      call copy_and_open(path, identity, writer, error)
-      if (allocated(error)) return
+      call open_copy(path, bytes, writer)
       if (writer%code == 0) then
          call make_way(writer, state, result%group)
-         call write_group(writer, case, request, result)
+         call write_group(writer, case, result)
       end if
       call finish_file(path, 'the stresses', writer, error)
    end subroutine write_stresses
@@ -232,80 +226,77 @@ contains
       call create_group(writer, group)
    end subroutine make_way
 
-   subroutine write_group(writer, case, request, result)
+   !> The stresses in their group; over a grid with its dimension scales.
+   subroutine write_group(writer, case, result)
       type(writer_type), intent(inout) :: writer
       type(case_type), intent(in) :: case
-      type(stress_request_type), intent(in) :: request
       type(stress_result_type), intent(in) :: result
-      character(:), allocatable :: unit
-      type(string_type), allocatable :: names(:)
-      integer(hid_t) :: scale_x, scale_depth, dataset
-      integer :: code, i
+      type(field_type), allocatable :: scales(:), fields(:)
+      integer(hid_t) :: scale(2), dataset
+      integer :: code, i, j
 
-      unit = result%stress_unit
-      names = list_of_words(stress_names)
-      call write_values(writer, result%group//'/x', result%x, [size(result%x)], case%length_unit, &
-                        'position to the right of the pole', scale_x)
-      if (.not. allocated(request%x)) then
-         call write_values(writer, result%group//'/depth', result%depth, [size(result%depth)], case%length_unit, &
-                           'depth below the surface', scale_depth)
-         call h5dsset_scale_f(scale_x, code, 'x')
-         call h5dsset_scale_f(scale_depth, code, 'depth')
-      end if
-      call field('y', result%y, case%length_unit, 'height above the pole')
-      do i = 1, stress_count
-         call field(names(i)%text, result%stress(i, :), unit_of(names(i)%text), trim(meaning(names(i)%text)))
+      allocate (scales(0))
+      call add_real(scales, 'x', result%x, along_nodes, case%length_unit, 'position to the right of the pole')
+      if (allocated(result%depth)) &
+         call add_real(scales, 'depth', result%depth, along_nodes, case%length_unit, 'depth below the surface')
+      do i = 1, size(scales)
+         call write_dataset(writer, result%group//'/'//scales(i)%name, scales(i), scale(i))
+         if (size(scales) == 2) call h5dsset_scale_f(scale(i), code, scales(i)%name)
       end do
-      call h5dclose_f(scale_x, code)
-      if (.not. allocated(request%x)) call h5dclose_f(scale_depth, code)
-      call scalar('largest_von_mises', result%largest%value, unit, 'largest von Mises stress in the body, by refinement')
-      call scalar('largest_x', result%largest%x, case%length_unit, 'where it is: x')
-      call scalar('largest_y', result%largest%y, case%length_unit, 'where it is: y')
-      call scalar('largest_tension', result%tension%value, unit, 'largest tension along the surface; not a number where '// &
-                  'it is singular')
-      call scalar('tension_x', result%tension%x, case%length_unit, 'where it is: x; not a number where there is no tension')
-      call scalar('tension_y', result%tension%y, case%length_unit, 'where it is: y')
-      call scalar('half_width', result%half_width, case%length_unit, 'half the length of the loaded surface, from edges '// &
-                  'between nodes')
-      call scalar('largest_pressure', result%largest_pressure, unit, 'largest pressure')
+      call collect_fields(case, result, fields)
+      do i = 1, size(fields)
+         associate (path => result%group//'/'//fields(i)%name)
+            if (fields(i)%along == along_nothing .or. size(scales) == 1) then
+               call write_dataset(writer, path, fields(i), dataset)
+            else
+               call write_dataset(writer, path, fields(i), dataset, [size(result%x), size(result%depth)])
+               do j = 1, 2
+                  call h5dsattach_scale_f(dataset, scale(3 - j), j, code)
+                  call note(writer, code)
+               end do
+            end if
+         end associate
+         call h5dclose_f(dataset, code)
+      end do
+      do i = 1, size(scales)
+         call h5dclose_f(scale(i), code)
+      end do
+   end subroutine write_group
+
+   !> What is written besides the scales.
+   subroutine collect_fields(case, result, fields)
+      type(case_type), intent(in) :: case
+      type(stress_result_type), intent(in) :: result
+      type(field_type), allocatable, intent(out) :: fields(:)
+      type(string_type), allocatable :: names(:)
+      integer :: i
+
+      allocate (fields(0))
+      names = list_of_words(stress_names)
+      call add_real(fields, 'y', result%y, along_nodes, case%length_unit, 'height above the pole')
+      do i = 1, stress_count
+         call add_real(fields, names(i)%text, result%stress(i, :), along_nodes, result%stress_unit, trim(meaning(names(i)%text)))
+         if (names(i)%text == 'principal_angle') fields(size(fields))%unit = '1'
+      end do
+      call add('largest_von_mises', result%largest%value, result%stress_unit, 'largest von Mises stress in the body, by refinement')
+      call add('largest_x', result%largest%x, case%length_unit, 'where it is: x')
+      call add('largest_y', result%largest%y, case%length_unit, 'where it is: y')
+      call add('largest_tension', result%tension%value, result%stress_unit, 'largest tension along the surface; not a number '// &
+               'where it is singular')
+      call add('tension_x', result%tension%x, case%length_unit, 'where it is: x; not a number where there is no tension')
+      call add('tension_y', result%tension%y, case%length_unit, 'where it is: y')
+      call add('half_width', result%half_width, case%length_unit, 'half the length of the loaded surface, from edges between nodes')
+      call add('largest_pressure', result%largest_pressure, result%stress_unit, 'largest pressure')
 
    contains
 
-      !> Unit of a stress, or of the direction.
-      function unit_of(name)
-         character(*), intent(in) :: name
-         character(len=merge(1, len(unit), name == 'principal_angle')) :: unit_of
-
-         unit_of = unit
-         if (name == 'principal_angle') unit_of = '1'
-      end function unit_of
-
-      !> A dataset along the points, or over the grid with its scales.
-      subroutine field(name, values, field_unit, description)
-         character(*), intent(in) :: name, field_unit, description
-         real(wp), intent(in) :: values(:)
-
-         if (allocated(request%x)) then
-            call write_values(writer, result%group//'/'//name, values, [size(result%x)], field_unit, description, dataset)
-         else
-            call write_values(writer, result%group//'/'//name, values, [size(result%x), size(result%depth)], field_unit, &
-                              description, dataset)
-            call h5dsattach_scale_f(dataset, scale_depth, 1, code)
-            call note(writer, code)
-            call h5dsattach_scale_f(dataset, scale_x, 2, code)
-            call note(writer, code)
-         end if
-         call h5dclose_f(dataset, code)
-      end subroutine field
-
-      subroutine scalar(name, value, value_unit, description)
-         character(*), intent(in) :: name, value_unit, description
+      subroutine add(name, value, unit, description)
+         character(*), intent(in) :: name, unit, description
          real(wp), intent(in) :: value
 
-         call write_values(writer, result%group//'/'//name, [value], [integer ::], value_unit, description, dataset)
-         call h5dclose_f(dataset, code)
-      end subroutine scalar
-   end subroutine write_group
+         call add_real(fields, name, [value], along_nothing, unit, description)
+      end subroutine add
+   end subroutine collect_fields
 
    !> What a stress of mfv_interior's stress_names is; padded with blanks.
    pure function meaning(name) result(text)

@@ -52,7 +52,8 @@ contains
                call add_line(text, trim(motions(i)%force_name), amount(fields, trim(motions(i)%force_key))//', '// &
                              trim(motions(i)%key)//' '//amount(fields, trim(motions(i)%key)))
          end do
-         if (model%moves(motion_rotation)) call add_creepage(text, seen)
+         if (model%moves(motion_rotation) .and. field_named(seen, 'creepage_number') > 0) &
+            call add_line(text, 'creepage', amount(seen, 'creepage')//', over mu a K '//amount(seen, 'creepage_number'))
          call add_tension(text, seen, model, simulation%contact%state%contact_nodes() > 0)
          words = ''
          if (simulation%contact%certificate%leaps > 0) words = amount(fields, 'leaps')//' large increments, '
@@ -108,15 +109,6 @@ contains
          words = words//', stiffness '//amount(fields, 'tangential_stiffness')
       call add_line(text, 'last cycle', words//', tractions change by '//amount(fields, 'cycle_change'))
    end subroutine add_last_cycle
-
-   !> How the bodies creep, where they roll.
-   subroutine add_creepage(text, fields)
-      character(:), allocatable, intent(inout) :: text
-      type(field_type), intent(in) :: fields(:)
-
-      if (field_named(fields, 'creepage_number') == 0) return
-      call add_line(text, 'creepage', amount(fields, 'creepage')//', over mu a K '//amount(fields, 'creepage_number'))
-   end subroutine add_creepage
 
    !> The largest tension along the surface of each body that has any, or that it is singular: then there is no observable.
    subroutine add_tension(text, fields, model, touches)
@@ -176,7 +168,7 @@ contains
       character(*), parameter :: words(quantity_count) = [character(18) :: 'contact half-width', 'stick ratio', &
                                                           'peak pressure', 'peak shear', 'dissipation']
       type(field_type), allocatable :: fields(:)
-      character(:), allocatable :: meshes, value
+      character(:), allocatable :: meshes, value, percent
       integer :: i
 
       if (simulation%estimate%message /= '') then
@@ -191,14 +183,16 @@ contains
       do i = 1, quantity_count
          associate (bar => simulation%estimate%bar(i))
             if (.not. bar%known .or. field_named(fields, trim(names(i))) == 0) cycle
-            call find_amount(fields, trim(names(i)), value)
+            value = trim(words(i))//' '//amount(fields, trim(names(i)))
+            percent = ''
+            if (abs(bar%value) > 0.0_wp) percent = ' ('//to_text(100.0_wp*bar%error/abs(bar%value), 2)//' %)'
             if (.not. bar%resolved) then
-               call add_line(text, 'error estimate', trim(words(i))//' '//value//' is not resolved: see the warning')
+               call add_line(text, 'error estimate', value//' is not resolved: see the warning')
             else if (ieee_is_finite(bar%error)) then
-               call add_line(text, 'error estimate', trim(words(i))//' '//value//' +- '//to_text(bar%error, 2)// &
-                             trim(percentage(bar))//', order '//to_text(bar%order, 2))
+               call add_line(text, 'error estimate', value//' +- '//to_text(bar%error, 2)//percent//', order '// &
+                             to_text(bar%order, 2))
             else
-               call add_line(text, 'error estimate', trim(words(i))//' '//value//' grows with every finer mesh, as nodes^'// &
+               call add_line(text, 'error estimate', value//' grows with every finer mesh, as nodes^'// &
                              to_text(-bar%order, 2)//': it has no limit')
             end if
          end associate
@@ -243,15 +237,6 @@ contains
             call add_line(text, 'sensitivity', 'round-off decides this result: do not quote it more precisely than these changes')
       end associate
    end subroutine add_sensitivity
-
-   !> The error in percent of the value, in brackets after a blank; padded with blanks.
-   pure function percentage(bar) result(text)
-      type(error_bar_type), intent(in) :: bar
-      character(len=24) :: text
-
-      text = ''
-      if (abs(bar%value) > 0.0_wp) text = ' ('//to_text(100.0_wp*bar%error/abs(bar%value), 2)//' %)'
-   end function percentage
 
    !> What a valid case asks for.
    subroutine summarize_check(case, text)
