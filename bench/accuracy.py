@@ -10,6 +10,7 @@ import numpy as np
 from events import BODIES, MU, PRESS
 from harness import Bench, Case, Tractions, duration, number, stamp, table
 from matplotlib import pyplot
+
 from mfv import reference
 
 QUANTITIES = {"pressure": "pressure, l2", "shear": "shear, l2", "stick": "stick ratio", "dissipation": "dissipation"}
@@ -25,9 +26,7 @@ Errors = dict[str, float]
 
 #: Knobs on the coupled scene: name, and the keys of &solver for every setting.
 KNOBS: dict[str, list[dict[str, Any]]] = {
-    "linear_tolerance": [
-        {"linear_solver": "fft", "linear_tolerance": value} for value in (1e-3, 1e-5, 1e-7, 1e-9, 1e-11)
-    ],
+    "linear_tolerance": [{"linear_solver": "fft", "linear_tolerance": value} for value in (1e-3, 1e-5, 1e-7, 1e-9, 1e-11)],
     "nominal": [{"stepping": "nominal", "load_step": value} for value in (0.2, 0.05, 0.0125)],
     "conventional": [{"algorithm": "conventional", "load_step": value} for value in (0.2, 0.0125, 0.003)],
 }
@@ -120,9 +119,7 @@ def _harmonics(bench: Bench) -> list[dict[str, Any]]:
     """The Fourier kernel against the exact one, the same mesh."""
     numbers = (0, 1, 4, 16, 64)
     results = bench.run([disk(harmonics) for harmonics in numbers], 3)
-    return [
-        point(harmonics, result, results[0], results[0]) for harmonics, result in zip(numbers, results, strict=True)
-    ]
+    return [point(harmonics, result, results[0], results[0]) for harmonics, result in zip(numbers, results, strict=True)]
 
 
 def point(label: Any, result: dict[str, Any], finest: dict[str, Any], base: dict[str, Any]) -> dict[str, Any]:
@@ -225,9 +222,7 @@ def section(data: dict[str, Any], pictures: Path) -> str:
     goodman, none = data["coupling"]
     few, many = data["harmonics"][2], data["harmonics"][-1]
     loose_text = (
-        f"down to {_time(loose)} with {loose['label']:g}"
-        if loose["outcome"] == 0
-        else f"(with {loose['label']:g} it ends early)"
+        f"down to {_time(loose)} with {loose['label']:g}" if loose["outcome"] == 0 else f"(with {loose['label']:g} it ends early)"
     )
     return f"""## Speed against accuracy: which knob first?
 

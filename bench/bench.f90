@@ -34,7 +34,7 @@ contains
 
    subroutine refuse()
       write (error_unit, '(a)') 'usage: bench run|tractions REPEATS CASE.nml ... | bench circle'
-      error stop 2, quiet=.true.
+      error stop 2, quiet = .true.
    end subroutine refuse
 
 end program bench

@@ -64,7 +64,7 @@ contains
       call read_case_file(path, entry%case, error)
       if (.not. allocated(error)) return
       write (error_unit, '(a)') error%message
-      error stop 2, quiet=.true.
+      error stop 2, quiet = .true.
    end subroutine read_entry
 
    !> Solve a case once more. `first`: the times are the first ones.

@@ -40,9 +40,7 @@ A disk pressed and sheared on a rigid plane with friction, fully coupled, about 
 
 def measure(bench: Bench, _quick: bool) -> dict[str, Any]:
     """The rows that the program writes."""
-    output = subprocess.run(
-        [bench.program, "circle"], check=True, capture_output=True, text=True, env=ENVIRONMENT
-    ).stdout
+    output = subprocess.run([bench.program, "circle"], check=True, capture_output=True, text=True, env=ENVIRONMENT).stdout
     return stamp() | {"rows": list(csv.reader(output.splitlines()))}
 
 
@@ -72,9 +70,7 @@ CellText = Callable[[int, tuple[float, float]], str]
 def table(kernels: Kernels, circles: list[int], multiples: list[int], cell_text: CellText) -> str:
     """A row for each circle, a column for each number of harmonics."""
     lines = [
-        "| intervals on the circle | "
-        + " | ".join(f"{multiple} harmonics an interval" for multiple in multiples)
-        + " |",
+        "| intervals on the circle | " + " | ".join(f"{multiple} harmonics an interval" for multiple in multiples) + " |",
         "| ---: |" + " ---: |" * len(multiples),
     ]
     for circle in circles:

@@ -51,12 +51,7 @@ def measure(bench: Bench, quick: bool) -> dict[str, Any]:
     return stamp() | {
         "cycle": cycle,
         "families": {
-            name: [
-                row
-                for contact in contacts
-                if 80 <= contact <= 1000
-                for row in _little(bench, contact, keys["coupling"])
-            ]
+            name: [row for contact in contacts if 80 <= contact <= 1000 for row in _little(bench, contact, keys["coupling"])]
             for name, keys in FAMILIES.items()
         },
         "memory": _memory(bench, contacts, cycle),
@@ -161,8 +156,7 @@ def section(data: dict[str, Any], pictures: Path) -> str:
     laws = fits(data["cycle"])
     exponents = ", ".join(f"{solver} {exponent:.1f}" for solver, (exponent, _) in laws.items())
     memory = {
-        (row["solver"], min(CONTACTS, key=lambda contact: abs(contact - row["contact"]))): row["memory"]
-        for row in data["memory"]
+        (row["solver"], min(CONTACTS, key=lambda contact: abs(contact - row["contact"]))): row["memory"] for row in data["memory"]
     }
     contacts = sorted({contact for _, contact in memory})
     return f"""## What does an event cost?

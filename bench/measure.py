@@ -42,15 +42,11 @@ Every run that is compared has to be complete, with a certificate below {direct:
 def main() -> None:
     """Measure, keep the numbers, write the page."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument(
-        "--only", nargs="+", choices=[*MODULES, "none"], help="sections to measure; none: write the page"
-    )
+    parser.add_argument("--only", nargs="+", choices=[*MODULES, "none"], help="sections to measure; none: write the page")
     parser.add_argument("--quick", action="store_true", help="smaller meshes, fewer repeats, to try it out")
     parser.add_argument("--long", action="store_true", help="measure 10,000 nodes too (about 10 minutes)")
     parser.add_argument("--program", type=Path, default=ROOT / "build/release/bin/bench")
-    parser.add_argument(
-        "--results", type=Path, default=Path(__file__).with_name("results.json"), help="where numbers are kept"
-    )
+    parser.add_argument("--results", type=Path, default=Path(__file__).with_name("results.json"), help="where numbers are kept")
     parser.add_argument("--docs", type=Path, default=ROOT / "docs", help="where performance.md goes")
     parser.add_argument("--limit", type=float, default=1800.0, help="seconds that one process may take")
     options = parser.parse_args()
@@ -96,9 +92,7 @@ def head(results: dict[str, Any]) -> str:
     runs = sum(entry["runs"] for entry in results.values())
     broken = [text for entry in results.values() for text in entry["broken"]]
     largest = max(entry["largest_certificate"] for entry in results.values())
-    verdict = (
-        f"all {runs} are, the largest is {largest:.0e}." if not broken else f"{len(broken)} of {runs} are NOT:\n\n"
-    )
+    verdict = f"all {runs} are, the largest is {largest:.0e}." if not broken else f"{len(broken)} of {runs} are NOT:\n\n"
     verdict += "\n".join(f"    {line}" for text in broken for line in text.splitlines())
     loads = ", ".join(f"{name} {entry['date']} (load {number(entry['load'])})" for name, entry in results.items())
     return HEAD.format(machine=machine(), dates=loads, direct=CERTIFICATE_DIRECT, iterative=CERTIFICATE, gate=verdict)

@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 from harness import Bench, Case, Tractions, duration, number, plain, stamp, table
+
 from mfv import reference
 
 WINDOW, HALF_WIDTH, RADIUS, MODULUS, MU, SHARE, POISSON = 4.0, 1.0, 1.0, 1.0, 0.7, 0.65, 0.3
@@ -164,11 +165,7 @@ def section(data: dict[str, Any]) -> str:
         for place, cell in enumerate(cells):
             published = PUBLISHED[job][place]
             ratio, own = ahead(job, place, cell)
-            fine = (
-                ""
-                if own is cell
-                else f"{own['window_nodes']} ({own['contact']}): {duration(own['wall'])}, {own['error']:.1e}"
-            )
+            fine = "" if own is cell else f"{own['window_nodes']} ({own['contact']}): {duration(own['wall'])}, {own['error']:.1e}"
             if ratio < 1.0 or not reaches(own["error"], published.error):
                 missed.append(f"{NAMES[job]} at n = {NODES[place]}")
             rows.append(

@@ -18,7 +18,8 @@ module mfv_output
 
 contains
 
-   !> What every program does first: see streams.c; and answer --help and --version, if one of them is the first argument. The program
+   !> What every program does first: see streams.c; and answer --help and --version, if one of them is the first argument. The
+   !> program
    !> then ends. `usage`, `help`: lines of text.
    subroutine begin_program(program, usage, help)
       character(*), intent(in) :: program, usage(:), help(:)

@@ -62,7 +62,8 @@ contains
       call end_program(status_exit_code(merge(MFV_INTERRUPTED, contact%status(), contact%is_unfinished())))
    end subroutine run_case
 
-   !> Continue from the checkpoint of the case, if there is one, and say so. The program ends where there is nothing left to do, or the
+   !> Continue from the checkpoint of the case, if there is one, and say so. The program ends where there is nothing left to do, or
+   !> the
    !> checkpoint cannot be used.
    subroutine continue_run(contact)
       type(contact_type), intent(inout) :: contact

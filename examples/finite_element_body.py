@@ -47,9 +47,7 @@ CASE = f"""
 &step tangential_force={TANGENTIAL_FORCE} /
 """
 MATRIX = "&body shape='matrix', file='body.h5' /"
-HALF_PLANE = (
-    f"&body shape='half_plane', shear_modulus={SHEAR_MODULUS}, poisson_ratio={POISSON_RATIO}, datum={{datum:.15g}} /"
-)
+HALF_PLANE = f"&body shape='half_plane', shear_modulus={SHEAR_MODULUS}, poisson_ratio={POISSON_RATIO}, datum={{datum:.15g}} /"
 QUANTITIES = ("contact half-width", "peak pressure", "stick ratio", "shift")
 
 

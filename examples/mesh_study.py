@@ -6,6 +6,7 @@ Errors are means over eight loads or coefficients of friction, so that the place
 Tractions: relative l2 error at the nodes (flat punch: inside 0.9 a, away from its singular edges). The closed forms are those
 of the library, taken from the results.
 """
+
 from __future__ import annotations
 
 import argparse
@@ -43,17 +44,21 @@ def hertz(nodes: int, variant: float) -> dict[str, float]:
     """Pressure and half-width of the pressed cylinder."""
     result = solved(CYLINDER, nodes, force=8.0e-4 * (1 + 0.3 * variant), mu=0.0)
     a = result.reference.contact_half_width
-    return {"Hertz: pressure": error(result.state.pressure, result.reference.pressure),
-            "Hertz: half-width": abs(result.summary.contact_half_width / a - 1),
-            "Hertz: half-width, edges between nodes": abs(result.summary.edge_half_width / a - 1)}
+    return {
+        "Hertz: pressure": error(result.state.pressure, result.reference.pressure),
+        "Hertz: half-width": abs(result.summary.contact_half_width / a - 1),
+        "Hertz: half-width, edges between nodes": abs(result.summary.edge_half_width / a - 1),
+    }
 
 
 def flat_punch(nodes: int, variant: float) -> dict[str, float]:
     """Pressure and, with friction, shear under the flat punch."""
     result = solved(PUNCH, nodes, mu=0.2 + 0.3 * variant, friction=True)
     inside = np.abs(result.mesh.x) < 0.9 * 0.4
-    return {"flat punch: pressure": error(result.state.pressure, result.reference.pressure, inside),
-            "flat punch with friction: shear": error(result.state.shear, result.reference.shear, inside)}
+    return {
+        "flat punch: pressure": error(result.state.pressure, result.reference.pressure, inside),
+        "flat punch with friction: shear": error(result.state.shear, result.reference.shear, inside),
+    }
 
 
 def spence(nodes: int, variant: float) -> dict[str, float]:
@@ -61,9 +66,11 @@ def spence(nodes: int, variant: float) -> dict[str, float]:
     mu = 0.2 + 0.8 * variant
     result = solved(CYLINDER, nodes, mu=mu, friction=True)
     ratio = mfv.reference.spence_stick_ratio(mu, result.scene.dundurs_beta)
-    return {"Spence: shear": error(result.state.shear, result.reference.shear),
-            "Spence: stick ratio": abs(result.summary.stick_ratio - ratio),
-            "Spence: stick ratio, edges between nodes": abs(result.summary.edge_stick_ratio - ratio)}
+    return {
+        "Spence: shear": error(result.state.shear, result.reference.shear),
+        "Spence: stick ratio": abs(result.summary.stick_ratio - ratio),
+        "Spence: stick ratio, edges between nodes": abs(result.summary.edge_stick_ratio - ratio),
+    }
 
 
 def mindlin(nodes: int, variant: float) -> dict[str, float]:
@@ -72,11 +79,13 @@ def mindlin(nodes: int, variant: float) -> dict[str, float]:
     result = solved(CYLINDER, nodes, force=p, mu=mu, more=SHEAR.format(q=q))
     first, cycled = result.steps[1], result.steps[3]
     exact = mfv.reference.mindlin_dissipation(q, p, result.reference.contact_half_width, 0.25, mu)
-    return {"Mindlin: shear": error(result.state.shear, result.reference.shear),
-            "Mindlin: stick ratio": abs(first.stick_ratio - mfv.reference.mindlin_stick_ratio(q, p, mu)),
-            "Mindlin: stick ratio, edges between nodes": abs(first.edge_stick_ratio - mfv.reference.mindlin_stick_ratio(q, p, mu)),
-            "Mindlin: shift": abs(result.history["shift"][-1] / result.reference["shift"][-1] - 1),
-            "Mindlin: dissipation of a cycle": abs((cycled.dissipation - first.dissipation) / exact - 1)}
+    return {
+        "Mindlin: shear": error(result.state.shear, result.reference.shear),
+        "Mindlin: stick ratio": abs(first.stick_ratio - mfv.reference.mindlin_stick_ratio(q, p, mu)),
+        "Mindlin: stick ratio, edges between nodes": abs(first.edge_stick_ratio - mfv.reference.mindlin_stick_ratio(q, p, mu)),
+        "Mindlin: shift": abs(result.history["shift"][-1] / result.reference["shift"][-1] - 1),
+        "Mindlin: dissipation of a cycle": abs((cycled.dissipation - first.dissipation) / exact - 1),
+    }
 
 
 def mean_errors(nodes: int) -> dict[str, float]:

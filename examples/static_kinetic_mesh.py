@@ -7,11 +7,10 @@ section 5.2, with mu_s = 0.7 and mu_k = 0.49. Under static and kinetic friction 
 sqrt(1 - Q/(mu_s P)) towards sqrt(1 - Q/(mu_k P)). Weakening friction, whose coefficient falls over a slip distance D, settles
 as soon as the intervals resolve what D asks for.
 """
+
 from __future__ import annotations
 
 import argparse
-
-import numpy as np
 
 import mfv
 
@@ -48,8 +47,10 @@ def laws(distances: list[float]) -> dict[str, str]:
 
 def limits() -> dict[str, float]:
     """Mindlin's stick ratios with either coefficient."""
-    return {name: float(mfv.reference.mindlin_stick_ratio(SHEAR, FORCE, mu))
-            for name, mu in ((r"$\sqrt{1-Q/(\mu_s P)}$", MU_STATIC), (r"$\sqrt{1-Q/(\mu_k P)}$", MU_KINETIC))}
+    return {
+        name: float(mfv.reference.mindlin_stick_ratio(SHEAR, FORCE, mu))
+        for name, mu in ((r"$\sqrt{1-Q/(\mu_s P)}$", MU_STATIC), (r"$\sqrt{1-Q/(\mu_k P)}$", MU_KINETIC))
+    }
 
 
 def draw(meshes: list[int], table: dict[str, list[float]], path: str) -> None:

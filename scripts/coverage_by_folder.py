@@ -1,4 +1,5 @@
 """Statements that no test has run, and a table by folder, from gcovr's JSON: coverage_by_folder.py <lines.json>."""
+
 import json
 import re
 import sys
@@ -13,7 +14,7 @@ DECLARATION = re.compile(r"(?!allocate|call|if|where|do )[a-z][\w ]*(\(.*\))?[^'
 def first_lines(text, is_fortran):
     """Number of the line with which the statement of each line begins."""
     first = {}
-    for number, line in enumerate(text, 1):
+    for number, _line in enumerate(text, 1):
         goes_on = is_fortran and number > 1 and re.sub(r"\s*(!.*)?$", "", text[number - 2]).endswith("&")
         first[number] = first[number - 1] if goes_on else number
     return first
@@ -38,4 +39,6 @@ for file in json.loads(Path(sys.argv[1]).read_text())["files"]:
 print("\nfolder           statements   run  per cent")
 for folder in sorted(statements):
     print(f"{folder:20s} {statements[folder]:6d} {ran[folder]:5d} {100 * ran[folder] / statements[folder]:8.1f}")
-print(f"coverage: {ran['all']} of {statements['all']} statements of src and drivers, {100 * ran['all'] / statements['all']:.1f} per cent")
+print(
+    f"coverage: {ran['all']} of {statements['all']} statements of src and drivers, {100 * ran['all'] / statements['all']:.1f} per cent"
+)

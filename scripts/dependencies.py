@@ -5,6 +5,7 @@
 Fails, with the lines at fault, if a module uses one of a folder above its own; the order is that of mfv_add_folder in
 src/CMakeLists.txt. (The compiler rejects it too: it does not find the module.) Draws the picture if its name is given.
 """
+
 import argparse
 import re
 import sys
@@ -84,7 +85,7 @@ def draw(order, arrows):
         reach = LEFT + 24 * (bottom - top) // ROW + 8
         lines.append(
             f'<path d="M {LEFT} {top} C {reach} {top}, {reach} {bottom}, {LEFT} {bottom}" fill="none" stroke="#36648b" '
-            f'stroke-opacity="0.35" stroke-width="{max(1.0, number ** 0.5):.1f}"/>'
+            f'stroke-opacity="0.35" stroke-width="{max(1.0, number**0.5):.1f}"/>'
         )
     for folder in order:
         y = middle[folder]

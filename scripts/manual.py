@@ -7,6 +7,7 @@ docs/namelist.md. A help text consists of its usage, paragraphs, and headings th
 term, two blanks or more and an explanation are a list, and others are words; examples, and indented lines above the first
 heading, stay as they are.
 """
+
 import argparse
 import re
 import subprocess
@@ -69,7 +70,7 @@ def program_page(program: str, about: str, help_text: str) -> str:
         if heading:
             section = heading[1]
             lines.append(f".SH {section.upper()}")
-        rows = block[heading.end() if heading else 0:].split("\n")
+        rows = block[heading.end() if heading else 0 :].split("\n")
         if not rows[0].startswith("  "):
             lines += [*paragraph(lines), *filled(" ".join(rows))]
         elif section == "Examples" or not section:
@@ -126,7 +127,7 @@ def text_page(page: str, about: str, beginning: str, keys: str) -> str:
 def header(page: str, section: int, about: str) -> list[str]:
     version = (ROOT / "VERSION").read_text().strip()
     return [
-        r'.\" Made by scripts/manual.py from --help and --keys of the programs. Do not edit.',
+        r".\" Made by scripts/manual.py from --help and --keys of the programs. Do not edit.",
         f'.TH {page.upper()} {section} "{DAY}" "MFV {version}" "MFV"',
         ".SH NAME",
         f"{escaped(page)} \\- {escaped(about)}",

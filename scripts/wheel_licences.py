@@ -46,7 +46,9 @@ def main() -> None:
         metadata, count = re.subn(r"(?m)^License-Expression: .*$", f"License-Expression: {EXPRESSION}", metadata, count=1)
         if count != 1:
             sys.exit("METADATA has no License-Expression")
-        files = "".join(f"License-File: {path.name}\n" for path in sorted(texts.iterdir()) if f"License-File: {path.name}\n" not in metadata)
+        files = "".join(
+            f"License-File: {path.name}\n" for path in sorted(texts.iterdir()) if f"License-File: {path.name}\n" not in metadata
+        )
         metadata = metadata.replace("License-File: LICENSE\n", f"License-File: LICENSE\n{files}", 1)
         (info / "METADATA").write_text(metadata)
         folder.mkdir(parents=True, exist_ok=True)

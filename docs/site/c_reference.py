@@ -22,7 +22,7 @@ def write_c_reference(include: Path, page: Path) -> None:
     for block in re.split(r"\n\n+", body):
         comment = re.match(r"\s*/\*(.*?)\*/\s*", block, re.DOTALL)
         if comment:
-            lines += _described(_words(comment[1]), block[comment.end():].strip())
+            lines += _described(_words(comment[1]), block[comment.end() :].strip())
     lines += ["## Statuses", "", "| name | code | exit code | outcome | what it says |", "| --- | --- | --- | --- | --- |"]
     for match in STATUS.finditer((include / "mfv_status.def").read_text()):
         lines.append("| `{}` | {} | {} | {} | {} |".format(*match.groups()))

@@ -15,8 +15,12 @@ from pathlib import Path
 PROCEDURE = re.compile(r"((?:\w+(?:\([^()]*\))? +)*?)(subroutine|function) +(\w+) *(\([^)]*\))?(.*)", re.IGNORECASE)
 TYPE = re.compile(r"type(?:, *[\w() ,]+)? *(?:::)? *(\w+)$", re.IGNORECASE)
 WORDS_OF_FOLDERS = {
-    "api": "Interfaces", "algorithms": "Algorithms", "compliance": "Compliance of bodies", "io": "Reading and writing",
-    "reference": "Closed forms", "common": "Common tools",
+    "api": "Interfaces",
+    "algorithms": "Algorithms",
+    "compliance": "Compliance of bodies",
+    "io": "Reading and writing",
+    "reference": "Closed forms",
+    "common": "Common tools",
 }
 
 
@@ -81,7 +85,7 @@ def read_module(path: Path) -> Module | None:
             if begins:
                 module = Module(begins[1], path, words)
         elif re.match(r"use +\w+", text, re.IGNORECASE) and inside_procedure == 0:
-            name, _, names = text[len("use"):].partition(",")
+            name, _, names = text[len("use") :].partition(",")
             module.used.append((name.strip(), re.findall(r"\w+", names.partition(":")[2])))
         elif text.lower() == "public":
             module.hands_on = True
@@ -238,7 +242,7 @@ def _broken(line: str, width: int = 96) -> list[str]:
     place = line.rfind(", ", 0, width)
     if place < 0:
         return [line]
-    return [line[:place + 1] + " &", *_broken("         " + line[place + 2:], width)]
+    return [line[: place + 1] + " &", *_broken("         " + line[place + 2 :], width)]
 
 
 def _words(comment: list[str]) -> list[str]:

@@ -35,8 +35,14 @@ CONTENTS = {
     "Start": ["docs/install", "docs/guide", "gallery/index", "docs/choosing"],
     "Reference": ["docs/namelist", "docs/studies", "docs/clusters", "docs/file-format", "programs"],
     "Interfaces": ["docs/python-api", "python/index", "docs/c-api", "c", "docs/fortran-api", "fortran/index"],
-    "Background": ["docs/theory", "docs/architecture", "docs/verification", "docs/trust", "docs/performance",
-                   "The decoupling study <examples/decoupling/README>"],
+    "Background": [
+        "docs/theory",
+        "docs/architecture",
+        "docs/verification",
+        "docs/trust",
+        "docs/performance",
+        "The decoupling study <examples/decoupling/README>",
+    ],
     "Project": ["CHANGELOG"],
 }
 # Read in the repository only: what the site says by other pages.

@@ -5,9 +5,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+from sweeps import Table
 
 import mfv
-from sweeps import Table
 
 #: The cases of equal disks: P in N/m, relative radius in m, mu, compliance A = sum (kappa + 1)/(4 G) in m^2/N.
 NORMAL_FORCE, RADIUS, MU, COMPLIANCE = 1.6726e8, 2.0, 0.7, 0.7 / 77e9

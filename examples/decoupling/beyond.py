@@ -5,11 +5,10 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
-import numpy as np
-from matplotlib.axes import Axes
-
 import analysis
+import numpy as np
 from drawing import BLACK, FORCE_RATIO, FRICTION, Drawn, letter, line, panels, stem
+from matplotlib.axes import Axes
 from sweeps import COUPLINGS, Table
 
 #: How the bodies were brought together before the cycles.

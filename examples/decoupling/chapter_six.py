@@ -6,9 +6,6 @@ from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
-from matplotlib.axes import Axes
-
-import mfv
 from drawing import (
     BLACK,
     BLUE,
@@ -26,7 +23,10 @@ from drawing import (
     panels,
     stem,
 )
+from matplotlib.axes import Axes
 from sweeps import COUPLINGS, Table
+
+import mfv
 
 #: Half-width by Hertz of the cases of the study, m.
 HALF_WIDTH = 0.044
@@ -107,8 +107,7 @@ def padded(columns: Mapping[str, np.ndarray]) -> dict[str, np.ndarray]:
     """Columns of one length, NaN where they end."""
     longest = max(map(len, columns.values()))
     return {
-        name: np.pad(values.astype(float), (0, longest - len(values)), constant_values=np.nan)
-        for name, values in columns.items()
+        name: np.pad(values.astype(float), (0, longest - len(values)), constant_values=np.nan) for name, values in columns.items()
     }
 
 
@@ -242,9 +241,7 @@ def figure_6_5(table: Table) -> Drawn:
     }
     finish_panels(axes, titles, FRICTION)
     axes[1].legend(fontsize=9)
-    caption = (
-        "Figure 6.5: rigid disk in an elastic hole of twice its radius, five lateral forces over the coefficient of friction."
-    )
+    caption = "Figure 6.5: rigid disk in an elastic hole of twice its radius, five lateral forces over the coefficient of friction."
     names = [
         "force_ratio",
         "mu",

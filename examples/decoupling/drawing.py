@@ -9,7 +9,6 @@ from typing import Any
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-
 from sweeps import COUPLINGS, Table
 
 #: Colours from Okabe and Ito, told apart by the colour-blind too, with a marker each.

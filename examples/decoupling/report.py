@@ -11,11 +11,11 @@ from dataclasses import astuple, fields
 from pathlib import Path
 
 import numpy as np
-
-import mfv
 from drawing import Drawn
 from statements import Statement
 from sweeps import COUPLINGS, Table, mean_of
+
+import mfv
 
 DPI = 110
 STYLE = """
@@ -61,9 +61,7 @@ def write_statements(path: Path, statements: Sequence[Statement]) -> None:
 def markdown(statements: Sequence[Statement]) -> str:
     """The statements as a table of a Markdown page."""
     lines = ["| " + " | ".join(HEADINGS) + " |", "| --- " * len(HEADINGS) + "|"]
-    lines += [
-        "| " + " | ".join(text.replace("|", r"\|").replace("~", r"\~") for text in astuple(row)) + " |" for row in statements
-    ]
+    lines += ["| " + " | ".join(text.replace("|", r"\|").replace("~", r"\~") for text in astuple(row)) + " |" for row in statements]
     return "\n".join(lines) + "\n"
 
 
@@ -107,8 +105,11 @@ def page(drawings: Sequence[Drawn], statements: Sequence[Statement], tables: Map
         f"<style>{STYLE}</style></head><body>",
         "<h1>Elastic decoupling: chapter 6 of the dissertation, computed again</h1>",
         f"<p>MFV {html.escape(mfv.__version__)}, {cases} cases, largest relative residual of any {residual:.0e}."
-        + (" A quick study: few values on every axis, coarse meshes, no remarks; its numbers are not those of the whole one."
-            if quick else "")
+        + (
+            " A quick study: few values on every axis, coarse meshes, no remarks; its numbers are not those of the whole one."
+            if quick
+            else ""
+        )
         + "</p>",
         "<h2>Statement by statement</h2>",
         f"<p>{html.escape(counted(statements))}</p>",

@@ -6,12 +6,12 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
 
-import numpy as np
-
 import analysis
-import mfv
+import numpy as np
 from chapter_six import HALF_WIDTH
 from sweeps import COUPLINGS, Table
+
+import mfv
 
 AGREES, PARTLY, DIFFERS, BEYOND = "agrees", "agrees in part", "differs", "not in the text"
 #: What is zero to round-off, in parts of the largest traction.
@@ -220,15 +220,11 @@ def dissipation_over_force(table: Table, small: Table) -> list[Statement]:
     """Figures 6.3a to d."""
     wide = table.between("force_ratio", 0.2, 1.0)
     spread = analysis.bodies_spread(wide.where(coupling="full"), "dissipation_number", ["force_ratio"], ("half_plane",))
-    disks = analysis.bodies_spread(
-        wide.where(coupling="full"), "dissipation_number", ["force_ratio"], ("half_plane", "hole")
-    )
+    disks = analysis.bodies_spread(wide.where(coupling="full"), "dissipation_number", ["force_ratio"], ("half_plane", "hole"))
     none, goodman = table.where(coupling="none"), table.where(coupling="goodman")
     same = np.abs(goodman["dissipation_number"] / none["dissipation_number"] - 1.0).max()
     ratios = goodman["dissipation_ratio"]
-    ratio_spread = analysis.bodies_spread(
-        wide.where(coupling="goodman"), "dissipation_ratio", ["force_ratio"], ("half_plane",)
-    )
+    ratio_spread = analysis.bodies_spread(wide.where(coupling="goodman"), "dissipation_ratio", ["force_ratio"], ("half_plane",))
     again = float(table["cycle_change"].max())
     smallest_force, smallest = over_prediction(small)
     width = 2.0 * none["contact_half_width"]
@@ -349,9 +345,7 @@ def stick_ratios(table: Table) -> list[Statement]:
     apart = max(np.abs(rows["stick_ratio_reversal"] - none["stick_ratio_reversal"]).max() for rows in (full, goodman))
     equal = np.abs(none["stick_ratio_loading"] - none["stick_ratio_reversal"]).max()
     spread = max(
-        np.ptp(
-            [table.where(coupling=name, base=base)["stick_ratio_reversal"] for base in table.values("base")], axis=0
-        ).max()
+        np.ptp([table.where(coupling=name, base=base)["stick_ratio_reversal"] for base in table.values("base")], axis=0).max()
         for name in COUPLINGS
     )
     return [
@@ -378,9 +372,7 @@ def stick_ratios(table: Table) -> list[Statement]:
             f"differ by {apart:.3f} at most",
             agreed(apart < 0.04),
         ),
-        Statement(
-            "6.4", "stick ratios do not depend on KR", "-", f"differ by {spread:.3f} at most", agreed(spread < 0.03)
-        ),
+        Statement("6.4", "stick ratios do not depend on KR", "-", f"differ by {spread:.3f} at most", agreed(spread < 0.03)),
     ]
 
 
@@ -546,9 +538,7 @@ def five_forces(table: Table) -> list[Statement]:
             "errors of the pressure rise with mu and with Q~",
             "-",
             f"{percent(pressure)}",
-            agreed(
-                bool((np.diff(pressure, axis=0) > -2e-3).all() and (np.diff(pressure, axis=1) > -1e-3).all()), PARTLY
-            ),
+            agreed(bool((np.diff(pressure, axis=0) > -2e-3).all() and (np.diff(pressure, axis=1) > -1e-3).all()), PARTLY),
             "with mu always; over Q~ not below mu = 0.2, where it hardly changes",
         ),
         Statement(
@@ -589,9 +579,7 @@ def dependence_on_history(table: Table) -> list[Statement]:
     spread = {}
     for coupling in COUPLINGS:
         rows = table.where(coupling=coupling).between("force_ratio", 0.1, 1.0)
-        spread[coupling] = [
-            analysis.bodies_spread(part, "dissipation_number", ["force_ratio"]) for _, part in rows.each("beta")
-        ]
+        spread[coupling] = [analysis.bodies_spread(part, "dissipation_number", ["force_ratio"]) for _, part in rows.each("beta")]
     strong = table.where(coupling="full", force_ratio=table["force_ratio"].min(), beta=0.5)
     nothing = float(np.abs(strong["dissipation_number"]).max())
     plain = table.where(coupling="none", force_ratio=table["force_ratio"].min(), beta=0.5)["dissipation_number"].max()
@@ -627,8 +615,7 @@ def flat_punch() -> Statement:
     cycles = {name: cycle_dissipations(mfv.run(text=text.replace("'goodman'", f"'{name}'"))) for name in COUPLINGS}
     later = max(np.abs(cycles[name][1:]).max() / cycles[name][0] for name in ("full", "goodman"))
     first = {
-        COUPLINGS[name]: 0.0 if abs(energies[0]) < 1e-12 * cycles["full"][0] else energies[0]
-        for name, energies in cycles.items()
+        COUPLINGS[name]: 0.0 if abs(energies[0]) < 1e-12 * cycles["full"][0] else energies[0] for name, energies in cycles.items()
     }
     return Statement(
         "6.1",
@@ -673,12 +660,10 @@ def beyond(tables: Mapping[str, Table]) -> list[Statement]:
     error = np.abs(finest["dissipation_number"] / analysis.mindlin_number(finest["force_ratio"]) - 1.0).max()
     full = tables["mismatch"].where(coupling="full")
     even = max(
-        np.abs(curve["dissipation_number"] / curve["dissipation_number"][::-1] - 1.0).max()
-        for _, curve in full.each("force_ratio")
+        np.abs(curve["dissipation_number"] / curve["dissipation_number"][::-1] - 1.0).max() for _, curve in full.each("force_ratio")
     )
     odd = max(
-        np.abs(curve["patch_shift_return"] + curve["patch_shift_return"][::-1]).max()
-        for _, curve in full.each("force_ratio")
+        np.abs(curve["patch_shift_return"] + curve["patch_shift_return"][::-1]).max() for _, curve in full.each("force_ratio")
     )
     goodman = tables["map"].where(coupling="goodman")
     rule = analysis.fitted_rule(tables["map"])

@@ -14,14 +14,14 @@ from pathlib import Path
 from typing import Any
 
 import matplotlib
-
-import mfv
 import report
 import sweeps
 from beyond import draw_beyond
 from chapter_six import draw_chapter
 from drawing import Drawn
 from statements import Statement, all_statements
+
+import mfv
 
 HERE = Path(__file__).resolve().parent
 STYLE: dict[Any, Any] = {

@@ -17,12 +17,12 @@ from typing import Any
 
 import matplotlib
 import numpy as np
+import spence_coupled
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
 import mfv
-import spence_coupled
 from mfv import NodeStatus
 from mfv.plot import CLOSED_FORM, MARKS, NUMBERS, STYLE
 
@@ -448,9 +448,7 @@ def figure_3_15(name: str) -> Drawn:
     explicit = mfv.run(text=varied(text_of(name), "solver", integration="'explicit'", load_step=0.005))
     step, other, line = farthest(text_of(name), (0.5, 0.2, 0.1, 0.05, 0.02, 0.01))
     scale = contact_scale(result.summary.normal_force)
-    picture, (above, below) = panels(
-        2, r"3.15  Cylinder pressed with Dahl's friction, $\sigma$ = 1000, $\gamma$ = 1, $\mu$ = 0.3"
-    )
+    picture, (above, below) = panels(2, r"3.15  Cylinder pressed with Dahl's friction, $\sigma$ = 1000, $\gamma$ = 1, $\mu$ = 0.3")
     draw_nodes(above, result, result.state.pressure, scale, "MFV, pressure $p$", markersize=3)
     draw_nodes(above, result, result.state.shear, scale, r"MFV, shear traction $\tau$", markersize=3, color=OTHER)
     above.plot(

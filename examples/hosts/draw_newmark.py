@@ -112,7 +112,9 @@ def draw_residuals(ax: Axes, program: Path | str) -> None:
     least = 1e-16  # in place of nothing at all
     for nodes, marker in ((101, "s"), (401, "o")):
         _, newton = simulate(program, *step, "--nodes", str(nodes))
-        ax.semilogy(newton["iteration"], np.maximum(newton["residual"], least), marker=marker, ms=4, label=f"tangent, {nodes} nodes")
+        ax.semilogy(
+            newton["iteration"], np.maximum(newton["residual"], least), marker=marker, ms=4, label=f"tangent, {nodes} nodes"
+        )
     _, initial = simulate(program, *step, "--nodes", "101", "--initial-stiffness")
     ax.semilogy(initial["iteration"], initial["residual"], "^-", ms=3, label="initial stiffness, 101 nodes")
     ax.set(xlabel="iteration", ylabel="residual / (mu P)", title="One large time step", xticks=range(0, 20, 4))

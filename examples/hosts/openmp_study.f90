@@ -1,10 +1,13 @@
-!> A parameter study in a Fortran program with OpenMP: shear cycles of a rigid cylinder on a half-plane for every combination of coefficient
+!> A parameter study in a Fortran program with OpenMP: shear cycles of a rigid cylinder on a half-plane for every combination of
+!> coefficient
 !> of friction, lateral force and Dundurs' parameter, one contact a thread at a time. Prints a table (CSV), a row a case.
 !>
 !>     OMP_NUM_THREADS=4 OPENBLAS_NUM_THREADS=1 openmp_study > study.csv
 !>
-!> Contacts know nothing of each other, so that the table has the same bytes for any number of threads. A case that ends early, as the ones
-!> beyond the friction limit do, is a row with its outcome. What thousands of cases take (axes of any keys, restarts, MPI) mfv.study of the Python package has.
+!> Contacts know nothing of each other, so that the table has the same bytes for any number of threads. A case that ends early, as
+!> the ones
+!> beyond the friction limit do, is a row with its outcome. What thousands of cases take (axes of any keys, restarts, MPI) mfv.study
+!> of the Python package has.
 program openmp_study
    use mfv
    implicit none
@@ -15,7 +18,7 @@ program openmp_study
 
    !> Columns that are fields of the contact's group observables.
    character(len=*), parameter :: columns(*) = [character(len=20) :: 'cycle_dissipation', 'tangential_stiffness', 'loss_factor', &
-      'contact_half_width', 'stick_ratio_return']
+                                                                                         'contact_half_width', 'stick_ratio_return']
 
    !> A case and what came of it: status (see mfv_status), and columns, NaN where there is none.
    type :: row_type

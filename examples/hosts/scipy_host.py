@@ -209,9 +209,7 @@ def draw(tops: NDArray[np.float64], forces: NDArray[np.float64], free: RingDown,
     picture = Figure(figsize=(8.4, 3.6), layout="constrained")
     left, right = picture.subplots(1, 2)
     left.plot(np.append(0.0, tops), np.append(0.0, forces) / WEIGHT, "o-", markersize=3.5, linewidth=1.0)
-    left.set(
-        xlabel="shift of the top", ylabel="tangential force over the weight", title="Two contacts in series (root)"
-    )
+    left.set(xlabel="shift of the top", ylabel="tangential force over the weight", title="Two contacts in series (root)")
     right.plot(free.time, free.shift, linewidth=1.0)
     right.set(xlabel="time", ylabel="shift of the mass", title="A mass braked by friction (solve_ivp)")
     for ax in (left, right):

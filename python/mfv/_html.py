@@ -11,10 +11,7 @@ NUMBER = "text-align:right; padding:1px 10px 1px 0; vertical-align:top; font-var
 
 def table(rows: Iterable[Sequence[str]], caption: str = "", numbers: Collection[int] = ()) -> str:
     """A table whose first column has names; `numbers`: columns that are numbers."""
-    lines = [
-        "<tr>" + "".join(_cell(text, column, column in numbers) for column, text in enumerate(row)) + "</tr>"
-        for row in rows
-    ]
+    lines = ["<tr>" + "".join(_cell(text, column, column in numbers) for column, text in enumerate(row)) + "</tr>" for row in rows]
     head = f"<caption style='text-align:left; font-weight:bold'>{html.escape(caption)}</caption>" if caption else ""
     return f"<table style='border-collapse:collapse; margin:4px 0; color:inherit; font-size:inherit'>{head}{''.join(lines)}</table>"
 

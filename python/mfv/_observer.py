@@ -70,9 +70,7 @@ class Observer:
     def refuse_while_leading(self) -> None:
         """Raises RuntimeError in a callback, which must not use the case that calls it."""
         if self.is_leading:
-            raise RuntimeError(
-                "a callback of observe must not use the case that calls it; what it needs is in its argument"
-            )
+            raise RuntimeError("a callback of observe must not use the case that calls it; what it needs is in its argument")
 
     @contextmanager
     def bar(self, wanted: bool) -> Iterator[None]:
@@ -100,7 +98,7 @@ class Observer:
             if self._bar is not None and self._bar.update(told.done - self._bar.n):
                 self._bar.set_postfix_str(f"{told.contact_nodes} in contact, {told.stick_nodes} stuck", refresh=False)
             return int(self._callback is not None and bool(self._callback(told)))
-        except BaseException as error:  # noqa: BLE001 - to be raised by `watch`: nothing can be raised through the library
+        except BaseException as error:
             self._raised = error
             return 1
 

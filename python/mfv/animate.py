@@ -56,9 +56,7 @@ def movie(result: Result) -> Movie:
         picture.suptitle(result.title, fontsize=12, parse_math=False)
         zones = _zones(result) if is_rubbed else []
         below = CAPTION + (LEGEND if zones else 0.0)
-        picture.set_layout_engine(
-            ConstrainedLayoutEngine(rect=(0.0, below / HEIGHT, 1.0, 1.0 - below / HEIGHT), w_pad=0.08)
-        )
+        picture.set_layout_engine(ConstrainedLayoutEngine(rect=(0.0, below / HEIGHT, 1.0, 1.0 - below / HEIGHT), w_pad=0.08))
         caption = picture.text(0.5, 0.08 / HEIGHT, "", ha="center", fontsize=10, color="0.35", parse_math=False)
         if zones:
             picture.legend(

@@ -189,9 +189,7 @@ class Case:
     def __enter__(self) -> Self:
         return self
 
-    def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, traceback: TracebackType | None
-    ) -> None:
+    def __exit__(self, kind: type[BaseException] | None, error: BaseException | None, traceback: TracebackType | None) -> None:
         self.close()
 
     def __repr__(self) -> str:
@@ -484,11 +482,7 @@ class Case:
         if observer.is_idle and not watched:
             status = function(*arguments)
         else:
-            status = (
-                observer.watch(function, *arguments)
-                if watched or observer.is_wanted
-                else observer.rest(function, *arguments)
-            )
+            status = observer.watch(function, *arguments) if watched or observer.is_wanted else observer.rest(function, *arguments)
         return self._ended(check, status)
 
     def _ended(self, check: bool, status: int) -> str:

@@ -128,9 +128,7 @@ def compare(first: Result, second: Result, step: int | None = None) -> Compariso
     states = first.at(step), second.at(step)
     meshes = first.mesh.x, second.mesh.x
     x = np.union1d(*meshes)
-    values = {
-        name: [np.interp(x, mesh, state[name], 0.0, 0.0) for mesh, state in zip(meshes, states)] for name in TRACTIONS
-    }
+    values = {name: [np.interp(x, mesh, state[name], 0.0, 0.0) for mesh, state in zip(meshes, states)] for name in TRACTIONS}
     differences = [np.max(np.abs(one - other)) for one, other in values.values()]
     return Comparison(
         first,

@@ -40,9 +40,7 @@ def figure(comparison: Comparison, first: str = "first", second: str = "second")
         plot.loop: _draw_loops,
     }
     with matplotlib.rc_context(plot.STYLE):
-        picture = Figure(
-            figsize=(3 * plot.PANEL_WIDTH, len(rows) * 0.92 * plot.PANEL_HEIGHT + 0.9), layout="constrained"
-        )
+        picture = Figure(figsize=(3 * plot.PANEL_WIDTH, len(rows) * 0.92 * plot.PANEL_HEIGHT + 0.9), layout="constrained")
         axes = picture.subplots(len(rows), 3, squeeze=False)
         for panel, row in zip(rows, axes):
             for result, ax in zip(results, row):

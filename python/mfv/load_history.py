@@ -146,9 +146,7 @@ def _parts(result: Result) -> Iterator[Part]:
         normal_force = step.get("normal_force", normal_force)
         targets = {name: float(step[name]) for name in LOADS if name in step}
         if "force_ratio" in step:
-            targets["tangential_force"] = (
-                step["force_ratio"] * float(np.max(result.mesh.static_friction)) * normal_force
-            )
+            targets["tangential_force"] = step["force_ratio"] * float(np.max(result.mesh.static_friction)) * normal_force
         for reversal in range(1, _reversals(result, number, step, number <= done) + 1):
             yield Part(number, targets, reversal % 2 == 0, bool(step.get("friction", True)))
 

@@ -94,7 +94,9 @@ def _shear(result: Result, state: Group, patches: list[tuple[float, float]], ax:
 def _gap(result: Result, state: Group, patches: list[tuple[float, float]], ax: Axes) -> None:
     """The gap between the deformed surfaces, the patches shaded."""
     for number, (left, right) in enumerate(patches):
-        ax.axvspan(left, right, color=plot.WITHOUT_FRICTION, linewidth=0.0, zorder=0, label="contact patch" if number == 0 else "_more")
+        ax.axvspan(
+            left, right, color=plot.WITHOUT_FRICTION, linewidth=0.0, zorder=0, label="contact patch" if number == 0 else "_more"
+        )
     gap = np.where(np.isfinite(state.gap), np.maximum(state.gap, 0.0), np.nan)
     ax.fill_between(result.mesh.x, gap, color=plot.SURFACE, alpha=0.18, linewidth=0.0)
     ax.plot(result.mesh.x, gap, color=plot.SURFACE, linewidth=0.9, label="gap")

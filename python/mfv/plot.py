@@ -197,9 +197,7 @@ def _stress_size(field: StressField) -> tuple[float, float]:
 
 def _scales(result: Result, field: StressField) -> str:
     """What pressure and length the picture is drawn over, the largest von Mises stress and tension, in the user's units."""
-    unit, length = (
-        f" {unit}" if is_named(unit) else "" for unit in (result.state.unit("pressure"), result.mesh.unit("x"))
-    )
+    unit, length = (f" {unit}" if is_named(unit) else "" for unit in (result.state.unit("pressure"), result.mesh.unit("x")))
     parts = [
         f"p0 = {field.largest_pressure:.4g}{unit}",
         f"a = {field.half_width:.4g}{length}",
@@ -366,9 +364,7 @@ def loop(result: Result, ax: Axes | None = None, step: int | None = None) -> Axe
     ax.plot(shift, force, color=NUMBERS, linewidth=0.8 if has_events else 0.0, **_points(len(shift)), label="computed")
     if "shift" in result.reference:
         style: dict[str, Any] = {"linestyle": (0, (4, 3))} if has_events else {"linestyle": "none", "marker": "x"}
-        ax.plot(
-            result.reference.shift, force, color=CLOSED_FORM, linewidth=0.9, label="closed form", markersize=4, **style
-        )
+        ax.plot(result.reference.shift, force, color=CLOSED_FORM, linewidth=0.9, label="closed form", markersize=4, **style)
     across = _label("shift", "U", history.unit("shift"))
     up = _label("tangential force", "Q", history.unit("tangential_force"))
     return _finished_curve(ax, result, step, ("shift", "tangential_force"), (across, up))
@@ -476,9 +472,7 @@ def _draw_closed_form(ax: Axes, result: Result, values: np.ndarray) -> None:
     ax.plot(x, y, color=CLOSED_FORM, linewidth=0.9, label="closed form")
 
 
-def _draw_points(
-    ax: Axes, result: Result, state: Group, values: np.ndarray, label: str = "computed", color: str = NUMBERS
-) -> None:
+def _draw_points(ax: Axes, result: Result, state: Group, values: np.ndarray, label: str = "computed", color: str = NUMBERS) -> None:
     points = _points(int(np.count_nonzero(state.status != NodeStatus.OPEN)))
     ax.plot(result.mesh.x, values, linestyle="none", color=color, **points, label=label)
 
@@ -542,9 +536,7 @@ def _mark(ax: Axes, place: np.ndarray, text: str, marker: str, bold: bool, above
     width, weight = (1.8, "bold") if bold else (0.8, "normal")
     ha, va, offset = ("right", "bottom", (-5, 5)) if above else ("left", "top", (5, -5))
     ax.plot(*place, marker=marker, markersize=7, markerfacecolor="none", markeredgecolor=MARKS, markeredgewidth=width)
-    ax.annotate(
-        text, tuple(place), xytext=offset, textcoords="offset points", ha=ha, va=va, fontsize=9, fontweight=weight
-    )
+    ax.annotate(text, tuple(place), xytext=offset, textcoords="offset points", ha=ha, va=va, fontsize=9, fontweight=weight)
 
 
 def _places(points: np.ndarray, tolerance: np.ndarray) -> list[tuple[np.ndarray, list[int]]]:

@@ -62,9 +62,7 @@ def spence_stick_ratio(friction_coefficient: Number, beta: Number) -> Array:
 
 
 @_closed_form
-def spence_cylinder_shear(
-    x: Number, normal_force: Number, half_width: Number, friction_coefficient: Number, beta: Number
-) -> Array:
+def spence_cylinder_shear(x: Number, normal_force: Number, half_width: Number, friction_coefficient: Number, beta: Number) -> Array:
     """Shear traction at x under a cylinder pressed with friction, Goodman's coupling (Spence)."""
 
 
@@ -151,9 +149,7 @@ def power_pressure(x: Number, normal_force: Number, half_width: Number, exponent
 
 
 @_closed_form
-def power_stick_ratio(
-    tangential_force: Number, normal_force: Number, friction_coefficient: Number, exponent: Number
-) -> Array:
+def power_stick_ratio(tangential_force: Number, normal_force: Number, friction_coefficient: Number, exponent: Number) -> Array:
     """Width of the stuck zone over that of the contact of such a body pressed, then sheared (Jaeger, Ciavarella)."""
 
 

@@ -220,9 +220,7 @@ def _shear_figure(result: Result, inside: slice, x: Sequence[Any], across: dict[
     )
     bound = bound or 1.0
     figure = _figure(across, _axis("shear traction", "τ", result.state.unit("shear"), [-1.08 * bound, 1.08 * bound]))
-    figure.add_heatmap(
-        x=_edges(result, inside), y=[-2.0 * bound, 2.0 * bound], name="zones", hoverinfo="skip", **_status_colours()
-    )
+    figure.add_heatmap(x=_edges(result, inside), y=[-2.0 * bound, 2.0 * bound], name="zones", hoverinfo="skip", **_status_colours())
     for index, _ in limits:
         line = {**LIMIT, "dash": "dot" if index == "k" else "solid"}
         for sign in "+\N{MINUS SIGN}":
@@ -300,9 +298,7 @@ def _cycle_figures(result: Result, inside: slice) -> dict[str, Any]:
         return {}
     figure = _figure({"title": {"text": "cycle"}}, _axis("dissipation of a cycle", "", cycles.unit("dissipation")))
     figure.update_yaxes(rangemode="tozero")
-    figure.add_scatter(
-        x=cycles.cycle.tolist(), y=_list(cycles.dissipation), name="dissipation", mode="lines+markers", line=NUMBERS
-    )
+    figure.add_scatter(x=cycles.cycle.tolist(), y=_list(cycles.dissipation), name="dissipation", mode="lines+markers", line=NUMBERS)
     figures = {"cycles": figure}
     if "friction_work" in cycles:
         label = _axis("dissipated per surface", "", cycles.unit("friction_work"))
@@ -387,9 +383,7 @@ def _tables(result: Result) -> dict[str, list[tuple[str, str, str, str]]]:
     groups = (("certificate", result.certificate), ("summary", result.summary), ("observables", result.observables))
     return {
         name: [
-            (key, _number(group[key]), _unit(group.unit(key)), group.description(key))
-            for key in group
-            if np.ndim(group[key]) == 0
+            (key, _number(group[key]), _unit(group.unit(key)), group.description(key)) for key in group if np.ndim(group[key]) == 0
         ]
         for name, group in groups
         if group

@@ -91,9 +91,7 @@ class Group(Mapping[str, Values]):
         """Whether the same quantities have the same values; NaN is the same as NaN."""
         if not isinstance(other, Group):
             return NotImplemented
-        return self.keys() == other.keys() and all(
-            np.array_equal(self[name], other[name], equal_nan=True) for name in self
-        )
+        return self.keys() == other.keys() and all(np.array_equal(self[name], other[name], equal_nan=True) for name in self)
 
     __hash__ = None  # type: ignore[assignment]  # as of every mapping
 
@@ -108,16 +106,12 @@ class Group(Mapping[str, Values]):
 
     def __repr__(self) -> str:
         lines = [
-            f"  {name:24} {_short(field.values):>14} {field.unit:16} {field.description}"
-            for name, field in self._fields.items()
+            f"  {name:24} {_short(field.values):>14} {field.unit:16} {field.description}" for name, field in self._fields.items()
         ]
         return "\n".join(["<mfv.Group", *lines]) + ">"
 
     def _repr_html_(self) -> str:
-        rows = [
-            (name, _short(field.values), _html.unit(field.unit), field.description)
-            for name, field in self._fields.items()
-        ]
+        rows = [(name, _short(field.values), _html.unit(field.unit), field.description) for name, field in self._fields.items()]
         return _html.table(rows, numbers=(1,))
 
     def to_xarray(self) -> xarray.Dataset:
@@ -165,18 +159,14 @@ class Result:
     ) -> None:
         """`groups` by path, those of the steps as steps/0001 and so on. `source`: the scene that was run, where the input among
         the attributes does not have all of it."""
-        coordinates = {
-            name: groups[path][name] for path, names in COORDINATES.items() if path in groups for name in names
-        }
+        coordinates = {name: groups[path][name] for path, names in COORDINATES.items() if path in groups for name in names}
         steps = sorted((path for path in groups if path.startswith("steps/")), key=lambda path: int(path.split("/")[1]))
         self.steps = [Group(groups[path], coordinates) for path in steps]
         self.attributes = dict(attributes)
         self._source = source
         for name in OPTIONAL_GROUPS:
             setattr(self, name, Group({}))
-        self.stresses = {
-            path.removeprefix(STRESS): Group(group) for path, group in groups.items() if path.startswith(STRESS)
-        }
+        self.stresses = {path.removeprefix(STRESS): Group(group) for path, group in groups.items() if path.startswith(STRESS)}
         self._names = [path for path in groups if path not in steps and not path.startswith(STRESS)]
         for name in self._names:
             setattr(self, name, Group(groups[name], coordinates))
@@ -301,7 +291,7 @@ def _groups(file: h5py.File) -> dict[str, dict[str, Field]]:
         for name, item in group.items():
             if isinstance(item, h5py.Group):
                 add(item)
-            elif path in COORDINATES and name in COORDINATES[path] or path.startswith(STRESS) or not item.is_scale:
+            elif (path in COORDINATES and name in COORDINATES[path]) or path.startswith(STRESS) or not item.is_scale:
                 groups.setdefault(path, {})[name] = _field(item)
 
     add(file)

@@ -215,9 +215,7 @@ class Body(KeyGroup):
         recedes; `width` (n): surface that belongs to each node. See docs/namelist.md for signs.
         """
         arrays = {"x": x, "gap": gap, "width": width, "compliance": compliance, "stiffness": stiffness}
-        return cls(
-            shape="matrix", data={name: _numbers(values, name) for name, values in arrays.items() if values is not None}
-        )
+        return cls(shape="matrix", data={name: _numbers(values, name) for name, values in arrays.items() if values is not None})
 
 
 @_keywords_only
@@ -259,17 +257,13 @@ class Friction(KeyGroup):
         return cls(law="static_kinetic", **_coefficients(x, mu_static=mu_static, mu_kinetic=mu_kinetic))
 
     @classmethod
-    def weakening(
-        cls, mu_static: Coefficient, mu_kinetic: Coefficient, distance: float, *, x: ArrayLike | None = None
-    ) -> Friction:
+    def weakening(cls, mu_static: Coefficient, mu_kinetic: Coefficient, distance: float, *, x: ArrayLike | None = None) -> Friction:
         """The coefficient falls linearly from mu_static to mu_kinetic over a slip `distance` [length]."""
         coefficients = _coefficients(x, mu_static=mu_static, mu_kinetic=mu_kinetic)
         return cls(law="weakening", weakening_distance=distance, **coefficients)
 
     @classmethod
-    def dahl(
-        cls, mu: Coefficient, stiffness: float, *, exponent: float | None = None, x: ArrayLike | None = None
-    ) -> Friction:
+    def dahl(cls, mu: Coefficient, stiffness: float, *, exponent: float | None = None, x: ArrayLike | None = None) -> Friction:
         """Bristles of a `stiffness` [force/length^3] give way before mu p is reached."""
         return cls(law="dahl", stiffness=stiffness, exponent=exponent, **_coefficients(x, mu=mu))
 
@@ -410,9 +404,7 @@ class Scene(KeyGroup):
 
         return Case(self)
 
-    def run(
-        self, *, output: str | os.PathLike[str] | None = None, check: bool = False, progress: bool = False
-    ) -> Result:
+    def run(self, *, output: str | os.PathLike[str] | None = None, check: bool = False, progress: bool = False) -> Result:
         """Solve it and return the result: see `mfv.run`."""
         from .case import run
 
@@ -460,9 +452,7 @@ class Scene(KeyGroup):
                     file = keys.setdefault("file" if isinstance(part, Body) else "mu_file", _NAMES_OF_DATA[group])
                     statuses += [_set_data(handle, file, dataset, values) for dataset, values in data.items()]
                 if isinstance(part, Step):
-                    keys = keys or {
-                        "friction": True
-                    }  # its default: the library has to see a step in which nothing is named
+                    keys = keys or {"friction": True}  # its default: the library has to see a step in which nothing is named
                 statuses += _set_keys(handle, group, keys)
             if any(statuses):  # mfv_create tells of the first call that failed
                 created("mfv_create", handle)
@@ -577,11 +567,7 @@ def _set_data(handle: c_void_p, file: str | os.PathLike[str], dataset: str, valu
     """Give the library an array in place of one in a file; return the status. Raises ValueError."""
     array = _numbers(values, f"{os.fspath(file)}: {dataset}")
     if array.ndim not in (1, 2) or array.size == 0:
-        raise ValueError(
-            f"{os.fspath(file)}: {dataset} must have values in one dimension or two, not the shape {array.shape}"
-        )
+        raise ValueError(f"{os.fspath(file)}: {dataset} must have values in one dimension or two, not the shape {array.shape}")
     rows, columns = array.shape if array.ndim == 2 else (array.size, 1)
-    status: int = library().mfv_scene_set_data(
-        handle, text_for(file), text_for(dataset), rows, columns, real_pointer(array)
-    )
+    status: int = library().mfv_scene_set_data(handle, text_for(file), text_for(dataset), rows, columns, real_pointer(array))
     return status

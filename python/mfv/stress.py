@@ -15,9 +15,19 @@ from .result import Result
 #: The stresses at a point, in the order of the header: in Cartesian components, across the plane, principal ones in the
 #: plane, von Mises, in polar components about the centre of a disk or hole, Tresca (sigma_zz counts), and the direction of the first
 #: principal stress from the x axis, in radians.
-NAMES = tuple(
-    "sigma_xx sigma_yy sigma_xy sigma_zz principal_1 principal_2 von_mises sigma_rr sigma_thetatheta sigma_rtheta "
-    "tresca principal_angle".split()
+NAMES = (
+    "sigma_xx",
+    "sigma_yy",
+    "sigma_xy",
+    "sigma_zz",
+    "principal_1",
+    "principal_2",
+    "von_mises",
+    "sigma_rr",
+    "sigma_thetatheta",
+    "sigma_rtheta",
+    "tresca",
+    "principal_angle",
 )
 
 #: The bodies, in the order of the header.

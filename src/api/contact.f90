@@ -85,12 +85,13 @@ module mfv_contact
       procedure :: make_interior
       procedure :: write
       procedure, private :: get_reals, get_integers, get_real, get_integer, begin, forget, expect_made, &
-                            write_checkpoint
+         write_checkpoint
    end type contact_type
 
 contains
 
-   !> The contact of the case in a namelist file. Error MFV_INPUT_ERROR. `needs_steps`: whether a case without steps is an error too.
+   !> The contact of the case in a namelist file. Error MFV_INPUT_ERROR. `needs_steps`: whether a case without steps is an error
+   !> too.
    !> `algorithm`: in place of the case's own; `suffix` is then inserted in the name of its result file.
    subroutine read_contact(path, contact, error, needs_steps, algorithm, suffix)
       character(*), intent(in) :: path
@@ -619,7 +620,8 @@ contains
       if (.not. allocated(self%warnings)) call validity_warnings(self%simulation, self%warnings)
    end subroutine find_warnings
 
-   !> A body (body_lower, body_upper) under the tractions of the state that steps/000N has, N = `step`, or of the present one (0, and
+   !> A body (body_lower, body_upper) under the tractions of the state that steps/000N has, N = `step`, or of the present one (0,
+   !> and
    !> by default): for interior%all_stresses(x, y), largest_von_mises, largest_tension; see mfv_interior. Error MFV_BAD_ARGUMENT: a
    !> rigid body or a matrix, or no such step.
    subroutine find_interior(self, body, interior, error, step)
@@ -677,7 +679,7 @@ contains
    end subroutine expect_inside
 
    !> Write the result file to `path`, or where &output says when that is empty. Errors MFV_FILE_ERROR, MFV_BAD_ARGUMENT.
-   subroutine write(self, path, error)
+   subroutine write (self, path, error)
       class(contact_type), intent(inout) :: self
       character(*), intent(in) :: path
       type(error_type), allocatable, intent(out) :: error

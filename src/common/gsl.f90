@@ -23,7 +23,8 @@ module mfv_gsl
       type(c_ptr) :: params
    end type gsl_multimin_function
 
-   !> Brent's bracketing root solver, linear and Steffen's monotone cubic interpolation, Nelder and Mead's simplex search: constants of
+   !> Brent's bracketing root solver, linear and Steffen's monotone cubic interpolation, Nelder and Mead's simplex search: constants
+   !> of
    !> GSL. They must be public here, or the linker would take them for variables of our own.
    type(c_ptr), protected, bind(C, name='gsl_root_fsolver_brent') :: gsl_root_fsolver_brent
    type(c_ptr), protected, bind(C, name='gsl_interp_linear') :: gsl_interp_linear

@@ -32,7 +32,8 @@ module mfv_minimum
 
 contains
 
-   !> A local minimum of an objective near `x`, searched from steps of the sizes `step`, shape of x, until the simplex is 1e-8 of its
+   !> A local minimum of an objective near `x`, searched from steps of the sizes `step`, shape of x, until the simplex is 1e-8 of
+   !> its
    !> first size or after 400 iterations. `x` becomes the place, `value` what the objective has there.
    subroutine minimum_near(objective, step, x, value)
       class(objective_type), intent(in), target :: objective

@@ -2,7 +2,7 @@
 module mfv_numbers
    use, intrinsic :: ieee_arithmetic, only: ieee_is_finite
    use, intrinsic :: ieee_exceptions, only: ieee_flag_type, ieee_get_flag, ieee_get_halting_mode, ieee_inexact, ieee_overflow, &
-                                            ieee_set_flag, ieee_set_halting_mode, ieee_underflow
+                                                                               ieee_set_flag, ieee_set_halting_mode, ieee_underflow
    use mfv_kinds, only: wp
    use mfv_strings, only: to_text
    implicit none

@@ -138,7 +138,8 @@ contains
       body%to = position(size(position))
    end function new_matrix_body
 
-   !> Whether the body has a surface at x. `parabolic`: the parabola that stands for a rigid circle has no end. (That for an elastic one
+   !> Whether the body has a surface at x. `parabolic`: the parabola that stands for a rigid circle has no end. (That for an elastic
+   !> one
    !> ends with the circle, whose compliance it has.)
    elemental logical function covers(self, x, parabolic)
       class(body_type), intent(in) :: self
@@ -311,7 +312,8 @@ contains
       end select
    end subroutine make_compliance
 
-   !> How far a profile's interpolation and the straight lines between its points are apart at `x` or, straight itself, how far it is from
+   !> How far a profile's interpolation and the straight lines between its points are apart at `x` or, straight itself, how far it
+   !> is from
    !> the monotone cubic interpolation; shape (size(x)), length.
    function from_polyline(self, x) result(departure)
       class(body_type), intent(in) :: self

@@ -1,4 +1,5 @@
-!> Closed form: two elastically similar cylinders in steady rolling under constant normal and tangential forces (Carter 1926; Johnson
+!> Closed form: two elastically similar cylinders in steady rolling under constant normal and tangential forces (Carter 1926;
+!> Johnson
 !> 1985, section 8.3). The contact rolls to the right, x is measured from its middle: the stick zone adjoins the leading edge x = a.
 !> Where it rolls to the left take the shear at -x, and the creepage with the other sign.
 module mfv_reference_carter

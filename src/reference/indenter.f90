@@ -3,7 +3,8 @@
 !>
 !> A growing contact is a sequence of flat punches of half-width s, each with the force P'(s) ds (Johnson 1985, section 2.8;
 !> Jaeger 2005). The gap's slope at x < a asks for P(a) = 2 m F(a) with F(a) = integral of x g'(x)/sqrt(a^2 - x^2) from 0
-!> to a, m the modulus of mfv_reference_hertz; then p(x) = integral of P'(s)/(pi sqrt(s^2 - x^2)) from |x| to a. Both are linear in g
+!> to a, m the modulus of mfv_reference_hertz; then p(x) = integral of P'(s)/(pi sqrt(s^2 - x^2)) from |x| to a. Both are linear in
+!> g
 !> at a given a, so that gaps may be added. Rounded edges: Ciavarella, Hills and Monno 1998.
 module mfv_reference_indenter
    use mfv_kinds, only: pi, wp
@@ -78,7 +79,8 @@ contains
       is_pointed = any(self%exponent <= 1.0_wp)
    end function is_pointed
 
-   !> Force over 2 m, length, at a contact half-width a (length). Of C |x|^n: C n B a^n with B = integral of t^n/sqrt(1 - t^2) from 0
+   !> Force over 2 m, length, at a contact half-width a (length). Of C |x|^n: C n B a^n with B = integral of t^n/sqrt(1 - t^2) from
+   !> 0
    !> to 1; of a rounded punch: a^2 (2 psi - sin 2 psi)/(4 R) with cos psi = b/a (Ciavarella, Hills and Monno 1998).
    pure real(wp) function force(self, a)
       class(indenter_type), intent(in) :: self
@@ -109,7 +111,8 @@ contains
       end do
    end function slope
 
-   !> Contact half-width, length, at a force over 2 m (length). The force is a convex function of the half-width, and Newton's iteration
+   !> Contact half-width, length, at a force over 2 m (length). The force is a convex function of the half-width, and Newton's
+   !> iteration
    !> comes down to it from a half-width at which one term alone carries it all.
    pure real(wp) function half_width(self, force) result(a)
       class(indenter_type), intent(in) :: self

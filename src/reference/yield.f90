@@ -59,7 +59,8 @@ contains
    end function contact_arc
 
    !> Contact arc, radians, at which the yield strength (force/length^2) is reached; it depends on no load and no radius.
-   !> Dissertation Table 4.1 has it with p0 = 1.79 Y (Johnson 1985, section 6.1, for nu = 0.3) and nu = 0.3 for every metal, whatever
+   !> Dissertation Table 4.1 has it with p0 = 1.79 Y (Johnson 1985, section 6.1, for nu = 0.3) and nu = 0.3 for every metal,
+   !> whatever
    !> the table's own column of Poisson's ratios says: its arcs are up to 0.6 % off.
    real(wp) function contact_arc_at_yield(material, plane, yield_strength) result(arc)
       type(material_type), intent(in) :: material

@@ -56,7 +56,8 @@ module mfv_surface_tractions
    end type zone_type
 
    !> One contact zone: the pressure; tau/p, `limit` in slip zones and between their ends; what tau lacks of it in the stick
-   !> zones, over the pressure where a stick zone ends with the contact. Where nodes without pressure have shear, `shear` in place of these.
+   !> zones, over the pressure where a stick zone ends with the contact. Where nodes without pressure have shear, `shear` in place
+   !> of these.
    type :: patch_type
       real(wp), allocatable :: arc(:), width(:), pressure(:), shear(:)
       type(zone_type) :: contact
@@ -309,7 +310,8 @@ contains
       outside = [(.not. any(patch%stick%contains_place(patch%arc(i))), i=1, size(outside))]
    end function outside_stick_zones
 
-   !> The nodes outside all stick zones, but for those within half an interval of an edge that have another such node behind them: an
+   !> The nodes outside all stick zones, but for those within half an interval of an edge that have another such node behind them:
+   !> an
    !> edge may be so far inside the last node that holds.
    pure function slipping_nodes(patch) result(slips)
       type(patch_type), intent(in) :: patch
@@ -351,7 +353,8 @@ contains
       end do
    end subroutine free_of_error
 
-   !> How many intervals next to an edge are left out: two, and where nothing else changes nearby, without coupling, of many more, so
+   !> How many intervals next to an edge are left out: two, and where nothing else changes nearby, without coupling, of many more,
+   !> so
    !> that with finer meshes what is left of the error of the discretisation goes out of sight.
    pure integer function skipped_intervals(patch, zone)
       type(patch_type), intent(in) :: patch

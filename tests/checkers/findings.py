@@ -2,6 +2,7 @@
 
 Left out are leaks without a frame of ours (Python and its packages, which do not tidy up at their end). What the sanitizer of
 undefined behaviour finds ends its program with a message on standard error: the test of it fails."""
+
 import re
 import sys
 from pathlib import Path

@@ -18,8 +18,9 @@ PRESS = {"normal_force": "1e-3", "friction": ".false."}
 SHEAR = {"tangential_force": "2e-4"}
 
 
-def scene(lower: dict[str, str], upper: dict[str, str], mesh: dict[str, str], friction: dict[str, str],
-          *steps: dict[str, str]) -> Groups:
+def scene(
+    lower: dict[str, str], upper: dict[str, str], mesh: dict[str, str], friction: dict[str, str], *steps: dict[str, str]
+) -> Groups:
     groups: Groups = [("scene", {}), ("body", lower), ("body", upper), ("mesh", mesh), ("friction", friction)]
     return groups + [("step", step) for step in steps] + [("solver", {}), ("output", {})]
 
@@ -34,21 +35,36 @@ SCENES: dict[str, Groups] = {
     "fourier": scene(ELASTIC_DISK | {"kernel": "'fourier'"}, RIGID_PLANE, {"nodes": "12", "half_angle": "9"}, COULOMB, PRESS),
     "bore": scene(ELASTIC_DISK, {"shape": "'hole'", "radius": "0.3", "rigid": ".true."}, MESH, {}, {"normal_force": "1e-3"}),
     "punch": scene(ELASTIC, {"shape": "'flat_punch'", "half_width": "0.015", "rigid": ".true."}, MESH, COULOMB, PRESS, SHEAR),
-    "rounded punch": scene(ELASTIC, {"shape": "'rounded_punch'", "half_width": "0.01", "edge_radius": "0.1", "rigid": ".true."}, MESH,
-                           {}, {"normal_force": "1e-3"}),
+    "rounded punch": scene(
+        ELASTIC,
+        {"shape": "'rounded_punch'", "half_width": "0.01", "edge_radius": "0.1", "rigid": ".true."},
+        MESH,
+        {},
+        {"normal_force": "1e-3"},
+    ),
     "wedge": scene(ELASTIC, {"shape": "'wedge'", "angle": "3", "rigid": ".true."}, MESH, {}, {"normal_force": "1e-3"}),
-    "power": scene(ELASTIC, {"shape": "'power'", "coefficient": "2.0", "exponent": "2", "rigid": ".true."}, MESH, {},
-                   {"normal_force": "1e-3"}),
-    "profile": scene(ELASTIC, {"shape": "'profile'", "file": "'profile.txt'", "rigid": ".true."}, MESH, {},
-                     {"normal_force": "1e-3"}),
+    "power": scene(
+        ELASTIC, {"shape": "'power'", "coefficient": "2.0", "exponent": "2", "rigid": ".true."}, MESH, {}, {"normal_force": "1e-3"}
+    ),
+    "profile": scene(
+        ELASTIC, {"shape": "'profile'", "file": "'profile.txt'", "rigid": ".true."}, MESH, {}, {"normal_force": "1e-3"}
+    ),
     "mu from a file": scene(ELASTIC, RIGID_DISK, MESH, {"law": "'coulomb'", "mu_file": "'mu.txt'"}, PRESS, SHEAR),
-    "static_kinetic": scene(ELASTIC, RIGID_DISK, MESH, {"law": "'static_kinetic'", "mu_static": "0.7", "mu_kinetic": "0.5"},
-                            PRESS, SHEAR),
-    "weakening": scene(ELASTIC, RIGID_DISK, MESH, {"law": "'weakening'", "mu_static": "0.7", "mu_kinetic": "0.5",
-                                                   "weakening_distance": "1e-4"}, PRESS, SHEAR),
+    "static_kinetic": scene(
+        ELASTIC, RIGID_DISK, MESH, {"law": "'static_kinetic'", "mu_static": "0.7", "mu_kinetic": "0.5"}, PRESS, SHEAR
+    ),
+    "weakening": scene(
+        ELASTIC,
+        RIGID_DISK,
+        MESH,
+        {"law": "'weakening'", "mu_static": "0.7", "mu_kinetic": "0.5", "weakening_distance": "1e-4"},
+        PRESS,
+        SHEAR,
+    ),
     "dahl": scene(ELASTIC, RIGID_DISK, MESH, {"law": "'dahl'", "mu": "0.7", "stiffness": "1e3", "exponent": "1"}, PRESS, SHEAR),
-    "cycles": scene(ELASTIC, RIGID_DISK, MESH, COULOMB, PRESS, SHEAR,
-                    {"tangential_force": "-2e-4", "cycles": "2", "steady_tolerance": "1e-6"}),
+    "cycles": scene(
+        ELASTIC, RIGID_DISK, MESH, COULOMB, PRESS, SHEAR, {"tangential_force": "-2e-4", "cycles": "2", "steady_tolerance": "1e-6"}
+    ),
     "rolling": scene(ELASTIC_DISK, RIGID_PLANE, MESH, COULOMB, PRESS, {"moment": "1e-6"}),
 }
 
@@ -148,82 +164,166 @@ CASE: dict[tuple[str, str], Row] = {
     ("scene", "coupling"): choice("scene", "cylinder", "'full'", "full goodman none"),
     ("scene", "length_unit"): text("scene", "cylinder", "'mm'"),
     ("scene", "force_unit"): text("scene", "cylinder", "'N'"),
-    ("body", "shape"): choice("body(1)", "cylinder", "'half_plane'", SHAPES, needed=": shape is missing; it must be 'half_plane'",
-                              refused={"'disk'": "radius is missing", "'hole'": "radius is missing",
-                                       "'flat_punch'": "must be .true. for a flat_punch",
-                                       "'rounded_punch'": "half_width is missing", "'wedge'": "angle is missing",
-                                       "'power'": "coefficient is missing",
-                                       "'profile'": "means nothing|file is missing", "'matrix'": "means nothing"}),
-    ("body", "rigid"): logical("body(2)", "cylinder", ".true.", refused={".false.": "poisson_ratio is missing", "f": "poisson_ratio is missing"}),
-    ("body", "shear_modulus"): positive("body(1)", "cylinder", "1.0", MODULUS,
-                                        needed=": shear_modulus is missing; it must be a number above 0"),
+    ("body", "shape"): choice(
+        "body(1)",
+        "cylinder",
+        "'half_plane'",
+        SHAPES,
+        needed=": shape is missing; it must be 'half_plane'",
+        refused={
+            "'disk'": "radius is missing",
+            "'hole'": "radius is missing",
+            "'flat_punch'": "must be .true. for a flat_punch",
+            "'rounded_punch'": "half_width is missing",
+            "'wedge'": "angle is missing",
+            "'power'": "coefficient is missing",
+            "'profile'": "means nothing|file is missing",
+            "'matrix'": "means nothing",
+        },
+    ),
+    ("body", "rigid"): logical(
+        "body(2)", "cylinder", ".true.", refused={".false.": "poisson_ratio is missing", "f": "poisson_ratio is missing"}
+    ),
+    ("body", "shear_modulus"): positive(
+        "body(1)", "cylinder", "1.0", MODULUS, needed=": shear_modulus is missing; it must be a number above 0"
+    ),
     ("body", "youngs_modulus"): positive("body(1)", "cylinder", "2.6", MODULUS, without=("shear_modulus",)),
-    ("body", "poisson_ratio"): real("body(1)", "cylinder", "0.3", lower=-1.0, above=True, upper=0.5,
-                                    needed=": poisson_ratio is missing; it must be a number above -1 and at most 0.5"),
+    ("body", "poisson_ratio"): real(
+        "body(1)",
+        "cylinder",
+        "0.3",
+        lower=-1.0,
+        above=True,
+        upper=0.5,
+        needed=": poisson_ratio is missing; it must be a number above -1 and at most 0.5",
+    ),
     ("body", "yield_strength"): positive("body(1)", "cylinder", "1.0", MODULUS),
     ("body", "datum"): positive("body(1)", "cylinder", "0.25", "length"),
-    ("body", "radius"): positive("body(2)", "cylinder", "0.25", "length",
-                                 needed=": radius is missing; it must be a number above 0"),
-    ("body", "half_width"): positive("body(2)", "punch", "0.015", "length",
-                                     needed=": half_width is missing; it must be a number above 0"),
-    ("body", "edge_radius"): positive("body(2)", "rounded punch", "0.1", "length",
-                                      needed=": edge_radius is missing; it must be a number above 0"),
-    ("body", "angle"): real("body(2)", "wedge", "3", "degrees", lower=0.0, above=True, upper=80.0,
-                            needed=": angle is missing; it must be a number above 0 and at most 80"),
-    ("body", "coefficient"): positive("body(2)", "power", "2.0", "length^(1-exponent)",
-                                      needed=": coefficient is missing; it must be a number above 0"),
-    ("body", "exponent"): real("body(2)", "power", "2", lower=1.0, upper=100.0,
-                               needed=": exponent is missing; it must be a number at least 1 and at most 100"),
+    ("body", "radius"): positive(
+        "body(2)", "cylinder", "0.25", "length", needed=": radius is missing; it must be a number above 0"
+    ),
+    ("body", "half_width"): positive(
+        "body(2)", "punch", "0.015", "length", needed=": half_width is missing; it must be a number above 0"
+    ),
+    ("body", "edge_radius"): positive(
+        "body(2)", "rounded punch", "0.1", "length", needed=": edge_radius is missing; it must be a number above 0"
+    ),
+    ("body", "angle"): real(
+        "body(2)",
+        "wedge",
+        "3",
+        "degrees",
+        lower=0.0,
+        above=True,
+        upper=80.0,
+        needed=": angle is missing; it must be a number above 0 and at most 80",
+    ),
+    ("body", "coefficient"): positive(
+        "body(2)", "power", "2.0", "length^(1-exponent)", needed=": coefficient is missing; it must be a number above 0"
+    ),
+    ("body", "exponent"): real(
+        "body(2)",
+        "power",
+        "2",
+        lower=1.0,
+        upper=100.0,
+        needed=": exponent is missing; it must be a number at least 1 and at most 100",
+    ),
     ("body", "kernel"): choice("body(1)", "elastic disk", "'exact'", "exact fourier"),
-    ("body", "harmonics"): whole("body(1)", "fourier", "150", 2, 200000000, dear=("200000000",),
-                                 refused={"2": "must be at least 120, half the 240 intervals of the circle"}),
-    ("body", "file"): text("body(2)", "profile", "'profile.txt'", needed=": file is missing; it must be a text between quotes",
-                           refused={"''": "the name of a file is empty"}),
+    ("body", "harmonics"): whole(
+        "body(1)",
+        "fourier",
+        "150",
+        2,
+        200000000,
+        dear=("200000000",),
+        refused={"2": "must be at least 120, half the 240 intervals of the circle"},
+    ),
+    ("body", "file"): text(
+        "body(2)",
+        "profile",
+        "'profile.txt'",
+        needed=": file is missing; it must be a text between quotes",
+        refused={"''": "the name of a file is empty"},
+    ),
     ("body", "interpolation"): choice("body(2)", "profile", "'linear'", "linear monotone_cubic"),
     ("body", "position_scale"): positive("body(2)", "profile", "1"),
-    ("body", "height_scale"): real("body(2)", "profile", "1",
-                                   refused=dict.fromkeys(("0", "0.0", "-0.0", "1e-400"), "must not be 0")),
+    ("body", "height_scale"): real(
+        "body(2)", "profile", "1", refused=dict.fromkeys(("0", "0.0", "-0.0", "1e-400"), "must not be 0")
+    ),
     ("body", "level"): choice("body(2)", "profile", "'none'", "none mean line"),
     ("body", "centred"): logical("body(2)", "profile", ".false."),
-    ("mesh", "nodes"): whole("mesh", "cylinder", "11", 1, 100000000,
-                             refused={"100000000": "can be more than 1000000 only with half_angle=180"}),
+    ("mesh", "nodes"): whole(
+        "mesh", "cylinder", "11", 1, 100000000, refused={"100000000": "can be more than 1000000 only with half_angle=180"}
+    ),
     ("mesh", "half_width"): positive("mesh", "cylinder", "0.02", "length"),
     ("mesh", "half_angle"): real("mesh", "elastic disk", "9", "degrees", lower=0.0, above=True, upper=180.0),
     ("mesh", "gap"): choice("mesh", "cylinder", "'exact'", "exact parabolic"),
     ("mesh", "normals"): choice("mesh", "bore", "'radial'", "vertical radial"),
-    ("friction", "law"): choice("friction", "cylinder", "'coulomb'", "none coulomb static_kinetic weakening dahl",
-                                refused={"'none'": "means nothing with law='none'",
-                                         "'static_kinetic'": "means nothing with law='static_kinetic'",
-                                         "'weakening'": "means nothing with law='weakening'", "'dahl'": "stiffness is missing"}),
-    ("friction", "mu"): real("friction", "cylinder", "0.7", lower=0.0, is_list=True,
-                             refused=dict.fromkeys(("0", "0.0", "-0.0", "1e-400"), NO_FRICTION),
-                             needed=": mu is missing; it must be a number at least 0"),
-    ("friction", "mu_static"): real("friction", "static_kinetic", "0.7", lower=0.0, is_list=True,
-                                    refused=dict.fromkeys(("1e-100",), BELOW_KINETIC) |
-                                    dict.fromkeys(("0", "0.0", "-0.0", "1e-400"), NO_FRICTION),
-                                    needed=": mu_static is missing; it must be a number at least 0"),
-    ("friction", "mu_kinetic"): real("friction", "static_kinetic", "0.5", lower=0.0, is_list=True,
-                                     refused=dict.fromkeys(("1e100",), BELOW_KINETIC),
-                                     needed=": mu_kinetic is missing; it must be a number at least 0"),
-    ("friction", "mu_file"): text("friction", "mu from a file", "'mu.txt'", refused={"''": "the name of a file is empty"},
-                                  needed=": mu is missing; it must be a number at least 0"),
-    ("friction", "weakening_distance"): positive("friction", "weakening", "1e-4", "length",
-                                                 needed=": weakening_distance is missing; it must be a number above 0"),
-    ("friction", "stiffness"): positive("friction", "dahl", "1e3", "force/length^3",
-                                        needed=": stiffness is missing; it must be a number above 0"),
+    ("friction", "law"): choice(
+        "friction",
+        "cylinder",
+        "'coulomb'",
+        "none coulomb static_kinetic weakening dahl",
+        refused={
+            "'none'": "means nothing with law='none'",
+            "'static_kinetic'": "means nothing with law='static_kinetic'",
+            "'weakening'": "means nothing with law='weakening'",
+            "'dahl'": "stiffness is missing",
+        },
+    ),
+    ("friction", "mu"): real(
+        "friction",
+        "cylinder",
+        "0.7",
+        lower=0.0,
+        is_list=True,
+        refused=dict.fromkeys(("0", "0.0", "-0.0", "1e-400"), NO_FRICTION),
+        needed=": mu is missing; it must be a number at least 0",
+    ),
+    ("friction", "mu_static"): real(
+        "friction",
+        "static_kinetic",
+        "0.7",
+        lower=0.0,
+        is_list=True,
+        refused=dict.fromkeys(("1e-100",), BELOW_KINETIC) | dict.fromkeys(("0", "0.0", "-0.0", "1e-400"), NO_FRICTION),
+        needed=": mu_static is missing; it must be a number at least 0",
+    ),
+    ("friction", "mu_kinetic"): real(
+        "friction",
+        "static_kinetic",
+        "0.5",
+        lower=0.0,
+        is_list=True,
+        refused=dict.fromkeys(("1e100",), BELOW_KINETIC),
+        needed=": mu_kinetic is missing; it must be a number at least 0",
+    ),
+    ("friction", "mu_file"): text(
+        "friction",
+        "mu from a file",
+        "'mu.txt'",
+        refused={"''": "the name of a file is empty"},
+        needed=": mu is missing; it must be a number at least 0",
+    ),
+    ("friction", "weakening_distance"): positive(
+        "friction", "weakening", "1e-4", "length", needed=": weakening_distance is missing; it must be a number above 0"
+    ),
+    ("friction", "stiffness"): positive(
+        "friction", "dahl", "1e3", "force/length^3", needed=": stiffness is missing; it must be a number above 0"
+    ),
     ("friction", "exponent"): real("friction", "dahl", "1", lower=0.0, upper=100.0, dear=("100.0",)),
-    ("step", "normal_force"): real("step(1)", "cylinder", "1e-3", "force/length", lower=0.0,
-                                   needed=": needs a target: normal_force or approach"),
+    ("step", "normal_force"): real(
+        "step(1)", "cylinder", "1e-3", "force/length", lower=0.0, needed=": needs a target: normal_force or approach"
+    ),
     ("step", "approach"): real("step(1)", "cylinder", "1e-3", "length", without=("normal_force",)),
     ("step", "tangential_force"): real("step(2)", "cylinder", "2e-4", "force/length", needed=": needs a target: normal_force or"),
     ("step", "shift"): real("step(2)", "cylinder", "1e-5", "length", without=("tangential_force",)),
     ("step", "force_ratio"): real("step(2)", "cylinder", "0.4", lower=-1e6, upper=1e6, without=("tangential_force",)),
     ("step", "moment"): real("step(2)", "rolling", "1e-6", "force"),
     ("step", "rotation"): real("step(2)", "rolling", "1e-6", "radians", without=("moment",)),
-    ("step", "friction"): logical("step(2)", "cylinder", ".true.",
-                                  refused={".false.": NO_FRICTION, "f": NO_FRICTION}),
-    ("step", "cycles"): whole("step(3)", "cycles", "2", 0, 1000000,
-                              refused={"0": "means nothing without cycles of 2 or more"}),
+    ("step", "friction"): logical("step(2)", "cylinder", ".true.", refused={".false.": NO_FRICTION, "f": NO_FRICTION}),
+    ("step", "cycles"): whole("step(3)", "cycles", "2", 0, 1000000, refused={"0": "means nothing without cycles of 2 or more"}),
     ("step", "steady_tolerance"): positive("step(3)", "cycles", "1e-6"),
     ("solver", "algorithm"): choice("solver", "cylinder", "'mfv'", "mfv conventional"),
     ("solver", "stepping"): choice("solver", "cylinder", "'event'", "event nominal leap"),

@@ -29,8 +29,16 @@ LONG = 100_000
 
 
 def run(program: Path, *arguments: object, cwd: Path, **more: object) -> subprocess.CompletedProcess[str]:
-    return subprocess.run([program, *map(str, arguments)], cwd=cwd, capture_output=True, text=True, timeout=300, errors="replace",
-                          stdin=subprocess.DEVNULL, **more)  # type: ignore[call-overload]
+    return subprocess.run(
+        [program, *map(str, arguments)],
+        cwd=cwd,
+        capture_output=True,
+        text=True,
+        timeout=300,
+        errors="replace",
+        stdin=subprocess.DEVNULL,
+        **more,
+    )  # type: ignore[call-overload]
 
 
 def refused(done: subprocess.CompletedProcess[str], *parts: str) -> None:
@@ -110,10 +118,14 @@ BROKEN = {
     "a long group": (CASE + b"&" + b"x" * LONG + b" /", "x...: unknown group; groups are scene body"),
     "a long value": (CASE + b"&scene plane='" + b"\xc3\xa4" * LONG + b"' /", "...': must be 'strain' or 'stress'"),
     "a long number": (CASE.replace(b"0.25", b"9" * LONG), "...: must be a number above 0 (length)"),
-    "a long list": (CASE + b"&friction law='coulomb', mu=100000*0.5 /",
-                    "mu=0.5, 0.5, 0.5, 0.5, 0.5, ... (100000 values): must have one value or one a node, 11, not 100000"),
-    "too long a list": (CASE + b"&friction law='coulomb', mu=100*0.5, 9999999*0.5 /",
-                        "the number before * must be a whole number from 1 to 9999900"),
+    "a long list": (
+        CASE + b"&friction law='coulomb', mu=100000*0.5 /",
+        "mu=0.5, 0.5, 0.5, 0.5, 0.5, ... (100000 values): must have one value or one a node, 11, not 100000",
+    ),
+    "too long a list": (
+        CASE + b"&friction law='coulomb', mu=100*0.5, 9999999*0.5 /",
+        "the number before * must be a whole number from 1 to 9999900",
+    ),
     "a million groups of one kind": (b"&scene /\n" * 1_000_000, "case.nml:2: &scene: may come only once"),
     "a long line of nothing": (b"x" * 10_000_000, "case.nml:1: 'xxxxx"),
 }
@@ -176,8 +188,14 @@ def test_paths_that_lead_to_no_file(folder: Path, path: str) -> None:
         refused(run(STRESS, path, cwd=folder), says)
     points = run(STRESS, "result.h5", "--at", path, cwd=folder)
     assert points.returncode == INPUT_ERROR and says in points.stderr.splitlines()[0]
-    shown = subprocess.run([sys.executable, "-m", "mfv", "info", path or "''"], cwd=folder, capture_output=True, text=True, timeout=300,
-                           env=os.environ | {"PYTHONPATH": str(ROOT / "python")})
+    shown = subprocess.run(
+        [sys.executable, "-m", "mfv", "info", path or "''"],
+        cwd=folder,
+        capture_output=True,
+        text=True,
+        timeout=300,
+        env=os.environ | {"PYTHONPATH": str(ROOT / "python")},
+    )
     assert shown.returncode != 0 and "Traceback" not in shown.stderr and shown.stderr.startswith("mfv: "), shown
 
 
@@ -241,8 +259,13 @@ def test_broken_profiles(tmp_path: Path, name: str) -> None:
 
 def test_profiles_of_other_editors(tmp_path: Path) -> None:
     (tmp_path / "case.nml").write_bytes(ELASTIC + b"&body shape='profile', file='profile.txt', rigid=.true. /\n" + MESH + PRESS)
-    for points in (b"-1 1\r\n0 0\r\n1 1\r\n", b"-1\t1\n\n0 , 0\n1,1", b"\xef\xbb\xbf-1 1\n0 0\n 1   1  \n", b"# \xfc\n-1 1\n0 0\n1D0 +1.\n",
-                   b"Trace 1\r\nX (\xb5m);Z (\xb5m)\r\n-1;1\r\n0 ; 0\r\n1;\t1\r\n"):
+    for points in (
+        b"-1 1\r\n0 0\r\n1 1\r\n",
+        b"-1\t1\n\n0 , 0\n1,1",
+        b"\xef\xbb\xbf-1 1\n0 0\n 1   1  \n",
+        b"# \xfc\n-1 1\n0 0\n1D0 +1.\n",
+        b"Trace 1\r\nX (\xb5m);Z (\xb5m)\r\n-1;1\r\n0 ; 0\r\n1;\t1\r\n",
+    ):
         (tmp_path / "profile.txt").write_bytes(points)
         done = run(RUN, "--check", "case.nml", cwd=tmp_path)
         assert done.returncode == 0, (points, done)
@@ -260,7 +283,10 @@ MATRICES = {
     "no nodes": ({"x": X[:0], "compliance": GOOD_MATRIX}, "x has 0 nodes; 1 to 20000 can be"),
     "no matrix": ({"x": X}, "either compliance or stiffness must be there"),
     "two matrices": ({"x": X, "compliance": GOOD_MATRIX, "stiffness": GOOD_MATRIX}, "either compliance or stiffness"),
-    "another shape": ({"x": X, "compliance": np.eye(3)}, "compliance has the shape 3 x 3; with 5 positions in x it must be 5 x 5, or 10 x 10"),
+    "another shape": (
+        {"x": X, "compliance": np.eye(3)},
+        "compliance has the shape 3 x 3; with 5 positions in x it must be 5 x 5, or 10 x 10",
+    ),
     "a vector": ({"x": X, "compliance": X}, "compliance has 1 dimensions, not 2"),
     "NaN": ({"x": X, "compliance": GOOD_MATRIX * np.nan}, "compliance is not finite in row 1, column 1"),
     "Inf": ({"x": X, "compliance": GOOD_MATRIX + np.diag([np.inf] + [0] * (2 * N - 1))}, "compliance is not finite"),
@@ -288,24 +314,43 @@ ELASTIC_MATRIX = b"&body shape='matrix', file='matrix.h5' /\n"
 PUNCH = b"&body shape='flat_punch', half_width=0.1, rigid=.true. /\n"
 
 
-@pytest.mark.parametrize("text, message", [
-    (b"&body shape='matrix', file='matrix.h5', rigid=.true. /\n" + DISK + PRESS,
-     "case.nml:2: &body 2 rigid=.true.: both bodies are rigid"),
-    (DISK + ELASTIC_MATRIX + PRESS, "case.nml:2: &body 2 shape='matrix': a matrix must be the first body, below"),
-    (ELASTIC_MATRIX + DISK + b"&mesh nodes=5 /\n" + PRESS, "case.nml:3: &mesh nodes=5: means nothing for a matrix"),
-    (ELASTIC_MATRIX + DISK + b"&friction law='coulomb', mu=0.5 /\n" + PRESS, "friction needs the tangential ones too"),
-    (ELASTIC_MATRIX + b"&body shape='profile', file='profile.txt', rigid=.true. /\n" + PRESS, "no node of this body is under"),
-    (b"&body shape='profile', file='profile.txt', shear_modulus=1.0, poisson_ratio=0.3 /\n" + PUNCH + PRESS
-     + b"&mesh half_width=0.01, nodes=5 /\n", "no node of this mesh is under the indenter"),
-    (PUNCH + PUNCH + PRESS, "case.nml:2: &body 2 rigid=.true.: both bodies are rigid"),
-    (ELASTIC + DISK + b"&friction law='static_kinetic', mu_static=0.5, mu_kinetic=0.3, 0.4 /\n" + MESH + PRESS,
-     "case.nml:3: &friction mu_kinetic=0.3, 0.4: must have one value or one a node, 11, not 2"),
-    (ELASTIC + DISK + b"&friction law='static_kinetic', mu_static=0.5, 0.6, 0.7, mu_kinetic=0.3, 0.4 /\n" + MESH + PRESS,
-     "case.nml:3: &friction mu_kinetic=0.3, 0.4: must have one value or as many as mu_static"),
-    (ELASTIC + DISK + b"&friction law='coulomb', mu_file='short.txt' /\n" + PRESS, "short.txt: needs at least 2 lines of numbers"),
-    (ELASTIC + DISK + b"&friction law='static_kinetic', mu_file='rising.txt' /\n" + PRESS,
-     "rising.txt: mu_kinetic must not be above mu_static"),
-])
+@pytest.mark.parametrize(
+    "text, message",
+    [
+        (
+            b"&body shape='matrix', file='matrix.h5', rigid=.true. /\n" + DISK + PRESS,
+            "case.nml:2: &body 2 rigid=.true.: both bodies are rigid",
+        ),
+        (DISK + ELASTIC_MATRIX + PRESS, "case.nml:2: &body 2 shape='matrix': a matrix must be the first body, below"),
+        (ELASTIC_MATRIX + DISK + b"&mesh nodes=5 /\n" + PRESS, "case.nml:3: &mesh nodes=5: means nothing for a matrix"),
+        (ELASTIC_MATRIX + DISK + b"&friction law='coulomb', mu=0.5 /\n" + PRESS, "friction needs the tangential ones too"),
+        (ELASTIC_MATRIX + b"&body shape='profile', file='profile.txt', rigid=.true. /\n" + PRESS, "no node of this body is under"),
+        (
+            b"&body shape='profile', file='profile.txt', shear_modulus=1.0, poisson_ratio=0.3 /\n"
+            + PUNCH
+            + PRESS
+            + b"&mesh half_width=0.01, nodes=5 /\n",
+            "no node of this mesh is under the indenter",
+        ),
+        (PUNCH + PUNCH + PRESS, "case.nml:2: &body 2 rigid=.true.: both bodies are rigid"),
+        (
+            ELASTIC + DISK + b"&friction law='static_kinetic', mu_static=0.5, mu_kinetic=0.3, 0.4 /\n" + MESH + PRESS,
+            "case.nml:3: &friction mu_kinetic=0.3, 0.4: must have one value or one a node, 11, not 2",
+        ),
+        (
+            ELASTIC + DISK + b"&friction law='static_kinetic', mu_static=0.5, 0.6, 0.7, mu_kinetic=0.3, 0.4 /\n" + MESH + PRESS,
+            "case.nml:3: &friction mu_kinetic=0.3, 0.4: must have one value or as many as mu_static",
+        ),
+        (
+            ELASTIC + DISK + b"&friction law='coulomb', mu_file='short.txt' /\n" + PRESS,
+            "short.txt: needs at least 2 lines of numbers",
+        ),
+        (
+            ELASTIC + DISK + b"&friction law='static_kinetic', mu_file='rising.txt' /\n" + PRESS,
+            "rising.txt: mu_kinetic must not be above mu_static",
+        ),
+    ],
+)
 def test_what_does_not_go_together(tmp_path: Path, text: bytes, message: str) -> None:
     """Bodies, meshes and coefficients that are each right alone. The matrix has normal components only."""
     with h5py.File(tmp_path / "matrix.h5", "w") as file:
@@ -324,9 +369,13 @@ def test_matrices_have_no_other_meshes(tmp_path: Path) -> None:
         file["x"] = X
         file["compliance"] = np.eye(N) + 0.1
     (tmp_path / "case.nml").write_bytes(ELASTIC_MATRIX + DISK + PRESS)
-    refused(run(RUN, "--estimate", "case.nml", cwd=tmp_path), "case.nml: --estimate: a body with shape='matrix' has no coarser mesh")
-    refused(run(RUN, "--advise", "error=1e-2", "case.nml", cwd=tmp_path),
-            "case.nml: no advice: a body with shape='matrix' has its own nodes")
+    refused(
+        run(RUN, "--estimate", "case.nml", cwd=tmp_path), "case.nml: --estimate: a body with shape='matrix' has no coarser mesh"
+    )
+    refused(
+        run(RUN, "--advise", "error=1e-2", "case.nml", cwd=tmp_path),
+        "case.nml: no advice: a body with shape='matrix' has its own nodes",
+    )
 
 
 def test_results_that_are_none(tmp_path: Path) -> None:
@@ -338,8 +387,14 @@ def test_results_that_are_none(tmp_path: Path) -> None:
     (tmp_path / "cut.h5").write_bytes(whole[: len(whole) // 2])
     for name in ("text.h5", "empty.h5", "cut.h5"):
         refused(run(STRESS, name, cwd=tmp_path), name)
-        shown = subprocess.run([sys.executable, "-m", "mfv", "info", name], cwd=tmp_path, capture_output=True, text=True, timeout=300,
-                               env=os.environ | {"PYTHONPATH": str(ROOT / "python")})
+        shown = subprocess.run(
+            [sys.executable, "-m", "mfv", "info", name],
+            cwd=tmp_path,
+            capture_output=True,
+            text=True,
+            timeout=300,
+            env=os.environ | {"PYTHONPATH": str(ROOT / "python")},
+        )
         assert shown.returncode != 0 and shown.stderr.startswith("mfv: ") and name in shown.stderr, shown
 
 
@@ -352,8 +407,10 @@ ARGUMENTS = [
     (RUN, ("-",), "unknown option '-'"),
     (RUN, ("--" + "x" * LONG,), "unknown option '--xxx"),
     (RUN, ("x" * 200, "x" * LONG), "too many arguments: 'xxx"),
-    *((RUN, ("--advise", f"error={wrong}", "case.nml"), f"--advise error={wrong}: must be a number above 0 and below 1")
-      for wrong in ("", "0", "1", "-1e-2", "NaN", "Inf", "1e400", "1e-400", "x", "1e", "1.5+3", "1e-2,")),
+    *(
+        (RUN, ("--advise", f"error={wrong}", "case.nml"), f"--advise error={wrong}: must be a number above 0 and below 1")
+        for wrong in ("", "0", "1", "-1e-2", "NaN", "Inf", "1e400", "1e-400", "x", "1e", "1.5+3", "1e-2,")
+    ),
     (RUN, ("--advise", "case.nml"), "--advise needs the wanted error"),
     (RUN, ("--advise", "error=1e-2", "error=1e-3", "case.nml"), "--advise error=1e-3: error is there twice"),
     (RUN, ("--advise", "error=1e-2", "of=", "case.nml"), "must be one or more of"),
@@ -363,10 +420,15 @@ ARGUMENTS = [
     (CONVENTIONAL, ("--check",), "unknown option '--check'"),
     (STRESS, ("",), "a result file is missing"),
     (STRESS, ("result.h5", "result.h5"), "too many arguments: 'result.h5'"),
-    *((STRESS, ("result.h5", "--step", wrong), f"--step needs a whole number from 1 to 100000, not '{wrong}'")
-      for wrong in ("", "0", "-1", "1.5", "NaN", "100001", "99999999999999999999", "1e400")),
-    *((STRESS, ("result.h5", option, wrong), f"{option} needs a number above 0 and at most 100000, not '{wrong}'")
-      for option in ("--width", "--depth") for wrong in ("", "0", "-1", "NaN", "Inf", "1e400", "1e-400", "1e6", "x")),
+    *(
+        (STRESS, ("result.h5", "--step", wrong), f"--step needs a whole number from 1 to 100000, not '{wrong}'")
+        for wrong in ("", "0", "-1", "1.5", "NaN", "100001", "99999999999999999999", "1e400")
+    ),
+    *(
+        (STRESS, ("result.h5", option, wrong), f"{option} needs a number above 0 and at most 100000, not '{wrong}'")
+        for option in ("--width", "--depth")
+        for wrong in ("", "0", "-1", "NaN", "Inf", "1e400", "1e-400", "1e6", "x")
+    ),
     (STRESS, ("result.h5", "--points", "2"), "--points needs a whole number from 2 to 100000, not ''"),
     (STRESS, ("result.h5", "--points", "100000", "100000"), "--points asks for more than 1e7 points"),
     (STRESS, ("result.h5", "--at", "nothing.txt"), "nothing.txt: has no points"),
@@ -374,8 +436,11 @@ ARGUMENTS = [
 ]
 
 
-@pytest.mark.parametrize(("program", "arguments", "message"), ARGUMENTS,
-                         ids=[f"{program.name} {' '.join(arguments)[:40]}" for program, arguments, _ in ARGUMENTS])
+@pytest.mark.parametrize(
+    ("program", "arguments", "message"),
+    ARGUMENTS,
+    ids=[f"{program.name} {' '.join(arguments)[:40]}" for program, arguments, _ in ARGUMENTS],
+)
 def test_wrong_arguments(tmp_path: Path, program: Path, arguments: tuple[str, ...], message: str) -> None:
     (tmp_path / "case.nml").write_bytes(CASE)
     (tmp_path / "nothing.txt").write_text("# x y\n")

@@ -7,17 +7,16 @@ import math
 import os
 import re
 import subprocess
+from collections.abc import Iterator
 from pathlib import Path
-from typing import Iterator
 
 import h5py
 import numpy as np
 import pytest
+from key_table import CASE, SCENES, Groups, Row
 
 from mfv import Case
 from mfv.errors import InputError
-
-from key_table import CASE, SCENES, Groups, Row, number
 
 ROOT = Path(__file__).resolve().parents[2]
 RUN = os.environ.get("MFV_RUN", str(ROOT / "build/release/bin/mfv_run"))
@@ -25,8 +24,31 @@ INPUT_ERROR = 2
 ROWS = [(*key, row) for key, row in CASE.items()]
 
 #: Written values that are no number, whatever the range.
-NO_NUMBERS = ["x", "'1'", ".true.", "''", "", "NaN", "nan", "Inf", "-Inf", "Infinity", "1e400", "-1e400", "1.7976931348623159e308",
-              "1.5+3", "1e", "1e5e5", "1..2", "--1", "0x10", ".", "-", "½", "1;2"]
+NO_NUMBERS = [
+    "x",
+    "'1'",
+    ".true.",
+    "''",
+    "",
+    "NaN",
+    "nan",
+    "Inf",
+    "-Inf",
+    "Infinity",
+    "1e400",
+    "-1e400",
+    "1.7976931348623159e308",
+    "1.5+3",
+    "1e",
+    "1e5e5",
+    "1..2",
+    "--1",
+    "0x10",
+    ".",
+    "-",
+    "½",
+    "1;2",
+]
 NO_WHOLES = ["1.5", "1e3", "2147483648", "99999999999999999999", "-99999999999999999999", "5d0"]
 NO_TEXTS = ["bare", "1", ".true.", "", "1, 'a'"]
 NO_LOGICALS = ["1", "'true'", "yes", "", ".tru.", "''", "1.0"]
@@ -165,8 +187,9 @@ def test_every_fault_of_a_key_is_told(folder: Path, group: str, key: str, row: R
     refused(f"{key}%x={row.value}", "a key has no index and no component")
     # What has no = is one more value where the key before it has taken the place of a key.
     message = complaint(written(groups, row, key, f"{key} {row.value}"))
-    assert re.match(rf"case\.nml:{line + 1}: &{group} {key}: '=' is wanted after the key", message) or \
-        re.match(rf"case\.nml:{line}: &{group} .*{key}.*: must be ", message), message
+    assert re.match(rf"case\.nml:{line + 1}: &{group} {key}: '=' is wanted after the key", message) or re.match(
+        rf"case\.nml:{line}: &{group} .*{key}.*: must be ", message
+    ), message
     refused(f"{key}={row.value}, 0*{row.value}", "the number before * must be a whole number from 1 to")
     refused(f"{key}={row.value}, 3*", "a value is missing after *")
     refused(f"{key}={row.value},,{row.value}", "a value is missing beside a comma")
@@ -219,10 +242,12 @@ def faults_of_run(case: Path, text: str) -> Iterator[str]:
             for group in ("state", "history", "mesh"):
                 # The gap has no value beside a flat punch, nor has what is tangential where no shear is carried; edges are at
                 # the outermost nodes of zones only.
-                yield from (f"{group}/{name} is not finite (exit code {run.returncode}, {run.stderr.strip()})"
-                            for name, dataset in file[group].items() if not np.all(np.isfinite(dataset[()]))
-                            and name not in ("gap", "initial_gap", "slip", "tangential_displacement", "contact_edge",
-                                             "stick_edge"))
+                yield from (
+                    f"{group}/{name} is not finite (exit code {run.returncode}, {run.stderr.strip()})"
+                    for name, dataset in file[group].items()
+                    if not np.all(np.isfinite(dataset[()]))
+                    and name not in ("gap", "initial_gap", "slip", "tangential_displacement", "contact_edge", "stick_edge")
+                )
             certificate = file["certificate/largest"][()]
             if run.returncode == 0 and not certificate < 1e-9:
                 yield f"certificate {certificate}"

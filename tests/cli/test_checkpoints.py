@@ -1,4 +1,5 @@
 """Runs that are interrupted or killed, and resumed: they end with the tractions and the dissipation of the undisturbed run."""
+
 import os
 import random
 import signal
@@ -9,7 +10,6 @@ from pathlib import Path
 import h5py
 import numpy as np
 import pytest
-
 from disk import wait_for_work
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -89,7 +89,7 @@ def test_a_run_that_is_stopped_again_and_again(tmp_path, name):
         wait_for_work(process, draw.uniform(0.5, 1.5) * seconds)
         if process.poll() is None:
             process.send_signal(how)
-        output, errors = process.communicate(timeout=300)
+        _output, errors = process.communicate(timeout=300)
         if process.returncode == COMPLETE and stops > 0:
             break
         if process.returncode == COMPLETE:  # faster than the undisturbed run: once more, and sooner
@@ -148,17 +148,21 @@ def test_a_run_that_failed_is_not_called_complete(tmp_path):
     assert run(tmp_path)[0] == 3 and outcome_of(tmp_path / "case.h5") == "gross sliding"
     code, output, errors = run(tmp_path, "--resume")
     assert code == INPUT and output == ""
-    assert errors == ("case.h5: the run ended (gross sliding); nothing to resume; without --resume the case starts again from "
-                      "step 1\n")
+    assert errors == (
+        "case.h5: the run ended (gross sliding); nothing to resume; without --resume the case starts again from step 1\n"
+    )
 
 
-@pytest.mark.parametrize("damage, why", [
-    ("text", "the text of the case has changed"),
-    ("version", "written by version 0.0.0"),
-    ("numbers", "restart/segment is damaged"),
-    ("missing", "dataset restart/certificate is missing"),
-    ("file", "case.h5 is no HDF5 file"),
-])
+@pytest.mark.parametrize(
+    "damage, why",
+    [
+        ("text", "the text of the case has changed"),
+        ("version", "written by version 0.0.0"),
+        ("numbers", "restart/segment is damaged"),
+        ("missing", "dataset restart/certificate is missing"),
+        ("file", "case.h5 is no HDF5 file"),
+    ],
+)
 def test_a_checkpoint_that_cannot_be_used_is_refused(tmp_path, damage, why):
     write_case(tmp_path, cycles=3000)
     assert stop_when_under_way(tmp_path, signal.SIGTERM)[0] == INTERRUPTED

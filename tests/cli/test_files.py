@@ -17,7 +17,6 @@ from pathlib import Path
 import h5py
 import numpy as np
 import pytest
-
 from disk import CASE, CONVENTIONAL, RUN, STRESS, build_shim, go_on_with, parts, run, run_on_disk, wait_for_work
 
 COMPLETE, INPUT, FILE = 0, 2, 4
@@ -159,9 +158,11 @@ def test_kills_at_random_moments_leave_the_old_file_or_the_new_one(program, begu
 
 def limit_files(length):
     """To be called in a child: files grow no further; the signal of that is as a shell leaves it."""
+
     def act():
         resource.setrlimit(resource.RLIMIT_FSIZE, (length, length))
         signal.signal(signal.SIGXFSZ, signal.SIG_DFL)
+
     return act
 
 
@@ -200,9 +201,11 @@ case.write("other.h5")
     assert numbers(folder / "case.h5") == old and numbers(folder / "other.h5")
 
 
-@pytest.mark.parametrize("command", [[RUN, "case.nml"], [RUN, "--help"], [RUN, "--keys"], [RUN, "--version"], [RUN, "--check", "case.nml"],
-                                     [STRESS, "case.h5"]],
-                         ids=lambda command: " ".join([Path(command[0]).name, *command[1:]]))
+@pytest.mark.parametrize(
+    "command",
+    [[RUN, "case.nml"], [RUN, "--help"], [RUN, "--keys"], [RUN, "--version"], [RUN, "--check", "case.nml"], [STRESS, "case.h5"]],
+    ids=lambda command: " ".join([Path(command[0]).name, *command[1:]]),
+)
 def test_output_that_cannot_be_printed_is_an_error(command, folder):
     with open("/dev/full", "w") as full:
         done = subprocess.run(command, cwd=folder, stdout=full, stderr=subprocess.PIPE, text=True, timeout=300)
@@ -260,23 +263,26 @@ def test_places_that_may_not_be_written(open_folder):
     assert run([RUN, "case.nml"], folder, preexec_fn=as_nobody).returncode == COMPLETE
 
 
-@pytest.mark.parametrize("name, why", [
-    ("x" * 300, "cannot be written: File name too long"),
-    ("no/such/folder.h5", "cannot be written: No such file or directory"),
-    ("case.nml/x.h5", "cannot be written: Not a directory"),
-    ("folder", "cannot be written: Is a directory"),
-    ("/dev/full", "cannot be written: it is no regular file"),
-    ("/dev/null", "cannot be written: it is no regular file"),
-    ("round.h5", "cannot be written: Too many levels of symbolic links"),
-    ("case.nml", "is there and is no HDF5 file; it is not replaced"),
-    ("other.h5", "is there and is no result of MFV (no attribute outcome); it is not replaced"),
-    ("broken.h5", "is there and cannot be read: it is broken, or another program has it open to write; it is not replaced"),
-])
+@pytest.mark.parametrize(
+    "name, why",
+    [
+        ("x" * 300, "cannot be written: File name too long"),
+        ("no/such/folder.h5", "cannot be written: No such file or directory"),
+        ("case.nml/x.h5", "cannot be written: Not a directory"),
+        ("folder", "cannot be written: Is a directory"),
+        ("/dev/full", "cannot be written: it is no regular file"),
+        ("/dev/null", "cannot be written: it is no regular file"),
+        ("round.h5", "cannot be written: Too many levels of symbolic links"),
+        ("case.nml", "is there and is no HDF5 file; it is not replaced"),
+        ("other.h5", "is there and is no result of MFV (no attribute outcome); it is not replaced"),
+        ("broken.h5", "is there and cannot be read: it is broken, or another program has it open to write; it is not replaced"),
+    ],
+)
 def test_places_that_are_no_place_for_a_result(name, why, folder):
     (folder / "round.h5").symlink_to("round.h5")
     (folder / "folder").mkdir()
     whole = (folder / "case.h5").read_bytes()
-    (folder / "broken.h5").write_bytes(whole[:len(whole) // 2])
+    (folder / "broken.h5").write_bytes(whole[: len(whole) // 2])
     h5py.File(folder / "other.h5", "w").close()
     before = {path: path.read_bytes() for path in folder.glob("*") if path.is_file()}
     (folder / "bad.nml").write_text(CASE.format(mu=0.5).replace("case.h5", name))
@@ -286,8 +292,15 @@ def test_places_that_are_no_place_for_a_result(name, why, folder):
     assert {path: path.read_bytes() for path in folder.glob("*") if path.is_file()} == before
 
 
-@pytest.mark.parametrize("name", ["with blanks in it.h5", "Gr\N{LATIN SMALL LETTER O WITH DIAERESIS}\N{LATIN SMALL LETTER SHARP S}e \N{GREEK SMALL LETTER MU}.h5",
-                                  "x" * 240, "trailing blank .h5"])
+@pytest.mark.parametrize(
+    "name",
+    [
+        "with blanks in it.h5",
+        "Gr\N{LATIN SMALL LETTER O WITH DIAERESIS}\N{LATIN SMALL LETTER SHARP S}e \N{GREEK SMALL LETTER MU}.h5",
+        "x" * 240,
+        "trailing blank .h5",
+    ],
+)
 def test_unusual_names(name, folder):
     (folder / "case.nml").write_text(CASE.format(mu=0.5).replace("case.h5", name))
     done = run([RUN, "case.nml"], folder)

@@ -1,4 +1,5 @@
 """What the programs say about themselves: --help with cases that work, manual pages made from it, completion."""
+
 import os
 import re
 import shutil
@@ -17,8 +18,14 @@ COMPLETE, INPUT = 0, 2
 
 
 def run(program, *arguments, cwd=ROOT):
-    return subprocess.run([BIN / program, *arguments], cwd=cwd, capture_output=True, text=True, timeout=300,
-                          env=os.environ | {"OPENBLAS_NUM_THREADS": "1"})
+    return subprocess.run(
+        [BIN / program, *arguments],
+        cwd=cwd,
+        capture_output=True,
+        text=True,
+        timeout=300,
+        env=os.environ | {"OPENBLAS_NUM_THREADS": "1"},
+    )
 
 
 def help_of(program):
@@ -50,10 +57,15 @@ def test_options_that_help_explains_are_known(program):
         assert f"unknown option '{option}'" not in refused, refused
 
 
-@pytest.mark.parametrize("program, option, nearest", [
-    ("mfv_run", "--chekc", "--check"), ("mfv_stress", "--bodi", "--body"),
-    ("mfv_conventional", "--verson", "--version"), ("mfv_run", "--frobnicate", None),
-])
+@pytest.mark.parametrize(
+    "program, option, nearest",
+    [
+        ("mfv_run", "--chekc", "--check"),
+        ("mfv_stress", "--bodi", "--body"),
+        ("mfv_conventional", "--verson", "--version"),
+        ("mfv_run", "--frobnicate", None),
+    ],
+)
 def test_unknown_options_propose_the_nearest(program, option, nearest):
     refused = run(program, option)
     assert refused.returncode == INPUT and refused.stdout == ""
@@ -89,8 +101,11 @@ def test_manual_pages_have_every_key_and_option(page):
 
 
 @pytest.mark.parametrize("page", PAGES, ids=lambda page: page.name)
-@pytest.mark.parametrize("checker", [("mandoc", "-T", "lint", "-W", "warning"), ("groff", "-man", "-ww", "-z", "-T", "utf8")],
-                         ids=lambda checker: checker[0])
+@pytest.mark.parametrize(
+    "checker",
+    [("mandoc", "-T", "lint", "-W", "warning"), ("groff", "-man", "-ww", "-z", "-T", "utf8")],
+    ids=lambda checker: checker[0],
+)
 def test_manual_pages_are_free_of_warnings(checker, page):
     if shutil.which(checker[0]) is None:
         pytest.skip(f"{checker[0]} is not installed")
@@ -127,13 +142,16 @@ def test_every_option_is_completed(program, folder):
     assert completions(f"{program} --", folder) == set(options_of(program))
 
 
-@pytest.mark.parametrize("line, expected", [
-    ("mfv_run ", {"case.nml", "second.nml", "with blank.nml", "case.h5", "other.h5", "points.txt", "cases"}),
-    ("mfv_run --check cas", {"case.nml", "case.h5", "cases"}),
-    ("mfv_conventional s", {"second.nml"}),
-    ("mfv_stress case.h5 --bo", {"--body"}),
-    ("mfv_stress case.h5 --at p", {"points.txt"}),
-])
+@pytest.mark.parametrize(
+    "line, expected",
+    [
+        ("mfv_run ", {"case.nml", "second.nml", "with blank.nml", "case.h5", "other.h5", "points.txt", "cases"}),
+        ("mfv_run --check cas", {"case.nml", "case.h5", "cases"}),
+        ("mfv_conventional s", {"second.nml"}),
+        ("mfv_stress case.h5 --bo", {"--body"}),
+        ("mfv_stress case.h5 --at p", {"points.txt"}),
+    ],
+)
 def test_arguments_are_completed(line, expected, folder):
     assert completions(line, folder) == expected
 
@@ -156,11 +174,14 @@ def test_fish_completes_every_option(folder):
         assert {line.split("\t")[0] for line in shown.splitlines()} == set(options_of(program))
 
 
-@pytest.mark.parametrize("arguments, message", [
-    (["mfv_run", "--resume", "--check", "case.nml"], "mfv_run: --check does not go with the arguments before it\n"),
-    (["mfv_run", "--chekc", "case.nml"], "mfv_run: unknown option '--chekc'; did you mean --check?\n"),
-    (["mfv_conventional", "--estimate", "case.nml"], "mfv_conventional: unknown option '--estimate'\n"),
-])
+@pytest.mark.parametrize(
+    "arguments, message",
+    [
+        (["mfv_run", "--resume", "--check", "case.nml"], "mfv_run: --check does not go with the arguments before it\n"),
+        (["mfv_run", "--chekc", "case.nml"], "mfv_run: unknown option '--chekc'; did you mean --check?\n"),
+        (["mfv_conventional", "--estimate", "case.nml"], "mfv_conventional: unknown option '--estimate'\n"),
+    ],
+)
 def test_an_option_in_the_wrong_place_is_told_from_an_unknown_one(arguments, message, tmp_path):
     answer = run(*arguments, cwd=tmp_path)
     assert answer.returncode == 2 and answer.stderr.startswith(message)

@@ -1,4 +1,5 @@
 """mfv_run as a user runs it: examples, messages, exit codes, files that are whole or not there."""
+
 import os
 import re
 import signal
@@ -10,7 +11,6 @@ import h5py
 import numpy as np
 import pytest
 import xarray
-
 from disk import wait_for_work
 from terminal import shown_on_a_terminal
 
@@ -46,14 +46,23 @@ def test_examples_have_a_certificate(example, tmp_path):
 
 
 def test_digits_do_not_depend_on_threads(tmp_path):
-    example = case(tmp_path, BODIES + "&friction law='coulomb', mu=0.5 /\n&mesh nodes=161 /\n&step normal_force=1e-3 /\n"
-                   "&step tangential_force=3e-4, cycles=1 /\n")
+    example = case(
+        tmp_path,
+        BODIES + "&friction law='coulomb', mu=0.5 /\n&mesh nodes=161 /\n&step normal_force=1e-3 /\n"
+        "&step tangential_force=3e-4, cycles=1 /\n",
+    )
     states = []
     for threads in ("1", "2"):
         folder = tmp_path / threads
         folder.mkdir()
-        subprocess.run([PROGRAM, example], cwd=folder, check=True, capture_output=True, timeout=300,
-                       env=os.environ | {"OPENBLAS_NUM_THREADS": threads})
+        subprocess.run(
+            [PROGRAM, example],
+            cwd=folder,
+            check=True,
+            capture_output=True,
+            timeout=300,
+            env=os.environ | {"OPENBLAS_NUM_THREADS": threads},
+        )
         with h5py.File(folder / "case.h5") as result:
             states.append({name: result["state"][name][()].tobytes() for name in result["state"]})
     assert states[0] == states[1]
@@ -67,12 +76,32 @@ def test_file_opens_without_help(tmp_path):
     mfv_run(ROOT / "examples/mindlin.nml", cwd=tmp_path)
     path = tmp_path / "mindlin.h5"
     with h5py.File(path) as result:
-        names = {"pressure", "shear", "gap", "slip", "normal_displacement", "tangential_displacement", "status", "friction_work", "x",
-                 "contact_edge", "stick_edge"}
+        names = {
+            "pressure",
+            "shear",
+            "gap",
+            "slip",
+            "normal_displacement",
+            "tangential_displacement",
+            "status",
+            "friction_work",
+            "x",
+            "contact_edge",
+            "stick_edge",
+        }
         assert set(result["state"]) == names
         assert names < set(result["steps/0001"]) and len(result["steps"]) == 6
-        history = {"normal_force", "tangential_force", "approach", "shift", "contact_nodes", "stick_nodes", "dissipation",
-                   "event_kind", "event_node"}
+        history = {
+            "normal_force",
+            "tangential_force",
+            "approach",
+            "shift",
+            "contact_nodes",
+            "stick_nodes",
+            "dissipation",
+            "event_kind",
+            "event_node",
+        }
         assert history < set(result["history"])
         for group in result.values():
             for dataset in group.values():
@@ -96,8 +125,20 @@ def has_h5dump():
 
 def test_summary_says_what_came_out(tmp_path):
     run = mfv_run(ROOT / "examples/mindlin.nml", cwd=tmp_path)
-    for word in ("contact half-width", "in contact 87", "stuck 67", "slipping 20", "stick ratio", "normal force",
-                 "tangential force", "dissipation", "linear solves", "events", "certificate", "mindlin.h5"):
+    for word in (
+        "contact half-width",
+        "in contact 87",
+        "stuck 67",
+        "slipping 20",
+        "stick ratio",
+        "normal force",
+        "tangential force",
+        "dissipation",
+        "linear solves",
+        "events",
+        "certificate",
+        "mindlin.h5",
+    ):
         assert word in run.stdout, word
 
 
@@ -105,7 +146,8 @@ def test_summary_says_where_tension_is_singular(tmp_path):
     (tmp_path / "punch.nml").write_text(
         "&body shape='half_plane', shear_modulus=1.0, poisson_ratio=0.3 /\n"
         "&body shape='flat_punch', half_width=1.0, rigid=.true. /\n&friction law='coulomb', mu=0.5 /\n"
-        "&step normal_force=1.0e-3 /\n&step tangential_force=2.0e-4 /\n")
+        "&step normal_force=1.0e-3 /\n&step tangential_force=2.0e-4 /\n"
+    )
     run = mfv_run("punch.nml", cwd=tmp_path)
     assert "largest tension     lower body singular at a sharp corner\n" in run.stdout
 
@@ -137,14 +179,24 @@ def test_error_estimate_in_summary_and_file(tmp_path):
     runs = [mfv_run(by_key, cwd=tmp_path), mfv_run("--estimate", by_option, cwd=tmp_path)]
     for run in runs:
         assert run.returncode == COMPLETE and run.stderr == ""
-        assert len(re.findall(r"^error estimate +(contact half-width|stick ratio|peak pressure|peak shear|dissipation) \S+"
-                              r"( mm| N| N/mm\^2)? \+- \S+ \(\S+ %\), order ", run.stdout, re.MULTILINE)) == 5, run.stdout
+        assert (
+            len(
+                re.findall(
+                    r"^error estimate +(contact half-width|stick ratio|peak pressure|peak shear|dissipation) \S+"
+                    r"( mm| N| N/mm\^2)? \+- \S+ \(\S+ %\), order ",
+                    run.stdout,
+                    re.MULTILINE,
+                )
+            )
+            == 5
+        ), run.stdout
         assert "from meshes with 43, 35, 31 nodes in place of 61" in run.stdout
     with h5py.File(tmp_path / "key.h5") as result, h5py.File(tmp_path / "option.h5") as other:
         estimate = result["error_estimate"]
         names = ("contact_half_width", "stick_ratio", "peak_pressure", "peak_shear", "dissipation")
-        assert set(estimate) == {"nodes", "companion_nodes"} | {name + end for name in names
-                                                                for end in ("", "_error", "_order", "_companions")}
+        assert set(estimate) == {"nodes", "companion_nodes"} | {
+            name + end for name in names for end in ("", "_error", "_order", "_companions")
+        }
         for name, dataset in estimate.items():
             assert dataset.attrs["units"] and dataset.attrs["long_name"]
             np.testing.assert_array_equal(dataset[()], other["error_estimate"][name][()])
@@ -153,8 +205,13 @@ def test_error_estimate_in_summary_and_file(tmp_path):
         assert estimate["contact_half_width"][()] == result["summary/contact_half_width"][()]
         assert abs(estimate["stick_ratio"][()] - 0.6**0.5) < 2 * estimate["stick_ratio_error"][()] < 0.2
         assert result.attrs["error_estimate"] == "there"
-    shown = subprocess.run([sys.executable, "-m", "mfv", "info", "key.h5"], cwd=tmp_path, capture_output=True, text=True,
-                           env={**os.environ, "PYTHONPATH": str(ROOT / "python")})
+    shown = subprocess.run(
+        [sys.executable, "-m", "mfv", "info", "key.h5"],
+        cwd=tmp_path,
+        capture_output=True,
+        text=True,
+        env={**os.environ, "PYTHONPATH": str(ROOT / "python")},
+    )
     assert "error estimate" in shown.stdout and "peak_shear" in shown.stdout, shown.stderr
 
 
@@ -163,9 +220,12 @@ def test_sensitivity_in_summary_and_file(tmp_path):
     by_option = case(tmp_path, MINDLIN.format(force=2.8e-4, name="option", more=""), "option.nml")
     for run in [mfv_run(by_key, cwd=tmp_path), mfv_run("--sensitivity", by_option, cwd=tmp_path)]:
         assert run.returncode == COMPLETE and run.stderr == ""
-        assert re.search(r"^sensitivity +coefficients of friction times 1 \+ 1e-12 change pressures by \S+ and shear by \S+ of the "
-                         r"largest traction,\nsensitivity +dissipation by \S+ \(relative\), the stick ratio by \S+$",
-                         run.stdout, re.MULTILINE), run.stdout
+        assert re.search(
+            r"^sensitivity +coefficients of friction times 1 \+ 1e-12 change pressures by \S+ and shear by \S+ of the "
+            r"largest traction,\nsensitivity +dissipation by \S+ \(relative\), the stick ratio by \S+$",
+            run.stdout,
+            re.MULTILINE,
+        ), run.stdout
     with h5py.File(tmp_path / "key.h5") as result, h5py.File(tmp_path / "option.h5") as other:
         for name, dataset in result["sensitivity"].items():
             assert dataset.attrs["units"] == "1" and dataset.attrs["long_name"]
@@ -191,8 +251,9 @@ def test_interrupted_error_estimate_keeps_the_result(tmp_path):
     assert mfv_run(path, cwd=tmp_path).returncode == COMPLETE
     alone = os.times().children_user - before
     (tmp_path / "long.h5").unlink()
-    process = subprocess.Popen([PROGRAM, "--estimate", str(path)], cwd=tmp_path, stdout=subprocess.PIPE,
-                               stderr=subprocess.PIPE, text=True)
+    process = subprocess.Popen(
+        [PROGRAM, "--estimate", str(path)], cwd=tmp_path, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
+    )
     wait_for_work(process, 1.15 * alone)
     process.send_signal(signal.SIGINT)
     output, errors = process.communicate(timeout=60)
@@ -211,8 +272,18 @@ def test_advice_can_be_pasted_and_holds(tmp_path):
     run = mfv_run("--advise", "error=2e-2", path.name, cwd=tmp_path)
     assert run.returncode == COMPLETE and run.stderr == ""
     assert list(tmp_path.iterdir()) == [path]
-    for word in ("case.nml, wanted error 0.02", "pairs of coarse meshes", "error with 61", "nodes needed", "pressure", "shear",
-                 "half_width", "stick_ratio", "dissipation", "laws of cost"):
+    for word in (
+        "case.nml, wanted error 0.02",
+        "pairs of coarse meshes",
+        "error with 61",
+        "nodes needed",
+        "pressure",
+        "shear",
+        "half_width",
+        "stick_ratio",
+        "dissipation",
+        "laws of cost",
+    ):
         assert word in run.stdout, run.stdout
     groups = [line for line in run.stdout.splitlines() if not line.startswith("!")]
     assert re.fullmatch(r"&mesh nodes=\d+, half_width=0.0127, gap='parabolic' /", groups[0])
@@ -232,17 +303,23 @@ def test_advice_can_be_pasted_and_holds(tmp_path):
     assert nodes[0] < nodes[1] < 200
 
 
-@pytest.mark.parametrize("arguments, message", [
-    (("error=abc",), "--advise error=abc: must be a number above 0 and below 1, such as 1e-2"),
-    (("error=",), "--advise error=: must be a number"),
-    (("error=0",), "--advise error=0: must be a number above 0"),
-    (("error=-1e-3",), "--advise error=-1e-3: must be a number above 0"),
-    (("error=1",), "--advise error=1: must be a number above 0 and below 1"),
-    (("error=nan",), "--advise error=nan: must be a number above 0"),
-    (("error=1e-2", "of=presure"), "--advise of=presure: 'presure' is none of pressure,shear,half_width,stick_ratio,dissipation"),
-    ((), "--advise needs the wanted error, such as error=1e-2"),
-    (("error=1e-2", "other.nml"), "--advise too many arguments: 'case.nml'"),
-])
+@pytest.mark.parametrize(
+    "arguments, message",
+    [
+        (("error=abc",), "--advise error=abc: must be a number above 0 and below 1, such as 1e-2"),
+        (("error=",), "--advise error=: must be a number"),
+        (("error=0",), "--advise error=0: must be a number above 0"),
+        (("error=-1e-3",), "--advise error=-1e-3: must be a number above 0"),
+        (("error=1",), "--advise error=1: must be a number above 0 and below 1"),
+        (("error=nan",), "--advise error=nan: must be a number above 0"),
+        (
+            ("error=1e-2", "of=presure"),
+            "--advise of=presure: 'presure' is none of pressure,shear,half_width,stick_ratio,dissipation",
+        ),
+        ((), "--advise needs the wanted error, such as error=1e-2"),
+        (("error=1e-2", "other.nml"), "--advise too many arguments: 'case.nml'"),
+    ],
+)
 def test_wrong_wishes_for_advice(arguments, message, tmp_path):
     path = case(tmp_path, MINDLIN.format(force=2.8e-4, name="advised", more=""))
     run = mfv_run("--advise", *arguments, path.name, cwd=tmp_path)
@@ -261,17 +338,22 @@ def test_wrong_arguments(arguments, tmp_path):
     assert run.returncode == INPUT and "usage:" in run.stderr and run.stdout == ""
 
 
-@pytest.mark.parametrize("text, message", [
-    (BODIES + "&stpe normal_force=1 /", "case.nml:3: &stpe: unknown group; did you mean &step?"),
-    (BODIES + "&step normal_forse=1 /", "case.nml:3: &step normal_forse=1: unknown key; did you mean normal_force?"),
-    (BODIES + "&step normal_force='much' /", "case.nml:3: &step normal_force='much': must be a number"),
-    ("&step normal_force=1 /", "&body: two bodies are needed"),
-    (BODIES.replace("0.25", "-0.25") + "&step normal_force=1 /", "case.nml:2: &body radius=-0.25: must be a number above 0"),
-    (BODIES.replace("0.3 ", "0.6 ") + "&step normal_force=1 /", "case.nml:1: &body poisson_ratio=0.6: must be"),
-    (BODIES + "&mesh nodes=0 / &step normal_force=1 /", "case.nml:3: &mesh nodes=0: must be"),
-    (BODIES + "&step normal_force=1e-3 / &output file='no/such/folder/x.h5' /",
-     "case.nml: &output file='no/such/folder/x.h5': no/such/folder/x.h5 cannot be written"),
-])
+@pytest.mark.parametrize(
+    "text, message",
+    [
+        (BODIES + "&stpe normal_force=1 /", "case.nml:3: &stpe: unknown group; did you mean &step?"),
+        (BODIES + "&step normal_forse=1 /", "case.nml:3: &step normal_forse=1: unknown key; did you mean normal_force?"),
+        (BODIES + "&step normal_force='much' /", "case.nml:3: &step normal_force='much': must be a number"),
+        ("&step normal_force=1 /", "&body: two bodies are needed"),
+        (BODIES.replace("0.25", "-0.25") + "&step normal_force=1 /", "case.nml:2: &body radius=-0.25: must be a number above 0"),
+        (BODIES.replace("0.3 ", "0.6 ") + "&step normal_force=1 /", "case.nml:1: &body poisson_ratio=0.6: must be"),
+        (BODIES + "&mesh nodes=0 / &step normal_force=1 /", "case.nml:3: &mesh nodes=0: must be"),
+        (
+            BODIES + "&step normal_force=1e-3 / &output file='no/such/folder/x.h5' /",
+            "case.nml: &output file='no/such/folder/x.h5': no/such/folder/x.h5 cannot be written",
+        ),
+    ],
+)
 def test_bad_input_ends_with_a_message(text, message, tmp_path):
     path = case(tmp_path, text)
     run = mfv_run(path.name, cwd=tmp_path)
@@ -282,12 +364,21 @@ def test_bad_input_ends_with_a_message(text, message, tmp_path):
         assert mfv_run("--check", path.name, cwd=tmp_path).returncode == INPUT
 
 
-@pytest.mark.parametrize("steps, outcome, message", [
-    ("&friction law='coulomb', mu=0.7 / &step normal_force=1e-3, friction=.false. / &step tangential_force=8e-4 /",
-     "gross sliding", "case.nml: &step 2 tangential_force=8e-4 not reached: gross sliding: every contact node slips"),
-    ("&mesh nodes=21, half_width=0.005 / &step normal_force=1e-3 /",
-     "mesh exceeded", "case.nml: &step 1 normal_force=0.001 not reached: the contact reached the end of the mesh"),
-])
+@pytest.mark.parametrize(
+    "steps, outcome, message",
+    [
+        (
+            "&friction law='coulomb', mu=0.7 / &step normal_force=1e-3, friction=.false. / &step tangential_force=8e-4 /",
+            "gross sliding",
+            "case.nml: &step 2 tangential_force=8e-4 not reached: gross sliding: every contact node slips",
+        ),
+        (
+            "&mesh nodes=21, half_width=0.005 / &step normal_force=1e-3 /",
+            "mesh exceeded",
+            "case.nml: &step 1 normal_force=0.001 not reached: the contact reached the end of the mesh",
+        ),
+    ],
+)
 def test_early_ends_are_results(steps, outcome, message, tmp_path):
     run = mfv_run(case(tmp_path, BODIES + steps).name, cwd=tmp_path)
     assert run.returncode == EARLY
@@ -299,14 +390,17 @@ def test_early_ends_are_results(steps, outcome, message, tmp_path):
     assert sorted(path.name for path in tmp_path.iterdir()) == ["case.h5", "case.nml"]
 
 
-@pytest.mark.parametrize("text", [
-    "&scene coupling='goodman', plane='stress' / &body shape='half_plane', shear_modulus=1.0, poisson_ratio=-0.428 /"
-    "&body shape='disk', radius=1.0, rigid=.true. / &mesh nodes=21, half_width=0.049291 / &friction law='coulomb', mu=0.7 /"
-    "&step normal_force=0.00063458, tangential_force=0.0004129, cycles=2 /",
-    "&body shape='half_plane', shear_modulus=1.0, poisson_ratio=-0.596 / &body shape='disk', radius=1.0, rigid=.true. /"
-    "&mesh nodes=43, half_width=0.020276 / &friction law='coulomb', mu=0.3 /"
-    "&step normal_force=0.00016664, tangential_force=-3.8765e-05 / &step tangential_force=3.4583e-05 / &step shift=-0.00014163 /",
-])
+@pytest.mark.parametrize(
+    "text",
+    [
+        "&scene coupling='goodman', plane='stress' / &body shape='half_plane', shear_modulus=1.0, poisson_ratio=-0.428 /"
+        "&body shape='disk', radius=1.0, rigid=.true. / &mesh nodes=21, half_width=0.049291 / &friction law='coulomb', mu=0.7 /"
+        "&step normal_force=0.00063458, tangential_force=0.0004129, cycles=2 /",
+        "&body shape='half_plane', shear_modulus=1.0, poisson_ratio=-0.596 / &body shape='disk', radius=1.0, rigid=.true. /"
+        "&mesh nodes=43, half_width=0.020276 / &friction law='coulomb', mu=0.3 /"
+        "&step normal_force=0.00016664, tangential_force=-3.8765e-05 / &step tangential_force=3.4583e-05 / &step shift=-0.00014163 /",
+    ],
+)
 def test_slip_to_both_sides_is_not_gross_sliding(text, tmp_path):
     """Pressed and sheared together: while few nodes are in contact, all of them slip, but not all against the force."""
     run = mfv_run(case(tmp_path, text).name, cwd=tmp_path)
@@ -322,8 +416,10 @@ def test_existing_results_survive_failed_runs(tmp_path):
 
 
 def test_long_load_histories_fit_into_a_file(tmp_path):
-    text = BODIES + ("&mesh nodes=3, half_width=0.01 / &friction law='coulomb', mu=0.7 / &step normal_force=1e-4 /"
-                     "&step tangential_force=2e-5, cycles=1500 / &output history='steps' /")
+    text = BODIES + (
+        "&mesh nodes=3, half_width=0.01 / &friction law='coulomb', mu=0.7 / &step normal_force=1e-4 /"
+        "&step tangential_force=2e-5, cycles=1500 / &output history='steps' /"
+    )
     assert mfv_run(case(tmp_path, text).name, cwd=tmp_path).returncode == COMPLETE
     with h5py.File(tmp_path / "case.h5") as result:
         assert len(result["steps"]) == 3001
@@ -357,8 +453,10 @@ def test_profile_and_chosen_mesh(tmp_path):
 
 
 def test_interrupt_leaves_a_readable_file(tmp_path):
-    long = BODIES + ("&mesh nodes=161, half_width=0.0127 / &friction law='coulomb', mu=0.7 / &step normal_force=1e-3 /"
-                     "&step tangential_force=2e-4 / &step tangential_force=-2e-4, cycles=10000 /")
+    long = BODIES + (
+        "&mesh nodes=161, half_width=0.0127 / &friction law='coulomb', mu=0.7 / &step normal_force=1e-3 /"
+        "&step tangential_force=2e-4 / &step tangential_force=-2e-4, cycles=10000 /"
+    )
     case(tmp_path, long)
     run = subprocess.Popen([PROGRAM, "case.nml"], cwd=tmp_path, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
     wait_for_work(run, 0.5)
@@ -373,8 +471,10 @@ def test_interrupt_leaves_a_readable_file(tmp_path):
 
 
 def test_progress_shows_on_a_terminal_only(tmp_path):
-    text = BODIES + ("&mesh nodes=161, half_width=0.0127 / &friction law='coulomb', mu=0.7 / &step normal_force=1e-3 /"
-                     "&step tangential_force=2e-4, cycles=2 / &solver linear_solver='dgesv' /")  # slow enough to be seen
+    text = BODIES + (
+        "&mesh nodes=161, half_width=0.0127 / &friction law='coulomb', mu=0.7 / &step normal_force=1e-3 /"
+        "&step tangential_force=2e-4, cycles=2 / &solver linear_solver='dgesv' /"
+    )  # slow enough to be seen
     case(tmp_path, text)
     assert mfv_run("case.nml", cwd=tmp_path).stderr == ""
     seen = shown_on_a_terminal([PROGRAM, "--estimate", "case.nml"], cwd=tmp_path)
@@ -383,8 +483,12 @@ def test_progress_shows_on_a_terminal_only(tmp_path):
 
 
 def test_mesh_study_converges(tmp_path):
-    run = subprocess.run([sys.executable, ROOT / "examples/mesh_study.py", "--finest", "101", "-o", tmp_path / "study.png"],
-                         capture_output=True, text=True, timeout=300)
+    run = subprocess.run(
+        [sys.executable, ROOT / "examples/mesh_study.py", "--finest", "101", "-o", tmp_path / "study.png"],
+        capture_output=True,
+        text=True,
+        timeout=300,
+    )
     assert run.returncode == 0, run.stderr
     orders = {row[1].strip(): float(row[-2]) for row in (line.split("|") for line in run.stdout.splitlines()[2:])}
     assert len(orders) == 13 and min(orders.values()) > 0.6, run.stdout

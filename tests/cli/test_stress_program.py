@@ -1,4 +1,5 @@
 """mfv_stress as a user runs it: what it puts into the file and prints, and what it leaves alone."""
+
 import os
 import subprocess
 from pathlib import Path
@@ -105,7 +106,7 @@ def test_bad_requests_leave_the_file_as_it_was(folder, arguments, message):
 
 
 def test_states_without_load_or_steps(folder):
-    (folder / "light.nml").write_text(CASE[:CASE.index("&step")] + "&step approach=-1e-4 /\n&output states='none' /\n")
+    (folder / "light.nml").write_text(CASE[: CASE.index("&step")] + "&step approach=-1e-4 /\n&output states='none' /\n")
     subprocess.run([RUN, "light.nml"], cwd=folder, check=True, capture_output=True)
     before = (folder / "light.h5").read_bytes()
     for arguments, message in (((), "light.h5: there is no load in this state"), (("--step", "1"), "there is no state steps/0001")):

@@ -89,7 +89,12 @@ class Child:
         # Appended to, so that what is written after errors() has emptied the file comes to its beginning.
         self._errors = tempfile.TemporaryFile("a+b")
         self._process = subprocess.Popen(
-            self._command, cwd=self._folder, stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=self._errors, env=self._environment
+            self._command,
+            cwd=self._folder,
+            stdin=subprocess.PIPE,
+            stdout=subprocess.PIPE,
+            stderr=self._errors,
+            env=self._environment,
         )
         if self._line(self._process).strip() != "fuzz_target":
             sys.exit(f"{self._command[0]} does not start: {self.errors()}")

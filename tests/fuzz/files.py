@@ -14,7 +14,17 @@ import numpy as np
 from texts import changed_bytes
 
 NODES = 5
-BINARY = [b"\0", b"\xff" * 4, b"\0" * 8, b"\xff" * 8, struct.pack("<q", 1 << 40), struct.pack("<i", 1 << 30), b"OHDR", b"TREE", b"\x89HDF\r\n\x1a\n"]
+BINARY = [
+    b"\0",
+    b"\xff" * 4,
+    b"\0" * 8,
+    b"\xff" * 8,
+    struct.pack("<q", 1 << 40),
+    struct.pack("<i", 1 << 30),
+    b"OHDR",
+    b"TREE",
+    b"\x89HDF\r\n\x1a\n",
+]
 
 
 def right_matrix() -> dict[str, np.ndarray]:
@@ -53,14 +63,46 @@ def odd_hdf5(random: Any, right: dict[str, np.ndarray], groups: tuple[str, ...] 
 def _put_odd(random: Any, file: h5py.File, name: str, values: np.ndarray) -> None:
     """Something else than the dataset that is wanted."""
     kind = random.choice(
-        ("missing", "type", "type", "rank", "shape", "shape", "huge", "value", "value", "value", "layout", "link", "group", "reference", "empty", "other")
+        (
+            "missing",
+            "type",
+            "type",
+            "rank",
+            "shape",
+            "shape",
+            "huge",
+            "value",
+            "value",
+            "value",
+            "layout",
+            "link",
+            "group",
+            "reference",
+            "empty",
+            "other",
+        )
     )
     if kind == "type":
-        types = ("i1", "u8", ">f8", "f2", "f4", "longdouble", "c16", "S8", "bool", "V3", [("a", "f8"), ("b", "i4")], (np.dtype("f8"), (3,)))
+        types = (
+            "i1",
+            "u8",
+            ">f8",
+            "f2",
+            "f4",
+            "longdouble",
+            "c16",
+            "S8",
+            "bool",
+            "V3",
+            [("a", "f8"), ("b", "i4")],
+            (np.dtype("f8"), (3,)),
+        )
         dtype = np.dtype(random.choice(types))
         file.create_dataset(name, values.shape, dtype)
     elif kind == "rank":
-        file[name] = random.choice((values.ravel()[0], values[None], values[..., None], values[None, None], np.float64(1), values.ravel()))
+        file[name] = random.choice(
+            (values.ravel()[0], values[None], values[..., None], values[None, None], np.float64(1), values.ravel())
+        )
     elif kind == "shape":
         shape = tuple(random.choice((0, 1, 2, size - 1, size, size + 1, 2 * size, 300)) for size in values.shape)
         file[name] = np.resize(values, shape) if 0 not in shape else np.zeros(shape)
@@ -75,18 +117,31 @@ def _put_odd(random: Any, file: h5py.File, name: str, values: np.ndarray) -> Non
         changed = np.array(values, dtype="f8")
         if changed.size:
             place = random.randrange(changed.size)
-            changed.flat[place] = random.choice((np.nan, np.inf, -np.inf, 0.0, -1.0, 1e308, -1e308, 5e-324, 1e-308, 1e20, changed.flat[0]))
+            changed.flat[place] = random.choice(
+                (np.nan, np.inf, -np.inf, 0.0, -1.0, 1e308, -1e308, 5e-324, 1e-308, 1e20, changed.flat[0])
+            )
         file[name] = changed
     elif kind == "layout" and values.ndim > 0 and values.size > 0:
         options = random.choice(
-            ({"chunks": (1,) * values.ndim}, {"compression": "gzip", "shuffle": True}, {"fletcher32": True, "chunks": True},
-             {"maxshape": (None,) * values.ndim}, {"scaleoffset": 4}, {"compression": "lzf"})
+            (
+                {"chunks": (1,) * values.ndim},
+                {"compression": "gzip", "shuffle": True},
+                {"fletcher32": True, "chunks": True},
+                {"maxshape": (None,) * values.ndim},
+                {"scaleoffset": 4},
+                {"compression": "lzf"},
+            )
         )
         file.create_dataset(name, data=values, **options)
     elif kind == "link":
         file[name] = random.choice(
-            (h5py.ExternalLink("matrix.h5", "x"), h5py.ExternalLink("nowhere.h5", "/x"), h5py.SoftLink("/nowhere"), h5py.SoftLink("/" + name),
-             h5py.ExternalLink("/dev/null", "x"))
+            (
+                h5py.ExternalLink("matrix.h5", "x"),
+                h5py.ExternalLink("nowhere.h5", "/x"),
+                h5py.SoftLink("/nowhere"),
+                h5py.SoftLink("/" + name),
+                h5py.ExternalLink("/dev/null", "x"),
+            )
         )
     elif kind == "group":
         file.create_group(name)
@@ -110,7 +165,22 @@ def odd_attributes(random: Any, data: bytes) -> bytes:
                 name = random.choice(list(file.attrs) or ["input"])
                 if name in file.attrs:
                     del file.attrs[name]
-                value = random.choice((None, "", "x" * 70000, 3, 2.5, np.arange(3), np.bytes_(b"fixed"), h5py.Empty("S1"), ["a", "b"], "&body /", b"\xff\xfe", "../x"))
+                value = random.choice(
+                    (
+                        None,
+                        "",
+                        "x" * 70000,
+                        3,
+                        2.5,
+                        np.arange(3),
+                        np.bytes_(b"fixed"),
+                        h5py.Empty("S1"),
+                        ["a", "b"],
+                        "&body /",
+                        b"\xff\xfe",
+                        "../x",
+                    )
+                )
                 if value is not None:
                     try:
                         file.attrs[name] = value

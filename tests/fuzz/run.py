@@ -99,7 +99,9 @@ class Fuzzer:
         return {
             "case": Target("case", "nml", 0.30, lambda random: texts.changed_text(random, texts.cases(), keys)),
             "case_bytes": Target("case", "nml", 0.22, lambda random: texts.changed_whole(random, texts.cases())),
-            "columns": Target("columns", "txt", 0.05, lambda random: texts.changed_bytes(random, random.choice(texts.COLUMNS).encode(), lines)),
+            "columns": Target(
+                "columns", "txt", 0.05, lambda random: texts.changed_bytes(random, random.choice(texts.COLUMNS).encode(), lines)
+            ),
             "matrix": Target("matrix", "h5", 0.10, lambda random: files.odd_hdf5(random, files.right_matrix())),
             "matrix_bytes": Target("matrix", "h5", 0.08, lambda random: files.damaged(random, random.choice(matrices))),
             "stress": Target("stress", "h5", 0.03, stress),
@@ -147,7 +149,12 @@ class Fuzzer:
             count.cases += number
             chunk += 1
             if sys.stderr.isatty():
-                print(f"\r{name}: {count.cases} of {cases}, {sum(count.findings.values())} findings ", end="", file=sys.stderr, flush=True)
+                print(
+                    f"\r{name}: {count.cases} of {cases}, {sum(count.findings.values())} findings ",
+                    end="",
+                    file=sys.stderr,
+                    flush=True,
+                )
             if self.options.seconds and time.monotonic() - started > self.options.seconds:
                 break
         count.seconds = time.monotonic() - started
@@ -162,7 +169,11 @@ class Fuzzer:
 
         @seed(int.from_bytes(hashlib.sha256(chunk_seed.encode()).digest()[:8], "big"))
         @settings(
-            max_examples=number, database=None, deadline=None, suppress_health_check=list(HealthCheck), report_multiple_bugs=False,
+            max_examples=number,
+            database=None,
+            deadline=None,
+            suppress_health_check=list(HealthCheck),
+            report_multiple_bugs=False,
             phases=(Phase.generate, Phase.shrink) if shrinks else (Phase.generate,),
         )
         @given(st.randoms(use_true_random=False))
@@ -215,7 +226,9 @@ class Fuzzer:
 
 def _output(command: list[object], folder: Path) -> str:
     environment = os.environ | {"ASAN_OPTIONS": "detect_leaks=0", "OPENBLAS_NUM_THREADS": "1"}
-    return subprocess.run([str(word) for word in command], cwd=folder, check=True, capture_output=True, text=True, env=environment).stdout
+    return subprocess.run(
+        [str(word) for word in command], cwd=folder, check=True, capture_output=True, text=True, env=environment
+    ).stdout
 
 
 def read_found(fuzzer: Fuzzer) -> int:
@@ -262,7 +275,8 @@ def main() -> int:
                 count = fuzzer.counts[name]
                 print(
                     f"{name:14}{count.cases:8} cases {count.accepted:7} accepted {count.solved:7} solved, slowest {count.slowest:6.2f} s, "
-                    f"largest residual {count.residual:.1e}, {count.seconds:6.0f} s, {len(count.findings)} findings", flush=True,
+                    f"largest residual {count.residual:.1e}, {count.seconds:6.0f} s, {len(count.findings)} findings",
+                    flush=True,
                 )
         finally:
             fuzzer.stop()

@@ -121,8 +121,7 @@ def test_the_picture_has_both_results_and_both_over_each_other(tmp_path: Path) -
     np.testing.assert_array_equal(one.get_ydata(), first.state.pressure)
     np.testing.assert_array_equal(other.get_ydata(), second.state.pressure)
     assert np.max(np.abs(difference.get_ydata())) == pytest.approx(
-        compare(first, second).tractions[0].largest_difference
-        * max(first.state.pressure.max(), second.state.pressure.max())
+        compare(first, second).tractions[0].largest_difference * max(first.state.pressure.max(), second.state.pressure.max())
     )
     assert len({ax.get_xlim() for ax in axes[:3]}) == len({ax.get_ylim() for ax in axes[6:]}) == 1
     # A pressed and a sheared one; two that are only pressed.
@@ -147,9 +146,7 @@ def test_what_cannot_be_compared_is_named(tmp_path: Path, capsys: pytest.Capture
     assert sorted(path.name for path in tmp_path.iterdir()) == ["a.h5", "b.h5"]
 
 
-def test_only_a_difference_ends_with_1(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_only_a_difference_ends_with_1(tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch) -> None:
     with h5py.File(tmp_path / "a.h5", "w") as file:
         file.attrs["mfv_version"] = "0.1.0"
         file["state/pressure"] = [0.0]
@@ -166,9 +163,7 @@ def test_only_a_difference_ends_with_1(
 # --- where commands write ---
 
 
-def test_results_are_not_overwritten_by_what_is_drawn_of_them(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_results_are_not_overwritten_by_what_is_drawn_of_them(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     solved(tmp_path / "a.h5")
     solved(tmp_path / "b.png")
     study = str(tmp_path / "study.nml")

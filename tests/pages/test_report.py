@@ -28,9 +28,7 @@ CHROMIUM = os.environ.get("MFV_CHROMIUM") or next(
 #: A page that cannot be drawn fails after this time [ms].
 PATIENCE = 120_000
 
-needs_chromium = pytest.mark.skipif(
-    not CHROMIUM, reason="there is no chromium on this machine (scripts/test.sh installs it)"
-)
+needs_chromium = pytest.mark.skipif(not CHROMIUM, reason="there is no chromium on this machine (scripts/test.sh installs it)")
 
 BODIES = """
 &body shape='half_plane', shear_modulus=1.0, poisson_ratio=0.3 /
@@ -38,9 +36,7 @@ BODIES = """
 &mesh nodes=41, half_width=0.01225 /
 """
 TITLE = 'tan </script><b>bold</b> & "quoted"'
-PRESSED = (
-    "&scene length_unit='mm', force_unit='N' /" + BODIES + "&step normal_force=1.0e-3 /\n&output history='none' /\n"
-)
+PRESSED = "&scene length_unit='mm', force_unit='N' /" + BODIES + "&step normal_force=1.0e-3 /\n&output history='none' /\n"
 SHEARED = (
     f"&scene title='{TITLE}', coupling='goodman' /"
     + BODIES
@@ -242,9 +238,7 @@ def test_a_page_is_readable_wide_and_narrow(browser: object, tmp_path: Path) -> 
 def test_a_chart_can_be_saved_and_cannot_be_sent_away(browser: object, tmp_path: Path) -> None:
     path = written(SHEARED, tmp_path)[1]
     page = Page(browser, path)
-    buttons = page.tab.evaluate(
-        "() => [...document.querySelectorAll('#shear .modebar-btn')].map((one) => one.outerHTML)"
-    )
+    buttons = page.tab.evaluate("() => [...document.querySelectorAll('#shear .modebar-btn')].map((one) => one.outerHTML)")
     assert len(buttons) == 4 and not any("hare" in button or "loud" in button for button in buttons)
     page.tab.hover("#shear")
     with page.tab.expect_download(timeout=PATIENCE) as saved:
@@ -287,9 +281,7 @@ def test_of_many_states_and_cycles_some_are_shown() -> None:
     assert len(text) < 8_000_000
 
 
-def test_a_missing_package_is_named(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_missing_package_is_named(tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch) -> None:
     mfv.run(text=PRESSED, output=tmp_path / "x.h5")
     monkeypatch.delitem(sys.modules, "mfv.report", raising=False)
     monkeypatch.delattr(mfv, "report", raising=False)

@@ -31,15 +31,20 @@ def test_links_of_the_documents_lead_somewhere():
 def test_broken_links_of_a_document_are_named(tmp_path, site):
     check_links = site("check_links")
     (tmp_path / "other.md").write_text("# A `code` heading\n\n## Twice\n\n## Twice\n\n```\n# no heading\n```\n")
-    text = ("# Here\n[a](#here) [b](other.md#a-code-heading) [c](other.md#twice-1)\n"
-            "[d](https://example.org/) `[e](nowhere.md)`\n"
-            "```\n[f](nowhere.md)\n```\n![g](nowhere.png) [h](other.md#no-heading) [i](#there) [![j](other.md)](gone.md)\n")
+    text = (
+        "# Here\n[a](#here) [b](other.md#a-code-heading) [c](other.md#twice-1)\n"
+        "[d](https://example.org/) `[e](nowhere.md)`\n"
+        "```\n[f](nowhere.md)\n```\n![g](nowhere.png) [h](other.md#no-heading) [i](#there) [![j](other.md)](gone.md)\n"
+    )
     (tmp_path / "one.md").write_text(text)
     broken, web = check_links.check(check_links.read_markdown([tmp_path / "one.md", tmp_path / "other.md"]))
     assert web == {"https://example.org/"}
     assert [line.removeprefix(f"{tmp_path}/one.md: ") for line in broken] == [
-        "nowhere.png: there is no such file", "other.md#no-heading: there is no such place in other.md",
-        "#there: there is no such place in one.md", "gone.md: there is no such file"]
+        "nowhere.png: there is no such file",
+        "other.md#no-heading: there is no such place in other.md",
+        "#there: there is no such place in one.md",
+        "gone.md: there is no such file",
+    ]
 
 
 def test_broken_links_of_a_site_are_named(tmp_path):
@@ -71,7 +76,7 @@ def test_the_c_reference_has_every_function_and_status(tmp_path, site):
 def test_the_fortran_reference_has_every_module_and_public_name(tmp_path, site):
     site("fortran_reference").write_fortran_reference(ROOT, tmp_path)
     index = (tmp_path / "fortran/index.md").read_text()
-    sources = [path for path in sorted((ROOT / "src").rglob("*.[fF]90"))]
+    sources = sorted((ROOT / "src").rglob("*.[fF]90"))
     assert len(sources) > 80
     for path in sources:
         text = re.sub(r"&\n *&?", "", path.read_text())
@@ -123,8 +128,11 @@ end module one
     assert (module.name, module.words, module.public) == ("one", ["One thing: with a colon."], ["half", "point_type"])
     entities = {entity.names[0]: entity for entity in module.entities}
     assert entities["half"].words == ["Half of", "a number."]
-    assert entities["half"].statements == ["pure real function half(number, other) result(value)",
-                                           "   real, intent(in) :: number(size('!', 1):), other", "end function half"]
+    assert entities["half"].statements == [
+        "pure real function half(number, other) result(value)",
+        "   real, intent(in) :: number(size('!', 1):), other",
+        "end function half",
+    ]
     shown = ["type :: point_type", "contains", "   procedure :: move", "end type point_type"]
     assert entities["point_type"].statements == shown
     assert module.used == [("two", ["three"])] and not module.hands_on

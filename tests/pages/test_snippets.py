@@ -93,8 +93,8 @@ class Reader:
 
     def compare(self, line: str, place: str) -> None:
         self.fresh = True
-        assert any(same_output(line, printed) for printed in self.printed), (
-            f"{place}: not printed:\n{line}\nbut\n" + "\n".join(self.printed)
+        assert any(same_output(line, printed) for printed in self.printed), f"{place}: not printed:\n{line}\nbut\n" + "\n".join(
+            self.printed
         )
 
 

@@ -41,9 +41,7 @@ def test_a_file_is_on_the_disk_before_it_has_its_name(place: Path, monkeypatch: 
 
 
 @pytest.mark.parametrize("owner, name", [(os, "fsync"), (Path, "replace")])
-def test_what_fails_leaves_the_old_file_and_no_part(
-    owner: object, name: str, place: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_what_fails_leaves_the_old_file_and_no_part(owner: object, name: str, place: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     def fail(*arguments: object) -> None:
         raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
 

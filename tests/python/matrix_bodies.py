@@ -4,9 +4,10 @@ from __future__ import annotations
 
 from typing import Callable
 
-import mfv
 import numpy as np
 from numpy.typing import NDArray
+
+import mfv
 
 Array = NDArray[np.float64]
 

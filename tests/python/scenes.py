@@ -19,4 +19,3 @@ def cylinder(*steps: mfv.Step, **keys: Any) -> mfv.Scene:
     """A rigid cylinder on a half-plane under Coulomb's friction, without coupling of shear into pressure."""
     given: dict[str, Any] = {"mesh": MESH, "friction": mfv.Friction.coulomb(0.7), "coupling": "goodman", **keys}
     return mfv.Scene(HALF_PLANE, DISK, steps=steps, **given)
-

@@ -16,10 +16,10 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from scenes import PRESS, cylinder
 
 import mfv
 from mfv import errors
-from scenes import PRESS, cylinder
 
 NOTHING_KEPT = mfv.Output(history="none", states="none")
 SHEARED = PRESS, mfv.Step(tangential_force=2.8e-4), mfv.Step(tangential_force=-1.0e-4)
@@ -271,8 +271,8 @@ def test_a_callback_must_not_use_its_case(pressed: mfv.Case) -> None:
         lambda: pressed.loads,
         lambda: pressed["mesh/x"],
         lambda: pressed.advance(shift=0.0),
-        lambda: pressed.save(),
-        lambda: pressed.close(),
+        pressed.save,
+        pressed.close,
         lambda: pressed.observe(None),
     ):
         state = pressed.save()
@@ -287,9 +287,7 @@ def test_a_callback_must_not_use_its_case(pressed: mfv.Case) -> None:
 def test_an_interrupt_from_the_keyboard_ends_a_long_run_with_its_state() -> None:
     # A process that a shell put into the background ignores interrupts.
     before = signal.signal(signal.SIGINT, signal.default_int_handler)
-    case = cylinder(
-        PRESS, mfv.Step(tangential_force=2.8e-4), mfv.Step(tangential_force=-2.8e-4, cycles=1000000)
-    ).contact()
+    case = cylinder(PRESS, mfv.Step(tangential_force=2.8e-4), mfv.Step(tangential_force=-2.8e-4, cycles=1000000)).contact()
     timer = threading.Timer(0.3, signal.raise_signal, [signal.SIGINT])
     timer.start()
     with pytest.raises(KeyboardInterrupt):

@@ -134,7 +134,9 @@ def test_mfv_run_with_one_thread_and_two(name: str, digests: dict[str, str], tmp
         pytest.skip("MFV_RUN does not say where the program is")
     (tmp_path / "case.nml").write_text(CASES[name])
     for threads in "12":
-        subprocess.run([program, "case.nml"], cwd=tmp_path, check=True, capture_output=True, env=os.environ | {"OPENBLAS_NUM_THREADS": threads})
+        subprocess.run(
+            [program, "case.nml"], cwd=tmp_path, check=True, capture_output=True, env=os.environ | {"OPENBLAS_NUM_THREADS": threads}
+        )
         with mfv.Case.from_text(CASES[name]) as case, h5py.File(tmp_path / "case.h5") as result:
             case.run()
             written = {path: result[path][()] for path in case.fields()}

@@ -8,9 +8,9 @@ from pathlib import Path
 import pytest
 import xarray
 from matplotlib import pyplot
+from scenes import PROJECT
 
 import mfv
-from scenes import PROJECT
 
 PAGES = ("docs/python-api.md", "docs/studies.md", "README.md", "python/README.md")
 
@@ -28,8 +28,7 @@ def blocks(page: str) -> list[tuple[int, str]]:
     """The Python blocks of a page, each with the number of its first line."""
     text = (PROJECT / page).read_text()
     return [
-        (text[: m.start(1)].count("\n") + 1, m[1])
-        for m in re.finditer(r"^```python\n(.*?)^```", text, re.MULTILINE | re.DOTALL)
+        (text[: m.start(1)].count("\n") + 1, m[1]) for m in re.finditer(r"^```python\n(.*?)^```", text, re.MULTILINE | re.DOTALL)
     ]
 
 
@@ -40,6 +39,6 @@ def test_the_examples_of_a_page_run(page: str, directory: Path) -> None:
     names: dict[str, object] = {}
     for line, code in found:
         # Blank lines before it: a traceback then has the line of the page.
-        exec(compile("\n" * (line - 1) + code, str(PROJECT / page), "exec"), names)  # noqa: S102 - our own page
+        exec(compile("\n" * (line - 1) + code, str(PROJECT / page), "exec"), names)
     pyplot.close("all")
     assert any(isinstance(value, (mfv.Result, xarray.Dataset)) for value in names.values())

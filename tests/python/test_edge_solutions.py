@@ -62,7 +62,9 @@ def test_discrete_solution_is_that_of_hertz() -> None:
     for margin in (1.2, 1.213, 1.253):
         mesh = mfv.Mesh(nodes=801, half_width=margin * exact)
         steps = [mfv.Step(normal_force=0.01)]
-        scene = mfv.Scene(half_plane, mfv.Body.power(1e-2, 2.0, rigid=True), mesh=mesh, friction=mfv.Friction(law="none"), steps=steps)
+        scene = mfv.Scene(
+            half_plane, mfv.Body.power(1e-2, 2.0, rigid=True), mesh=mesh, friction=mfv.Friction(law="none"), steps=steps
+        )
         state = mfv.run(scene).state
         touching = np.asarray(state.pressure) > 0
         x, pressure = np.asarray(state.x)[touching][:10], np.asarray(state.pressure)[touching][:10]
@@ -81,7 +83,12 @@ def test_edges_are_exact_wherever_they_are_between_nodes() -> None:
     shapes = [
         (mfv.Body.power(1e-2, 2.0, rigid=True), mfv.reference.power_half_width(0.01, 1e-2, 2.0, 1.0, kappa), 1e-3, 2e-3),
         (mfv.Body.power(1e-2, 4.0, rigid=True), mfv.reference.power_half_width(0.01, 1e-2, 4.0, 1.0, kappa), 1e-2, 1e-1),
-        (mfv.Body.rounded_punch(0.5, 100.0, rigid=True), mfv.reference.rounded_punch_half_width(0.01, 0.5, 100.0, 1.0, kappa), 1e-3, 5e-3),
+        (
+            mfv.Body.rounded_punch(0.5, 100.0, rigid=True),
+            mfv.reference.rounded_punch_half_width(0.01, 0.5, 100.0, 1.0, kappa),
+            1e-3,
+            5e-3,
+        ),
     ]
     for body, exact, fine, coarse in shapes:
         for nodes, bound in ((401, fine), (101, coarse)):

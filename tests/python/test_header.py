@@ -129,9 +129,7 @@ def test_structures_are_packed_as_they_are_laid_out() -> None:
 
 
 def test_the_size_of_a_structure_is_that_of_the_library() -> None:
-    with mfv.Scene(
-        mfv.Body.half_plane(shear_modulus=1.0, poisson_ratio=0.3), mfv.Body.disk(1.0, rigid=True)
-    ).contact() as case:
+    with mfv.Scene(mfv.Body.half_plane(shear_modulus=1.0, poisson_ratio=0.3), mfv.Body.disk(1.0, rigid=True)).contact() as case:
         function = _library.library().mfv_advance
         step = _library.StepStructure(size=ctypes.sizeof(_library.StepStructure))
         assert function(case._handle, ctypes.byref(step)) == 0

@@ -9,10 +9,9 @@ from types import ModuleType
 
 import numpy as np
 import pytest
+from scenes import PROJECT
 from scipy.integrate import quad
 from scipy.optimize import brentq
-
-from scenes import PROJECT
 
 PATH = PROJECT / "examples" / "hosts" / "scipy_host.py"
 
@@ -87,9 +86,7 @@ def test_a_mass_braked_by_friction_turns_where_the_energy_says(host: ModuleType)
     def work(reached: float, left: float) -> float:
         """Work of the force from turn to turn on the way that Masing's rule gives, by parts: nothing is left of it."""
         way = [2.0 * shift(0.5 * (left - force), mu, weight) for force in (-reached, left)]
-        area = quad(
-            lambda force: 2.0 * shift(0.5 * (left - force), mu, weight), -reached, left, epsabs=0.0, epsrel=1e-8
-        )
+        area = quad(lambda force: 2.0 * shift(0.5 * (left - force), mu, weight), -reached, left, epsabs=0.0, epsrel=1e-8)
         return area[0] - reached * way[0] - left * way[1]
 
     force = free.forces[0]

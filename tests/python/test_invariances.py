@@ -235,7 +235,6 @@ def test_bodies_exchanged(seed: int) -> None:
     assert differences(case.run(), other.run(), exchanged, common="rigid" in case.upper) == {}
 
 
-
 def stretched(case: Contact, length: float, stress: float) -> Contact:
     """The same contact with other units of length and stress."""
     factors = {
@@ -311,9 +310,7 @@ def test_plane_stress_is_plane_strain_of_another_ratio(seed: int) -> None:
         return {**body, "poisson_ratio": 0.7 * body["poisson_ratio"]} if "poisson_ratio" in body else body
 
     strain = dataclasses.replace(case, lower=small(case.lower), upper=small(case.upper))
-    stress = dataclasses.replace(
-        strain, lower=in_plane_stress(strain.lower), upper=in_plane_stress(strain.upper), plane="stress"
-    )
+    stress = dataclasses.replace(strain, lower=in_plane_stress(strain.lower), upper=in_plane_stress(strain.upper), plane="stress")
     assert differences(strain.run(), stress.run()) == {}
 
 
@@ -330,8 +327,7 @@ def test_shifted_profile(coupling: str) -> None:
     }
     plane = mfv.Body.half_plane(shear_modulus=1.0, poisson_ratio=0.1, datum=1.0)
     centred, moved = (
-        mfv.Scene(plane, mfv.Body.profile(x + shift, x**2 / 2, rigid=True), **keys).run()
-        for shift in (0.0, intervals * interval)
+        mfv.Scene(plane, mfv.Body.profile(x + shift, x**2 / 2, rigid=True), **keys).run() for shift in (0.0, intervals * interval)
     )
 
     def shifted(name: str, unit: str, values: np.ndarray) -> tuple[str, np.ndarray]:
@@ -404,9 +400,7 @@ def test_forces_and_displacements_that_belong_together(seed: int, coupling: str)
     by_force = case.run()
     states = list(by_force.steps)
     motions = [mfv.Step(approach=float(states[0].approach), friction=not case.frictionless_press)]
-    motions += [
-        mfv.Step(approach=float(state.approach), shift=float(state.shift)) for state in states[1:]
-    ]
+    motions += [mfv.Step(approach=float(state.approach), shift=float(state.shift)) for state in states[1:]]
     by_motion = case.run(steps=motions)
     found = {path for path in differences(by_force, by_motion, common=True) if not path.startswith("observables/")}
     assert found == set()

@@ -4,10 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-import mfv
 import numpy as np
 import pytest
 from matrix_bodies import graded, half_plane, skew
+
+import mfv
 
 R, MU, P, Q, H = 0.25, 0.7, 1.0e-3, 4.0e-4, 5.0e-4
 STEPS = (mfv.Step(normal_force=P), mfv.Step(tangential_force=Q), mfv.Step(tangential_force=-Q, cycles=2))
@@ -19,7 +20,12 @@ WORK = ("leaps", "linear_solves", "largest_residual", "cycle_change", "change", 
 def solved(body: mfv.Body, coupling: str, mesh: mfv.Mesh | None = None, steps: tuple[mfv.Step, ...] = STEPS) -> mfv.Result:
     """A rigid cylinder on a body, pressed and sheared to and fro."""
     scene = mfv.Scene(
-        body, mfv.Body.disk(R, rigid=True), mesh=mesh or mfv.Mesh(), friction=mfv.Friction.coulomb(MU), coupling=coupling, steps=steps
+        body,
+        mfv.Body.disk(R, rigid=True),
+        mesh=mesh or mfv.Mesh(),
+        friction=mfv.Friction.coulomb(MU),
+        coupling=coupling,
+        steps=steps,
     )
     return mfv.run(scene, check=True)
 
@@ -33,11 +39,15 @@ def read_off(result: mfv.Result) -> Iterator[tuple[str, np.ndarray]]:
                 yield f"{group}.{name}", np.asarray(values, dtype=float)
 
 
-@pytest.mark.parametrize(("coupling", "poisson_ratio", "tolerance"), [("none", 0.3, 1e-9), ("goodman", 0.3, 1e-9), ("full", 0.0, 2e-3)])
+@pytest.mark.parametrize(
+    ("coupling", "poisson_ratio", "tolerance"), [("none", 0.3, 1e-9), ("goodman", 0.3, 1e-9), ("full", 0.0, 2e-3)]
+)
 def test_equal_widths_give_what_the_half_plane_gives(coupling: str, poisson_ratio: float, tolerance: float) -> None:
     """All that is read off. With full coupling the edges hang on Dundurs' beta, which the matrix tells to 0.5 %."""
     plane = solved(
-        mfv.Body.half_plane(shear_modulus=1.0, poisson_ratio=poisson_ratio, datum=1.0), coupling, mfv.Mesh(nodes=65, half_width=32.5 * H)
+        mfv.Body.half_plane(shear_modulus=1.0, poisson_ratio=poisson_ratio, datum=1.0),
+        coupling,
+        mfv.Mesh(nodes=65, half_width=32.5 * H),
     )
     matrix = solved(half_plane(plane.mesh.x, plane.mesh.width, 1.0, poisson_ratio, 1.0, mean=False), coupling)
     given = dict(read_off(matrix))
@@ -50,7 +60,9 @@ def test_equal_widths_give_what_the_half_plane_gives(coupling: str, poisson_rati
 def test_widths_that_grow_outside_the_contact_change_nothing(poisson_ratio: float) -> None:
     """61 intervals of 5e-4 in the contact growing by 1.25 outwards: half-width and stick ratio of Hertz and Mindlin."""
     x, width = graded(61, H, 1.25, (17, 18))
-    result = solved(half_plane(x, width, 1.0, poisson_ratio, 1.0), "none", steps=(mfv.Step(normal_force=P, friction=False), STEPS[1]))
+    result = solved(
+        half_plane(x, width, 1.0, poisson_ratio, 1.0), "none", steps=(mfv.Step(normal_force=P, friction=False), STEPS[1])
+    )
     exact = float(mfv.reference.hertz_half_width(P, R, 1.0, 3.0 - 4.0 * poisson_ratio))
     seen = result.observables
     assert seen.contact_half_width == pytest.approx(exact, abs=0.1 * H)

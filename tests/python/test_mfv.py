@@ -40,11 +40,7 @@ SHEARED = (
 )
 SLIDING = SHEARED + "&step tangential_force=1.0e-3 /\n"
 FRICTIONLESS = (
-    "&scene title='pressed', length_unit='mm', force_unit='N' /\n"
-    + HALF_PLANE
-    + DISK
-    + MESH
-    + "&step normal_force=1.0e-3 /\n"
+    "&scene title='pressed', length_unit='mm', force_unit='N' /\n" + HALF_PLANE + DISK + MESH + "&step normal_force=1.0e-3 /\n"
 )
 FLAT_PUNCH = (
     "&scene title='punch', coupling='goodman' /\n"
@@ -66,7 +62,7 @@ def sheared() -> mfv.Result:
 
 def everything(result: mfv.Result) -> dict[str, np.ndarray]:
     """All values of a result by path."""
-    groups = {name: getattr(result, name) for name in "mesh scene state summary certificate history reference".split()}
+    groups = {name: getattr(result, name) for name in ["mesh", "scene", "state", "summary", "certificate", "history", "reference"]}
     groups.update({f"steps/{number:04d}": group for number, group in enumerate(result.steps, start=1)})
     return {f"{path}/{name}": group[name] for path, group in groups.items() for name in group}
 
@@ -83,9 +79,7 @@ def assert_same(first: mfv.Result, second: mfv.Result) -> None:
 
 
 def test_exceptions_are_those_of_the_list_of_statuses() -> None:
-    entries = re.findall(
-        r'MFV_STATUS\(\w+, (\d+), \d+, "(.*?)", "(.*?)"\)', (PROJECT / "include" / "mfv_status.def").read_text()
-    )
+    entries = re.findall(r'MFV_STATUS\(\w+, (\d+), \d+, "(.*?)", "(.*?)"\)', (PROJECT / "include" / "mfv_status.def").read_text())
     assert _library.statuses() == tuple((int(code), outcome, explanation) for code, outcome, explanation in entries)
     assert {kind.__name__ for kind in errors.failures().values()} == {
         "".join(word.capitalize() for word in outcome.split()) for code, outcome, _ in entries if code != "0"
@@ -188,9 +182,7 @@ def test_a_result_is_a_copy() -> None:
     assert_same(before, kept)
 
 
-@pytest.mark.parametrize(
-    "text", [SHEARED, FRICTIONLESS, FLAT_PUNCH, SLIDING], ids=["sheared", "frictionless", "punch", "sliding"]
-)
+@pytest.mark.parametrize("text", [SHEARED, FRICTIONLESS, FLAT_PUNCH, SLIDING], ids=["sheared", "frictionless", "punch", "sliding"])
 def test_every_field_is_that_of_the_file(text: str, tmp_path: Path) -> None:
     path = tmp_path / "result.h5"
     with mfv.Case.from_text(text) as case, h5py.File(_written(case, path)) as file:
@@ -198,7 +190,7 @@ def test_every_field_is_that_of_the_file(text: str, tmp_path: Path) -> None:
         for field in fields:
             assert np.asarray(case[field]).tobytes() == file[field][()].tobytes(), field
             assert np.asarray(case[field]).dtype == file[field].dtype
-            group, name = field.rsplit("/", 1)
+            _group, _name = field.rsplit("/", 1)
         in_file: list[str] = []
         file.visititems(lambda name, item: in_file.append(name) if isinstance(item, h5py.Dataset) else None)
         assert set(in_file) <= {
@@ -627,7 +619,9 @@ def test_largest_tension_is_that_of_cattaneo_and_mindlin(nodes: int, part: float
     assert sliding.observables.lower_tension == pytest.approx(2.0 * 0.85 * P0, rel=part)
 
 
-@pytest.mark.parametrize("shear, exact", [("tangential_force=38.79", 2.0 * np.sqrt(0.85 * 38.79 / 135.75)), ("shift=0.03", 2.0 * 0.85)])
+@pytest.mark.parametrize(
+    "shear, exact", [("tangential_force=38.79", 2.0 * np.sqrt(0.85 * 38.79 / 135.75)), ("shift=0.03", 2.0 * 0.85)]
+)
 def test_largest_tension_converges(shear: str, exact: float) -> None:
     # Without coupling under a rigid parabola, where the closed form of the half-plane holds; the error depends on where between
     # the nodes the edges are, so it is the root mean square over meshes that are longer by parts of an interval.

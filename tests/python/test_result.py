@@ -18,9 +18,9 @@ import xarray
 from matplotlib import pyplot
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from scenes import PRESS, cylinder
 
 import mfv
-from scenes import PRESS, cylinder
 
 TO_AND_FRO = (
     mfv.Step(normal_force=5.0e-4),
@@ -235,8 +235,6 @@ def test_panels_are_all_tested_here() -> None:
     taking_axes = {
         name
         for name, function in inspect.getmembers(mfv.plot, inspect.isfunction)
-        if not name.startswith("_")
-        and function.__module__ == "mfv.plot"
-        and "ax" in inspect.signature(function).parameters
+        if not name.startswith("_") and function.__module__ == "mfv.plot" and "ax" in inspect.signature(function).parameters
     }
     assert taking_axes == {*PANELS, "stress_contours"}

@@ -12,10 +12,10 @@ from pathlib import Path
 import h5py
 import numpy as np
 import pytest
+from scenes import DISK, HALF_PLANE, MESH, PRESS, PROJECT, cylinder
 
 import mfv
 from mfv import errors
-from scenes import DISK, HALF_PLANE, MESH, PRESS, PROJECT, cylinder
 
 GROUPS = {
     "scene": mfv.Scene,
@@ -79,9 +79,7 @@ def test_a_scene_runs_with_the_digits_of_its_file(name: str) -> None:
 
 
 def test_a_scene_by_hand_is_that_of_its_text() -> None:
-    scene = cylinder(
-        PRESS, mfv.Step(tangential_force=2.8e-4), title="O'Hara's", solver=mfv.Solver(linear_solver="dgesv")
-    )
+    scene = cylinder(PRESS, mfv.Step(tangential_force=2.8e-4), title="O'Hara's", solver=mfv.Solver(linear_solver="dgesv"))
     text = """
       &scene title="O'Hara's", coupling='Goodman' /
       &body shape='half_plane', shear_modulus=1, poisson_ratio=3D-1 / ! below
@@ -169,13 +167,9 @@ def test_a_bad_text_is_told_of_by_the_library(text: str, message: str) -> None:
 
 
 def test_values_of_a_wrong_kind_are_told_of() -> None:
-    with pytest.raises(
-        TypeError, match=r"mesh%nodes: a text, a truth value, a number or an array is wanted, not \{1\}"
-    ):
+    with pytest.raises(TypeError, match=r"mesh%nodes: a text, a truth value, a number or an array is wanted, not \{1\}"):
         cylinder(mesh=mfv.Mesh(nodes={1})).text()  # type: ignore[arg-type]
-    with pytest.raises(
-        ValueError, match=r"upper body: x must have values in one dimension or two, not the shape \(0,\)"
-    ):
+    with pytest.raises(ValueError, match=r"upper body: x must have values in one dimension or two, not the shape \(0,\)"):
         mfv.Scene(HALF_PLANE, mfv.Body.profile([], [], rigid=True)).text()
     with pytest.raises(FileNotFoundError):
         mfv.Scene.from_file("no_such_file.nml")
@@ -236,9 +230,7 @@ def test_a_step_in_which_nothing_is_named_is_not_lost() -> None:
 
 def test_coefficients_one_a_node() -> None:
     coefficients = np.linspace(0.3, 0.7, 61)
-    result = cylinder(PRESS, mfv.Step(tangential_force=1.0e-4), friction=mfv.Friction.coulomb(coefficients)).run(
-        check=True
-    )
+    result = cylinder(PRESS, mfv.Step(tangential_force=1.0e-4), friction=mfv.Friction.coulomb(coefficients)).run(check=True)
     np.testing.assert_array_equal(result.mesh.static_friction, coefficients)
 
 
@@ -304,9 +296,7 @@ def test_a_matrix_in_memory_is_that_of_a_file(tmp_path: Path) -> None:
         mfv.Scene(mfv.Body.matrix(x, compliance=transposed), DISK, steps=[step]).run()
 
 
-def test_a_result_without_a_directory_is_refused_before_solving(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_result_without_a_directory_is_refused_before_solving(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(mfv.Case, "run", lambda *_, **__: pytest.fail("was solved"))
     with pytest.raises(errors.FileError, match="x.h5: cannot be written: there is no directory .*nowhere"):
         cylinder(PRESS).run(output=tmp_path / "nowhere" / "x.h5")

@@ -179,7 +179,7 @@ def test_warnings_of_surfaces_that_end() -> None:
     keys: dict[str, Any] = {"mesh": mfv.Mesh(nodes=101, half_width=1.25), "steps": [mfv.Step(normal_force=2.5)]}
     for upper in (mfv.Body.disk(1.0, rigid=True), mfv.Body.profile(x, 0.01 * x**2, rigid=True)):
         result = mfv.run(mfv.Scene(lower, upper, **keys))
-        assert [True] == ["reaches the end of the surface of the upper body" in text for text in warnings(result)]
+        assert ["reaches the end of the surface of the upper body" in text for text in warnings(result)] == [True]
     punch = mfv.run(mfv.Scene(lower, mfv.Body.flat_punch(1.0), **keys))
     assert len(warnings(punch)) == 0
 

@@ -46,7 +46,7 @@ module funit
    use funit_real128
    use funit_real32
    use funit_real64
-   implicit none (type, external)
+   implicit none(type, external)
    private
 
    public :: SourceLocation, anyExceptions
@@ -106,7 +106,7 @@ contains
       character(len=*), intent(in), optional :: message
       type(SourceLocation), intent(in), optional :: location
 
-      call judge('assertFalse', .not. any(flatten(condition, size(condition))), rank(condition), message, location)
+      call judge('assertFalse',.not. any(flatten(condition, size(condition))), rank(condition), message, location)
    end subroutine assertFalse
 
    !> Every condition is true.

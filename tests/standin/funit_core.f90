@@ -3,7 +3,7 @@
 module funit_core
    use, intrinsic :: iso_c_binding, only: c_funloc, c_funptr, c_int
    use, intrinsic :: iso_fortran_env, only: output_unit
-   implicit none (type, external)
+   implicit none(type, external)
    private
 
    public :: SourceLocation, anyExceptions, assertExceptionRaised, assertFail
@@ -29,14 +29,14 @@ module funit_core
       !> C's atexit: 0 when `handler` will be called at the end of the process.
       integer(c_int) function c_atexit(handler) bind(c, name='atexit')
          import :: c_funptr, c_int
-         implicit none (type, external)
+         implicit none(type, external)
          type(c_funptr), value :: handler
       end function c_atexit
 
       !> C's _exit: end the process at once with `status`.
       subroutine c_exit_now(status) bind(c, name='_exit')
          import :: c_int
-         implicit none (type, external)
+         implicit none(type, external)
          integer(c_int), value :: status
       end subroutine c_exit_now
    end interface

@@ -2,7 +2,7 @@
 !> times a scalar x.
 module funit_flatten
    use, intrinsic :: iso_fortran_env, only: int32, int64, real128, real32, real64
-   implicit none (type, external)
+   implicit none(type, external)
    private
 
    public :: flatten

@@ -9,7 +9,7 @@ import argparse
 import re
 import sys
 from pathlib import Path
-from typing import List, NamedTuple, Optional, Tuple
+from typing import NamedTuple, Optional
 
 LONGEST_DIRECTIVE = 120
 
@@ -91,8 +91,8 @@ class Suite:
     def __init__(self, file_name: str):
         self.file_name = file_name
         self.module = Path(file_name).stem
-        self.fortran: List[str] = []
-        self.tests: List[Tuple[str, bool]] = []  # name, and whether it is disabled
+        self.fortran: list[str] = []
+        self.tests: list[tuple[str, bool]] = []  # name, and whether it is disabled
         self.fixtures = {"before": "", "after": ""}
         self._module_seen = False
         self._waiting = ""  # the directive whose subroutine must come next
@@ -211,7 +211,7 @@ class Suite:
         if self._waiting:
             raise PfError(number, f"the @{self._waiting} of line {self._waiting_line} has no subroutine yet")
 
-    def driver(self) -> List[str]:
+    def driver(self) -> list[str]:
         """Lines of the program that runs the tests."""
         before, after = self.fixtures["before"], self.fixtures["after"]
         running = [name for name, disabled in self.tests if not disabled]
@@ -236,7 +236,7 @@ class Suite:
         return lines + ["   call standin_finish()", f"end program {self.module}_driver"]
 
 
-def main(arguments: Optional[List[str]] = None) -> int:
+def main(arguments: Optional[list[str]] = None) -> int:
     """Translate one file; 1, with the reason on stderr, when it cannot be."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("input", type=Path, help="the .pf file")

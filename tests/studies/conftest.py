@@ -13,8 +13,9 @@ if importlib.util.find_spec("mfv") is None:
 @pytest.fixture(scope="session")
 def study(tmp_path_factory):
     """The folder of the small study, and its dataset, solved by one thread."""
-    import mfv
     import small
+
+    import mfv
 
     folder = tmp_path_factory.mktemp("study")
     base = small.write(folder)

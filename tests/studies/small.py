@@ -42,9 +42,13 @@ def write(folder, study=STUDY, nodes=21, cycles=1):
 
 def long_study(folder, count=60, nodes=51):
     """Cases enough to be caught at work."""
-    write(folder, "&sweep base='base.nml' /\n"
-          f"&vary key='friction%mu', from=0.4, to=1.0, count={count} /\n&vary key='scene%coupling', values='full', 'none' /\n",
-          nodes=nodes, cycles=4)
+    write(
+        folder,
+        "&sweep base='base.nml' /\n"
+        f"&vary key='friction%mu', from=0.4, to=1.0, count={count} /\n&vary key='scene%coupling', values='full', 'none' /\n",
+        nodes=nodes,
+        cycles=4,
+    )
     return 2 * count
 
 

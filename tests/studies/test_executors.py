@@ -60,8 +60,14 @@ def test_mpi(study, ranks, tmp_path):
         pytest.skip("there is no mpiexec")
     folder, _ = study
     launcher = ["mpiexec", "-n", str(ranks), sys.executable, "-m", "mpi4py.futures"]
-    done = subprocess.run([*launcher, "-m", "mfv", "study", str(folder / "study.nml"), "-o", "by_mpi.nc", "--executor", "mpi"],
-                          cwd=tmp_path, capture_output=True, text=True, timeout=300, env=environment())
+    done = subprocess.run(
+        [*launcher, "-m", "mfv", "study", str(folder / "study.nml"), "-o", "by_mpi.nc", "--executor", "mpi"],
+        cwd=tmp_path,
+        capture_output=True,
+        text=True,
+        timeout=300,
+        env=environment(),
+    )
     assert done.returncode == 0, done.stdout + done.stderr
     done = run(folder / "study.nml", "-o", "by_threads.nc", cwd=tmp_path)
     assert done.returncode == 0, done.stderr

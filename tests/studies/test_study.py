@@ -135,13 +135,16 @@ def kept(pressure, interval=1.0, cycles=2.0, middle=0.0, cycle_dissipation=1.0):
     return Solved(0, "", observables=numbers, arrays=arrays)
 
 
-@pytest.mark.parametrize("one, other, error", [
-    ([1.0, 2.0, 1.0], [1.0, 2.0, 1.0], 0.0),
-    ([1.0, 3.0, 0.0], [1.0, 2.0, 1.0], 0.5),
-    ([0.0, 1.0, 3.0, 1.0, 1.0], [1.0, 2.0, 1.0], 0.5),  # on a wider mesh: what is beyond the other counts
-    ([2.0], [1.0, 2.0, 1.0], 0.5),
-    ([1.0, 2.0, 1.0], [0.0, 0.0, 0.0], math.nan),
-])
+@pytest.mark.parametrize(
+    "one, other, error",
+    [
+        ([1.0, 2.0, 1.0], [1.0, 2.0, 1.0], 0.0),
+        ([1.0, 3.0, 0.0], [1.0, 2.0, 1.0], 0.5),
+        ([0.0, 1.0, 3.0, 1.0, 1.0], [1.0, 2.0, 1.0], 0.5),  # on a wider mesh: what is beyond the other counts
+        ([2.0], [1.0, 2.0, 1.0], 0.5),
+        ([1.0, 2.0, 1.0], [0.0, 0.0, 0.0], math.nan),
+    ],
+)
 def test_errors_of_tractions(one, other, error):
     for moment in MOMENTS:
         np.testing.assert_equal(dataset._traction_error(kept(one), kept(other), moment, "pressure"), error)
@@ -177,7 +180,9 @@ def test_moments_that_are_there(study):
     assert begun["outcome"] == "gross sliding"
     np.testing.assert_array_equal(whole["moments_loading_shear"], whole["steps_0002_shear"])
     np.testing.assert_array_equal(whole["moments_return_shear"], whole["state_shear"])
-    np.testing.assert_allclose(whole["moments_reversal_shear"], -whole["moments_loading_shear"], atol=1e-9 * np.abs(whole["state_shear"]).max().item())
+    np.testing.assert_allclose(
+        whole["moments_reversal_shear"], -whole["moments_loading_shear"], atol=1e-9 * np.abs(whole["state_shear"]).max().item()
+    )
     assert np.isfinite(begun["moments_loading_pressure"]).all() and np.isnan(begun["moments_return_pressure"]).all()
     pressed = mfv.Scene.from_file(folder / "base.nml")
     pressed.steps = pressed.steps[:2]
@@ -315,8 +320,12 @@ def test_several_bases(study, tmp_path):
 
 def test_a_key_takes_the_place_of_its_alternatives(study):
     folder, _ = study
-    for keys, values in ((["step(2)%force_ratio", "step(3)%force_ratio"], [0.4]), (["step(2)%shift", "step(3)%shift"], [1e-4]),
-                         (["step(1)%approach"], [1e-4]), (["body(1)%youngs_modulus"], [2.6])):
+    for keys, values in (
+        (["step(2)%force_ratio", "step(3)%force_ratio"], [0.4]),
+        (["step(2)%shift", "step(3)%shift"], [1e-4]),
+        (["step(1)%approach"], [1e-4]),
+        (["body(1)%youngs_modulus"], [2.6]),
+    ):
         factors = [1, -1][: len(keys)]
         planned = mfv.Study(folder / "base.nml", {"varied": mfv.Axis(keys, values, factors)})
         assert planned.run()["outcome"].item() in ("complete", "gross sliding"), planned.text(1)
@@ -324,32 +333,43 @@ def test_a_key_takes_the_place_of_its_alternatives(study):
 
 def test_dundurs_beta_keeps_the_mutual_compliance(study):
     folder, _ = study
-    table = mfv.study(folder / "base.nml", {"dundurs_beta": [-0.5, -0.2, 0.0, 0.5]}, fields=["scene/dundurs_beta", "scene/contact_modulus"])
+    table = mfv.study(
+        folder / "base.nml", {"dundurs_beta": [-0.5, -0.2, 0.0, 0.5]}, fields=["scene/dundurs_beta", "scene/contact_modulus"]
+    )
     np.testing.assert_allclose(table["scene_dundurs_beta"], [-0.5, -0.2, 0.0, 0.5], atol=1e-15)
     np.testing.assert_allclose(table["scene_contact_modulus"], 1.0 / 0.7, rtol=1e-14)
     with pytest.raises(mfv.errors.InputError, match="dundurs_beta=0.6: must be a number from -0.5 to 0.5"):
         mfv.study(folder / "base.nml", {"dundurs_beta": [0.0, 0.6]})
 
 
-@pytest.mark.parametrize("axes, words", [
-    ({"friction%my": [1]}, "'friction%my': unknown key of &friction; did you mean mu?"),
-    ({"frictoin%mu": [1]}, "unknown group; did you mean friction?"),
-    ({"mu": [1]}, "'mu': must be 'group%key', 'group\\(number\\)%key' or 'dundurs_beta'"),
-    ({"step%shift": [1]}, "which &step\\?"),
-    ({"step(4)%shift": [1]}, "there is no &step 4 in .*base.nml, which has 3"),
-    ({"output%file": ["a"]}, "the study names its files itself"),
-    ({"friction%mu": [0.3, -0.7]}, "case 2 \\(base=.*, friction%mu=-0.7\\): .*base.nml:6: &friction mu=-0.7: must be a number at least 0"),
-    ({"scene%coupling": ["gudman"]}, "must be 'full', 'goodman' or 'none'"),
-    ({"shift": mfv.Axis("friction%mu", [0.3])}, "every study has a column shift; give another name"),
-    ({"a/b": mfv.Axis("friction%mu", [0.3])}, "a name must be a text that is not empty, does not begin or end with a blank, and has no /"),
-    ({"a": mfv.Axis("friction%mu", [0.3], [1, -1])}, "must have one value a key, 1, not 2"),
-    ({"a": mfv.Axis("scene%coupling", ["full"], [2])}, "'full' is no number, and cannot be multiplied by 2"),
-    ({"a": mfv.Axis("friction%mu", [1e300], [1e300])}, "1e\\+300 times 1e\\+300 is too large for a number"),
-    ({"friction%mu": []}, "there are no values"),
-    ({"friction%mu": [0.5], "b": mfv.Axis("friction%mu", [0.5])}, "'friction%mu': is varied already"),
-    ({"step(2)%shift": [1e-4], "step(2)%force_ratio": [0.5]}, "'step\\(2\\)%force_ratio': is varied already"),
-    ({"dundurs_beta": [0.1], "body(2)%rigid": [False]}, "cannot be varied in one study"),
-])
+@pytest.mark.parametrize(
+    "axes, words",
+    [
+        ({"friction%my": [1]}, "'friction%my': unknown key of &friction; did you mean mu?"),
+        ({"frictoin%mu": [1]}, "unknown group; did you mean friction?"),
+        ({"mu": [1]}, "'mu': must be 'group%key', 'group\\(number\\)%key' or 'dundurs_beta'"),
+        ({"step%shift": [1]}, "which &step\\?"),
+        ({"step(4)%shift": [1]}, "there is no &step 4 in .*base.nml, which has 3"),
+        ({"output%file": ["a"]}, "the study names its files itself"),
+        (
+            {"friction%mu": [0.3, -0.7]},
+            "case 2 \\(base=.*, friction%mu=-0.7\\): .*base.nml:6: &friction mu=-0.7: must be a number at least 0",
+        ),
+        ({"scene%coupling": ["gudman"]}, "must be 'full', 'goodman' or 'none'"),
+        ({"shift": mfv.Axis("friction%mu", [0.3])}, "every study has a column shift; give another name"),
+        (
+            {"a/b": mfv.Axis("friction%mu", [0.3])},
+            "a name must be a text that is not empty, does not begin or end with a blank, and has no /",
+        ),
+        ({"a": mfv.Axis("friction%mu", [0.3], [1, -1])}, "must have one value a key, 1, not 2"),
+        ({"a": mfv.Axis("scene%coupling", ["full"], [2])}, "'full' is no number, and cannot be multiplied by 2"),
+        ({"a": mfv.Axis("friction%mu", [1e300], [1e300])}, "1e\\+300 times 1e\\+300 is too large for a number"),
+        ({"friction%mu": []}, "there are no values"),
+        ({"friction%mu": [0.5], "b": mfv.Axis("friction%mu", [0.5])}, "'friction%mu': is varied already"),
+        ({"step(2)%shift": [1e-4], "step(2)%force_ratio": [0.5]}, "'step\\(2\\)%force_ratio': is varied already"),
+        ({"dundurs_beta": [0.1], "body(2)%rigid": [False]}, "cannot be varied in one study"),
+    ],
+)
 def test_what_cannot_be_varied(axes, words, study):
     with pytest.raises(mfv.errors.InputError, match=words):
         mfv.study(study[0] / "base.nml", axes)
@@ -366,7 +386,9 @@ def test_values_that_do_not_go_together_are_there(study):
     table = mfv.study(study[0] / "base.nml", axes)
     assert list(flat(table, "outcome")[[0, 1, 3]]) == ["complete", "complete", "input error"]
     assert "means nothing with algorithm='conventional'" in flat(table, "message")[3]
-    assert np.isnan(flat(table, "normal_force")[3]) and np.isnan(flat(table, "largest_residual")[3]) and flat(table, "nodes")[3] == 0
+    assert (
+        np.isnan(flat(table, "normal_force")[3]) and np.isnan(flat(table, "largest_residual")[3]) and flat(table, "nodes")[3] == 0
+    )
     assert table.attrs["cases_input_error"] == 1
 
 
@@ -400,11 +422,14 @@ def test_matrices_are_read_by_threads_side_by_side(tmp_path):
     with h5py.File(tmp_path / "body.h5", "w") as file:
         file["x"] = x
         file["compliance"] = np.exp(-np.abs(x[:, None] - x))  # positive definite
-    (tmp_path / "base.nml").write_text("&body shape='matrix', file='body.h5' /\n&body shape='disk', radius=2.0, rigid=.true. /\n"
-                                       "&step normal_force=0.1 /\n")
+    (tmp_path / "base.nml").write_text(
+        "&body shape='matrix', file='body.h5' /\n&body shape='disk', radius=2.0, rigid=.true. /\n&step normal_force=0.1 /\n"
+    )
     forces = np.linspace(0.01, 0.1, 40)
-    tables = [mfv.study(tmp_path / "base.nml", {"step(1)%normal_force": forces}, results=tmp_path / "results", workers=workers)
-              for workers in (4, 1)]
+    tables = [
+        mfv.study(tmp_path / "base.nml", {"step(1)%normal_force": forces}, results=tmp_path / "results", workers=workers)
+        for workers in (4, 1)
+    ]
     assert set(flat(tables[0], "outcome")) == {"complete"}
     np.testing.assert_allclose(tables[0]["normal_force"], forces, rtol=1e-12)
     xarray.testing.assert_identical(*tables)

@@ -24,8 +24,15 @@ from mfv.studies.store import Store
 
 
 def start(*arguments, cwd):
-    return subprocess.Popen(command(*arguments), cwd=cwd, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
-                            env=environment(), start_new_session=True)
+    return subprocess.Popen(
+        command(*arguments),
+        cwd=cwd,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+        env=environment(),
+        start_new_session=True,
+    )
 
 
 def read(path):
@@ -56,7 +63,7 @@ def cases_kept(folder):
 
 
 def test_the_table_is_that_of_the_library_function(study, tmp_path):
-    folder, table = study
+    _folder, table = study
     write(tmp_path)
     done = run("study.nml", "-o", "out.nc", cwd=tmp_path)
     assert done.returncode == COMPLETE and done.stderr == "" and done.stdout == "out.nc: 18 cases: 15 complete, 3 gross sliding\n"
@@ -102,37 +109,48 @@ def test_a_case_is_printed_though_others_cannot_be_used(tmp_path):
         assert done.returncode == COMPLETE and f"mu={mu}" in done.stdout.replace(" ", ""), done.stdout
 
 
-@pytest.mark.parametrize("change, line, words", [
-    (("friction%mu", "friction%my"), 2, "&vary 1 key='friction%my': 'friction%my': unknown key of &friction; did you mean mu?"),
-    (("friction%mu", "frictoin%mu"), 2, "unknown group; did you mean friction?"),
-    (("step(2)", "step(4)"), 3, "there is no &step 4 in base.nml, which has 3"),
-    (("values=0.3, 0.7", "values=0.3, -0.7"), 2, "&friction mu=-0.7: must be a number at least 0"),
-    (("'goodman', 'none'", "'gudman', 'none'"), 4, "&scene coupling='gudman': must be 'full', 'goodman' or 'none'"),
-    (("base='base.nml'", "base='bass.nml'"), 1, "&sweep base='bass.nml': bass.nml cannot be read: No such file or directory"),
-    (("base='base.nml'", "base=''"), 1, "&sweep base='': the name of a file is empty"),
-    (("base='base.nml', ", ""), 1, "&sweep: needs base"),
-    (("&vary key='friction", "&very key='friction"), 2, "&very: unknown group; did you mean &vary?"),
-    (("spacing='log'", "spacing='logg'"), 3, "&vary 2 spacing='logg': must be 'linear' or 'log'"),
-    (("spacing='log'", "spaicng='log'"), 3, "&vary spaicng: unknown key; did you mean spacing?"),
-    (("spacing='log'", "count=4"), 3, "count: comes twice"),
-    (("from=1e-4", "from=-1e-4"), 3, "needs from and to above 0, or both below"),
-    (("count=3, ", ""), 3, "needs values=..., or from, to and count; count is missing"),
-    (("count=3", "count=0"), 3, "&vary 2 count=0: must be a whole number from 1 to 100000"),
-    (("count=3", "count=2.5"), 3, "&vary 2 count=2.5: must be a whole number"),
-    (("count=3", "values=1e-4"), 3, "values is there too; give values, or from, to and count"),
-    (("'full', 'goodman', 'none'", "'goodman', 'none'"), 1, "reference='full': needs a &vary of key='scene%coupling' alone with 'full'"),
-    (("reference='full'", "reference='mesh%nodes=11'"), 1, "needs a &vary of key='mesh%nodes' alone with '11' among its values"),
-    (("name='Q'", "name='outcome'"), 3, "&vary 2 name='outcome': every study has a column outcome"),
-    (("name='Q'", "name='friction%mu'"), 3, "another axis has the name friction%mu"),
-    (("name='Q'", "name=3"), 3, "&vary 2 name=3: must be a text between quotes"),
-    (("factor=1, -1", "factor=1"), 3, "must have one value a key, 2, not 1"),
-    (("factor=1, -1", "factor='a', 'b'"), 3, "&vary 2 factor='a', 'b': must be a number"),
-    (("reference='full'", "combine='paired'"), 1, "&vary 2 has 3 values, &vary 1 has 2"),
-    (("reference='full' /", "reference='full' /\n&sweep base='base.nml' /"), 2, "&sweep: comes twice"),
-    (("key='friction%mu', ", ""), 2, "&vary 1: needs key"),
-    (("values=0.3, 0.7", "values=0.3, 'a'"), 2, "friction%mu='a'"),
-    (("values=0.3, 0.7 /", "values=0.3, 0.7"), 3, "&vary (line 2) has no / at its end"),
-])
+@pytest.mark.parametrize(
+    "change, line, words",
+    [
+        (("friction%mu", "friction%my"), 2, "&vary 1 key='friction%my': 'friction%my': unknown key of &friction; did you mean mu?"),
+        (("friction%mu", "frictoin%mu"), 2, "unknown group; did you mean friction?"),
+        (("step(2)", "step(4)"), 3, "there is no &step 4 in base.nml, which has 3"),
+        (("values=0.3, 0.7", "values=0.3, -0.7"), 2, "&friction mu=-0.7: must be a number at least 0"),
+        (("'goodman', 'none'", "'gudman', 'none'"), 4, "&scene coupling='gudman': must be 'full', 'goodman' or 'none'"),
+        (("base='base.nml'", "base='bass.nml'"), 1, "&sweep base='bass.nml': bass.nml cannot be read: No such file or directory"),
+        (("base='base.nml'", "base=''"), 1, "&sweep base='': the name of a file is empty"),
+        (("base='base.nml', ", ""), 1, "&sweep: needs base"),
+        (("&vary key='friction", "&very key='friction"), 2, "&very: unknown group; did you mean &vary?"),
+        (("spacing='log'", "spacing='logg'"), 3, "&vary 2 spacing='logg': must be 'linear' or 'log'"),
+        (("spacing='log'", "spaicng='log'"), 3, "&vary spaicng: unknown key; did you mean spacing?"),
+        (("spacing='log'", "count=4"), 3, "count: comes twice"),
+        (("from=1e-4", "from=-1e-4"), 3, "needs from and to above 0, or both below"),
+        (("count=3, ", ""), 3, "needs values=..., or from, to and count; count is missing"),
+        (("count=3", "count=0"), 3, "&vary 2 count=0: must be a whole number from 1 to 100000"),
+        (("count=3", "count=2.5"), 3, "&vary 2 count=2.5: must be a whole number"),
+        (("count=3", "values=1e-4"), 3, "values is there too; give values, or from, to and count"),
+        (
+            ("'full', 'goodman', 'none'", "'goodman', 'none'"),
+            1,
+            "reference='full': needs a &vary of key='scene%coupling' alone with 'full'",
+        ),
+        (
+            ("reference='full'", "reference='mesh%nodes=11'"),
+            1,
+            "needs a &vary of key='mesh%nodes' alone with '11' among its values",
+        ),
+        (("name='Q'", "name='outcome'"), 3, "&vary 2 name='outcome': every study has a column outcome"),
+        (("name='Q'", "name='friction%mu'"), 3, "another axis has the name friction%mu"),
+        (("name='Q'", "name=3"), 3, "&vary 2 name=3: must be a text between quotes"),
+        (("factor=1, -1", "factor=1"), 3, "must have one value a key, 2, not 1"),
+        (("factor=1, -1", "factor='a', 'b'"), 3, "&vary 2 factor='a', 'b': must be a number"),
+        (("reference='full'", "combine='paired'"), 1, "&vary 2 has 3 values, &vary 1 has 2"),
+        (("reference='full' /", "reference='full' /\n&sweep base='base.nml' /"), 2, "&sweep: comes twice"),
+        (("key='friction%mu', ", ""), 2, "&vary 1: needs key"),
+        (("values=0.3, 0.7", "values=0.3, 'a'"), 2, "friction%mu='a'"),
+        (("values=0.3, 0.7 /", "values=0.3, 0.7"), 3, "&vary (line 2) has no / at its end"),
+    ],
+)
 def test_bad_input_is_named(change, line, words, tmp_path, capsys, monkeypatch):
     write(tmp_path, STUDY.replace(*change))
     monkeypatch.chdir(tmp_path)
@@ -186,12 +204,18 @@ def test_values_that_the_case_refuses_are_named(tmp_path):
     write(tmp_path, "&sweep base='base.nml' /\n&vary key='friction%mu',\n values=0.3, 0 /\n")
     done = run("study.nml", cwd=tmp_path)
     assert done.returncode == INPUT
-    assert "study.nml:3: &vary 1: case 2 (base='base.nml', friction%mu=0): base.nml:8: &step 2 tangential_force=2.8e-4: " in done.stderr
+    assert (
+        "study.nml:3: &vary 1: case 2 (base='base.nml', friction%mu=0): base.nml:8: &step 2 tangential_force=2.8e-4: "
+        in done.stderr
+    )
 
 
 def test_several_bases_pairs_and_whole_numbers(tmp_path):
-    write(tmp_path, "&sweep base='base.nml', 'sub/other.nml', combine='paired' /\n&vary key='friction%mu', values=0.5, 0.7 /\n"
-          "&vary key='step(1)%friction', values=.false., .true. /\n")
+    write(
+        tmp_path,
+        "&sweep base='base.nml', 'sub/other.nml', combine='paired' /\n&vary key='friction%mu', values=0.5, 0.7 /\n"
+        "&vary key='step(1)%friction', values=.false., .true. /\n",
+    )
     (tmp_path / "sub").mkdir()
     (tmp_path / "sub/other.nml").write_text(BASE.format(nodes=15, cycles=1).replace("mu=0.7", "mu_file='mu.txt'"))
     (tmp_path / "sub/mu.txt").write_text("-1 0.7\n1 0.7\n")
@@ -208,7 +232,10 @@ def test_several_bases_pairs_and_whole_numbers(tmp_path):
     assert list(read_study(tmp_path / "study.nml").run()["mesh%nodes"]) == [11, 15, 18]
     write(tmp_path, "&sweep base='base.nml' /\n&vary key='mesh%nodes', from=11, to=12, count=3 /\n")
     done = run("study.nml", cwd=tmp_path)
-    assert done.returncode == INPUT and "&vary 1 count=3: 11.5 and 12 both become 12, for mesh%nodes takes whole numbers" in done.stderr
+    assert (
+        done.returncode == INPUT
+        and "&vary 1 count=3: 11.5 and 12 both become 12, for mesh%nodes takes whole numbers" in done.stderr
+    )
 
 
 def test_a_mesh_as_reference(tmp_path):
@@ -261,7 +288,7 @@ def test_killed_at_ten_random_moments(tmp_path):
     assert done.returncode == COMPLETE and f"{cases} complete" in done.stdout
     table = read(tmp_path / "study.nc")
     assert table.drop_attrs(deep=False).identical(undisturbed.drop_attrs(deep=False)) and table.attrs == undisturbed.attrs
-    assert 0 < before and cases_kept(tmp_path) == cases
+    assert before > 0 and cases_kept(tmp_path) == cases
 
 
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
@@ -276,8 +303,11 @@ def test_interrupted(executor, number, tmp_path):
     assert said.splitlines() == ["mfv: solved cases are kept in study.sqlite; the same command goes on", "mfv: interrupted"], said
     there = cases_kept(tmp_path)
     assert 0 < there < cases and not (tmp_path / "study.nc").exists()
-    for options, words in ((["--so-far", "-o", "part.nc"], "part.sqlite"), (["--so-far", "--again"], "not allowed"),
-                           (["--again", "--executor", "none"], "there is no executor 'none'")):
+    for options, words in (
+        (["--so-far", "-o", "part.nc"], "part.sqlite"),
+        (["--so-far", "--again"], "not allowed"),
+        (["--again", "--executor", "none"], "there is no executor 'none'"),
+    ):
         done = run("study.nml", *options, cwd=tmp_path)
         assert done.returncode == INPUT and words in done.stderr, done.stderr
     assert cases_kept(tmp_path) == there
@@ -304,7 +334,10 @@ def test_two_at_once(tmp_path):
     write(tmp_path)
     with contextlib.closing(Store(tmp_path / "study.sqlite")):
         done = run("study.nml", cwd=tmp_path)
-    assert done.returncode == INPUT and "study.sqlite: solved cases cannot be kept here: another study is at work with it" in done.stderr
+    assert (
+        done.returncode == INPUT
+        and "study.sqlite: solved cases cannot be kept here: another study is at work with it" in done.stderr
+    )
 
 
 def limited(size):
@@ -331,8 +364,11 @@ def test_other_files_are_not_replaced(tmp_path, capsys, monkeypatch):
     monkeypatch.chdir(tmp_path)
     subprocess.run([MFV_RUN, "base.nml"], cwd=tmp_path, capture_output=True)
     (tmp_path / "base.h5").rename(tmp_path / "study.h5")
-    for name, words in (("study.h5", "is HDF5, perhaps a result, and is not overwritten"), ("study.nml", "must end with .nc or .h5 or .csv"),
-                        ("no/study.nc", "there is no directory no")):
+    for name, words in (
+        ("study.h5", "is HDF5, perhaps a result, and is not overwritten"),
+        ("study.nml", "must end with .nc or .h5 or .csv"),
+        ("no/study.nc", "there is no directory no"),
+    ):
         for option in ([], ["--again"], ["--list"]):
             assert main(["study", "study.nml", "-o", name, *option]) == INPUT
             printed, said = capsys.readouterr()
@@ -353,8 +389,11 @@ def test_other_files_are_not_replaced(tmp_path, capsys, monkeypatch):
 
 
 def test_values_that_do_not_go_together_are_told(tmp_path):
-    write(tmp_path, "&sweep base='base.nml' /\n&vary key='solver%algorithm', values='mfv', 'conventional' /\n"
-          "&vary key='solver%stepping', values='event', 'leap' /\n")
+    write(
+        tmp_path,
+        "&sweep base='base.nml' /\n&vary key='solver%algorithm', values='mfv', 'conventional' /\n"
+        "&vary key='solver%stepping', values='event', 'leap' /\n",
+    )
     done = run("study.nml", cwd=tmp_path)
     assert done.returncode == COMPLETE and "4 cases: 3 complete, 1 input error" in done.stdout
     assert "case 4 (base='base.nml', solver%algorithm='conventional', solver%stepping='leap'): base.nml" in done.stdout

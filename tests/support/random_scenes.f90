@@ -67,7 +67,8 @@ contains
       scene%method%friction_tolerance = 1.0e-2_wp
    end subroutine random_scene
 
-   !> Pin `number` >= 1 in its bore, with radial normals: couplings, materials, clearances, the pin below or above, one of the bodies
+   !> Pin `number` >= 1 in its bore, with radial normals: couplings, materials, clearances, the pin below or above, one of the
+   !> bodies
    !> rigid or none, up to 40 degrees; pressed, sheared, pressed again and perhaps turned, by forces.
    subroutine random_pin(number, scene)
       integer, intent(in) :: number
@@ -232,7 +233,7 @@ contains
             part = random%between(-1.0_wp, 1.0_wp)
             step%control(motion_shift) = merge(control_force, control_displacement, random%chance(0.8_wp))
             step%target(motion_shift) = part*min(normal, 1.0_wp)*merge(sizes%mu*sizes%force, sizes%shift, &
-                                                                    step%control(motion_shift) == control_force)
+                                                                       step%control(motion_shift) == control_force)
          end if
          if (i == 1) step%friction = random%chance_where(friction, 0.8_wp)
          if (random%chance_where(i > 1, 0.3_wp)) step%cycles = random%one_of([1, 2])

@@ -43,9 +43,7 @@ def test_package_is_that_of_the_environment():
 def test_everything_is_of_the_wheel_or_of_the_base_system(binary):
     needed = subprocess.run(["/usr/bin/ldd", binary], capture_output=True, text=True, check=True).stdout.splitlines()
     assert len(needed) > 5
-    strangers = [
-        line for line in needed if not BASE.match(Path(line.split()[0]).name) and f"=> {SITE}/" not in line
-    ]
+    strangers = [line for line in needed if not BASE.match(Path(line.split()[0]).name) and f"=> {SITE}/" not in line]
     assert strangers == []
 
 

@@ -51,7 +51,7 @@ def main(arguments: list[str] | None = None) -> int:
         package = str(error.name)
         print(f"mfv: this needs the Python package {package}, which is not there: {how_to_install(package)}", file=sys.stderr)
         return UNUSABLE
-    except Exception:  # noqa: BLE001 - a mistake of this program; 1 would mean that two results differ
+    except Exception:
         traceback.print_exc()
         return UNUSABLE
     except KeyboardInterrupt:

@@ -28,9 +28,7 @@ DEFAULT = "cylinder"
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """What the command takes."""
-    parser.add_argument(
-        "template", nargs="?", default=DEFAULT, metavar="TEMPLATE", help=f"see --list; {DEFAULT} unless told"
-    )
+    parser.add_argument("template", nargs="?", default=DEFAULT, metavar="TEMPLATE", help=f"see --list; {DEFAULT} unless told")
     parser.add_argument("-o", "--output", type=Path, metavar="CASE.nml", help="else TEMPLATE.nml, here")
     parser.add_argument("--list", action="store_true", help="print the templates, a line each")
     parser.add_argument("--force", action="store_true", help="overwrite what is there")

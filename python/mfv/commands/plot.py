@@ -37,9 +37,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("file", type=Path, metavar="RESULT.h5", help="result file")
     where = "png, pdf, svg or eps; else RESULT.png, or RESULT_NAME_BODY.png for a stress, beside the file"
     add_output(parser, "PICTURE", where)
-    parser.add_argument(
-        "--step", type=int, metavar="N", help="the state in the file's group steps/000N in place of the last"
-    )
+    parser.add_argument("--step", type=int, metavar="N", help="the state in the file's group steps/000N in place of the last")
     kind = parser.add_mutually_exclusive_group()
     kind.add_argument(
         "--stress",

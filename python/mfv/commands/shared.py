@@ -36,9 +36,7 @@ def solved_between(options: argparse.Namespace, result: Result, states: int) -> 
     them goes to the standard error."""
     from tqdm import tqdm
 
-    history = with_states_between(
-        result, states, lambda targets: tqdm(targets, desc="solving", unit="state", disable=None)
-    )
+    history = with_states_between(result, states, lambda targets: tqdm(targets, desc="solving", unit="state", disable=None))
     if history.note:
         print(f"mfv: {options.file}: {history.note}", file=sys.stderr)
     return history

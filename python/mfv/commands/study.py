@@ -58,14 +58,10 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--workers", type=at_least(1), metavar="N", help="cases at a time (as many as processors)")
     either = parser.add_mutually_exclusive_group()
     either.add_argument("--again", action="store_true", help="solve all cases, those that are there already as well")
-    either.add_argument(
-        "--so-far", action="store_true", help="solve nothing: write the table of the cases that are there"
-    )
+    either.add_argument("--so-far", action="store_true", help="solve nothing: write the table of the cases that are there")
     parser.add_argument("--list", action="store_true", help="say which cases there are; nothing is solved or written")
     parser.add_argument("--case", type=at_least(1), metavar="N", help="print case N, from 1, as a case for mfv_run")
-    parser.add_argument(
-        "--keys", action="store_true", help="print every group and key of a study, as tables in Markdown"
-    )
+    parser.add_argument("--keys", action="store_true", help="print every group and key of a study, as tables in Markdown")
 
 
 def run(options: argparse.Namespace) -> int | None:

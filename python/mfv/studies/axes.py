@@ -41,9 +41,7 @@ def fault(message: str, axis: int, part: str) -> MfvError:
 class Coordinate:
     """A named list of values along a dimension, and the keys that take them."""
 
-    def __init__(
-        self, name: str, keys: Sequence[str], values: Iterable[Any], factors: Sequence[float] | None = None
-    ) -> None:
+    def __init__(self, name: str, keys: Sequence[str], values: Iterable[Any], factors: Sequence[float] | None = None) -> None:
         """Raises InputError."""
         self.name = name
         self.keys = tuple(_in_one_form(key) for key in keys)
@@ -84,9 +82,7 @@ class Dimension:
         for other in self.coordinates[1:]:
             if len(other.values) != len(self):
                 first = self.coordinates[0]
-                raise input_error(
-                    f"{other.name} has {len(other.values)} values, {first.name} has {len(self)}: they are paired"
-                )
+                raise input_error(f"{other.name} has {len(other.values)} values, {first.name} has {len(self)}: they are paired")
 
     def __len__(self) -> int:
         return len(self.coordinates[0].values)
@@ -194,7 +190,9 @@ def fault_of_pair(one: str, other: str) -> str:
     """Why a study cannot vary two keys; empty where it can."""
     for beta, key in ((one, other), (other, one)):
         if beta == DUNDURS_BETA and key.partition("%")[2] in OF_MATERIALS:
-            return f"'{key}' and '{DUNDURS_BETA}' cannot be varied in one study: {DUNDURS_BETA} decides the materials of both bodies"
+            return (
+                f"'{key}' and '{DUNDURS_BETA}' cannot be varied in one study: {DUNDURS_BETA} decides the materials of both bodies"
+            )
     return f"'{other}': is varied already" if one == other or _stands_for(one, other) else ""
 
 

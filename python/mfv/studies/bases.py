@@ -41,9 +41,7 @@ def base_of(given: Given) -> Base:
     data = []
     for group, part in given._parts():
         arrays = getattr(part, "data", None) or {}
-        file = os.fspath(
-            part.keys().get("file" if group.startswith("body") else "mu_file", _NAMES_OF_DATA.get(group, ""))
-        )
+        file = os.fspath(part.keys().get("file" if group.startswith("body") else "mu_file", _NAMES_OF_DATA.get(group, "")))
         data += [(file, name, np.ascontiguousarray(values, dtype=float)) for name, values in arrays.items()]
     return Base(given.text(), given.name, tuple(data), os.path.dirname(given.name))
 

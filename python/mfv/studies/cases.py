@@ -143,9 +143,7 @@ def digest_of_base(base: Base, settings: Sequence[tuple[str, Any]]) -> str:
     """A name for a base with its arrays and the settings that all its cases share. Raises InputError."""
     told = hashlib.sha256(base_text(base).encode())
     for file, dataset, values in base.data:
-        told.update(
-            repr((file, dataset, np.shape(values))).encode() + np.ascontiguousarray(values, dtype=float).tobytes()
-        )
+        told.update(repr((file, dataset, np.shape(values))).encode() + np.ascontiguousarray(values, dtype=float).tobytes())
     told.update(repr(_contents(settings)).encode())
     return told.hexdigest()
 

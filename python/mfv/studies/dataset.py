@@ -86,9 +86,7 @@ def write(table: xarray.Dataset, path: str | os.PathLike[str]) -> None:
         raise OSError(error.errno, f"{os.fspath(path)}: cannot be written: {error.strerror}") from error
 
 
-def _columns(
-    study: Study, keys: Sequence[str], solved: Sequence[Solved | None]
-) -> list[tuple[str, list[Any], str, str]]:
+def _columns(study: Study, keys: Sequence[str], solved: Sequence[Solved | None]) -> list[tuple[str, list[Any], str, str]]:
     """Name, values, unit and meaning of every column."""
     there = [one or Solved(NO_STATUS, "", observables=[_NAN] * len(observables())) for one in solved]
     columns: list[tuple[str, list[Any], str, str]] = [
@@ -124,7 +122,9 @@ def _errors(study: Study, solved: Sequence[Solved]) -> list[tuple[str, list[Any]
     columns: list[tuple[str, list[Any], str, str]] = []
     for moment in MOMENTS:
         for traction, words in zip(TRACTIONS, ("pressures", "shear tractions")):
-            meaning = f"L1 difference of the {words} from those of the reference, relative to them, at the moment {moment} (eq. 6.6)"
+            meaning = (
+                f"L1 difference of the {words} from those of the reference, relative to them, at the moment {moment} (eq. 6.6)"
+            )
             values = [_traction_error(one, reference, moment, traction) for one, reference in pairs]
             columns.append((f"{traction}_error_{moment}", values, "1", meaning))
     ratios = [_dissipation_ratio(one, reference) for one, reference in pairs]
@@ -136,11 +136,7 @@ def _traction_error(one: Solved, reference: Solved, moment: str, traction: str) 
     """Sum of the sizes of the differences over that of the reference (eq. 6.6). NaN where there is no such moment, where the
     reference has no such traction, or where, but for the beginning of the cycles, these are not the same number of cycles."""
     path = f"moments/{moment}/{traction}"
-    if (
-        path not in one.arrays
-        or path not in reference.arrays
-        or not (moment == "loading" or _has_same_cycles(one, reference))
-    ):
+    if path not in one.arrays or path not in reference.arrays or not (moment == "loading" or _has_same_cycles(one, reference)):
         return _NAN
     here, there = _side_by_side(one, reference, path)
     total = float(np.abs(there).sum())

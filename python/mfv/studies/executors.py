@@ -25,9 +25,7 @@ NAMES = ("threads", "processes", "mpi", "dask")
 LONGEST_WAIT, LONGEST_TASK, LEAST_TASKS = 1.0, 0.25, 64
 
 
-def solve_all(
-    jobs: Mapping[str, Job], executor: str | Executor, workers: int | None, keep: Callable[[str, Solved], None]
-) -> None:
+def solve_all(jobs: Mapping[str, Job], executor: str | Executor, workers: int | None, keep: Callable[[str, Solved], None]) -> None:
     """Solve cases by an executor, and tell `keep` of each under its name, here, as it comes in.
 
     What goes wrong here or there is raised once what can be stopped has been; what was told of before has been told of.
@@ -81,9 +79,7 @@ def check(executor: Any, workers: int | None) -> None:
         raise ValueError(f"there is no executor '{executor}'; there are {', '.join(NAMES)}, dask:ADDRESS")
     if workers is not None and (workers < 1 or address):
         raise ValueError(
-            "a running cluster has its own number of workers"
-            if address
-            else f"workers must be 1 or more, not {workers}"
+            "a running cluster has its own number of workers" if address else f"workers must be 1 or more, not {workers}"
         )
 
 

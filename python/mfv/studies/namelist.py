@@ -163,9 +163,7 @@ class _Reader:
             self._complain(self.groups[self._names().index("sweep")], "base", error.message)
         if part == "values":
             group = varied[axis]
-            self._fail(
-                group.lines.get("values") or group.lines.get("from") or group.line, f"&vary {axis + 1}: {error.message}"
-            )
+            self._fail(group.lines.get("values") or group.lines.get("from") or group.line, f"&vary {axis + 1}: {error.message}")
         self._complain(varied[axis], part, error.message, axis + 1)
 
     def _names(self) -> list[str]:
@@ -190,9 +188,7 @@ class _Reader:
                 self._fail(group.line, f"&{group.name}: unknown group{_suggestion(group.name, KEYS, '&')}")
             for key in group.lines:
                 if key not in KEYS[group.name]:
-                    self._fail(
-                        group.lines[key], f"&{group.name} {key}: unknown key{_suggestion(key, KEYS[group.name])}"
-                    )
+                    self._fail(group.lines[key], f"&{group.name} {key}: unknown key{_suggestion(key, KEYS[group.name])}")
             if group.twice:
                 self._fail(group.lines[group.twice[0]], f"&{group.name} {group.twice[0]}: comes twice")
             number = self._varied().index(group) + 1 if group.name == "vary" else 0
@@ -233,9 +229,7 @@ class _Reader:
             values = self._row(number, group, keys)
         else:
             missing = next(key for key in ("from", "to", "count") if key not in group.values)
-            self._fail(
-                group.line, f"&vary {number} ({name}): needs values=..., or from, to and count; {missing} is missing"
-            )
+            self._fail(group.line, f"&vary {number} ({name}): needs values=..., or from, to and count; {missing} is missing")
         try:
             return Coordinate(name, keys, values, group.values.get("factor"))
         except errors.InputError as error:
@@ -260,9 +254,7 @@ class _Reader:
             for place, (before, after) in enumerate(zip(whole, whole[1:])):
                 if before == after:
                     both = f"{row[place]:g} and {row[place + 1]:g} both become {after}"
-                    self._complain(
-                        group, "count", f"{both}, for {keys[0]} takes whole numbers; give fewer, or values=...", number
-                    )
+                    self._complain(group, "count", f"{both}, for {keys[0]} takes whole numbers; give fewer, or values=...", number)
             return whole
         return [float(value) for value in row]
 

@@ -310,9 +310,7 @@ class Study:
         if number == 1:
             self.units = units_of(base)
         elif units_of(base) != self.units:
-            raise input_error(
-                f"case {number} ({self.describe(number)}): the scene names other units than that of case 1"
-            )
+            raise input_error(f"case {number} ({self.describe(number)}): the scene names other units than that of case 1")
 
     def _check_bases(self) -> None:
         """Raises InputError where bases have one name, or name other units than the first."""
@@ -373,9 +371,7 @@ class Study:
         """What cases are compared with: see `Study`. Raises InputError."""
         wanted = {"scene%coupling": reference} if isinstance(reference, str) else reference
         if not isinstance(wanted, Mapping) or len(wanted) != 1:
-            raise input_error(
-                "reference: one axis with one of its values is wanted, such as {'scene%coupling': 'full'}"
-            )
+            raise input_error("reference: one axis with one of its values is wanted, such as {'scene%coupling': 'full'}")
         ((name, value),) = wanted.items()
         for along, dimension in enumerate(self.dimensions):
             (first, *others) = dimension.coordinates

@@ -63,9 +63,7 @@ class Store:
         execute("PRAGMA synchronous = NORMAL")
         execute("BEGIN IMMEDIATE")
         execute(f"PRAGMA application_id = {APPLICATION}")
-        execute(
-            "CREATE TABLE IF NOT EXISTS cases (key TEXT PRIMARY KEY, solved TEXT NOT NULL, arrays BLOB) WITHOUT ROWID"
-        )
+        execute("CREATE TABLE IF NOT EXISTS cases (key TEXT PRIMARY KEY, solved TEXT NOT NULL, arrays BLOB) WITHOUT ROWID")
         execute("COMMIT")
 
     @contextlib.contextmanager

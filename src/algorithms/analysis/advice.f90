@@ -24,7 +24,7 @@ module mfv_advice
    integer, parameter :: advice_pressure = 1, advice_shear = 2, advice_half_width = 3, advice_stick_ratio = 4, &
                          advice_dissipation = 5, advice_count = 5
    character(*), parameter :: advice_names(advice_count) = [character(11) :: 'pressure', 'shear', 'half_width', 'stick_ratio', &
-                                                            'dissipation']
+                                                                                                                      'dissipation']
    !> Orders of convergence, docs/verification.md, and safety factors on the errors: of what comes from pairs of meshes, and of
    !> half an interval at either edge.
    real(wp), parameter :: order(advice_count) = [1.0_wp, 1.0_wp, 1.0_wp, 1.0_wp, 2.0_wp]
@@ -77,7 +77,8 @@ module mfv_advice
       !> they grow.
       real(wp) :: density = 0.0_wp, solves = 0.0_wp, nodes = 1.0_wp, growth = 0.0_wp
       logical :: known(advice_count) = .false.
-      !> Pairs, and those whose meshes both resolve the slip zones; nodes in contact that the error 1 of the dissipation takes by the
+      !> Pairs, and those whose meshes both resolve the slip zones; nodes in contact that the error 1 of the dissipation takes by
+      !> the
       !> width of the slip zones, squared, and summed over the pairs.
       integer :: pairs = 0, resolved_pairs = 0
       real(wp) :: slip_law = 0.0_wp

@@ -108,7 +108,8 @@ contains
       form%shear_source = 'Carter 1926; Johnson 1985, section 8.3'
    end subroutine add_carter
 
-   !> The widest half-width of a contact, length, for which closed forms are attached: rigid parabolas on a half-plane may be as wide as
+   !> The widest half-width of a contact, length, for which closed forms are attached: rigid parabolas on a half-plane may be as
+   !> wide as
    !> they are.
    pure real(wp) function widest(scene)
       type(scene_type), intent(in) :: scene

@@ -77,7 +77,7 @@ contains
          is_resolved = .not. simulation%slip%is_coarse()
       case (quantity_stick_ratio, quantity_peak_shear)
          is_resolved = .not. simulation%slip%is_coarse_now(contact_interval(simulation%contact%model, &
-                                                                                simulation%contact%state))
+                                                                            simulation%contact%state))
       end select
    end function is_resolved
 

@@ -1,5 +1,6 @@
 !> What a joint-damping engineer reads off a load history with cycles: dissipation a cycle, stiffness after a reversal, stick
-!> ratios on loading and reversal, shift of the contact patch; as they are, and dimensionless as in dissertation section 5.2 and eq. 6.5.
+!> ratios on loading and reversal, shift of the contact patch; as they are, and dimensionless as in dissertation section 5.2 and eq.
+!> 6.5.
 module mfv_observables
    use, intrinsic :: ieee_arithmetic, only: ieee_quiet_nan, ieee_value
    use mfv_contact_state, only: contact_state_type
@@ -25,48 +26,48 @@ module mfv_observables
    !> Number of observables, and the observables.
    integer, parameter :: observable_count = 40
    type(row_type), parameter :: observables(observable_count) = [ &
-      row_type('normal_force', 'force/length', 'normal force P per unit thickness at the end'), &
-      row_type('tangential_force', 'force/length', 'tangential force Q per unit thickness at the end'), &
-      row_type('approach', 'length', 'approach of the upper body at the end'), &
-      row_type('shift', 'length', 'shift of the upper body to the right at the end'), &
-      row_type('dissipation', 'force', 'energy dissipated in all, per unit thickness'), &
-      row_type('contact_half_width', 'length', &
-               'half the length of the contact at the end, from edges between nodes, where it is one patch'), &
-      row_type('contact_length', 'length', 'length of the contact at the end, of all its patches, from edges between nodes'), &
-      row_type('patches', '1', 'contact patches at the end, with open nodes between them'), &
-      row_type('contact_centre', 'length', 'middle between the outermost edges at the end, from the origin along the surface'), &
-      row_type('stick_ratio', '1', 'length of the stick zones over that of the contact at the end, from edges between nodes'), &
-      row_type('peak_pressure', 'force/length^2', 'largest pressure at the end'), &
-      row_type('peak_shear', 'force/length^2', 'largest size of the shear traction at the end'), &
-      row_type('cycles', '1', 'whole cycles of the last step that has any'), &
-      row_type('cycle_dissipation', 'force', 'energy dissipated in the last cycle, per unit thickness'), &
-      row_type('first_cycle_dissipation', 'force', 'energy dissipated in the first cycle, per unit thickness'), &
-      row_type('cycle_change', '1', 'largest change of a traction over the last cycle, in parts of the largest traction'), &
-      row_type('force_amplitude', 'force/length', 'half of what the tangential force changes by in the last cycle'), &
-      row_type('shift_amplitude', 'length', 'half of what the shift changes by in the last cycle'), &
-      row_type('tangential_stiffness', 'force/length^2', 'tangential force over shift right after the last reversal'), &
-      row_type('secant_stiffness', 'force/length^2', 'tangential force over shift from end to end of the last cycle'), &
-      row_type('loss_factor', '1', &
-               'cycle_dissipation over 2 pi times the energy of the secant stiffness, at constant P, no rotation'), &
-      row_type('stick_ratio_loading', '1', 'stick ratio where the cycles begin'), &
-      row_type('stick_ratio_reversal', '1', 'stick ratio at the far end of the last cycle'), &
-      row_type('stick_ratio_return', '1', 'stick ratio at the end of the last cycle'), &
-      row_type('patch_shift_loading', '1', 'middle of the contact over its half-width where the cycles begin'), &
-      row_type('patch_shift_reversal', '1', 'middle of the contact over its half-width at the far end of the last cycle'), &
-      row_type('patch_shift_return', '1', 'middle of the contact over its half-width at the end of the last cycle'), &
-      row_type('half_width_number', '1', 'contact_half_width times the relative curvature'), &
-      row_type('pressure_number', '1', 'peak_pressure over p0 = 2 P/(pi a), the peak of an ellipse (section 5.2)'), &
-      row_type('shear_number', '1', 'peak_shear over p0 = 2 P/(pi a)'), &
-      row_type('force_number', '1', 'force_amplitude over mu P: the lateral force ratio of section 6.4'), &
-      row_type('shift_number', '1', 'shift_amplitude times the relative curvature (section 5.2)'), &
-      row_type('dissipation_number', '1', 'cycle_dissipation over P^2 A, A = sum of (kappa + 1)/(4 G) (eq. 6.5)'), &
-      row_type('stiffness_number', '1', 'tangential_stiffness times A'), &
-      row_type('creepage', '1', 'rolling: sliding of the upper body over the lower per rolled distance, both to the right'), &
-      row_type('creepage_number', '1', 'creepage over mu a K: K relative curvature, a contact_half_width (Carter 1926)'), &
-      row_type('lower_tension', 'force/length^2', 'largest tension along the surface of the lower body at the end'), &
-      row_type('lower_tension_x', 'length', 'where it is: x'), &
-      row_type('upper_tension', 'force/length^2', 'largest tension along the surface of the upper body at the end'), &
-      row_type('upper_tension_x', 'length', 'where it is: x')]
+                                row_type('normal_force', 'force/length', 'normal force P per unit thickness at the end'), &
+                                row_type('tangential_force', 'force/length', 'tangential force Q per unit thickness at the end'), &
+                                row_type('approach', 'length', 'approach of the upper body at the end'), &
+                                row_type('shift', 'length', 'shift of the upper body to the right at the end'), &
+                                row_type('dissipation', 'force', 'energy dissipated in all, per unit thickness'), &
+                                row_type('contact_half_width', 'length', &
+                                    'half the length of the contact at the end, from edges between nodes, where it is one patch'), &
+           row_type('contact_length', 'length', 'length of the contact at the end, of all its patches, from edges between nodes'), &
+                                row_type('patches', '1', 'contact patches at the end, with open nodes between them'), &
+         row_type('contact_centre', 'length', 'middle between the outermost edges at the end, from the origin along the surface'), &
+          row_type('stick_ratio', '1', 'length of the stick zones over that of the contact at the end, from edges between nodes'), &
+                                row_type('peak_pressure', 'force/length^2', 'largest pressure at the end'), &
+                                row_type('peak_shear', 'force/length^2', 'largest size of the shear traction at the end'), &
+                                row_type('cycles', '1', 'whole cycles of the last step that has any'), &
+                                row_type('cycle_dissipation', 'force', 'energy dissipated in the last cycle, per unit thickness'), &
+                         row_type('first_cycle_dissipation', 'force', 'energy dissipated in the first cycle, per unit thickness'), &
+              row_type('cycle_change', '1', 'largest change of a traction over the last cycle, in parts of the largest traction'), &
+                    row_type('force_amplitude', 'force/length', 'half of what the tangential force changes by in the last cycle'), &
+                                row_type('shift_amplitude', 'length', 'half of what the shift changes by in the last cycle'), &
+                  row_type('tangential_stiffness', 'force/length^2', 'tangential force over shift right after the last reversal'), &
+                  row_type('secant_stiffness', 'force/length^2', 'tangential force over shift from end to end of the last cycle'), &
+                                row_type('loss_factor', '1', &
+                              'cycle_dissipation over 2 pi times the energy of the secant stiffness, at constant P, no rotation'), &
+                                row_type('stick_ratio_loading', '1', 'stick ratio where the cycles begin'), &
+                                row_type('stick_ratio_reversal', '1', 'stick ratio at the far end of the last cycle'), &
+                                row_type('stick_ratio_return', '1', 'stick ratio at the end of the last cycle'), &
+                         row_type('patch_shift_loading', '1', 'middle of the contact over its half-width where the cycles begin'), &
+              row_type('patch_shift_reversal', '1', 'middle of the contact over its half-width at the far end of the last cycle'), &
+                    row_type('patch_shift_return', '1', 'middle of the contact over its half-width at the end of the last cycle'), &
+                                row_type('half_width_number', '1', 'contact_half_width times the relative curvature'), &
+                     row_type('pressure_number', '1', 'peak_pressure over p0 = 2 P/(pi a), the peak of an ellipse (section 5.2)'), &
+                                row_type('shear_number', '1', 'peak_shear over p0 = 2 P/(pi a)'), &
+                               row_type('force_number', '1', 'force_amplitude over mu P: the lateral force ratio of section 6.4'), &
+                                row_type('shift_number', '1', 'shift_amplitude times the relative curvature (section 5.2)'), &
+                      row_type('dissipation_number', '1', 'cycle_dissipation over P^2 A, A = sum of (kappa + 1)/(4 G) (eq. 6.5)'), &
+                                row_type('stiffness_number', '1', 'tangential_stiffness times A'), &
+            row_type('creepage', '1', 'rolling: sliding of the upper body over the lower per rolled distance, both to the right'), &
+               row_type('creepage_number', '1', 'creepage over mu a K: K relative curvature, a contact_half_width (Carter 1926)'), &
+                    row_type('lower_tension', 'force/length^2', 'largest tension along the surface of the lower body at the end'), &
+                                row_type('lower_tension_x', 'length', 'where it is: x'), &
+                    row_type('upper_tension', 'force/length^2', 'largest tension along the surface of the upper body at the end'), &
+                                row_type('upper_tension_x', 'length', 'where it is: x')]
 
 contains
 

@@ -2,7 +2,8 @@
 !> 1 + 1e-12.
 !>
 !> Where friction drops, one node's slip decides whether the next one slips. Round-off can decide between them, and what
-!> follows can then be another of the states that the loads allow: such a result is chaotic, and its certificate is small all the same.
+!> follows can then be another of the states that the loads allow: such a result is chaotic, and its certificate is small all the
+!> same.
 module mfv_sensitivity
    use mfv_friction, only: friction_type
    use mfv_kinds, only: wp
@@ -17,7 +18,8 @@ module mfv_sensitivity
 
 contains
 
-   !> Run the scene of a simulation that has been run once more with friction perturbed, and note in simulation%sensitivity by how much
+   !> Run the scene of a simulation that has been run once more with friction perturbed, and note in simulation%sensitivity by how
+   !> much
    !> the final state differs. `observer` watches that run, and can stop it. Where there is nothing to compare its message says
    !> why.
    subroutine find_sensitivity(simulation, observer)

@@ -90,7 +90,8 @@ contains
       end subroutine check_rounded_edges
 
       !> Points further apart than the nodes leave open what is between them, where that matters: a bump of the height e and the
-      !> width h takes a pressure of pi m e/h to be pressed flat (Johnson 1985, section 13.2: pi E* (e/2)/h of a sinusoid, E* = 2 m).
+      !> width h takes a pressure of pi m e/h to be pressed flat (Johnson 1985, section 13.2: pi E* (e/2)/h of a sinusoid, E* = 2
+      !> m).
       subroutine check_interpolation()
          real(wp), parameter :: matters = 0.02_wp, further = 1.5_wp
          real(wp), allocatable :: x(:), departure(:), spacing(:)

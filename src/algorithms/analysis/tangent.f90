@@ -18,7 +18,8 @@ module mfv_tangent
    private
    public :: find_tangent
 
-   !> Ends a run when the statuses have settled: not at an increment that is round-off, or that only lets excess tractions go, after which
+   !> Ends a run when the statuses have settled: not at an increment that is round-off, or that only lets excess tractions go, after
+   !> which
    !> others change at the same load.
    type, extends(observer_type) :: settled_type
    contains
@@ -31,7 +32,8 @@ contains
    !> from 2 to motion_count; the others are held.
    !> `direction`: of motions to go on with, shape (motions), only its direction counts; friction acts, if the scene has any. Left
    !> out, statuses are as they are.
-   !> Errors MFV_BAD_ARGUMENT: the contact does not determine it, or a direction of zeros; others: nothing leads on in this direction.
+   !> Errors MFV_BAD_ARGUMENT: the contact does not determine it, or a direction of zeros; others: nothing leads on in this
+   !> direction.
    subroutine find_tangent(path, tangent, error, direction)
       type(contact_path_type), intent(in) :: path
       real(wp), intent(out) :: tangent(:, :)

@@ -22,7 +22,8 @@ module mfv_validity
 
 contains
 
-   !> Warnings about a simulation, none as a rule: few nodes in contact or in slip zones; contact at angles for which vertical normals
+   !> Warnings about a simulation, none as a rule: few nodes in contact or in slip zones; contact at angles for which vertical
+   !> normals
    !> are a poor approximation; surfaces that end, are steep or are not clear between the points of a profile; stresses beyond a
    !> yield strength that the user gave (the largest von Mises stress by refinement); large rotations; lost digits.
    subroutine validity_warnings(simulation, warnings)
@@ -73,7 +74,8 @@ contains
                     to_text(largest_angle, 2)//' degrees')
    end subroutine check_angle
 
-   !> Rotation is taken to first order: exactly for parabolas that roll, else with errors that grow as the bodies roll or slide along.
+   !> Rotation is taken to first order: exactly for parabolas that roll, else with errors that grow as the bodies roll or slide
+   !> along.
    subroutine check_rotation(simulation, warnings)
       type(simulation_type), intent(in) :: simulation
       type(string_type), allocatable, intent(inout) :: warnings(:)

@@ -179,7 +179,8 @@ contains
       wrong_motion = -self%over_stress(moved, growth)
    end function wrong_motion
 
-   !> Bristles far stiffer than what one interval of the surface gives way. Such friction differs from Coulomb's by about the ratio of
+   !> Bristles far stiffer than what one interval of the surface gives way. Such friction differs from Coulomb's by about the ratio
+   !> of
    !> these stiffnesses.
    pure function explain_failure(self, interval_stiffness) result(text)
       class(dahl_law_type), intent(in) :: self

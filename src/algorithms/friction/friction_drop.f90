@@ -1,7 +1,8 @@
 !> What laws have in common whose friction falls from a static to a kinetic coefficient: stress drops.
 !>
 !> Where |tau| must fall at an unchanged load, the over-stress r = |tau| - mu_k p is remembered and relaxed as a path of its own, on
-!> which every inequality holds (mfv_first_violation). If the pressure falls faster than r, r is all that the static limit allows, and
+!> which every inequality holds (mfv_first_violation). If the pressure falls faster than r, r is all that the static limit allows,
+!> and
 !> falls with it: it is capped.
 module mfv_friction_drop
    use mfv_friction_law

@@ -1,4 +1,5 @@
-!> What every friction law tells the algorithms. A law is a file of its own that extends `friction_law_type` and contains all that is
+!> What every friction law tells the algorithms. A law is a file of its own that extends `friction_law_type` and contains all that
+!> is
 !> special to it; the algorithms ask it, and never for its name.
 !>
 !> A node holds up to a limit, |tau| <= mu_s p unless the law says otherwise. Laws differ in what a node does that slips (or
@@ -251,8 +252,10 @@ contains
       holding_status = node_stick
    end function holding_status
 
-   !> By how much a node at the limit would load more than the limit grows if it crept on, force/length^2: while this is not negative it
-   !> slips. Of laws whose nodes creep. `moved`: motion in the direction of the slip, length; `growth`: of the limit, force/length^2; or
+   !> By how much a node at the limit would load more than the limit grows if it crept on, force/length^2: while this is not
+   !> negative it
+   !> slips. Of laws whose nodes creep. `moved`: motion in the direction of the slip, length; `growth`: of the limit,
+   !> force/length^2; or
    !> their rates.
    elemental real(wp) function over_stress(self, moved, growth)
       class(friction_law_type), intent(in) :: self
@@ -310,7 +313,8 @@ contains
       release_rate = 0.0_wp
    end function release_rate
 
-   !> Whether a node with this `status` may have no equilibrium nearby once it slips, so that its traction must relax at a fixed load.
+   !> Whether a node with this `status` may have no equilibrium nearby once it slips, so that its traction must relax at a fixed
+   !> load.
    pure logical function can_become_unstable(self, status, point)
       class(friction_law_type), intent(in) :: self
       integer, intent(in) :: status
@@ -326,7 +330,8 @@ contains
       real(wp), intent(inout) :: memory(:)
    end subroutine release
 
-   !> By how much the traction of a slipping or creeping node fails the law after an increment, force/length^2. `explicit`: lines were
+   !> By how much the traction of a slipping or creeping node fails the law after an increment, force/length^2. `explicit`: lines
+   !> were
    !> tangents at the start.
    pure real(wp) function defect(self, status, before, after, explicit)
       class(friction_law_type), intent(in) :: self
@@ -346,7 +351,8 @@ contains
       wrong_motion = -moved
    end function wrong_motion
 
-   !> What may be wrong with the law's parameters where no solution is found; empty, or begins with '; '. `interval_stiffness`: contact
+   !> What may be wrong with the law's parameters where no solution is found; empty, or begins with '; '. `interval_stiffness`:
+   !> contact
    !> modulus over the interval, force/length^3.
    pure function explain_failure(self, interval_stiffness) result(text)
       class(friction_law_type), intent(in) :: self

@@ -31,16 +31,16 @@ module mfv_certificate
 
    !> Names of the residuals, as in the result file, and what they are the sizes of.
    character(*), parameter :: residual_names(residual_count) = &
-      [character(24) :: 'elasticity_normal', 'elasticity_tangential', motions(:motion_shift)%balance, &
-       'contact_gap', 'open_traction', 'stick_slip', 'slip_traction', 'pressure_sign', 'gap_sign', 'friction_limit', &
-       'slip_direction', 'continuity', 'energy_balance', motions(motion_shift + 1:)%balance]
+                              [character(24) :: 'elasticity_normal', 'elasticity_tangential', motions(:motion_shift)%balance, &
+                     'contact_gap', 'open_traction', 'stick_slip', 'slip_traction', 'pressure_sign', 'gap_sign', 'friction_limit', &
+                                               'slip_direction', 'continuity', 'energy_balance', motions(motion_shift + 1:)%balance]
    character(*), parameter :: residual_descriptions(residual_count) = &
-      [character(80) :: 'w - C_wp p - C_wt tau', 'u - C_up p - C_ut tau', motions(:motion_shift)%balance_meaning, &
-       'gap of nodes in contact', 'tractions of open nodes', 'slip of stuck nodes', &
-       'distance of slipping nodes from the friction limit', 'negative pressure', 'negative gap', &
-       'shear traction beyond the friction limit', 'slip with the traction instead of against it', &
-       'jump of the tractions where statuses change', 'work of the loads - stored - dissipated energy', &
-       motions(motion_shift + 1:)%balance_meaning]
+                       [character(80) :: 'w - C_wp p - C_wt tau', 'u - C_up p - C_ut tau', motions(:motion_shift)%balance_meaning, &
+                                                 'gap of nodes in contact', 'tractions of open nodes', 'slip of stuck nodes', &
+                                        'distance of slipping nodes from the friction limit', 'negative pressure', 'negative gap', &
+                                       'shear traction beyond the friction limit', 'slip with the traction instead of against it', &
+                                  'jump of the tractions where statuses change', 'work of the loads - stored - dissipated energy', &
+                                                 motions(motion_shift + 1:)%balance_meaning]
 
    type :: certificate_type
       !> Largest relative residuals over all increments, by kind.
@@ -89,7 +89,7 @@ contains
 
       self%claimed([continuity, energy_balance]) = model%scene%method%algorithm == algorithm_mfv
       self%claimed(energy_balance) = self%claimed(continuity) .and. (.not. model%tangential .or. &
-                                     .not. model%compliance%one_way())
+                                                                     .not. model%compliance%one_way())
       if (self%leaps > 0 .and. self%leaps == self%increments) self%claimed([continuity, energy_balance]) = .false.
       self%claimed(force_balance) = model%moves
       self%claimed([elasticity_tangential, tangential_force_balance, stick_slip, slip_traction, friction_limit, &

@@ -13,7 +13,8 @@ module mfv_rolling
 
    type :: rolling_type
       private
-      !> Which way it rolls, 1 to the right, -1 to the left; how many interval ends it has passed that way, counted to `intervals` + 1.
+      !> Which way it rolls, 1 to the right, -1 to the left; how many interval ends it has passed that way, counted to `intervals` +
+      !> 1.
       integer :: direction = 0, passed = 0
       !> How far it has rolled that way under constant forces, length.
       real(wp) :: distance = 0.0_wp

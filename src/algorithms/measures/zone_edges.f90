@@ -483,7 +483,8 @@ contains
 
    !> Where nearly straight values, the outermost first, are zero, in intervals outwards from the outermost node. The second to
    !> fourth node tell, the outermost one carrying the largest error; where the third to seventh are smooth (near edges of other
-   !> zones they are not), the third, fifth and seventh tell better. The tractions of a zone that has `grown` node by node are ragged: there
+   !> zones they are not), the third, fifth and seventh tell better. The tractions of a zone that has `grown` node by node are
+   !> ragged: there
    !> the second to seventh tell together. Of three nodes all tell, of two a line; 1/2 where all this leads nowhere within
    !> one interval of that.
    pure real(wp) function distance_to_zero(samples, grown) result(distance)

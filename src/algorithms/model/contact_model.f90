@@ -479,8 +479,10 @@ contains
    end function slid
 
    !> By how much the gap grows per unit of rotation, length, shape (nodes). A contact that has rolled along by s has the gap
-   !> g(arc - s), but for a constant that the approach takes up. For a parabola g = K arc^2/2 this is K arc^2/2 - K s arc: the arm is
-   !> the arc. For other gaps the arm arc + 2 b arc^3/3, with g = K arc^2/2 (1 + b arc^2), keeps the least gap at s, to fourth order;
+   !> g(arc - s), but for a constant that the approach takes up. For a parabola g = K arc^2/2 this is K arc^2/2 - K s arc: the arm
+   !> is
+   !> the arc. For other gaps the arm arc + 2 b arc^3/3, with g = K arc^2/2 (1 + b arc^2), keeps the least gap at s, to fourth
+   !> order;
    !> there the curvature is then wrong by the part 2 b s^2 (see rolling_error).
    pure function rolling_arm(self) result(arm)
       class(contact_model_type), intent(in) :: self

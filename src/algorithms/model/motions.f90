@@ -43,26 +43,26 @@ module mfv_motions
    end type motion_type
 
    type(motion_type), parameter :: motions(motion_count) = [ &
-      motion_type( &
-         key='approach', force_key='normal_force', force_name='normal force', unit='length', force_unit='force/length', &
-         meaning='approach of the upper body', force_meaning='normal force P per unit thickness', &
-         target='target of the approach of the upper body, in place of normal_force', &
-         force_target='target of the normal force P', balance='normal_force_balance', balance_meaning='P - sum(p) dx', &
-         pushes=.true.), &
-      motion_type( &
-         key='shift', force_key='tangential_force', force_name='tangential force', unit='length', force_unit='force/length', &
-         meaning='shift of the upper body to the right', force_meaning='tangential force Q per unit thickness', &
-         target='target of the shift of the upper body to the right, in place of tangential_force', &
-         force_target='target of the tangential force Q, positive to the right', &
-         balance='tangential_force_balance', balance_meaning='Q - sum(tau) dx'), &
-      motion_type( &
-         key='rotation', force_key='moment', force_name='moment', unit='radians', force_unit='force', &
-         meaning='rotation of the upper body, counterclockwise, in radians', &
-         force_meaning='moment M of the upper on the lower body per unit thickness, counterclockwise', &
-         target='target of the rotation of the upper body about the same point, in place of moment', &
-         force_target='target of the moment M about the centre of the upper disk or hole, else of the lower one, else about '// &
-                      'the pole; counterclockwise', &
-         balance='moment_balance', balance_meaning='M - moment of the tractions', turns=.true., optional=.true.)]
+                                   motion_type( &
+                    key='approach', force_key='normal_force', force_name='normal force', unit='length', force_unit='force/length', &
+                                   meaning='approach of the upper body', force_meaning='normal force P per unit thickness', &
+                                   target='target of the approach of the upper body, in place of normal_force', &
+                     force_target='target of the normal force P', balance='normal_force_balance', balance_meaning='P - sum(p) dx', &
+                                   pushes=.true.), &
+                                   motion_type( &
+               key='shift', force_key='tangential_force', force_name='tangential force', unit='length', force_unit='force/length', &
+                            meaning='shift of the upper body to the right', force_meaning='tangential force Q per unit thickness', &
+                                   target='target of the shift of the upper body to the right, in place of tangential_force', &
+                                   force_target='target of the tangential force Q, positive to the right', &
+                                   balance='tangential_force_balance', balance_meaning='Q - sum(tau) dx'), &
+                                   motion_type( &
+                                   key='rotation', force_key='moment', force_name='moment', unit='radians', force_unit='force', &
+                                   meaning='rotation of the upper body, counterclockwise, in radians', &
+                                   force_meaning='moment M of the upper on the lower body per unit thickness, counterclockwise', &
+                                   target='target of the rotation of the upper body about the same point, in place of moment', &
+            force_target='target of the moment M about the centre of the upper disk or hole, else of the lower one, else about '// &
+                                   'the pole; counterclockwise', &
+                            balance='moment_balance', balance_meaning='M - moment of the tractions', turns=.true., optional=.true.)]
 
 contains
 

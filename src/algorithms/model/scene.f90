@@ -98,7 +98,8 @@ module mfv_scene
 
 contains
 
-   !> Whether the scene needs the tangential problem at all: a law with friction, and a step in which it acts. Steps that are still to
+   !> Whether the scene needs the tangential problem at all: a law with friction, and a step in which it acts. Steps that are still
+   !> to
    !> be told, where the scene has none, may be such ones.
    pure logical function tangential(self)
       class(scene_type), intent(in) :: self
@@ -221,7 +222,8 @@ contains
       if (radius > 0.0_wp) touchable = touchable .and. abs(arc) < 0.5_wp*pi*radius
    end function touchable
 
-   !> The lower or `upper` body under tractions, see mfv_interior. With radial normals the nodes' angles are common to both bodies and
+   !> The lower or `upper` body under tractions, see mfv_interior. With radial normals the nodes' angles are common to both bodies
+   !> and
    !> their forces are equal; arcs and tractions are not. `contact_edge`, `stick_edge`: edges of the zones between nodes, in
    !> ascending order at the nodes whose values are finite, the left and the right one of each zone in turn; shape (nodes).
    !> `available`: false for a rigid body or a mere matrix. `fewest_elements`: see mfv_surface_tractions.

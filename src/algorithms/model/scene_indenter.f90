@@ -51,7 +51,8 @@ contains
       if (body%shape == shape_rounded_punch) call indenter%add(rounded_punch_indenter(body%flat_half_width, body%radius))
    end subroutine add_body
 
-   !> The largest contact half-width, length, that the closed form expects of the targets of the scene's steps, of approaches at most
+   !> The largest contact half-width, length, that the closed form expects of the targets of the scene's steps, of approaches at
+   !> most
    !> `most` (length); 0 where there is no closed form, or none of the targets presses.
    pure real(wp) function largest_half_width(scene, most) result(largest)
       type(scene_type), intent(in) :: scene

@@ -38,7 +38,8 @@ module mfv_augmented_system
       !> Unknowns before those of the first carried node, by field; and places of motions and forces, 0 for those that are none.
       integer :: pressure = 0, shear = 0, normal = 0, slip = 0
       integer :: motion(motion_count) = 0, force(motion_count) = 0
-      !> Where normals are vertical the unknown in the place of the shift U is the sliding U + h phi, which is small where the bodies
+      !> Where normals are vertical the unknown in the place of the shift U is the sliding U + h phi, which is small where the
+      !> bodies
       !> roll and U and h phi nearly cancel: the height h of the centre of rotation, length; else 0.
       real(wp) :: height = 0.0_wp
       !> Units of pressure, shear traction and length; of the arms, motions and forces.

@@ -21,7 +21,7 @@ module mfv_contact_system
    integer :: motion
    !> Loads of bodies that nothing has been prescribed for: no forces; motions that need not be modelled are held.
    type(load_type), parameter :: initial_loads(motion_count) = &
-      [(load_type(merge(control_displacement, control_force, motions(motion)%optional)), motion=1, motion_count)]
+                         [(load_type(merge(control_displacement, control_force, motions(motion)%optional)), motion=1, motion_count)]
 
    !> The equality constraints of all nodes (dissertation Table 2.1).
    type :: constraints_type

@@ -466,7 +466,7 @@ contains
                if (c == 0) then
                   call system%constrain(self%place(i, a_shear), partner, slope, stiffness)
                   c = system%constraints
-               ! Apart, the slope comes in with the known pressure.
+                  ! Apart, the slope comes in with the known pressure.
                else if ((partner > 0 .and. abs(system%constraint(c)%slope - slope) > 0.0_wp) .or. &
                         abs(system%constraint(c)%stiffness - stiffness) > 0.0_wp) then
                   call system%change_constraint(c, slope, stiffness)

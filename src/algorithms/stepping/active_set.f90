@@ -146,7 +146,7 @@ contains
       noise = max(round_off, path%system%noise)
       traction = noise*max(maxval(abs(fields%pressure)), maxval(abs(fields%shear)), path%certificate%traction_scale())
       motion = noise*max(maxval(abs(fields%normal)), maxval(abs(fields%tangential)), abs(fields%motion(motion_approach)), &
-                             abs(fields%motion(motion_shift)))
+                         abs(fields%motion(motion_shift)))
       gap = path%model%gap(fields)
       slipped = 0.0_wp
       if (path%model%tangential) slipped = fields%slip() - path%state%stuck_slip

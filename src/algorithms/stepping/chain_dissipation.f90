@@ -121,9 +121,9 @@ contains
            >= limit*(1.0_wp - max(at_limit, noises*noise))
       where (on)
          work = -0.5_wp*(before%fields%shear + after%shear)*slipped
-      elsewhere (slips(before%status))
+      elsewhere(slips(before%status))
          work = (0.75_wp*abs(after%shear) + 0.25_wp*limit)*abs(slipped)
-      elsewhere (.not. in_contact(before%status))
+      elsewhere(.not. in_contact(before%status))
          work = max(-0.25_wp*before%fields%shear*slipped, 0.0_wp)
       elsewhere
          work = 0.0_wp

@@ -201,7 +201,8 @@ contains
       if (added > 0) call self%model%grow(added)
    end subroutine model_as
 
-   !> Continue from a position that a contact of the same scene has reached, with `added` nodes more at either end. The linear solver
+   !> Continue from a position that a contact of the same scene has reached, with `added` nodes more at either end. The linear
+   !> solver
    !> starts anew.
    subroutine resume(self, position, added)
       class(contact_path_type), intent(inout) :: self
@@ -503,7 +504,8 @@ contains
       if (allocated(self%model%scene%friction%law)) has_memory = self%model%scene%friction%law%has_memory()
    end function has_memory
 
-   !> Events of the friction law's own in an increment that is expected to lead to the fields `after`, shape (most_events, nodes); not
+   !> Events of the friction law's own in an increment that is expected to lead to the fields `after`, shape (most_events, nodes);
+   !> not
    !> allocated where it has none.
    subroutine find_events(self, after, events)
       class(contact_path_type), intent(in) :: self
@@ -550,7 +552,8 @@ contains
       end do
    end function can_become_unstable
 
-   !> Where nodes can neither hold nor slip on in equilibrium, have them slip and their traction relax. `snapped`: whether there are any;
+   !> Where nodes can neither hold nor slip on in equilibrium, have them slip and their traction relax. `snapped`: whether there are
+   !> any;
    !> the first of them is then what changes at this load, unless something else has changed before.
    subroutine snap(self, moment, snapped)
       class(contact_path_type), intent(inout) :: self
@@ -615,7 +618,7 @@ contains
       if (self%has_memory()) then
          do i = 1, size(mask)
             if (mask(i)) call self%model%scene%friction%law%change_status(self%state%status(i), status(i), &
-                                                                         self%point(i, self%state%fields), self%state%memory(:, i))
+                                                                          self%point(i, self%state%fields), self%state%memory(:, i))
          end do
       end if
       call self%state%set_status(mask, status)
@@ -630,7 +633,7 @@ contains
       if (.not. self%has_memory()) return
       do i = 1, size(mask)
          if (mask(i)) call self%model%scene%friction%law%change_status(node_slip_right, self%state%status(i), &
-                                                                      self%point(i, self%state%fields), self%state%memory(:, i))
+                                                                       self%point(i, self%state%fields), self%state%memory(:, i))
       end do
    end subroutine remember_status
 

@@ -241,7 +241,7 @@ contains
       associate (law => path%model%scene%friction%law, status => path%state%status)
          if (law%sticks()) return
          yields = law%over_stress(motion_sign(status)*slipped, law%limit_part()*path%friction_limits() &
-                             *(trial%pressure - path%state%fields%pressure))
+                                  *(trial%pressure - path%state%fields%pressure))
          repair = worst(event_stick, -yields, slips(status), allowed)
          where (slips(status)) slipped = 0.0_wp
       end associate

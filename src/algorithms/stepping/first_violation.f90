@@ -129,7 +129,7 @@ contains
          if (.not. ready) cycle
          passed = .false.
          if (progress%since > many_events) call pass_accumulation(path, constraints, 1.0_wp - progress%done, worth_telling, &
-                                                               progress%moment%round_off, progress%increment, passed)
+                                                                  progress%moment%round_off, progress%increment, passed)
          if (.not. passed) call find_increment(path, constraints, merge(1.0_wp, 1.0_wp - progress%done, drop), drop, &
                                                progress%moment%round_off, progress%increment)
          call look_for_solution(path, progress, ready, error)
@@ -324,7 +324,8 @@ contains
       call settle_by_rates(path, constraints, settled)
    end subroutine settle_at_once
 
-   !> Where a slipping node that may become unstable would turn back, it either comes to rest or the bodies can no longer unload as fast
+   !> Where a slipping node that may become unstable would turn back, it either comes to rest or the bodies can no longer unload as
+   !> fast
    !> as its friction falls. Let it snap, once at each load: one that need not is caught again at once, and comes to rest.
    subroutine snap_if_unstable(path, increment, moment, snapped)
       class(contact_path_type), intent(inout) :: path

@@ -44,7 +44,8 @@ contains
       self%trail = simulation%trail()
    end subroutine keep
 
-   !> Bring a simulation back to the state. Error MFV_BAD_ARGUMENT: nothing was kept, the state is of another scene (see keep), or it
+   !> Bring a simulation back to the state. Error MFV_BAD_ARGUMENT: nothing was kept, the state is of another scene (see keep), or
+   !> it
    !> is not on the way that led to the present one; the simulation is then as it was.
    subroutine come_back(self, simulation, scene, error)
       class(kept_state_type), intent(in) :: self

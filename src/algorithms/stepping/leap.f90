@@ -202,7 +202,8 @@ contains
       if (parts > most_parts .or. solves_per_increment*parts > solves_per_change*chain%changes) parts = 0
    end subroutine choose
 
-   !> Whether nodes that slip over the last increment of a chain would slip back at its end: they have come to rest on the way, which
+   !> Whether nodes that slip over the last increment of a chain would slip back at its end: they have come to rest on the way,
+   !> which
    !> no chain sees. Where the pressures stay there are none.
    logical function turns_back(path, segment, chain)
       class(contact_path_type), intent(inout) :: path

@@ -14,7 +14,8 @@ module mfv_load_way
       logical :: controlled(motion_count) = .false., cycled = .false.
       !> Pressed by forces only, ever harder, with friction from the start.
       logical :: pressed_harder = .true.
-      !> Pressed without a tangential force, then sheared by forces alone with friction; whether shear has begun, and whether friction
+      !> Pressed without a tangential force, then sheared by forces alone with friction; whether shear has begun, and whether
+      !> friction
       !> acted while it had not.
       logical :: pressed_then_sheared = .true., sheared = .false., friction_in_press = .false.
       !> Last target of the normal force, force/length.

@@ -76,7 +76,8 @@ module mfv_simulation
       integer :: status = 0
       character(:), allocatable :: message
       real(wp) :: perturbation = 1.0e-12_wp
-      !> The largest change of a pressure and of a shear traction, in parts of the largest traction; relative change of the dissipation;
+      !> The largest change of a pressure and of a shear traction, in parts of the largest traction; relative change of the
+      !> dissipation;
       !> change of the stick ratio between nodes.
       real(wp) :: pressure = 0.0_wp, shear = 0.0_wp, dissipation = 0.0_wp, stick_ratio = 0.0_wp
    end type sensitivity_type
@@ -93,7 +94,8 @@ module mfv_simulation
    end type leg_type
 
    !> The start of a segment, from which an interrupted run continues: the contact, the records of the load history so far, the work
-   !> of the linear solver so far, the segment's number in its step, the nodes added to the mesh, and what is known of the slip zones.
+   !> of the linear solver so far, the segment's number in its step, the nodes added to the mesh, and what is known of the slip
+   !> zones.
    type :: restart_type
       type(path_position_type) :: path
       integer :: records = 0, solves = 0, leg = 1, added = 0
@@ -280,7 +282,8 @@ contains
       end associate
    end subroutine note_restart
 
-   !> Continue from `restart`, which another run of the scene has kept; snapshots, cycles, marks, history and the numbers of position_type
+   !> Continue from `restart`, which another run of the scene has kept; snapshots, cycles, marks, history and the numbers of
+   !> position_type
    !> are those of that run already. The linear solver starts anew.
    subroutine resume(self)
       class(simulation_type), intent(inout) :: self

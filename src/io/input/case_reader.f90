@@ -233,7 +233,7 @@ contains
       else
          scene%steps(number)%control(motion_shift) = control_force
          scene%steps(number)%target(motion_shift) = reader%real_value('step', number, 'force_ratio') &
-                                                 *scene%friction%static%largest()*scene%steps(last)%target(motion_approach)
+                                                    *scene%friction%static%largest()*scene%steps(last)%target(motion_approach)
       end if
    end subroutine read_force_ratio
 

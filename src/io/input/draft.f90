@@ -26,8 +26,8 @@ module mfv_draft
    character(*), parameter :: line_ends = achar(10)//achar(13)
    !> Keys of one group of which a case has one at most; the last row that has a key holds.
    character(*), parameter :: alternatives_of(motion_count + 3) = &
-      [character(40) :: motions%force_key//' '//motions%key, 'tangential_force force_ratio shift', &
-       'shear_modulus youngs_modulus', 'half_width half_angle']
+                              [character(40) :: motions%force_key//' '//motions%key, 'tangential_force force_ratio shift', &
+                                                 'shear_modulus youngs_modulus', 'half_width half_angle']
 
    !> A fault, and the key that was named: a value for that mends it.
    type :: fault_type
@@ -57,7 +57,7 @@ module mfv_draft
       procedure :: write_text
       procedure :: make_case
       procedure, private :: set_real, set_reals, set_integer, set_logical, set_text, set_column, set_matrix, set_value, &
-                            set_values, set_materials, write_materials, find_group
+         set_values, set_materials, write_materials, find_group
    end type draft_type
 
 contains

@@ -2,7 +2,7 @@
 module mfv_hdf5_reader
    use, intrinsic :: ieee_arithmetic, only: ieee_is_finite
    use, intrinsic :: iso_c_binding, only: c_associated, c_char, c_f_pointer, c_funloc, c_funptr, c_int, c_loc, c_null_ptr, &
-      c_ptr
+                                                                             c_ptr
    use hdf5
    use mfv_error, only: error_type, set_error
    use mfv_hdf5_start, only: start_hdf5

@@ -39,6 +39,8 @@ module mfv_namelist
 
    character(*), parameter :: line_feed = achar(10), tab = achar(9), carriage_return = achar(13)
    character(*), parameter :: blanks = ' '//tab//carriage_return//line_feed
+   !> What ends a value without quotes, besides blanks; the last two are quote and ampersand.
+   character(*), parameter :: value_ends = ",/!='"//achar(34)//achar(38)
    character(*), parameter :: name_characters = 'abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_'
    character(*), parameter :: digits = '0123456789'
 
@@ -304,7 +306,7 @@ contains
       character(:), allocatable, intent(out) :: text
       integer :: length
 
-      length = scan(cursor%text(cursor%at:), blanks//",/&!='""") - 1
+      length = scan(cursor%text(cursor%at:), blanks//value_ends) - 1
       if (length < 0) length = len(cursor%text) - cursor%at + 1
       text = cursor%text(cursor%at:cursor%at + length - 1)
       cursor%at = cursor%at + length

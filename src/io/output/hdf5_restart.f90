@@ -80,7 +80,8 @@ contains
       call move_alloc(to_file%fields, fields)
    end subroutine restart_fields
 
-   !> Bring a new simulation to where the run of its scene was whose result is open as `file`. Error MFV_INPUT_ERROR: the file has no
+   !> Bring a new simulation to where the run of its scene was whose result is open as `file`. Error MFV_INPUT_ERROR: the file has
+   !> no
    !> restart data, those of another scene, or damaged ones; the simulation is then of no use.
    subroutine read_restart(file, simulation, error)
       integer(hid_t), intent(in) :: file
@@ -149,7 +150,8 @@ contains
       end do
    end subroutine exchange_restart
 
-   !> By what another scene is recognised: positions, gaps, coefficients of friction, and what uneven tractions make of the compliance;
+   !> By what another scene is recognised: positions, gaps, coefficients of friction, and what uneven tractions make of the
+   !> compliance;
    !> of the nodes that the mesh had at first.
    subroutine exchange_scene(self, model)
       type(exchange_type), intent(inout) :: self
@@ -266,7 +268,7 @@ contains
       if (any(state%status < node_open .or. state%status > node_creep_left)) call self%complain('status')
       call self%exchange('pressure', state%fields%pressure, 'pressure')
       call self%exchange('shear', state%fields%shear, 'shear traction')
-      call exchange_motions(self, state, .not. motions%optional)
+      call exchange_motions(self, state,.not. motions%optional)
       call self%exchange('dissipation', state%dissipation, 'energy dissipated so far')
    end subroutine exchange_visible
 

@@ -46,7 +46,8 @@ module mfv_result_fields
       character(:), allocatable :: flags
    end type field_type
 
-   !> Fields that are being gathered. Units are given in terms of length and force, such as force/length^2; the fields have the user's
+   !> Fields that are being gathered. Units are given in terms of length and force, such as force/length^2; the fields have the
+   !> user's
    !> names for those two.
    type :: list_type
       type(field_type), allocatable :: fields(:)
@@ -344,7 +345,7 @@ contains
       type(contact_state_type), intent(in) :: state
       real(wp), dimension(simulation%contact%model%nodes()) :: contact_edge, stick_edge
       character(*), parameter :: where_from = ' zones between nodes, along the surface from the origin: the left edge at the '// &
-         'first node of a zone, the right one at its last node; NaN at all others'
+                                 'first node of a zone, the right one at its last node; NaN at all others'
 
       call add_displacements(list, simulation, state)
       associate (model => simulation%contact%model)
@@ -445,7 +446,7 @@ contains
 
       call find_zone_edges(simulation%contact%model, state, edges)
       associate (f => state%fields)
-         call add_motions(list, .not. motions%optional, reshape(f%force, [1, motion_count]), reshape(f%motion, [1, motion_count]), &
+         call add_motions(list,.not. motions%optional, reshape(f%force, [1, motion_count]), reshape(f%motion, [1, motion_count]), &
                           along_nothing)
          call add_motions(list, motions%optional .and. simulation%contact%model%moves, reshape(f%force, [1, motion_count]), &
                           reshape(f%motion, [1, motion_count]), along_nothing)
@@ -459,7 +460,7 @@ contains
             if (edges%patches > 1) half_width = ieee_value(1.0_wp, ieee_quiet_nan)
             call list%add('contact_half_width', half_width, 'length', 'half the length of all intervals in contact'//nan_of_several)
             call list%add('stick_ratio', model%intervals(holds(state%status))/max(model%intervals(in_contact(state%status)), &
-                          tiny(1.0_wp)), '1', 'length of the intervals of stuck nodes over that of nodes in contact')
+                                         tiny(1.0_wp)), '1', 'length of the intervals of stuck nodes over that of nodes in contact')
          end associate
       end associate
       call add_edges(list, simulation, edges)
@@ -662,7 +663,7 @@ contains
       end if
       if (form%shear_source /= '') call list%add('shear', form%shear, along_nodes, 'force/length^2', form%shear_source)
       if (allocated(form%shift) .and. simulation%keep_history /= history_none) call list%add('shift', form%shift, along_records, &
-            'length', form%shear_source)
+                                                                                             'length', form%shear_source)
    end subroutine add_reference
 
    !> Error bars: of each quantity its value, error, order, and its values on the coarser meshes.
@@ -739,7 +740,7 @@ contains
       end do
       do i = 1, motion_count
          if (which(i)) call list%add(trim(motions(i)%key), motion(:, i), along, trim(merge('1      ', motions(i)%unit, &
-                                     motions(i)%unit == 'radians')), trim(motions(i)%meaning))
+                                                                           motions(i)%unit == 'radians')), trim(motions(i)%meaning))
       end do
    end subroutine add_motions
 
@@ -757,7 +758,7 @@ contains
             motion(:, i) = r%motion(i)
          end do
          associate (moves => simulation%contact%model%moves)
-            call add_motions(list, .not. motions%optional, force, motion, along)
+            call add_motions(list,.not. motions%optional, force, motion, along)
             call add_nonlinear_shift(list, simulation)
             call add_motions(list, motions%optional .and. moves, force, motion, along)
             if (moves(motion_rotation)) call add_rolling(list, simulation)

@@ -40,7 +40,8 @@ contains
    end function is_whole_result
 
    !> Bring a new simulation of a case to where the interrupted run was whose result is at `path`. `is_finished`: that run was
-   !> complete, nothing is done. Error MFV_INPUT_ERROR: the file cannot be read, is not a result, is that of a run that failed, of another
+   !> complete, nothing is done. Error MFV_INPUT_ERROR: the file cannot be read, is not a result, is that of a run that failed, of
+   !> another
    !> case or of another version, or is damaged; the simulation is then of no use.
    subroutine resume_result(path, case, simulation, is_finished, error)
       character(*), intent(in) :: path

@@ -111,12 +111,12 @@ contains
       if (.not. allocated(error)) call read_edges(file, state//'/stick_edge', size(arc), stick_edge, error)
       call close_read(file)
       if (.not. allocated(error)) then
-         if (any(abs([arc, width, pressure, shear, pack(contact_edge, .not. ieee_is_nan(contact_edge)), &
-                      pack(stick_edge, .not. ieee_is_nan(stick_edge))]) > largest_size)) &
+         if (any(abs([arc, width, pressure, shear, pack(contact_edge,.not. ieee_is_nan(contact_edge)), &
+                      pack(stick_edge,.not. ieee_is_nan(stick_edge))]) > largest_size)) &
             call set_error(error, MFV_INPUT_ERROR, 'mesh or '//state//' has values beyond 1e100')
       end if
       if (.not. allocated(error)) call read_case_text(text, path_from(directory, source), case, error, &
-                                                     without_steps=.true.)
+                                                      without_steps=.true.)
       if (allocated(error)) return
       result%yield_strength = merge(case%scene%upper%yield_strength, case%scene%lower%yield_strength, request%upper)
       call case%scene%interior(request%upper, arc, width, pressure, shear, contact_edge, stick_edge, interior, available)

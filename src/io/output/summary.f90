@@ -164,9 +164,9 @@ contains
       type(case_type), intent(in) :: case
       type(simulation_type), intent(in) :: simulation
       character(*), parameter :: names(quantity_count) = [character(18) :: 'contact_half_width', 'stick_ratio', &
-                                                          'peak_pressure', 'peak_shear', 'dissipation']
+                                                                                       'peak_pressure', 'peak_shear', 'dissipation']
       character(*), parameter :: words(quantity_count) = [character(18) :: 'contact half-width', 'stick ratio', &
-                                                          'peak pressure', 'peak shear', 'dissipation']
+                                                                                       'peak pressure', 'peak shear', 'dissipation']
       type(field_type), allocatable :: fields(:)
       character(:), allocatable :: meshes, value, percent
       integer :: i

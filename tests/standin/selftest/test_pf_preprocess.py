@@ -9,7 +9,7 @@ from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 
-import pf_preprocess  # noqa: E402
+import pf_preprocess
 
 SUITE = """! A comment with @test in it.
 module test_x
