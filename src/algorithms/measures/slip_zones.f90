@@ -78,7 +78,7 @@ contains
    pure integer function widest_slip_zone(status) result(widest)
       integer, intent(in) :: status(:)
       type(zone_type), allocatable :: zones(:)
-      integer, allocatable :: neighbours(:)
+      logical :: has_stick
       integer :: i, nodes
 
       widest = 0
@@ -86,8 +86,9 @@ contains
       do i = 1, size(zones)
          associate (first => zones(i)%first, last => zones(i)%last)
             nodes = last - first + 1
-            neighbours = pack([first - 1, last + 1], [first > 1, last < size(status)])
-            if (.not. any(holds(status(neighbours)))) nodes = max(nodes, resolved_nodes)
+            has_stick = any(holds(status(max(first - 1, 1):first - 1))) .or. &
+                        any(holds(status(last + 1:min(last + 1, size(status)))))
+            if (.not. has_stick) nodes = max(nodes, resolved_nodes)
             widest = max(widest, nodes)
          end associate
       end do

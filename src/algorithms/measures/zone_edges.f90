@@ -206,18 +206,20 @@ contains
    pure function zones_of(inside) result(zones)
       logical, intent(in) :: inside(:)
       type(zone_type), allocatable :: zones(:)
-      logical :: padded(0:size(inside) + 1)
-      integer, allocatable :: first(:), last(:)
-      integer :: i, n
+      logical :: before
+      integer :: i, number
 
-      n = size(inside)
-      padded = .false.
-      padded(1:n) = inside
-      first = pack([(i, i=1, n)], inside .and. .not. padded(:n - 1))
-      last = pack([(i, i=1, n)], inside .and. .not. padded(2:))
-      allocate (zones(size(first)))
-      zones%first = first
-      zones%last = last
+      allocate (zones(count(inside .and. .not. [.false., inside(:size(inside) - 1)])))
+      number = 0
+      before = .false.
+      do i = 1, size(inside)
+         if (inside(i) .and. .not. before) then
+            number = number + 1
+            zones(number)%first = i
+         end if
+         if (inside(i)) zones(number)%last = i
+         before = inside(i)
+      end do
    end function zones_of
 
    !> Edge of a contact patch on `side` (-1 left, 1 right), length from the pole.

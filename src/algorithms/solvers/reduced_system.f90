@@ -229,15 +229,15 @@ contains
       class(reduced_system_type), intent(inout) :: self
       type(constraints_type), intent(in) :: constraints
       logical, intent(in) :: wanted(:, :)
-      integer, allocatable :: going(:)
+      logical :: going(self%nodes)
       integer :: i, part
 
       part = part_of(self, a_shear, 0)
-      going = pack([(i, i=1, self%nodes)], self%constraint_of(:self%nodes, a_shear) > 0 .and. &
-                   .not. (wanted(:self%nodes, a_shear) .and. constraints%status /= node_stick))
-      if (2*size(going) > self%part(part)%system%constraints) call self%part(part)%system%postpone()
-      do i = 1, size(going)
-         call release(self, part, self%constraint_of(going(i), a_shear))
+      going = self%constraint_of(:self%nodes, a_shear) > 0 .and. &
+              .not. (wanted(:self%nodes, a_shear) .and. constraints%status /= node_stick)
+      if (2*count(going) > self%part(part)%system%constraints) call self%part(part)%system%postpone()
+      do i = 1, self%nodes
+         if (going(i)) call release(self, part, self%constraint_of(i, a_shear))
       end do
       do i = 1, motion_count
          if (self%constraint_of(i, a_motion) == 0) cycle
@@ -300,17 +300,20 @@ contains
       integer, intent(in) :: p
       logical, intent(in) :: wanted(:, :)
       logical, intent(out) :: singular
-      integer, allocatable :: new_sort(:), new_of(:)
-      integer :: i, sort
+      integer :: new_sort(2*size(wanted, 1)), new_of(2*size(wanted, 1)), i, number, sort
 
       singular = .false.
-      allocate (new_sort(0), new_of(0))
+      number = 0
       do sort = a_pressure, a_shear
          if (part_of(self, sort, 0) /= p) cycle
-         new_of = [new_of, pack([(i, i=1, size(wanted, 1))], wanted(:, sort) .and. self%place(:, sort) == 0)]
-         new_sort = [new_sort, spread(sort, 1, size(new_of) - size(new_sort))]
+         do i = 1, size(wanted, 1)
+            if (self%place(i, sort) > 0 .or. .not. wanted(i, sort)) cycle
+            number = number + 1
+            new_sort(number) = sort
+            new_of(number) = i
+         end do
       end do
-      if (size(new_of) > 0) call add_named(self, model, p, new_sort, new_of, singular)
+      if (number > 0) call add_named(self, model, p, new_sort(:number), new_of(:number), singular)
    end subroutine add_unknowns
 
    !> More unknowns of a part: their sorts and nodes or motions.
