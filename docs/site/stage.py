@@ -7,6 +7,8 @@ examples, programs, header and sources.
 from __future__ import annotations
 
 import argparse
+import base64
+import json
 import os
 import shutil
 import subprocess
@@ -32,7 +34,14 @@ LANGUAGES |= {".sh": "sh", ".cff": "yaml", ".toml": "toml"}
 SHOWN = (*PICTURES, *LANGUAGES, ".csv", ".md", ".txt")
 # Pages of the side bar by heading, as they are staged; pages that are not there yet are left out.
 CONTENTS = {
-    "Start": ["docs/install", "docs/guide", "gallery/index", "docs/choosing"],
+    "Start": [
+        "docs/install",
+        "docs/tutorial",
+        "docs/guide",
+        "gallery/index",
+        "Notebooks <examples/notebooks/README>",
+        "docs/choosing",
+    ],
     "Reference": ["docs/namelist", "docs/studies", "docs/clusters", "docs/file-format", "programs"],
     "Interfaces": ["docs/python-api", "python/index", "docs/c-api", "c", "docs/fortran-api", "fortran/index"],
     "Background": [
@@ -43,7 +52,7 @@ CONTENTS = {
         "docs/performance",
         "The decoupling study <examples/decoupling/README>",
     ],
-    "Project": ["CHANGELOG"],
+    "Project": ["CHANGELOG", "CONTRIBUTING", "SECURITY", "docs/releasing"],
 }
 # Read in the repository only: what the site says by other pages.
 LEFT_OUT = ("python/README.md",)
@@ -139,10 +148,29 @@ class Site:
             for name in sorted(path.name for path in source.iterdir() if path.suffix in SHOWN):
                 link = os.path.relpath(self.pages.get(target / name) or self._page_of(target / name), here)
                 lines += [f"![{name}]({link})", ""] if Path(name).suffix in PICTURES else [f"- [{name}]({link})"]
+        elif source.suffix == ".ipynb":
+            lines = self._with_links(source, "\n".join(self._notebook(source, page))).splitlines()
         else:
             lines = [f"# {target}", "", f"```{LANGUAGES.get(source.suffix, 'text')}", source.read_text().rstrip(), "```"]
         self._write(page, "\n".join(lines) + "\n")
         return page
+
+    def _notebook(self, source: Path, page: str) -> list[str]:
+        """The cells of a notebook with their output; pictures are put beside the page."""
+        lines: list[str] = []
+        for number, cell in enumerate(json.loads(source.read_text())["cells"]):
+            text = "".join(cell["source"])
+            lines += [text, ""] if cell["cell_type"] == "markdown" else ["```python", text, "```", ""]
+            for output in cell.get("outputs", []):
+                if "text" in output:
+                    lines += ["```text", "".join(output["text"]).rstrip(), "```", ""]
+                elif "image/png" in output["data"]:
+                    picture = source.with_name(f"{source.stem}_{number}.png").relative_to(ROOT)
+                    (self.folder / picture).parent.mkdir(parents=True, exist_ok=True)
+                    (self.folder / picture).write_bytes(base64.b64decode(output["data"]["image/png"]))
+                    self.pages[picture] = str(picture)
+                    lines += [f"![Output of the cell above]({picture.name})", ""]
+        return lines
 
     def _add_contents(self, documents: list[str]) -> None:
         """The side bar: headings with their pages, then documents that no heading names, hidden."""
