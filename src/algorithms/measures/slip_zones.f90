@@ -17,7 +17,7 @@ module mfv_slip_zones
    use mfv_node_status, only: holds, in_contact, motion_sign, node_frictionless
    use mfv_reference_spence, only: spence_stick_ratio
    use mfv_strings, only: to_text
-   use mfv_zone_edges, only: ends_with_body, find_zone_edges, zone_edges_type, zone_type, zones_of
+   use mfv_zone_edges, only: ends_with_body, find_zone_edges, zone_edges_type
    implicit none
    private
    public :: slip_record_type, leg_start_type, widest_slip_zone, resolved_nodes, needed_mesh, &
@@ -77,20 +77,22 @@ contains
    !> whole patch slides there is no zone to resolve either, and it counts with its nodes, but as resolved at least.
    pure integer function widest_slip_zone(status) result(widest)
       integer, intent(in) :: status(:)
-      type(zone_type), allocatable :: zones(:)
-      logical :: has_stick
-      integer :: i, nodes
+      logical :: moves(0:size(status) + 1)
+      integer :: first, last
 
+      moves = .false.
+      moves(1:size(status)) = motion_sign(status) /= 0
       widest = 0
-      zones = zones_of(motion_sign(status) /= 0)
-      do i = 1, size(zones)
-         associate (first => zones(i)%first, last => zones(i)%last)
-            nodes = last - first + 1
-            has_stick = any(holds(status(max(first - 1, 1):first - 1))) .or. &
-                        any(holds(status(last + 1:min(last + 1, size(status)))))
-            if (.not. has_stick) nodes = max(nodes, resolved_nodes)
-            widest = max(widest, nodes)
-         end associate
+      last = 0
+      do first = 1, size(status)
+         if (first <= last .or. .not. moves(first)) cycle
+         last = first
+         do while (moves(last + 1))
+            last = last + 1
+         end do
+         widest = max(widest, last - first + 1)
+         if (.not. (any(holds(status(max(first - 1, 1):first - 1))) .or. &
+                    any(holds(status(last + 1:min(last + 1, size(status))))))) widest = max(widest, resolved_nodes)
       end do
    end function widest_slip_zone
 

@@ -424,8 +424,7 @@ contains
       !> Displacement of the row's sort by a traction of the column's.
       integer, parameter :: block(2, 2) = reshape([block_wp, block_up, block_wt, block_ut], [2, 2])
       real(wp) :: unit, block_entries(size(entries), 1)
-      integer, allocatable :: at(:)
-      integer :: i, row_sort
+      integer :: at(size(entries)), number, i, row_sort
 
       entries = 0.0_wp
       associate (n => size(entries), sort => part%sort, of => part%of)
@@ -438,10 +437,15 @@ contains
          end if
          unit = model%compliance%modulus/length*model%interval()/model%width(column_of)
          do row_sort = a_pressure, a_shear
-            at = pack([(i, i=1, n)], sort(:n) == row_sort)
-            if (size(at) == 0 .or. .not. model%compliance%has_block(block(row_sort, column_sort))) cycle
-            call model%compliance%entries(block(row_sort, column_sort), of(at), [column_of], block_entries(:size(at), :))
-            entries(at) = unit*block_entries(:size(at), 1)
+            number = 0
+            do i = 1, n
+               if (sort(i) /= row_sort) cycle
+               number = number + 1
+               at(number) = i
+            end do
+            if (number == 0 .or. .not. model%compliance%has_block(block(row_sort, column_sort))) cycle
+            call model%compliance%entries(block(row_sort, column_sort), of(at(:number)), [column_of], block_entries(:number, :))
+            entries(at(:number)) = unit*block_entries(:number, 1)
          end do
          do i = 1, n
             if (sort(i) /= a_motion) cycle
