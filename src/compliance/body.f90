@@ -33,7 +33,7 @@ module mfv_body
       integer :: shape = shape_half_plane
       logical :: rigid = .true.
       !> Material of an elastic body.
-      type(material_type) :: material
+      type(material_type) :: material = material_type()
       !> Disk and hole: radius R. Rounded punch: radius of its edges.
       real(wp) :: radius = 0.0_wp
       !> Rounded punch: half-width of its flat part.

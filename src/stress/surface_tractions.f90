@@ -93,7 +93,7 @@ contains
          patch%width = pack(width, owner == i)
          patch%pressure = pack(pressure, owner == i)
          patch%shear = pack(shear, owner == i)
-         patch%contact = zone_type(edge=edges(:, i), rooted=.not. sharp(:, i))
+         patch%contact = zone_type(edge=edges(:, i), rooted=.not. sharp(:, i), rest=table_type())
          patch%counted = i > size(zones%contact, 2)
          call fit_patch(patch, zones)
          call add_elements(patch, min(longest, (patch%contact%edge(2) - patch%contact%edge(1))/zones%fewest_elements), elements)
