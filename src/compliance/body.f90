@@ -17,13 +17,13 @@ module mfv_body
    public :: body_type, new_half_plane_body, new_disk, new_hole, new_flat_punch, new_rounded_punch, new_power, new_profile, &
              new_matrix_body
    public :: gap_between, radial_gap_between
-   public :: shape_half_plane, shape_disk, shape_hole, shape_flat_punch, shape_rounded_punch, shape_power, shape_profile, &
-             shape_matrix, shape_names
+   public :: shape_half_plane, shape_disk, shape_hole, shape_flat_punch, shape_rounded_punch, shape_wedge, shape_power, &
+             shape_profile, shape_matrix, shape_names
    public :: interpolation_unset, interpolation_linear, interpolation_cubic
 
    integer, parameter :: shape_half_plane = 1, shape_disk = 2, shape_hole = 3, shape_flat_punch = 4, shape_rounded_punch = 5, &
-                         shape_power = 6, shape_profile = 7, shape_matrix = 8
-   !> What a case can name as a shape; a wedge is a power of exponent 1.
+                         shape_wedge = 6, shape_power = 7, shape_profile = 8, shape_matrix = 9
+   !> Names of the shapes, in the order of their numbers. A wedge is kept as a power of exponent 1.
    character(*), parameter :: shape_names = 'half_plane disk hole flat_punch rounded_punch wedge power profile matrix'
    !> What a profile is between its points: straight, as the user says or because the user says nothing, or monotone cubic.
    integer, parameter :: interpolation_unset = 0, interpolation_linear = 1, interpolation_cubic = 2

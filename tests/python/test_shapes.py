@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from scenes import HALF_PLANE
 
 import mfv
+from mfv import Body, Scene, Step
 
 G, KAPPA, MU, SLOPE = 1.0, 1.8, 0.3, 0.01
 #: The force on a wedge that makes a contact of the half-width 1.
@@ -231,3 +232,21 @@ def test_a_trace_as_it_comes(tmp_path: Path) -> None:
     results = [mfv.run(scene(body, 0.002, nodes=61, half_width=0.6)) for body in (trace, own)]
     np.testing.assert_allclose(sizes(results[0]), sizes(results[1]), rtol=1e-6)
     assert results[0].summary.approach == pytest.approx(results[1].summary.approach, rel=1e-6)
+
+
+def test_results_name_the_shapes() -> None:
+    x = np.linspace(-0.1, 0.1, 41)
+    nodes = (np.arange(21) - 10) * 8.0e-4
+    distance = np.maximum(np.abs(nodes[:, None] - nodes), 2.0e-4)
+    half_plane = Body.half_plane(shear_modulus=1.0, poisson_ratio=0.3)
+    pairs = [
+        ("wedge", Body.wedge(5.0, rigid=True), half_plane),
+        ("power", Body.power(2.0, 2.0, rigid=True), half_plane),
+        ("profile", Body.profile(x, x**2 / 0.5, interpolation="monotone_cubic", rigid=True), half_plane),
+        ("rounded_punch", Body.rounded_punch(half_width=0.01, edge_radius=0.1, rigid=True), half_plane),
+        ("disk", Body.disk(0.25, rigid=True), Body.matrix(nodes, compliance=0.5 * np.log(0.25 / distance))),
+    ]
+    for name, upper, lower in pairs:
+        result = Scene(lower, upper, steps=[Step(normal_force=1.0e-5)]).run(check=True)
+        assert result.attributes["upper_body"] == f"rigid {name}"
+        assert result.attributes["lower_body"] == lower.shape

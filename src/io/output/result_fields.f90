@@ -2,7 +2,7 @@
 !> API and through it Python all take their names from here.
 module mfv_result_fields
    use, intrinsic :: ieee_arithmetic, only: ieee_is_nan, ieee_positive_inf, ieee_quiet_nan, ieee_value
-   use mfv_body, only: body_type, shape_names
+   use mfv_body, only: body_type, shape_names, shape_power, shape_wedge
    use mfv_body_pair, only: part_lower, part_upper
    use mfv_case, only: case_type
    use mfv_certificate, only: residual_count, residual_descriptions, residual_names
@@ -250,8 +250,12 @@ contains
       type(body_type), intent(in) :: body
       character(len=len('rigid ') + len(shape_names)) :: name
 
-      name = word(shape_names, body%shape)
-      if (body%rigid) name = 'rigid '//word(shape_names, body%shape)
+      integer :: shape
+
+      shape = body%shape
+      if (shape == shape_power .and. .not. abs(body%exponent - 1.0_wp) > 0.0_wp) shape = shape_wedge
+      name = word(shape_names, shape)
+      if (body%rigid) name = 'rigid '//name
    end function body_name
 
    !> Word `number` of a list of words; padded with blanks.
