@@ -47,13 +47,13 @@ contains
 
    pure real(wp) function interpolated(positions, values, x)
       real(wp), intent(in) :: positions(:), values(:), x
-      real(wp) :: part
+      real(wp) :: fraction
       integer :: i, n
 
       n = size(positions)
       i = min(max(count(positions <= x), 1), n - 1)
-      part = min(max((x - positions(i))/(positions(i + 1) - positions(i)), 0.0_wp), 1.0_wp)
-      interpolated = (1.0_wp - part)*values(i) + part*values(i + 1)
+      fraction = min(max((x - positions(i))/(positions(i + 1) - positions(i)), 0.0_wp), 1.0_wp)
+      interpolated = (1.0_wp - fraction)*values(i) + fraction*values(i + 1)
    end function interpolated
 
    !> The largest value anywhere, zero where there is none.

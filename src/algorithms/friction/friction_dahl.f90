@@ -19,9 +19,9 @@ module mfv_friction_dahl
    public :: dahl_law_type
 
    !> Dahl's traction comes to its limit only after endless slip: this near it is there.
-   real(wp), parameter :: full_part = 1.0_wp - 1.0e-6_wp
+   real(wp), parameter :: full_fraction = 1.0_wp - 1.0e-6_wp
    !> Round-off of the secants, in that of other rates.
-   real(wp), parameter :: secant_noise = 100.0_wp
+   real(wp), parameter :: secant_tolerance = 100.0_wp
 
    type, extends(friction_law_type) :: dahl_law_type
       !> Stiffness sigma > 0 of the bristles, force/length^3 (traction over slip), and exponent gamma >= 0.
@@ -34,7 +34,7 @@ module mfv_friction_dahl
       procedure :: sticks => never
       procedure :: bends
       procedure :: has_events
-      procedure :: limit_part
+      procedure :: limit_fraction
       procedure :: has_soft_limit
       procedure :: holding_status
       procedure :: over_stress
@@ -96,11 +96,11 @@ contains
       has_events = .true.
    end function has_events
 
-   pure real(wp) function limit_part(self)
+   pure real(wp) function limit_fraction(self)
       class(dahl_law_type), intent(in) :: self
 
-      limit_part = full_part
-   end function limit_part
+      limit_fraction = full_fraction
+   end function limit_fraction
 
    pure logical function has_soft_limit(self)
       class(dahl_law_type), intent(in) :: self
@@ -123,7 +123,7 @@ contains
 
       stiffness = self%stiffness
       if (self%exponent > 0.0_wp) &
-         stiffness = self%stiffness*merge(1.0_wp - full_part, 1.0_wp + full_part, moved > 0.0_wp)**self%exponent
+         stiffness = self%stiffness*merge(1.0_wp - full_fraction, 1.0_wp + full_fraction, moved > 0.0_wp)**self%exponent
       over_stress = stiffness*moved - growth
    end function over_stress
 
@@ -137,7 +137,7 @@ contains
 
       if (.not. creeps(status)) return
       turning = max(self%turning(here), self%turning(there))
-      if (turning > 0.0_wp) events(1) = friction_event_type(event_reverse, by_motion=turning, noise=secant_noise)
+      if (turning > 0.0_wp) events(1) = friction_event_type(event_reverse, by_motion=turning, tolerance_factor=secant_tolerance)
    end subroutine find_events
 
    !> By how much the stiffness of a creeping node depends on the direction in which it moves, force/length^3.
@@ -204,7 +204,7 @@ contains
       if (creeps(status)) then
          row = self%creeping_row(motion_sign(status), before, after)
       else
-         row%slope = -slip_sign(status)*before%static*full_part
+         row%slope = -slip_sign(status)*before%static*full_fraction
       end if
    end function row
 
@@ -252,7 +252,7 @@ contains
       class(dahl_law_type), intent(in) :: self
       type(friction_point_type), intent(in) :: point
 
-      strength = point%static*point%pressure*full_part
+      strength = point%static*point%pressure*full_fraction
    end function strength
 
    !> K of eq. B.2 half way between two points and minus its derivative by f/(mu p), force/length^3; and f and mu p there.

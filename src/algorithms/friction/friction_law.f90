@@ -45,7 +45,7 @@ module mfv_friction_law
       real(wp) :: slack = 0.0_wp, rate = 0.0_wp, by_pressure = 0.0_wp, by_motion = 0.0_wp
       !> Whether `slack` is a length (else force/length^2); and how many times larger than others the rate's round-off is.
       logical :: is_length = .false.
-      real(wp) :: noise = 1.0_wp
+      real(wp) :: tolerance_factor = 1.0_wp
    end type friction_event_type
 
    type, abstract :: friction_law_type
@@ -69,7 +69,7 @@ module mfv_friction_law
       procedure(row_interface), deferred :: row
       procedure(strength_interface), deferred :: strength
       procedure :: secant
-      procedure :: limit_part
+      procedure :: limit_fraction
       procedure :: limit_varies
       procedure :: limit
       procedure :: has_soft_limit
@@ -216,11 +216,11 @@ contains
    end function secant
 
    !> Part of the limit at which a holding node slips.
-   pure real(wp) function limit_part(self)
+   pure real(wp) function limit_fraction(self)
       class(friction_law_type), intent(in) :: self
 
-      limit_part = 1.0_wp
-   end function limit_part
+      limit_fraction = 1.0_wp
+   end function limit_fraction
 
    !> Whether the coefficient of the limit depends on what the node remembers.
    pure logical function limit_varies(self)

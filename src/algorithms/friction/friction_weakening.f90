@@ -124,12 +124,12 @@ contains
    pure real(wp) function coefficient(self, point)
       class(weakening_law_type), intent(in) :: self
       type(friction_point_type), intent(in) :: point
-      real(wp) :: part
+      real(wp) :: fraction
 
       coefficient = point%static
       if (.not. point%kinetic < point%static) return
-      part = min(point%memory(slipped)/self%distance, 1.0_wp)
-      coefficient = (1.0_wp - part)*point%static + part*point%kinetic
+      fraction = min(point%memory(slipped)/self%distance, 1.0_wp)
+      coefficient = (1.0_wp - fraction)*point%static + fraction*point%kinetic
    end function coefficient
 
    !> How much mu falls per slip, 1/length; 0 where it no longer does.

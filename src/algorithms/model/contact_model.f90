@@ -1,6 +1,6 @@
 !> A scene on its mesh: node positions, undeformed gaps and the compliance between the nodes.
 !>
-!> With vertical normals (docs/theory.md has the limits) nodes are at equal arc lengths from the pole on both bodies. Gaps
+!> With vertical normals (docs/theory.md has the limits) nodes are at equal arc lengths from the origin of x on both bodies. Gaps
 !> are the exact ones at the nodes' x, that of the circle of scene%arc_radius; another radius would put the other body's
 !> nodes at other x, off by the third power of the angle. With radial normals, for a disk in a hole, nodes are at equal
 !> angles on both bodies, gaps are along the radii of the hole, and tractions are per unit of its arc.
@@ -23,7 +23,7 @@ module mfv_contact_model
 
    type :: contact_model_type
       type(scene_type) :: scene
-      !> Positions of the nodes: x, and along the surface from the pole; lengths.
+      !> Positions of the nodes: x, and along the surface from the origin of x; lengths.
       real(wp), allocatable :: x(:), arc(:)
       !> Length of the surface that belongs to each node.
       real(wp), allocatable :: width(:)
@@ -39,7 +39,7 @@ module mfv_contact_model
       !> Static and kinetic coefficient of friction at the nodes, shape (nodes), and the part of the normal tractions that
       !> shear can have: the largest coefficient, but no more than 1.
       real(wp), allocatable :: static_friction(:), kinetic_friction(:)
-      real(wp) :: grip = 0.0_wp
+      real(wp) :: friction_scale = 0.0_wp
       type(body_pair_type) :: compliance
       !> Whether the tangential problem is modelled: friction acts in some step.
       logical :: tangential = .false.
@@ -301,7 +301,7 @@ contains
       type(contact_fields_type), intent(in) :: fields
       real(wp) :: rigid_normal(self%compliance%nodes)
 
-      rigid_normal = carried(self%normal_arm, motion_approach, fields%motion)
+      rigid_normal = moved(self%normal_arm, motion_approach, fields%motion)
    end function rigid_normal
 
    !> How far the upper body's motion carries its surface to the right, but for the shift itself; shape (nodes), length.
@@ -310,21 +310,21 @@ contains
       type(contact_fields_type), intent(in) :: fields
       real(wp) :: rigid_tangential(self%compliance%nodes)
 
-      rigid_tangential = carried(self%tangential_arm, motion_shift, fields%motion)
+      rigid_tangential = moved(self%tangential_arm, motion_shift, fields%motion)
    end function rigid_tangential
 
    !> How far motions carry the nodes by their `arm` (shape (nodes, motion_count)), less the motion `own` itself.
-   pure function carried(arm, own, motion)
+   pure function moved(arm, own, motion)
       real(wp), intent(in) :: arm(:, :), motion(motion_count)
       integer, intent(in) :: own
-      real(wp) :: carried(size(arm, 1))
+      real(wp) :: moved(size(arm, 1))
       integer :: i
 
-      carried = 0.0_wp
+      moved = 0.0_wp
       do i = 1, motion_count
-         carried = carried + (arm(:, i) - merge(1.0_wp, 0.0_wp, i == own))*motion(i)
+         moved = moved + (arm(:, i) - merge(1.0_wp, 0.0_wp, i == own))*motion(i)
       end do
-   end function carried
+   end function moved
 
    !> How much further the upper body must approach until the node with the least way to go closes its `gap`, length.
    pure real(wp) function nearest_approach(self, gap)
@@ -414,12 +414,12 @@ contains
       self%can_touch = self%scene%touchable(self%arc)
       self%static_friction = self%scene%friction%static%at(self%x)
       self%kinetic_friction = self%scene%friction%kinetic%at(self%x)
-      self%grip = min(self%scene%friction%static%largest(), 1.0_wp)
+      self%friction_scale = min(self%scene%friction%static%largest(), 1.0_wp)
       call place_arms(self)
    end subroutine place_nodes
 
    !> Arms of the rotation of the upper body: about the centre of the upper body where it is a circle, else of the lower
-   !> one where that is, else about the pole. Counterclockwise it lifts the right side, and a surface below the centre moves to
+   !> one where that is, else about the origin of x. Counterclockwise it lifts the right side, and a surface below the centre moves to
    !> the right (eq. 4.24, M there in units of R and with its own signs). Circles roll: see rolling_arm.
    subroutine place_arms(self)
       class(contact_model_type), intent(inout) :: self
@@ -440,7 +440,7 @@ contains
       self%tangential_arm(:, motion_rotation) = self%centre_height()
    end subroutine place_arms
 
-   !> Height of the centre of rotation above the pole, length: negative where it is that of a disk below; 0 without a circle.
+   !> Height of the centre of rotation above the origin of x, length: negative where it is that of a disk below; 0 without a circle.
    pure real(wp) function centre_height(self)
       class(contact_model_type), intent(in) :: self
 
@@ -470,7 +470,7 @@ contains
       if (self%rolls()) rolled = -fields%motion(motion_rotation)/self%scene%curvature()
    end function rolled
 
-   !> How far the upper surface has slid over the lower one at the pole, as rigid bodies, to the right, length.
+   !> How far the upper surface has slid over the lower one at the origin of x, as rigid bodies, to the right, length.
    pure real(wp) function slid(self, fields)
       class(contact_model_type), intent(in) :: self
       type(contact_fields_type), intent(in) :: fields

@@ -48,14 +48,14 @@ module mfv_scene
       !> The nominal load step dL0 of nominal stepping, the conventional algorithm and explicit integration: part of each
       !> straight part of the load history.
       real(wp) :: load_step = 0.05_wp
-      !> Error that an increment may make in the tractions where friction is not linear, in parts of the largest traction.
+      !> Error that an increment may make in the tractions where friction is not linear, relative to the largest traction.
       real(wp) :: friction_tolerance = 1.0e-4_wp
       !> Iterations that the conventional algorithm may take at one load.
       integer :: most_iterations = 1000
       integer :: linear_solver = solver_auto
       !> Relative residual to which an iterative linear solver goes.
       real(wp) :: linear_tolerance = 1.0e-12_wp
-      !> Largest error of large increments: of tractions, in parts of the largest; of what a segment dissipates, in parts of that.
+      !> Largest error of large increments: of tractions, relative to the largest; of what a segment dissipates, in parts of that.
       real(wp) :: leap_tolerance = 1.0e-3_wp
    end type method_type
 
@@ -147,16 +147,16 @@ contains
       class(scene_type), intent(in) :: self
 
       dundurs_beta = 0.0_wp
-      if (self%lower%material%shear_modulus > 0.0_wp) dundurs_beta = part(self%lower)
-      if (self%upper%material%shear_modulus > 0.0_wp) dundurs_beta = dundurs_beta - part(self%upper)
+      if (self%lower%material%shear_modulus > 0.0_wp) dundurs_beta = share(self%lower)
+      if (self%upper%material%shear_modulus > 0.0_wp) dundurs_beta = dundurs_beta - share(self%upper)
 
    contains
 
-      pure real(wp) function part(body)
+      pure real(wp) function share(body)
          type(body_type), intent(in) :: body
 
-         part = self%modulus()*(body%material%kolosov - 1.0_wp)/(4.0_wp*body%material%shear_modulus)
-      end function part
+         share = self%modulus()*(body%material%kolosov - 1.0_wp)/(4.0_wp*body%material%shear_modulus)
+      end function share
    end function dundurs_beta
 
    !> Distance, length, at which the displacements of both bodies together are measured: the mean of the logarithms of
@@ -194,7 +194,7 @@ contains
       if (.not. arc_radius > 0.0_wp .or. self%lower%radius < arc_radius) arc_radius = self%lower%radius
    end function arc_radius
 
-   !> x of the node at an arc length from the pole, lengths.
+   !> x of the node at an arc length from the origin of x, lengths.
    elemental real(wp) function x_of_arc(self, arc) result(x)
       class(scene_type), intent(in) :: self
       real(wp), intent(in) :: arc
@@ -205,7 +205,7 @@ contains
       if (radius > 0.0_wp) x = radius*sin(arc/radius)
    end function x_of_arc
 
-   !> Whether both bodies have a surface at an arc length (length) from the pole: on a circle not beyond 90 degrees; with radial
+   !> Whether both bodies have a surface at an arc length (length) from the origin of x: on a circle not beyond 90 degrees; with radial
    !> normals, where the hole's radius meets the disk.
    elemental logical function touchable(self, arc)
       class(scene_type), intent(in) :: self

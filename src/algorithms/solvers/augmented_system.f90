@@ -88,19 +88,19 @@ contains
    type(assembly_type) function new_assembly(model, status) result(assembly)
       type(contact_model_type), intent(in) :: model
       integer, intent(in) :: status(:)
-      logical :: carried(size(status))
+      logical :: included(size(status))
       integer :: i, m, n
 
       n = size(status)
-      carried = in_contact(status)
-      carried(2:) = carried(2:) .or. in_contact(status(:n - 1))
-      carried(:n - 1) = carried(:n - 1) .or. in_contact(status(2:))
-      assembly%nodes = pack([(i, i=1, n)], carried)
+      included = in_contact(status)
+      included(2:) = included(2:) .or. in_contact(status(:n - 1))
+      included(:n - 1) = included(:n - 1) .or. in_contact(status(2:))
+      assembly%nodes = pack([(i, i=1, n)], included)
       assembly%tangential = any(holds(status) .or. slips(status))
       assembly%stress = model%compliance%modulus
       assembly%length = model%length()
       assembly%shear_stress = assembly%stress
-      if (assembly%tangential) assembly%shear_stress = assembly%stress*model%grip
+      if (assembly%tangential) assembly%shear_stress = assembly%stress*model%friction_scale
       assembly%arm = [(arm_unit(i, assembly%length), i=1, motion_count)]
       assembly%motion_unit = assembly%length/assembly%arm
       assembly%force_unit = assembly%stress*(assembly%length*assembly%arm)
@@ -270,7 +270,7 @@ contains
       integer, intent(in) :: status(:)
       real(wp), intent(in) :: load(motion_count), solution(:)
       real(wp), dimension(size(status)) :: normal, tangential
-      logical :: carried(size(status))
+      logical :: included(size(status))
       integer :: i, m
 
       m = size(assembly%nodes)
@@ -295,10 +295,10 @@ contains
             fields%force(motion_shift) = model%resultant(motion_shift, fields%pressure, fields%shear)
          end if
          call model%relative_displacements(fields, normal, tangential)
-         carried = .false.
-         carried(nodes) = .true.
-         where (.not. carried) fields%normal = normal
-         where (.not. (carried .and. assembly%tangential)) fields%tangential = tangential
+         included = .false.
+         included(nodes) = .true.
+         where (.not. included) fields%normal = normal
+         where (.not. (included .and. assembly%tangential)) fields%tangential = tangential
       end associate
    end function extracted
 

@@ -99,23 +99,23 @@ contains
    subroutine follow_change(self, rows)
       class(constrained_inverse_type), intent(inout) :: self
       integer, intent(in) :: rows
-      real(wp), dimension(self%constraints) :: along, across, by_along, by_across
+      real(wp), dimension(self%constraints) :: left, right, by_left, by_right
       real(wp) :: pivot
       integer :: c, k
 
       k = self%constraints
       if (k == 0) return
       associate (change => self%inverse%change, weight => self%inverse%change_weight)
-         across = [(change(self%constraint(c)%slot), c=1, k)]
-         call dger(rows, k, weight, change, 1, across, 1, self%columns, size(self%columns, 1))
+         right = [(change(self%constraint(c)%slot), c=1, k)]
+         call dger(rows, k, weight, change, 1, right, 1, self%columns, size(self%columns, 1))
          if (self%stale) return
-         along = functional(self, change)
-         call dgemv('N', k, k, 1.0_wp, self%small, size(self%small, 1), along, 1, 0.0_wp, by_along, 1)
-         call dgemv('T', k, k, 1.0_wp, self%small, size(self%small, 1), across, 1, 0.0_wp, by_across, 1)
-         pivot = 1.0_wp + weight*dot_product(across, by_along)
+         left = functional(self, change)
+         call dgemv('N', k, k, 1.0_wp, self%small, size(self%small, 1), left, 1, 0.0_wp, by_left, 1)
+         call dgemv('T', k, k, 1.0_wp, self%small, size(self%small, 1), right, 1, 0.0_wp, by_right, 1)
+         pivot = 1.0_wp + weight*dot_product(right, by_left)
          self%stale = abs(pivot) < no_pivot*max(1.0_wp, abs(pivot - 1.0_wp))
          if (self%stale) return
-         call dger(k, k, -weight/pivot, by_along, 1, by_across, 1, self%small, size(self%small, 1))
+         call dger(k, k, -weight/pivot, by_left, 1, by_right, 1, self%small, size(self%small, 1))
       end associate
    end subroutine follow_change
 

@@ -61,7 +61,7 @@ module mfv_contact_system
       !> Of solvers that iterate: iterations, and products with the compliance, so far.
       integer(int64) :: iterations = 0, products = 0
       !> Tractions, motions and their rates are known to this part of the largest, what is below is noise; 0: to round-off.
-      real(wp) :: noise = 0.0_wp
+      real(wp) :: tolerance = 0.0_wp
    contains
       procedure(solve_interface), deferred :: solve
    end type contact_system_type

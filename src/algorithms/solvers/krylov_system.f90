@@ -90,8 +90,8 @@ contains
       real(wp), allocatable :: unknowns(:)
 
       self%solves = self%solves + 1
-      self%noise = max(self%noise, margin*model%scene%method%linear_tolerance)
-      call meet_mesh(self, model)
+      self%tolerance = max(self%tolerance, margin*model%scene%method%linear_tolerance)
+      call fit_to_mesh(self, model)
       call choose_unknowns(self, model, constraints)
       call prepare_preconditioner(self, model, singular)
       if (singular) return
@@ -118,7 +118,7 @@ contains
    end subroutine solve
 
    !> Units, arms and work space of the mesh as it is now; the last rates go along with a mesh that has grown.
-   subroutine meet_mesh(self, model)
+   subroutine fit_to_mesh(self, model)
       class(krylov_system_type), intent(inout) :: self
       type(contact_model_type), intent(in) :: model
       integer :: i, n
@@ -149,7 +149,7 @@ contains
       end if
       call widen(self%last_pressure, n)
       call widen(self%last_shear, n)
-   end subroutine meet_mesh
+   end subroutine fit_to_mesh
 
    !> The values on a mesh of `n` nodes that has grown by equally many at either end.
    subroutine widen(values, n)

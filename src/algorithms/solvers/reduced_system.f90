@@ -33,14 +33,14 @@ module mfv_reduced_system
    integer, parameter :: a_pressure = 1, a_shear = 2, a_motion = 3
 
    !> A part of the system that is solved on its own.
-   type :: part_type
+   type :: subsystem_type
       type(constrained_inverse_type) :: system
       !> Sort of every unknown, and its node or motion; shape (capacity), the first `unknowns` are in use.
       integer :: unknowns = 0
       integer, allocatable :: sort(:), of(:)
       !> Right side and solution of the rows, and values of the constraints.
       real(wp), allocatable :: right(:), solution(:), values(:)
-   end type part_type
+   end type subsystem_type
 
    !> Magnitudes that what is missing is measured by: normal and tangential displacements, length; tractions, force/length^2;
    !> all forces and tangential ones, force/length.
@@ -51,7 +51,7 @@ module mfv_reduced_system
    type, extends(contact_system_type) :: reduced_system_type
       private
       !> Normal and tangential problem where they are apart, else both in the first.
-      type(part_type) :: part(2)
+      type(subsystem_type) :: subsystem(2)
       logical :: apart = .false.
       !> Where the unknowns of nodes and motions are in their part, by sort; and the constraints of their shear tractions and
       !> of the motions; 0: nowhere, none. Shape (at least nodes and motion_count, sorts).
@@ -78,7 +78,7 @@ contains
    pure integer function rebuilds(self)
       class(reduced_system_type), intent(in) :: self
 
-      rebuilds = sum(self%part%system%inverse%rebuilds)
+      rebuilds = sum(self%subsystem%system%inverse%rebuilds)
    end function rebuilds
 
    !> See mfv_contact_system.
@@ -160,8 +160,10 @@ contains
             call move_alloc(constraint_of, self%constraint_of)
             self%nodes = n
             do i = 1, 2
-               associate (part => self%part(i))
-                  where (part%sort(:part%unknowns) /= a_motion) part%of(:part%unknowns) = part%of(:part%unknowns) + extra
+               associate (subsystem => self%subsystem(i))
+                  associate (sort => subsystem%sort(:subsystem%unknowns), of => subsystem%of(:subsystem%unknowns))
+                     where (sort /= a_motion) of = of + extra
+                  end associate
                end associate
             end do
             return
@@ -175,23 +177,23 @@ contains
       if (allocated(self%place)) deallocate (self%place, self%constraint_of)
       allocate (self%place(room, a_motion), self%constraint_of(room, a_motion), source=0)
       do i = 1, 2
-         call self%part(i)%system%clear()
-         self%part(i)%unknowns = 0
-         if (.not. allocated(self%part(i)%sort)) &
-            allocate (self%part(i)%sort(0), self%part(i)%of(0), self%part(i)%right(0), self%part(i)%solution(0), &
-                      self%part(i)%values(0))
+         call self%subsystem(i)%system%clear()
+         self%subsystem(i)%unknowns = 0
+         if (.not. allocated(self%subsystem(i)%sort)) &
+            allocate (self%subsystem(i)%sort(0), self%subsystem(i)%of(0), self%subsystem(i)%right(0), &
+                      self%subsystem(i)%solution(0), self%subsystem(i)%values(0))
       end do
    end subroutine match
 
    !> The part that an unknown of some sort belongs to.
-   pure integer function part_of(self, sort, number)
+   pure integer function subsystem_of(self, sort, number)
       class(reduced_system_type), intent(in) :: self
       integer, intent(in) :: sort, number
 
-      part_of = 1
+      subsystem_of = 1
       if (.not. self%apart) return
-      if (sort == a_shear .or. (sort == a_motion .and. number == motion_shift)) part_of = 2
-   end function part_of
+      if (sort == a_shear .or. (sort == a_motion .and. number == motion_shift)) subsystem_of = 2
+   end function subsystem_of
 
    !> Bring unknowns and constraints to the statuses and controls of `constraints`. `anew`: compute the inverse anew.
    subroutine follow(self, model, constraints, anew, singular)
@@ -230,19 +232,19 @@ contains
       type(constraints_type), intent(in) :: constraints
       logical, intent(in) :: wanted(:, :)
       integer, allocatable :: going(:)
-      integer :: i, part
+      integer :: i, subsystem
 
-      part = part_of(self, a_shear, 0)
+      subsystem = subsystem_of(self, a_shear, 0)
       going = pack([(i, i=1, self%nodes)], self%constraint_of(:self%nodes, a_shear) > 0 .and. &
                    .not. (wanted(:self%nodes, a_shear) .and. constraints%status /= node_stick))
-      if (2*size(going) > self%part(part)%system%constraints) call self%part(part)%system%postpone()
+      if (2*size(going) > self%subsystem(subsystem)%system%constraints) call self%subsystem(subsystem)%system%postpone()
       do i = 1, size(going)
-         call release(self, part, self%constraint_of(going(i), a_shear))
+         call release(self, subsystem, self%constraint_of(going(i), a_shear))
       end do
       do i = 1, motion_count
          if (self%constraint_of(i, a_motion) == 0) cycle
          if (constraints%load(i)%control /= control_force .and. wanted(i, a_motion)) cycle
-         call release(self, part_of(self, a_motion, i), self%constraint_of(i, a_motion))
+         call release(self, subsystem_of(self, a_motion, i), self%constraint_of(i, a_motion))
       end do
    end subroutine lose_constraints
 
@@ -253,24 +255,24 @@ contains
       logical, intent(in) :: wanted(:, :)
       logical, intent(out) :: singular
       integer, parameter :: few = 16
-      integer :: changes(2), i, sort, part
+      integer :: changes(2), i, sort, subsystem
 
       singular = .false.
       if (all(wanted .eqv. self%place > 0)) return
       changes = 0
       do sort = a_pressure, a_shear
-         part = part_of(self, sort, 0)
-         changes(part) = changes(part) + count(wanted(:, sort) .neqv. self%place(:, sort) > 0)
+         subsystem = subsystem_of(self, sort, 0)
+         changes(subsystem) = changes(subsystem) + count(wanted(:, sort) .neqv. self%place(:, sort) > 0)
       end do
-      if (all(changes <= max(few, self%part%unknowns/2))) then
+      if (all(changes <= max(few, self%subsystem%unknowns/2))) then
          call remove_unknowns(self, a_motion, wanted, singular)
          ! What is added comes first: with little contact left in between the matrix would have no inverse.
-         do part = 1, 2
-            if (.not. singular) call add_unknowns(self, model, part, wanted, singular)
+         do subsystem = 1, 2
+            if (.not. singular) call add_unknowns(self, model, subsystem, wanted, singular)
          end do
          do i = 1, motion_count
             if (.not. wanted(i, a_motion) .or. self%place(i, a_motion) > 0 .or. singular) cycle
-            call add_named(self, model, part_of(self, a_motion, i), [a_motion], [i], singular)
+            call add_named(self, model, subsystem_of(self, a_motion, i), [a_motion], [i], singular)
          end do
          call remove_unknowns(self, a_shear, wanted, singular)
          call remove_unknowns(self, a_pressure, wanted, singular)
@@ -306,7 +308,7 @@ contains
       singular = .false.
       allocate (new_sort(0), new_of(0))
       do sort = a_pressure, a_shear
-         if (part_of(self, sort, 0) /= p) cycle
+         if (subsystem_of(self, sort, 0) /= p) cycle
          new_of = [new_of, pack([(i, i=1, size(wanted, 1))], wanted(:, sort) .and. self%place(:, sort) == 0)]
          new_sort = [new_sort, spread(sort, 1, size(new_of) - size(new_sort))]
       end do
@@ -325,11 +327,11 @@ contains
       do i = 1, size(new_sort)
          call enlist(self, new_sort(i), new_of(i))
       end do
-      allocate (borders(self%part(p)%unknowns, size(new_sort)))
+      allocate (borders(self%subsystem(p)%unknowns, size(new_sort)))
       do i = 1, size(new_sort)
-         call entries_of(model, self%length, self%part(p), new_sort(i), new_of(i), borders(:, i))
+         call entries_of(model, self%length, self%subsystem(p), new_sort(i), new_of(i), borders(:, i))
       end do
-      call self%part(p)%system%add_unknowns(borders, singular)
+      call self%subsystem(p)%system%add_unknowns(borders, singular)
    end subroutine add_named
 
    !> One more name in the list of the unknowns of its part.
@@ -339,18 +341,18 @@ contains
       integer, parameter :: some = 32
       integer :: i, room
 
-      associate (part => self%part(part_of(self, sort, number)))
-         part%unknowns = part%unknowns + 1
-         if (part%unknowns > size(part%sort)) then
-            room = part%unknowns/2 + some
-            part%sort = [part%sort, (0, i=1, room)]
-            part%of = [part%of, (0, i=1, room)]
-            deallocate (part%right, part%solution)
-            allocate (part%right(size(part%sort)), part%solution(size(part%sort)))
+      associate (subsystem => self%subsystem(subsystem_of(self, sort, number)))
+         subsystem%unknowns = subsystem%unknowns + 1
+         if (subsystem%unknowns > size(subsystem%sort)) then
+            room = subsystem%unknowns/2 + some
+            subsystem%sort = [subsystem%sort, (0, i=1, room)]
+            subsystem%of = [subsystem%of, (0, i=1, room)]
+            deallocate (subsystem%right, subsystem%solution)
+            allocate (subsystem%right(size(subsystem%sort)), subsystem%solution(size(subsystem%sort)))
          end if
-         part%sort(part%unknowns) = sort
-         part%of(part%unknowns) = number
-         self%place(number, sort) = part%unknowns
+         subsystem%sort(subsystem%unknowns) = sort
+         subsystem%of(subsystem%unknowns) = number
+         self%place(number, sort) = subsystem%unknowns
       end associate
    end subroutine enlist
 
@@ -362,14 +364,14 @@ contains
       integer :: here, last
 
       here = self%place(number, sort)
-      associate (part => self%part(part_of(self, sort, number)))
-         call part%system%remove_unknown(here, singular)
+      associate (subsystem => self%subsystem(subsystem_of(self, sort, number)))
+         call subsystem%system%remove_unknown(here, singular)
          if (singular) return
-         last = part%unknowns
-         part%sort(here) = part%sort(last)
-         part%of(here) = part%of(last)
-         self%place(part%of(here), part%sort(here)) = here
-         part%unknowns = last - 1
+         last = subsystem%unknowns
+         subsystem%sort(here) = subsystem%sort(last)
+         subsystem%of(here) = subsystem%of(last)
+         self%place(subsystem%of(here), subsystem%sort(here)) = here
+         subsystem%unknowns = last - 1
       end associate
       self%place(number, sort) = 0
    end subroutine remove_unknown
@@ -386,8 +388,8 @@ contains
       self%constraint_of = 0
       self%place = 0
       do p = 1, 2
-         call self%part(p)%system%release_all()
-         self%part(p)%unknowns = 0
+         call self%subsystem(p)%system%release_all()
+         self%subsystem(p)%unknowns = 0
       end do
       do sort = a_pressure, a_motion
          do i = 1, size(wanted, 1)
@@ -395,12 +397,12 @@ contains
          end do
       end do
       do p = 1, 2
-         associate (part => self%part(p))
-            allocate (matrix(part%unknowns, part%unknowns))
-            do j = 1, part%unknowns
-               call entries_of(model, self%length, part, part%sort(j), part%of(j), matrix(:, j))
+         associate (subsystem => self%subsystem(p))
+            allocate (matrix(subsystem%unknowns, subsystem%unknowns))
+            do j = 1, subsystem%unknowns
+               call entries_of(model, self%length, subsystem, subsystem%sort(j), subsystem%of(j), matrix(:, j))
             end do
-            call part%system%refresh(matrix, singular)
+            call subsystem%system%refresh(matrix, singular)
             deallocate (matrix)
          end associate
          if (.not. singular) cycle
@@ -412,10 +414,10 @@ contains
 
    !> Entries of the rows of a part in the column of one unknown, in units of the compliance's modulus and the mesh's length; shape
    !> (unknowns).
-   subroutine entries_of(model, length, part, column_sort, column_of, entries)
+   subroutine entries_of(model, length, subsystem, column_sort, column_of, entries)
       type(contact_model_type), intent(in) :: model
       real(wp), intent(in) :: length
-      type(part_type), intent(in) :: part
+      type(subsystem_type), intent(in) :: subsystem
       integer, intent(in) :: column_sort, column_of
       real(wp), intent(out) :: entries(:)
       !> Displacement of the row's sort by a traction of the column's.
@@ -425,7 +427,7 @@ contains
       integer :: i, row_sort
 
       entries = 0.0_wp
-      associate (n => size(entries), sort => part%sort, of => part%of)
+      associate (n => size(entries), sort => subsystem%sort, of => subsystem%of)
          if (column_sort == a_motion) then
             do i = 1, n
                if (sort(i) == a_pressure) entries(i) = -model%normal_arm(of(i), column_of)/arm_unit(column_of, length)
@@ -456,7 +458,7 @@ contains
       real(wp) :: stiffness
       integer :: i, partner
 
-      associate (system => self%part(part_of(self, a_shear, 0))%system)
+      associate (system => self%subsystem(subsystem_of(self, a_shear, 0))%system)
          do i = 1, self%nodes
             if (self%place(i, a_shear) == 0 .or. constraints%status(i) == node_stick) cycle
             partner = 0
@@ -477,7 +479,7 @@ contains
       do i = 1, motion_count
          if (self%place(i, a_motion) == 0 .or. self%constraint_of(i, a_motion) > 0) cycle
          if (constraints%load(i)%control == control_force) cycle
-         associate (system => self%part(part_of(self, a_motion, i))%system)
+         associate (system => self%subsystem(subsystem_of(self, a_motion, i))%system)
             call system%constrain(self%place(i, a_motion), 0, 0.0_wp, 0.0_wp)
             self%constraint_of(i, a_motion) = system%constraints
          end associate
@@ -491,12 +493,12 @@ contains
       integer :: gone, slot
 
       gone = number
-      associate (part => self%part(p))
-         slot = part%system%constraint(part%system%constraints)%slot
-         self%constraint_of(part%of(slot), part%sort(slot)) = gone
-         slot = part%system%constraint(gone)%slot
-         self%constraint_of(part%of(slot), part%sort(slot)) = 0
-         call part%system%release(gone)
+      associate (subsystem => self%subsystem(p))
+         slot = subsystem%system%constraint(subsystem%system%constraints)%slot
+         self%constraint_of(subsystem%of(slot), subsystem%sort(slot)) = gone
+         slot = subsystem%system%constraint(gone)%slot
+         self%constraint_of(subsystem%of(slot), subsystem%sort(slot)) = 0
+         call subsystem%system%release(gone)
       end associate
    end subroutine release
 
@@ -611,31 +613,31 @@ contains
       traction_rest = 0.0_wp
       largest = 0.0_wp
       do p = 1, 2
-         associate (part => self%part(p), prescribed => self%prescribed)
-            if (size(part%values) < part%system%constraints) then
-               deallocate (part%values)
-               allocate (part%values(2*part%system%constraints))
+         associate (subsystem => self%subsystem(p), prescribed => self%prescribed)
+            if (size(subsystem%values) < subsystem%system%constraints) then
+               deallocate (subsystem%values)
+               allocate (subsystem%values(2*subsystem%system%constraints))
             end if
-            do i = 1, part%unknowns
-               node = part%of(i)
-               if (part%sort(i) == a_pressure) then
+            do i = 1, subsystem%unknowns
+               node = subsystem%of(i)
+               if (subsystem%sort(i) == a_pressure) then
                   missing = fields%motion(motion_approach) - fields%normal(node) + prescribed%opening(node)
                   gap_rest = max(gap_rest, abs(missing))
-                  part%right(i) = missing*by_length
-               else if (part%sort(i) == a_motion .and. self%constraint_of(node, a_motion) > 0) then
+                  subsystem%right(i) = missing*by_length
+               else if (subsystem%sort(i) == a_motion .and. self%constraint_of(node, a_motion) > 0) then
                   missing = (prescribed%load(node) - fields%motion(node))*arm_unit(node, self%length)
                   largest = max(largest, relative(abs(missing), scales%normal))
-                  part%values(self%constraint_of(node, a_motion)) = missing*by_length
-                  part%right(i) = 0.0_wp
-               else if (part%sort(i) == a_motion) then
+                  subsystem%values(self%constraint_of(node, a_motion)) = missing*by_length
+                  subsystem%right(i) = 0.0_wp
+               else if (subsystem%sort(i) == a_motion) then
                   missing = (model%resultant(node, fields%pressure, fields%shear) - prescribed%load(node)) &
                             /arm_unit(node, self%length)
                   largest = max(largest, relative(abs(missing), merge(scales%shear_force, scales%force, node == motion_shift)))
-                  part%right(i) = missing*by_stress
+                  subsystem%right(i) = missing*by_stress
                else if (constraints%status(node) == node_stick) then
                   missing = fields%motion(motion_shift) - fields%tangential(node) + prescribed%slip(node)
                   slip_rest = max(slip_rest, abs(missing))
-                  part%right(i) = missing*by_length
+                  subsystem%right(i) = missing*by_length
                else
                   missing = missing_shear(self, constraints, fields, node)
                   stiffness = abs(constraints%row(node)%stiffness)
@@ -645,8 +647,8 @@ contains
                   else
                      traction_rest = max(traction_rest, abs(missing))
                   end if
-                  part%values(self%constraint_of(node, a_shear)) = missing*model%width(node)*by_stress
-                  part%right(i) = 0.0_wp
+                  subsystem%values(self%constraint_of(node, a_shear)) = missing*model%width(node)*by_stress
+                  subsystem%right(i) = 0.0_wp
                end if
             end do
          end associate
@@ -679,12 +681,12 @@ contains
          force = force + model%width(i)*abs(fields%pressure(i))
          shear_force = shear_force + model%width(i)*abs(fields%shear(i))
       end do
-      tangential = max(tangential, model%grip*normal)
+      tangential = max(tangential, model%friction_scale*normal)
       normal = max(normal, tangential)
       possible = least*model%compliance%modulus*normal
       traction = max(traction, possible/model%length())
       force = max(force, least*first%force, possible)
-      shear_force = max(shear_force, model%grip*force, least*first%shear_force)
+      shear_force = max(shear_force, model%friction_scale*force, least*first%shear_force)
       scales = scales_type(normal, tangential, traction, max(force, shear_force), shear_force)
    end subroutine find_scales
 
@@ -724,16 +726,17 @@ contains
 
       singular = .false.
       do p = 1, 2
-         if (self%part(p)%unknowns == 0) cycle
+         if (self%subsystem(p)%unknowns == 0) cycle
          if (p == 2) call find_residual(self, model, constraints, fields, scales, residual)
-         associate (part => self%part(p), n => self%part(p)%unknowns)
-            call part%system%solve(part%right(:n), part%values(:part%system%constraints), part%solution(:n), singular)
+         associate (subsystem => self%subsystem(p), n => self%subsystem(p)%unknowns)
+            call subsystem%system%solve(subsystem%right(:n), subsystem%values(:subsystem%system%constraints), &
+                                        subsystem%solution(:n), singular)
             ! NaN would pass the residual check.
-            if (.not. singular) singular = .not. all(abs(part%solution(:n)) <= huge(1.0_wp))
+            if (.not. singular) singular = .not. all(abs(subsystem%solution(:n)) <= huge(1.0_wp))
          end associate
          if (singular) return
          call apply(self, model, constraints, p, fields)
-         if (self%apart .and. p == 1 .and. self%part(2)%unknowns > 0 .and. .not. self%block(block_up)) cycle
+         if (self%apart .and. p == 1 .and. self%subsystem(2)%unknowns > 0 .and. .not. self%block(block_up)) cycle
          call model%displace(fields)
       end do
    end subroutine correct
@@ -747,12 +750,12 @@ contains
       type(contact_fields_type), intent(inout) :: fields
       integer :: i
 
-      associate (part => self%part(p), stress => model%compliance%modulus*model%interval())
-         do i = 1, part%unknowns
-            associate (node => part%of(i), change => part%solution(i))
-               if (part%sort(i) == a_motion) then
+      associate (subsystem => self%subsystem(p), stress => model%compliance%modulus*model%interval())
+         do i = 1, subsystem%unknowns
+            associate (node => subsystem%of(i), change => subsystem%solution(i))
+               if (subsystem%sort(i) == a_motion) then
                   fields%motion(node) = fields%motion(node) + change*self%length/arm_unit(node, self%length)
-               else if (part%sort(i) == a_pressure) then
+               else if (subsystem%sort(i) == a_pressure) then
                   fields%pressure(node) = fields%pressure(node) + stress/model%width(node)*change
                else
                   fields%shear(node) = fields%shear(node) + stress/model%width(node)*change
@@ -760,7 +763,7 @@ contains
             end associate
          end do
       end associate
-      if (p /= part_of(self, a_shear, 0)) return
+      if (p /= subsystem_of(self, a_shear, 0)) return
       do i = 1, self%nodes
          if (self%constraint_of(i, a_shear) == 0 .or. abs(constraints%row(i)%stiffness) > 0.0_wp) cycle
          fields%shear(i) = fields%shear(i) + missing_shear(self, constraints, fields, i)

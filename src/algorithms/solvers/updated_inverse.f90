@@ -179,13 +179,13 @@ contains
       class(updated_inverse_type), intent(in) :: self
       real(wp), intent(in) :: right(:)
       real(wp), intent(inout) :: product(:)
-      real(wp) :: along(most_pending)
+      real(wp) :: coefficients(most_pending)
 
       if (self%pending == 0) return
       associate (n => self%order, rows => size(self%vector, 1), k => self%pending)
-         call dgemv('T', n, k, 1.0_wp, self%vector, rows, right, 1, 0.0_wp, along, 1)
-         along(:k) = self%weight(:k)*along(:k)
-         call dgemv('N', n, k, 1.0_wp, self%vector, rows, along, 1, 1.0_wp, product, 1)
+         call dgemv('T', n, k, 1.0_wp, self%vector, rows, right, 1, 0.0_wp, coefficients, 1)
+         coefficients(:k) = self%weight(:k)*coefficients(:k)
+         call dgemv('N', n, k, 1.0_wp, self%vector, rows, coefficients, 1, 1.0_wp, product, 1)
       end associate
    end subroutine add_pending
 

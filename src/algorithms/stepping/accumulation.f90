@@ -23,13 +23,13 @@ contains
 
    !> Go to where the first pressures vanish with all nodes that slip again and again on the way, if that is within `near`, a part
    !> of the segment, and nothing else happens before.
-   !> `constraints`: as contact_path_type%settle_loads leaves them. `left`: what is left of the segment. `round_off`: rates
+   !> `constraints`: as contact_path_type%find_constraints leaves them. `left`: what is left of the segment. `round_off`: rates
    !> below this part of the largest count as zero. `increment`: the way there, if `passed`; the path's statuses are then those on
    !> it. Otherwise nothing has changed, except that `increment` is of no use.
-   subroutine pass_accumulation(path, constraints, left, near, round_off, increment, passed)
+   subroutine pass_accumulation(path, constraints, left, near, rate_tolerance, increment, passed)
       class(contact_path_type), intent(inout) :: path
       type(constraints_type), intent(in) :: constraints
-      real(wp), intent(in) :: left, near, round_off
+      real(wp), intent(in) :: left, near, rate_tolerance
       type(increment_type), intent(inout) :: increment
       logical, intent(out) :: passed
       type(constraints_type) :: rays
@@ -38,8 +38,8 @@ contains
 
       passed = .false.
       if (.not. path%model%scene%friction%acts()) return
-      if (.not. path%model%scene%friction%law%drops() .or. path%dropping()) return
-      call find_increment(path, constraints, left, .false., round_off, increment)
+      if (.not. path%model%scene%friction%law%drops() .or. path%has_over_stress()) return
+      call find_increment(path, constraints, left, .false., rate_tolerance, increment)
       if (increment%singular) return
       alternates = vanish(path, increment, near)
       if (.not. any(alternates)) return
@@ -47,7 +47,7 @@ contains
       rays = constraints
       call set_rays(path, alternates, rays)
       call path%state%set_status(alternates, rays%status)
-      call find_increment(path, rays, left, .false., round_off, increment)
+      call find_increment(path, rays, left, .false., rate_tolerance, increment)
       passed = opens_first(increment, alternates, near)
       if (.not. passed) path%state%status = status
    end subroutine pass_accumulation

@@ -18,7 +18,7 @@ module mfv_active_set
    use mfv_node_status
    implicit none
    private
-   public :: settle_at, first_guess
+   public :: find_statuses, first_guess
 
    !> Violations below this part of the largest magnitude of their sort are round-off.
    real(wp), parameter :: round_off = 1.0e-11_wp
@@ -27,17 +27,17 @@ module mfv_active_set
 
 contains
 
-   !> Statuses and fields at the part `done` of the segment, from the statuses of `path` as a first guess and its fields as the
+   !> Statuses and fields at the fraction `done` of the segment, from the statuses of `path` as a first guess and its fields as the
    !> start. `settled`: whether they were found; `path` then has the statuses, and as stuck_slip of every node the slip from
    !> which its slip on the way counts; its fields are still those of the start. Not found: the system is singular, the
    !> statuses come again, nothing is in contact that carries a prescribed force, or every node slips; the statuses of `path`
    !> are then of no use.
-   subroutine settle_at(path, segment, done, fields, settled)
+   subroutine find_statuses(path, segment, done, fields, found)
       class(contact_path_type), intent(inout) :: path
       type(segment_type), intent(in) :: segment
       real(wp), intent(in) :: done
       type(contact_fields_type), intent(out) :: fields
-      logical, intent(out) :: settled
+      logical, intent(out) :: found
       type(constraints_type) :: constraints
       type(response_type) :: response
       integer, dimension(size(path%state%status)) :: wanted
@@ -46,7 +46,7 @@ contains
       logical :: possible, singular, by_edges
       integer :: solve, first
 
-      settled = .false.
+      found = .false.
       by_edges = .true.
       first = 1
       fields = path%state%fields
@@ -61,8 +61,8 @@ contains
          if (singular) return
          fields = response%state
          call find_wanted(path, segment, fields, wanted)
-         settled = all(wanted == path%state%status)
-         if (settled) return
+         found = all(wanted == path%state%status)
+         if (found) return
          if (by_edges) call move_edges(path%state%status, wanted)
          call find_touching(path, fields, wanted, hold)
          call path%set_status(wanted /= path%state%status, wanted)
@@ -72,15 +72,15 @@ contains
          by_edges = .false.
          first = solve + 1
       end do
-   end subroutine settle_at
+   end subroutine find_statuses
 
    !> Nodes that a first contact may have, where there is none yet: those that the undeformed surfaces would share at an
    !> approach of P/(pi m), m the contact modulus (for a parabola exactly those that it has under the force P).
    !> `part`: part of the segment.
-   subroutine first_guess(path, segment, part, contact)
+   subroutine first_guess(path, segment, fraction, contact)
       class(contact_path_type), intent(in) :: path
       type(segment_type), intent(in) :: segment
-      real(wp), intent(in) :: part
+      real(wp), intent(in) :: fraction
       logical, intent(out) :: contact(:)
       real(wp), parameter :: deformed = 0.25_wp
       real(wp), dimension(size(contact)) :: gap, normal, tangential
@@ -91,12 +91,12 @@ contains
       fields = path%state%fields
       turned = motions%optional .and. path%model%moves .and. segment%load%control == control_displacement
       if (any(turned)) then
-         where (turned) fields%motion = segment%load%value + part*segment%load%rate
+         where (turned) fields%motion = segment%load%value + fraction*segment%load%rate
          call path%model%relative_displacements(fields, normal, tangential)
          fields%normal = normal
       end if
       gap = path%model%gap(fields)
-      level = segment%load(motion_approach)%value + part*segment%load(motion_approach)%rate
+      level = segment%load(motion_approach)%value + fraction*segment%load(motion_approach)%rate
       if (segment%load(motion_approach)%control == control_force) then
          level = level/(pi*path%model%compliance%modulus)
       else
@@ -106,7 +106,7 @@ contains
       contact = path%model%can_touch .and. gap <= level*path%model%normal_arm(:, motion_approach)
    end subroutine first_guess
 
-   !> The constraints at the part `done` of the segment, without rates. `possible`: false where a prescribed force (moment) has
+   !> The constraints at the fraction `done` of the segment, without rates. `possible`: false where a prescribed force (moment) has
    !> nothing to carry it, or every node slips under a prescribed tangential force.
    subroutine constrain(path, segment, done, constraints, possible)
       class(contact_path_type), intent(in) :: path
@@ -140,12 +140,12 @@ contains
       type(contact_fields_type), intent(in) :: fields
       integer, intent(out) :: wanted(:)
       real(wp), dimension(size(wanted)) :: gap, slipped
-      real(wp) :: traction, motion, noise
+      real(wp) :: traction, motion, tolerance
       integer :: i, closed
 
-      noise = max(round_off, path%system%noise)
-      traction = noise*max(maxval(abs(fields%pressure)), maxval(abs(fields%shear)), path%certificate%traction_scale())
-      motion = noise*max(maxval(abs(fields%normal)), maxval(abs(fields%tangential)), abs(fields%motion(motion_approach)), &
+      tolerance = max(round_off, path%system%tolerance)
+      traction = tolerance*max(maxval(abs(fields%pressure)), maxval(abs(fields%shear)), path%certificate%traction_scale())
+      motion = tolerance*max(maxval(abs(fields%normal)), maxval(abs(fields%tangential)), abs(fields%motion(motion_approach)), &
                          abs(fields%motion(motion_shift)))
       gap = path%model%gap(fields)
       slipped = 0.0_wp
@@ -165,7 +165,7 @@ contains
             wanted(i) = node_stick
          end if
       end do
-      if (closed == node_stick) call go_with_neighbours(path%state%status, wanted)
+      if (closed == node_stick) call follow_neighbours(path%state%status, wanted)
    end subroutine find_wanted
 
    !> The slip at which nodes hold that close on the way: that of the moment at which they touch, were gap and slip to change
@@ -186,7 +186,7 @@ contains
    end subroutine find_touching
 
    !> Nodes that close at an edge of the contact do as the edge does.
-   pure subroutine go_with_neighbours(status, wanted)
+   pure subroutine follow_neighbours(status, wanted)
       integer, intent(in) :: status(:)
       integer, intent(inout) :: wanted(:)
       integer :: i, n
@@ -207,7 +207,7 @@ contains
 
          closes = .not. in_contact(status(node)) .and. in_contact(wanted(node))
       end function closes
-   end subroutine go_with_neighbours
+   end subroutine follow_neighbours
 
    !> Where the nodes that change lie at one edge of their zone, move the edge to where it belongs (see above).
    subroutine move_edges(status, wanted)

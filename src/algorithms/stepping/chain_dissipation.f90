@@ -30,16 +30,16 @@ contains
       type(contact_fields_type), intent(in) :: start, after(:)
       integer, intent(in) :: changes
       real(wp), intent(out) :: work, error, corners
-      real(wp), parameter :: part = 0.8_wp
-      integer :: parts
+      real(wp), parameter :: share = 0.8_wp
+      integer :: increments
       real(wp) :: simpson, coarser, unused
 
-      parts = size(after)
+      increments = size(after)
       call integrate(1, work, simpson)
       error = abs(work)
       corners = 0.0_wp
-      if (parts == 1) return
-      corners = part*abs(trapezoidal() - simpson)/sqrt(real(max(changes, 1), wp))
+      if (increments == 1) return
+      corners = share*abs(trapezoidal() - simpson)/sqrt(real(max(changes, 1), wp))
       call integrate(2, coarser, unused)
       error = max(abs(work - coarser), abs(work - simpson))
 
@@ -52,7 +52,7 @@ contains
 
          simpson = composite(stride)
          best = simpson
-         if (parts/stride >= 4) best = simpson + (simpson - composite(2*stride))/15.0_wp
+         if (increments/stride >= 4) best = simpson + (simpson - composite(2*stride))/15.0_wp
       end subroutine integrate
 
       !> Parabolas through every `stride`-th state; one interval alone: a straight line.
@@ -60,12 +60,12 @@ contains
          integer, intent(in) :: stride
          integer :: i
 
-         if (parts == stride) then
-            composite = straight(start, after(parts))
+         if (increments == stride) then
+            composite = straight(start, after(increments))
             return
          end if
          composite = curved(start, after(stride), after(2*stride))
-         do i = 2*stride, parts - 2*stride, 2*stride
+         do i = 2*stride, increments - 2*stride, 2*stride
             composite = composite + curved(after(i), after(i + stride), after(i + 2*stride))
          end do
       end function composite
@@ -75,7 +75,7 @@ contains
          integer :: i
 
          trapezoidal = straight(start, after(1))
-         do i = 2, parts
+         do i = 2, increments
             trapezoidal = trapezoidal + straight(after(i - 1), after(i))
          end do
       end function trapezoidal
@@ -104,13 +104,13 @@ contains
    !> force/length, shape (nodes); and by how much the sum may err, force. Nodes that slip already at the start do so with
    !> tractions from those then to those after: the trapezoid. Others begin to slip on the way, half way on the average; and
    !> nodes that part do so half way on the average. `noise`: the linear solver's.
-   pure subroutine node_wise_dissipation(model, before, after, noise, work, error)
+   pure subroutine node_wise_dissipation(model, before, after, tolerance, work, error)
       class(contact_model_type), intent(in) :: model
       type(contact_state_type), intent(in) :: before
       type(contact_fields_type), intent(in) :: after
-      real(wp), intent(in) :: noise
+      real(wp), intent(in) :: tolerance
       real(wp), intent(out) :: work(:), error
-      real(wp), parameter :: at_limit = 1.0e-9_wp, noises = 100.0_wp
+      real(wp), parameter :: at_limit = 1.0e-9_wp, tolerance_factor = 100.0_wp
       real(wp), dimension(size(work)) :: slipped, limit, limit_after
       logical :: on(size(work))
 
@@ -118,7 +118,7 @@ contains
       limit = model%static_friction*before%fields%pressure
       limit_after = model%static_friction*max(after%pressure, 0.0_wp)
       on = slips(before%status) .and. -before%fields%shear*slip_sign(before%status) &
-           >= limit*(1.0_wp - max(at_limit, noises*noise))
+           >= limit*(1.0_wp - max(at_limit, tolerance_factor*tolerance))
       where (on)
          work = -0.5_wp*(before%fields%shear + after%shear)*slipped
       elsewhere(slips(before%status))

@@ -20,7 +20,7 @@ module mfv_conventional
    use mfv_strings, only: to_text
    implicit none
    private
-   public :: lead_conventionally
+   public :: apply_conventionally
 
    !> Violations below this part of the largest magnitude of their sort are round-off.
    real(wp), parameter :: round_off = 1.0e-11_wp
@@ -35,7 +35,7 @@ contains
    !> Apply the loads of one segment in nominal steps. `observer` is notified of every load step.
    !> Errors, each leaving the last converged state in place: MFV_CYCLING, MFV_INADMISSIBLE, MFV_GROSS_SLIDING, MFV_SEPARATED,
    !> MFV_MESH_EXCEEDED, MFV_INADMISSIBLE_STEP, MFV_INTERRUPTED.
-   subroutine lead_conventionally(path, segment, observer, error)
+   subroutine apply_conventionally(path, segment, observer, error)
       class(contact_path_type), intent(inout) :: path
       type(segment_type), intent(in) :: segment
       class(observer_type), intent(inout), optional :: observer
@@ -63,9 +63,9 @@ contains
          end do
          call path%notify(segment, done, observer, error)
       end do
-   end subroutine lead_conventionally
+   end subroutine apply_conventionally
 
-   !> Repair statuses at the part `done` of the segment until nothing is violated, and go there. `again`: the mesh has grown,
+   !> Repair statuses at the fraction `done` of the segment until nothing is violated, and go there. `again`: the mesh has grown,
    !> or the bodies have just touched; begin this load again.
    subroutine solve_load(path, segment, done, again, error)
       class(contact_path_type), intent(inout) :: path
@@ -73,27 +73,27 @@ contains
       real(wp), intent(in) :: done
       logical, intent(out) :: again
       type(error_type), allocatable, intent(out) :: error
-      type(moment_type) :: moment
+      type(iteration_type) :: iteration
       type(constraints_type) :: constraints
       type(response_type) :: response
       type(repair_type) :: repair
       type(contact_fields_type) :: expected
       integer, allocatable :: tried(:, :), start(:)
-      integer :: iteration, n
+      integer :: repairs, n
       logical :: singular, touched
 
       again = .false.
       n = size(path%state%status)
       start = path%state%status
       call touch(path, segment, done, touched)
-      if (touched) call path%keep_on_mesh(moment, error)
+      if (touched) call path%keep_on_mesh(iteration, error)
       if (allocated(error)) return
       again = size(path%state%status) /= n
       if (again) return
       call stick_all(path)
       allocate (tried(n, 0))
       expected = path%state%fields
-      do iteration = 1, path%model%scene%method%most_iterations
+      do repairs = 1, path%model%scene%method%most_iterations
          call constrain(path, segment, done, expected, constraints, error)
          if (allocated(error)) return
          call path%system%solve(path%model, constraints, path%state%fields, response, singular)
@@ -106,18 +106,18 @@ contains
             expected = response%state
             cycle
          else if (repair%kind == event_none) then
-            call accept(path, segment, response%state, moment)
+            call accept(path, segment, response%state, iteration)
             return
          end if
          tried = reshape([tried, path%state%status], [n, size(tried, 2) + 1])
-         call make(path, segment, repair, moment)
+         call apply_repair(path, segment, repair, iteration)
          if (is_among(path%state%status, tried)) then
             path%state%status = start
-            call path%end_here(MFV_CYCLING, 'cycling: after '//to_text(iteration)//' repairs at one load the statuses are '// &
+            call path%end_here(MFV_CYCLING, 'cycling: after '//to_text(repairs)//' repairs at one load the statuses are '// &
                                'as before; node '//to_text(repair%node)//' was the last', error)
             return
          end if
-         call path%keep_on_mesh(moment, error)
+         call path%keep_on_mesh(iteration, error)
          again = size(path%state%status) /= n
          if (again .or. allocated(error)) return
       end do
@@ -132,11 +132,11 @@ contains
       type(segment_type), intent(in) :: segment
       real(wp), intent(in) :: done
       logical, intent(out) :: touched
-      type(moment_type) :: moment
+      type(iteration_type) :: iteration
 
       touched = .not. any(in_contact(path%state%status)) .and. segment%load(motion_approach)%control == control_force .and. &
                 segment%load(motion_approach)%value + done*segment%load(motion_approach)%rate > 0.0_wp
-      if (touched) call path%close_nearest(segment, moment)
+      if (touched) call path%close_nearest(segment, iteration)
    end subroutine touch
 
    !> Every node in contact is stuck at the slip it has. (A creeping node goes on as it did.)
@@ -172,7 +172,7 @@ contains
                <= 0.1_wp*round_off*maxval(abs(fields%pressure))
    end function agrees
 
-   !> The constraints at the part `done` of the segment, with friction right where the fields `expected` are. (Rates of the loads
+   !> The constraints at the fraction `done` of the segment, with friction right where the fields `expected` are. (Rates of the loads
    !> are there, and of no use here.) Errors MFV_GROSS_SLIDING, MFV_SEPARATED: a tangential force that nothing can carry.
    subroutine constrain(path, segment, done, expected, constraints, error)
       class(contact_path_type), intent(in) :: path
@@ -205,7 +205,7 @@ contains
       class(contact_path_type), intent(in) :: path
       type(contact_fields_type), intent(in) :: trial
       type(repair_type) :: repair
-      real(wp), dimension(size(path%state%status)) :: gap, excess, slipped
+      real(wp), dimension(size(path%state%status)) :: gap, over_stress, slipped
       real(wp) :: traction, motion
 
       associate (status => path%state%status)
@@ -216,8 +216,8 @@ contains
          repair = worst(event_close, -gap, path%model%can_touch .and. .not. in_contact(status), motion)
          if (repair%kind == event_none) repair = worst(event_open, -trial%pressure, in_contact(status), traction)
          if (repair%kind /= event_none) return
-         excess = abs(trial%shear) - path%friction_limits()*trial%pressure
-         repair = worst(event_slip_right, excess, holds(status), traction)
+         over_stress = abs(trial%shear) - path%friction_limits()*trial%pressure
+         repair = worst(event_slip_right, over_stress, holds(status), traction)
          if (repair%kind /= event_none) then
             if (trial%shear(repair%node) > 0.0_wp) repair%kind = event_slip_left
             return
@@ -240,7 +240,7 @@ contains
 
       associate (law => path%model%scene%friction%law, status => path%state%status)
          if (law%sticks()) return
-         yields = law%over_stress(motion_sign(status)*slipped, law%limit_part()*path%friction_limits() &
+         yields = law%over_stress(motion_sign(status)*slipped, law%limit_fraction()*path%friction_limits() &
                                   *(trial%pressure - path%state%fields%pressure))
          repair = worst(event_stick, -yields, slips(status), allowed)
          where (slips(status)) slipped = 0.0_wp
@@ -260,32 +260,32 @@ contains
    end function worst
 
    !> Make one repair.
-   subroutine make(path, segment, repair, moment)
+   subroutine apply_repair(path, segment, repair, iteration)
       class(contact_path_type), intent(inout) :: path
       type(segment_type), intent(in) :: segment
       type(repair_type), intent(in) :: repair
-      type(moment_type), intent(inout) :: moment
+      type(iteration_type), intent(inout) :: iteration
       logical :: mask(size(path%state%status))
       logical :: friction
 
       mask = .false.
       mask(repair%node) = .true.
       friction = segment%friction .and. path%model%tangential
-      call note_change(moment, repair%kind, mask)
+      call note_change(iteration, repair%kind, mask)
       call change(path, mask, status_after(repair%kind, path%state%status, friction, path%state%slip_direction, &
                                            path%holding(real(-motion_sign(path%state%status), wp))))
-   end subroutine make
+   end subroutine apply_repair
 
    !> Nothing is violated: go there, count and record.
-   subroutine accept(path, segment, fields, moment)
+   subroutine accept(path, segment, fields, iteration)
       class(contact_path_type), intent(inout) :: path
       type(segment_type), intent(in) :: segment
       type(contact_fields_type), intent(in) :: fields
-      type(moment_type), intent(in) :: moment
+      type(iteration_type), intent(in) :: iteration
 
       call path%take_increment(fields, fields%slip() - path%state%fields%slip(), 0.0_wp)
       call path%remember_status(.not. slips(path%state%status))
-      call path%keep_settled(segment, moment)
+      call path%record_changes(segment, iteration)
    end subroutine accept
 
 end module mfv_conventional

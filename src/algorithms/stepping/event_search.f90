@@ -30,17 +30,17 @@ contains
    !> law adds, shape (most_events, nodes); none if not allocated.
    !> `state`, `rate`: fields now and their rates per unit of the load parameter. Rates below the part `round_off` of the
    !> largest one of their sort count as zero. `violations`: their storage is used again.
-   subroutine find_violations(model, status, limit, events, state, rate, round_off, violations)
+   subroutine find_violations(model, status, limit, events, state, rate, rate_tolerance, violations)
       type(contact_model_type), intent(in) :: model
       integer, intent(in) :: status(:)
       real(wp), intent(in) :: limit(:)
       type(friction_event_type), allocatable, intent(in) :: events(:, :)
       type(contact_fields_type), intent(in) :: state, rate
-      real(wp), intent(in) :: round_off
+      real(wp), intent(in) :: rate_tolerance
       type(violations_type), intent(inout) :: violations
-      real(wp) :: traction_scale, motion_scale, mu, full, gap_rate, slip_rate, noise
+      real(wp) :: traction_scale, motion_scale, mu, full, gap_rate, slip_rate, least_rate
       logical :: soft_limit, sticks
-      real(wp), parameter :: secant_noise = 100.0_wp
+      real(wp), parameter :: secant_tolerance = 100.0_wp
       integer :: i, n
 
       n = size(status)
@@ -57,11 +57,11 @@ contains
       if (allocated(model%scene%friction%law)) then
          ! Of a node that has just touched, explicit tangents say nothing about its limit; the corrector's rates do.
          soft_limit = model%scene%friction%law%has_soft_limit() .and. model%scene%method%integration == integration_explicit
-         full = model%scene%friction%law%limit_part()
+         full = model%scene%friction%law%limit_fraction()
          sticks = model%scene%friction%law%sticks()
       end if
       call find_scales(rate, traction_scale, motion_scale)
-      noise = round_off*traction_scale
+      least_rate = rate_tolerance*traction_scale
       do i = 1, n
          slip_rate = rate%tangential(i) - rate%motion(motion_shift)
          select case (status(i))
@@ -74,7 +74,7 @@ contains
          case (node_stick, node_creep_right, node_creep_left)
             mu = full*limit(i)
             if (mu*rate%pressure(i) - abs(rate%shear(i)) < 0.0_wp) then
-               if (.not. (soft_limit .and. .not. state%pressure(i) > 0.0_wp .and. rate%pressure(i) > noise)) then
+               if (.not. (soft_limit .and. .not. state%pressure(i) > 0.0_wp .and. rate%pressure(i) > least_rate)) then
                   call consider(event_slip_right, mu*state%pressure(i) + state%shear(i), &
                                 mu*rate%pressure(i) + rate%shear(i), max(mu, 1.0_wp)*traction_scale)
                   call consider(event_slip_left, mu*state%pressure(i) - state%shear(i), &
@@ -89,7 +89,7 @@ contains
                call consider(event_stick, 0.0_wp, &
                              model%scene%friction%law%over_stress(slip_sign(status(i))*slip_rate, &
                                                                   full*limit(i)*rate%pressure(i)), &
-                             secant_noise*traction_scale)
+                             secant_tolerance*traction_scale)
             end if
          end select
          if (allocated(events)) call consider_events(i)
@@ -108,7 +108,7 @@ contains
                if (event%kind == event_none) cycle
                call consider(event%kind, event%slack, event%rate + event%by_pressure*rate%pressure(i) &
                              + event%by_motion*(motion_sign(status(i))*slip_rate), &
-                             event%noise*merge(motion_scale, traction_scale, event%is_length))
+                             event%tolerance_factor*merge(motion_scale, traction_scale, event%is_length))
             end associate
          end do
       end subroutine consider_events
@@ -119,7 +119,7 @@ contains
          real(wp), intent(in) :: slack, slack_rate, scale
          real(wp) :: step
 
-         if (.not. slack_rate < -round_off*scale) return
+         if (.not. slack_rate < -rate_tolerance*scale) return
          step = max(slack, 0.0_wp)/(-slack_rate)
          if (step > violations%step(i)) return
          if (.not. step < violations%step(i) .and. -slack_rate/scale < violations%speed(i)) return

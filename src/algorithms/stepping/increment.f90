@@ -43,7 +43,7 @@ contains
    pure real(wp) function tie_of(path)
       class(contact_path_type), intent(in) :: path
 
-      tie_of = max(tie, path%system%noise)
+      tie_of = max(tie, path%system%tolerance)
    end function tie_of
 
    !> Steps below this part of the segment are none: noise of the state that makes small steps, but no more than the tie, for the
@@ -51,17 +51,17 @@ contains
    pure real(wp) function no_step_of(path)
       class(contact_path_type), intent(in) :: path
 
-      no_step_of = max(no_step, min(path%system%noise, tie))
+      no_step_of = max(no_step, min(path%system%tolerance, tie))
    end function no_step_of
 
-   !> `constraints`: as contact_path_type%settle_loads leaves them. `left`: what is left of the segment (of the drop: 1).
+   !> `constraints`: as contact_path_type%find_constraints leaves them. `left`: what is left of the segment (of the drop: 1).
    !> `drop`: whether excess tractions are let go at a fixed load. `round_off`: rates below this part of the largest are none.
    !> `increment`: its storage is used again.
-   subroutine find_increment(path, constraints, left, drop, round_off, increment)
+   subroutine find_increment(path, constraints, left, relaxing, rate_tolerance, increment)
       class(contact_path_type), intent(inout) :: path
       type(constraints_type), intent(in) :: constraints
-      real(wp), intent(in) :: left, round_off
-      logical, intent(in) :: drop
+      real(wp), intent(in) :: left, rate_tolerance
+      logical, intent(in) :: relaxing
       type(increment_type), intent(inout) :: increment
 
       increment%step = 0.0_wp
@@ -70,13 +70,14 @@ contains
       increment%singular = .false.
       increment%diverges = .false.
       if (path%model%scene%method%stepping == stepping_nominal) then
-         call nominal_increment(path, constraints, min(left, path%model%scene%method%load_step), drop, round_off, increment)
+         call nominal_increment(path, constraints, min(left, path%model%scene%method%load_step), relaxing, rate_tolerance, &
+                                increment)
       else
          call path%system%solve(path%model, constraints, path%state%fields, increment%response, &
                                 increment%singular)
          if (increment%singular) return
-         call search(path, round_off, left, increment)
-         if (bends(path)) call follow_friction(path, constraints, left, drop, round_off, increment)
+         call search(path, rate_tolerance, left, increment)
+         if (bends(path)) call follow_friction(path, constraints, left, relaxing, rate_tolerance, increment)
       end if
    end subroutine find_increment
 
@@ -97,9 +98,9 @@ contains
    end function bends
 
    !> Violations by the rates, and the step to the first of them but no further than `longest`.
-   subroutine search(path, round_off, longest, increment)
+   subroutine search(path, rate_tolerance, longest, increment)
       class(contact_path_type), intent(in) :: path
-      real(wp), intent(in) :: round_off, longest
+      real(wp), intent(in) :: rate_tolerance, longest
       type(increment_type), intent(inout) :: increment
       ! What nothing leads to is this far away, in units of the load parameter: twice as far is a number still.
       real(wp), parameter :: never = 0.25_wp*huge(1.0_wp)
@@ -108,7 +109,7 @@ contains
 
       call path%find_events(path%state%fields%plus(longest, increment%response%rate), events)
       call find_violations(path%model, path%state%status, path%friction_limits(), events, path%state%fields, &
-                           increment%response%rate, max(round_off, path%system%noise), increment%violations)
+                           increment%response%rate, max(rate_tolerance, path%system%tolerance), increment%violations)
       first = min(minval(increment%violations%step), never)
       increment%step = min(first, longest)
       increment%reach = first*(1.0_wp + tie_of(path)) + no_step_of(path)
@@ -116,11 +117,11 @@ contains
    end subroutine search
 
    !> Lead friction that is not linear over an increment with a controlled error, or explicitly.
-   subroutine follow_friction(path, constraints, left, drop, round_off, increment)
+   subroutine follow_friction(path, constraints, left, relaxing, rate_tolerance, increment)
       class(contact_path_type), intent(inout) :: path
       type(constraints_type), intent(in) :: constraints
-      real(wp), intent(in) :: left, round_off
-      logical, intent(in) :: drop
+      real(wp), intent(in) :: left, rate_tolerance
+      logical, intent(in) :: relaxing
       type(increment_type), intent(inout) :: increment
       integer, parameter :: most_attempts = 40
       real(wp), parameter :: safety = 0.9_wp, most_growth = 4.0_wp, least_shrink = 0.1_wp, first_trial = 1.0e-3_wp, &
@@ -133,7 +134,7 @@ contains
 
       if (path%model%scene%method%integration == integration_explicit .and. &
           .not. path%model%scene%friction%law%sticks()) then
-         call search(path, round_off, min(left, path%model%scene%method%load_step), increment)
+         call search(path, rate_tolerance, min(left, path%model%scene%method%load_step), increment)
          return
       end if
       ! Of a node that has just touched, tangents know nothing: its part of the limit comes out of the increment itself.
@@ -145,7 +146,7 @@ contains
       length = min(left, path%trial)
       do attempt = 1, most_attempts
          increment = predicted
-         call correct(path, constraints, length, drop, round_off, increment, agrees)
+         call correct(path, constraints, length, relaxing, rate_tolerance, increment, agrees)
          if (increment%singular) return
          guess = path%state%fields%plus(increment%step, predicted%response%rate)
          call guess_touching(path, guess)
@@ -167,15 +168,15 @@ contains
 
    !> Lines of friction that are right at the end of the increment; a violation on the way shortens it. `agrees`: whether they
    !> could be found. The rates are those of the straight way to the end.
-   subroutine correct(path, constraints, length, drop, round_off, increment, agrees)
+   subroutine correct(path, constraints, length, relaxing, rate_tolerance, increment, agrees)
       class(contact_path_type), intent(inout) :: path
       type(constraints_type), intent(in) :: constraints
-      real(wp), intent(in) :: length, round_off
-      logical, intent(in) :: drop
+      real(wp), intent(in) :: length, rate_tolerance
+      logical, intent(in) :: relaxing
       type(increment_type), intent(inout) :: increment
       logical, intent(out) :: agrees
       integer, parameter :: most_passes = 12
-      real(wp), parameter :: same_step = 1.0e-9_wp, noises = 10.0_wp
+      real(wp), parameter :: same_step = 1.0e-9_wp, tolerance_factor = 10.0_wp
       real(wp) :: same
       type(constraints_type) :: secants
       type(contact_fields_type) :: after
@@ -183,17 +184,17 @@ contains
       integer :: pass
 
       step = length
-      same = max(same_step, noises*path%system%noise)
+      same = max(same_step, tolerance_factor*path%system%tolerance)
       secants = constraints
       after = path%state%fields%plus(step, increment%response%rate)
       call guess_touching(path, after)
       do pass = 1, most_passes
-         call find_end(path, constraints, step, drop, after, agrees)
+         call find_end(path, constraints, step, relaxing, after, agrees)
          if (.not. agrees) return
-         call path%set_rows(secants, drop, after, straight=.true.)
+         call path%set_rows(secants, relaxing, after, secants=.true.)
          call path%system%solve(path%model, secants, path%state%fields, increment%response, increment%singular)
          if (increment%singular) return
-         call search(path, round_off, step, increment)
+         call search(path, rate_tolerance, step, increment)
          if (abs(increment%step - step) <= same*step + no_step_of(path) .or. increment%step <= no_step_of(path)) return
          step = increment%step
          after = path%state%fields%plus(step, increment%response%rate)
@@ -202,11 +203,11 @@ contains
    end subroutine correct
 
    !> Newton's iteration for the fields `after` a step; they come with a guess. `converges`: whether they were found.
-   subroutine find_end(path, constraints, step, drop, after, converges)
+   subroutine find_end(path, constraints, step, relaxing, after, converges)
       class(contact_path_type), intent(inout) :: path
       type(constraints_type), intent(in) :: constraints
       real(wp), intent(in) :: step
-      logical, intent(in) :: drop
+      logical, intent(in) :: relaxing
       type(contact_fields_type), intent(inout) :: after
       logical, intent(out) :: converges
       integer, parameter :: most_iterations = 50
@@ -221,11 +222,11 @@ contains
       lines = constraints
       do iteration = 1, most_iterations
          before = after
-         call path%set_rows(lines, drop, after)
+         call path%set_rows(lines, relaxing, after)
          call path%system%solve(path%model, lines, path%state%fields, response, singular)
          if (singular) return
          after = response%state%plus(step, response%rate)
-         converges = difference(path, before, after, 0.0_wp) <= max(close_enough, path%system%noise)
+         converges = difference(path, before, after, 0.0_wp) <= max(close_enough, path%system%tolerance)
          if (converges) return
       end do
    end subroutine find_end
@@ -240,7 +241,7 @@ contains
          fields%shear = sign(min(abs(fields%shear), half*path%model%static_friction*max(fields%pressure, 0.0_wp)), fields%shear)
    end subroutine guess_touching
 
-   !> How much the tractions of two fields differ, in parts of the largest traction so far, there, or `elsewhere`.
+   !> How much the tractions of two fields differ, relative to the largest traction so far, there, or `elsewhere`.
    pure real(wp) function difference(path, one, other, elsewhere)
       class(contact_path_type), intent(in) :: path
       type(contact_fields_type), intent(in) :: one, other
@@ -253,26 +254,26 @@ contains
    end function difference
 
    !> A nominal load step: a trial state, and the first violation on the way to it.
-   subroutine nominal_increment(path, constraints, length, drop, round_off, increment)
+   subroutine nominal_increment(path, constraints, length, relaxing, rate_tolerance, increment)
       class(contact_path_type), intent(inout) :: path
       type(constraints_type), intent(in) :: constraints
-      real(wp), intent(in) :: length, round_off
-      logical, intent(in) :: drop
+      real(wp), intent(in) :: length, rate_tolerance
+      logical, intent(in) :: relaxing
       type(increment_type), intent(inout) :: increment
       real(wp), parameter :: shortest = 1.0e-6_wp
       real(wp) :: trial
 
-      trial = merge(1.0_wp, length, drop)
+      trial = merge(1.0_wp, length, relaxing)
       call solve_trial(path, constraints, trial, increment)
       if (increment%singular) return
-      call search(path, round_off, trial, increment)
+      call search(path, rate_tolerance, trial, increment)
       ! A slip rate is constant between events: bisection finds that a wrong direction is wrong from the start.
       do while (increment%step <= no_step_of(path) .and. any(increment%violations%kind == event_stick) .and. &
                 trial > shortest*length)
          trial = 0.5_wp*trial
          call solve_trial(path, constraints, trial, increment)
          if (increment%singular) return
-         call search(path, round_off, trial, increment)
+         call search(path, rate_tolerance, trial, increment)
       end do
       if (increment%step <= no_step_of(path) .or. .not. increment%ends_in_event) return
       if (increment%step < trial) call solve_trial(path, constraints, increment%step, increment)
@@ -293,11 +294,11 @@ contains
          target%row(i)%offset = target%row(i)%offset + step*target%offset_rate(i)
       end do
       call path%system%solve(path%model, target, path%state%fields, increment%response, increment%singular)
-      if (.not. increment%singular) call lead_straight(path, increment%response%state, step, increment%response)
+      if (.not. increment%singular) call set_secant_rates(path, increment%response%state, step, increment%response)
    end subroutine solve_trial
 
    !> The response that leads from the fields now straight to the fields `after` a step.
-   subroutine lead_straight(path, after, step, response)
+   subroutine set_secant_rates(path, after, step, response)
       class(contact_path_type), intent(in) :: path
       type(contact_fields_type), intent(in) :: after
       real(wp), intent(in) :: step
@@ -307,7 +308,7 @@ contains
       change = after%plus(-1.0_wp, path%state%fields)
       response%rate = scaled(change, 1.0_wp/step)
       response%state = path%state%fields
-   end subroutine lead_straight
+   end subroutine set_secant_rates
 
    !> The fields times a factor.
    pure function scaled(fields, factor) result(product)

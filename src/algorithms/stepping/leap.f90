@@ -20,20 +20,21 @@ module mfv_leap
    use mfv_contact_state, only: contact_state_type
    use mfv_contact_system, only: constraints_type, response_type
    use mfv_error, only: error_type
-   use mfv_first_violation, only: lead_by_violations
+   use mfv_first_violation, only: apply_by_violations
    use mfv_kinds, only: wp
    use mfv_motions, only: motion_approach, motion_shift, control_force
    use mfv_node_status
    use mfv_observer, only: observer_type
-   use mfv_straight, only: before_separation, carries_nothing_yet, close_leap, grow_mesh, lead_straight, part_of, settle_on_mesh
+   use mfv_straight, only: apply_directly, before_separation, lacks_support, find_statuses_on_mesh, finish_large_increment, &
+                           grow_mesh, subsegment
    implicit none
    private
-   public :: lead_by_leaps
+   public :: apply_by_large_increments
 
    !> An interval shorter than this part of a segment is not divided for want of statuses.
    real(wp), parameter :: shortest = 0.2_wp
    !> Increments of an interval at most.
-   integer, parameter :: most_parts = 64
+   integer, parameter :: most_increments = 64
    !> Linear solves of event stepping per node that changes its status; less, since it can update the inverse from solve to
    !> solve, and an increment cannot.
    real(wp), parameter :: solves_per_change = 0.6_wp
@@ -52,14 +53,14 @@ module mfv_leap
 
    !> An interval in equal increments.
    type :: chain_type
-      integer :: parts = 0
+      integer :: increments = 0
       !> States before each increment, with the statuses on the way; fields after it; shape (parts).
       type(contact_state_type), allocatable :: before(:)
       type(contact_fields_type), allocatable :: after(:)
       !> What friction dissipates in each, force/length, shape (nodes, parts).
       real(wp), allocatable :: friction_work(:, :)
       !> Whether the statuses were found; if not, whether only the mesh was too short for them.
-      logical :: settled = .false., exceeded = .false.
+      logical :: found = .false., exceeded = .false.
       !> Linear solves, and nodes that changed their status where event stepping would have changed them one by one.
       integer :: solves = 0, changes = 0
       !> Estimated errors: of the tractions at the end (force/length^2), of what friction dissipates (force); and that, and the
@@ -74,7 +75,7 @@ contains
 
    !> Apply the loads of one segment by large increments. `observer` is notified of every interval.
    !> Errors, each leaving the last admissible state in place: those of mfv_first_violation.
-   subroutine lead_by_leaps(path, segment, observer, error)
+   subroutine apply_by_large_increments(path, segment, observer, error)
       class(contact_path_type), intent(inout) :: path
       type(segment_type), intent(in) :: segment
       class(observer_type), intent(inout), optional :: observer
@@ -82,27 +83,27 @@ contains
       type(progress_type) :: progress
 
       if (.not. (segment%friction .and. path%model%scene%friction%acts())) then
-         call lead_straight(path, segment, observer, error)
+         call apply_directly(path, segment, observer, error)
          return
       end if
       call path%start_segment(segment, error)
       if (allocated(error)) return
-      if (.not. carries_nothing_yet(path, segment)) progress%goal = before_separation(segment)
+      if (.not. lacks_support(path, segment)) progress%goal = before_separation(segment)
       progress%length = progress%goal
       do while (progress%done < progress%goal)
          if (progress%by_violations) then
-            call go_by_violations(path, segment, progress, observer, error)
+            call continue_by_violations(path, segment, progress, observer, error)
          else
-            call leap_on(path, segment, progress, observer, error)
+            call try_large_increments(path, segment, progress, observer, error)
          end if
          if (allocated(error)) return
       end do
-      if (progress%goal < 1.0_wp) call lead_by_violations(path, part_of(segment, progress%goal, 1.0_wp), observer, error)
-   end subroutine lead_by_leaps
+      if (progress%goal < 1.0_wp) call apply_by_violations(path, subsegment(segment, progress%goal, 1.0_wp), observer, error)
+   end subroutine apply_by_large_increments
 
    !> Try the next interval, and take it where it is right; else a shorter one is next, or events lead on
    !> (`progress%by_violations`).
-   subroutine leap_on(path, segment, progress, observer, error)
+   subroutine try_large_increments(path, segment, progress, observer, error)
       class(contact_path_type), intent(inout) :: path
       type(segment_type), intent(in) :: segment
       type(progress_type), intent(inout) :: progress
@@ -118,20 +119,20 @@ contains
             if (grown) return
          end if
          if (accepted) then
-            call take(path, chain)
+            call accept_chain(path, chain)
             done = merge(goal, done + length, length >= goal - done)
             length = goal - done
-            call close_leap(path, segment, done, observer, error)
-         else if (.not. chain%settled .and. chain%solves < path%state%contact_nodes() .and. length > shortest) then
+            call finish_large_increment(path, segment, done, observer, error)
+         else if (.not. chain%found .and. chain%solves < path%state%contact_nodes() .and. length > shortest) then
             length = 0.5_wp*length
          else
             progress%by_violations = .true.
          end if
       end associate
-   end subroutine leap_on
+   end subroutine try_large_increments
 
    !> Go by events where large increments do not lead on, or would cost more.
-   subroutine go_by_violations(path, segment, progress, observer, error)
+   subroutine continue_by_violations(path, segment, progress, observer, error)
       class(contact_path_type), intent(inout) :: path
       type(segment_type), intent(in) :: segment
       type(progress_type), intent(inout) :: progress
@@ -139,15 +140,15 @@ contains
       type(error_type), allocatable, intent(out) :: error
 
       associate (done => progress%done, goal => progress%goal, length => progress%length)
-         call lead_by_violations(path, part_of(segment, done, done + length), observer, error)
+         call apply_by_violations(path, subsegment(segment, done, done + length), observer, error)
          if (allocated(error)) return
          progress%by_violations = .false.
          done = merge(goal, done + length, length >= goal - done)
          length = goal - done
       end associate
-   end subroutine go_by_violations
+   end subroutine continue_by_violations
 
-   !> The interval from the part `done` of the segment as far as `length`, in chains of more and more increments, up to the first
+   !> The interval from the fraction `done` of the segment as far as `length`, in chains of more and more increments, up to the first
    !> that is right. `accepted`: whether there is one, at fewer solves than event stepping would take; `chain`: it, or the last
    !> one. `path` stays as it is.
    subroutine refine(path, segment, done, length, chain, accepted)
@@ -157,33 +158,33 @@ contains
       type(chain_type), intent(out) :: chain
       logical, intent(out) :: accepted
       type(chain_type) :: finer
-      integer :: parts
+      integer :: increments
 
       accepted = .false.
       call make_chain(path, segment, done, length, 1, chain)
-      if (.not. chain%settled) return
+      if (.not. chain%found) return
       accepted = moves_nothing(path, segment, chain%after(1))
       if (accepted) return
-      parts = 2
+      increments = 2
       do
-         call make_chain(path, segment, done, length, parts, finer, chain)
-         if (finer%settled) call compare(path, chain, finer)
+         call make_chain(path, segment, done, length, increments, finer, chain)
+         if (finer%found) call compare(path, chain, finer)
          chain = finer
-         if (.not. chain%settled) return
+         if (.not. chain%found) return
          call choose(path%model%scene%method%leap_tolerance, max(path%certificate%traction_scale(), chain%traction), chain, &
-                     accepted, parts)
-         if (accepted) accepted = .not. turns_back(path, part_of(segment, done, done + length), chain)
-         if (accepted .or. parts == 0) return
+                     accepted, increments)
+         if (accepted) accepted = .not. turns_back(path, subsegment(segment, done, done + length), chain)
+         if (accepted .or. increments == 0) return
       end do
    end subroutine refine
 
    !> Whether a chain is right to the tolerance; if not, how many increments the next one has, 0: too many.
    !> `traction`: the largest so far.
-   pure subroutine choose(tolerance, traction, chain, accepted, parts)
+   pure subroutine choose(tolerance, traction, chain, accepted, increments)
       real(wp), intent(in) :: tolerance, traction
       type(chain_type), intent(in) :: chain
       logical, intent(out) :: accepted
-      integer, intent(out) :: parts
+      integer, intent(out) :: increments
       real(wp) :: by_tractions, by_work, by_corners, wanted
 
       by_tractions = 0.0_wp
@@ -195,11 +196,11 @@ contains
          by_corners = chain%corner_error/(safety*tolerance*max(chain%work, tiny(1.0_wp)/tolerance))
       end if
       accepted = max(by_tractions, by_work) <= 1.0_wp
-      parts = 0
+      increments = 0
       if (accepted) return
-      wanted = min(max(2.0_wp, by_tractions, sqrt(sqrt(by_work)), sqrt(by_corners)), real(most_parts, wp))
-      parts = chain%parts*2**ceiling(log(wanted)/log(2.0_wp) - 1.0e-6_wp)
-      if (parts > most_parts .or. solves_per_increment*parts > solves_per_change*chain%changes) parts = 0
+      wanted = min(max(2.0_wp, by_tractions, sqrt(sqrt(by_work)), sqrt(by_corners)), real(most_increments, wp))
+      increments = chain%increments*2**ceiling(log(wanted)/log(2.0_wp) - 1.0e-6_wp)
+      if (increments > most_increments .or. solves_per_increment*increments > solves_per_change*chain%changes) increments = 0
    end subroutine choose
 
    !> Whether nodes that slip over the last increment of a chain would slip back at its end: they have come to rest on the way,
@@ -214,18 +215,18 @@ contains
       type(constraints_type) :: constraints
       type(response_type) :: response
 
-      associate (last => chain%after(chain%parts), begin => chain%before(1)%fields)
-         turns_back = maxval(abs(last%pressure - begin%pressure)) > max(negligible, path%system%noise)*chain%traction
+      associate (last => chain%after(chain%increments), begin => chain%before(1)%fields)
+         turns_back = maxval(abs(last%pressure - begin%pressure)) > max(negligible, path%system%tolerance)*chain%traction
          if (.not. turns_back) return
          start = path%state
-         path%state = chain%before(chain%parts)
+         path%state = chain%before(chain%increments)
          path%state%fields = last
          call path%loads_at(segment, 1.0_wp, constraints)
          call path%set_rows(constraints, .false.)
          call path%system%solve(path%model, constraints, last, response, turns_back)
          associate (rate => response%rate%slip())
             if (.not. turns_back) &
-               turns_back = any(-slip_sign(path%state%status)*rate > max(negligible, path%system%noise)*maxval(abs(rate)))
+               turns_back = any(-slip_sign(path%state%status)*rate > max(negligible, path%system%tolerance)*maxval(abs(rate)))
          end associate
          path%state = start
       end associate
@@ -233,11 +234,11 @@ contains
 
    !> An interval in `parts` equal increments. `coarser`: a chain of the same interval, for a first guess of the statuses.
    !> `path` stays as it is.
-   subroutine make_chain(path, segment, done, length, parts, chain, coarser)
+   subroutine make_chain(path, segment, done, length, increments, chain, coarser)
       class(contact_path_type), intent(inout) :: path
       type(segment_type), intent(in) :: segment
       real(wp), intent(in) :: done, length
-      integer, intent(in) :: parts
+      integer, intent(in) :: increments
       type(chain_type), intent(out) :: chain
       type(chain_type), intent(in), optional :: coarser
       type(contact_state_type) :: start
@@ -245,16 +246,16 @@ contains
       integer :: i
 
       start = path%state
-      chain%parts = parts
-      allocate (chain%before(parts), chain%after(parts))
-      allocate (chain%friction_work(size(start%status), parts), source=0.0_wp)
+      chain%increments = increments
+      allocate (chain%before(increments), chain%after(increments))
+      allocate (chain%friction_work(size(start%status), increments), source=0.0_wp)
       chain%solves = -path%system%solves
-      do i = 1, parts
+      do i = 1, increments
          status = path%state%status
          if (i == 1) call guess_slip(path, segment, done + length*reached(i))
-         if (present(coarser)) call guess_from(path, coarser, i, parts)
-         call settle_on_mesh(path, segment, done + length*reached(i), chain%after(i), chain%settled, chain%exceeded)
-         if (.not. chain%settled) exit
+         if (present(coarser)) call guess_from(path, coarser, i, increments)
+         call find_statuses_on_mesh(path, segment, done + length*reached(i), chain%after(i), chain%found, chain%exceeded)
+         if (.not. chain%found) exit
          chain%changes = chain%changes + count_changes(status, path%state%status)
          chain%before(i) = path%state
          path%state%fields = chain%after(i)
@@ -270,19 +271,19 @@ contains
       pure real(wp) function reached(i)
          integer, intent(in) :: i
 
-         reached = real(i, wp)/real(parts, wp)
+         reached = real(i, wp)/real(increments, wp)
          if (.not. any(in_contact(start%status))) reached = reached**2
       end function reached
    end subroutine make_chain
 
    !> Where increment `i` of `parts` ends as one of a coarser chain does, begin with the statuses there.
-   subroutine guess_from(path, coarser, i, parts)
+   subroutine guess_from(path, coarser, i, increments)
       class(contact_path_type), intent(inout) :: path
       type(chain_type), intent(in) :: coarser
-      integer, intent(in) :: i, parts
+      integer, intent(in) :: i, increments
 
-      if (mod(i*coarser%parts, parts) /= 0) return
-      associate (status => coarser%before(i*coarser%parts/parts)%status)
+      if (mod(i*coarser%increments, increments) /= 0) return
+      associate (status => coarser%before(i*coarser%increments/increments)%status)
          call path%set_status(in_contact(path%state%status) .and. in_contact(status), status)
       end associate
    end subroutine guess_from
@@ -303,14 +304,14 @@ contains
       real(wp) :: refinement, node_wise, node_wise_error, one, other, unused, unused_too
       integer :: i, stride
 
-      refinement = 1.0_wp/(sqrt(real(finer%parts, wp)/real(coarser%parts, wp)) - 1.0_wp)
-      associate (a => coarser%after(coarser%parts), b => finer%after(finer%parts))
+      refinement = 1.0_wp/(sqrt(real(finer%increments, wp)/real(coarser%increments, wp)) - 1.0_wp)
+      associate (a => coarser%after(coarser%increments), b => finer%after(finer%increments))
          finer%traction_error = refinement*max(maxval(abs(a%pressure - b%pressure)), maxval(abs(a%shear - b%shear)))
       end associate
       node_wise = 0.0_wp
       node_wise_error = 0.0_wp
-      do i = 1, finer%parts
-         call node_wise_dissipation(path%model, finer%before(i), finer%after(i), path%system%noise, finer%friction_work(:, i), &
+      do i = 1, finer%increments
+         call node_wise_dissipation(path%model, finer%before(i), finer%after(i), path%system%tolerance, finer%friction_work(:, i), &
                                     unused)
          node_wise = node_wise + path%model%force(finer%friction_work(:, i))
          node_wise_error = node_wise_error + unused
@@ -322,8 +323,8 @@ contains
          finer%work_error = node_wise_error
       else
          ! Three states can agree with a straight line by chance: then with the other formula too, or on to more of them.
-         if (finer%parts == 2) finer%work_error = max(finer%work_error, abs(finer%work - node_wise))
-         stride = finer%parts/coarser%parts
+         if (finer%increments == 2) finer%work_error = max(finer%work_error, abs(finer%work - node_wise))
+         stride = finer%increments/coarser%increments
          ! The same formula on either chain: what the path makes of it.
          call chain_dissipation(path%model, finer%before(1)%fields, coarser%after, 1, one, unused, unused_too)
          call chain_dissipation(path%model, finer%before(1)%fields, &
@@ -338,28 +339,28 @@ contains
    !> Where the normal load does not change, nor the pressures with it, and the tangential force does, as many as slip in
    !> Mindlin's contact of cylinders: the edge of the stick zone is there where the pressure is sqrt(Q/(mu P)) of the largest;
    !> after a reversal with half the change in place of Q.
-   subroutine guess_slip(path, segment, part)
+   subroutine guess_slip(path, segment, fraction)
       class(contact_path_type), intent(inout) :: path
       type(segment_type), intent(in) :: segment
-      real(wp), intent(in) :: part
+      real(wp), intent(in) :: fraction
       integer, dimension(size(path%state%status)) :: status
-      real(wp) :: force, grip
+      real(wp) :: force, sliding_limit
       logical :: reverses
 
       if (.not. abs(segment%load(motion_shift)%rate) > 0.0_wp) return
       status = merge(node_slip_left, node_slip_right, segment%load(motion_shift)%rate > 0.0_wp)
       reverses = any(slips(path%state%status) .and. path%state%status /= status)
       associate (fields => path%state%fields, load => segment%load(motion_shift))
-         grip = path%model%force(path%model%static_friction*fields%pressure)
-         if (load%control /= control_force .or. abs(segment%load(motion_approach)%rate) > 0.0_wp .or. .not. grip > 0.0_wp .or. &
-             path%model%compliance%has_block(block_wt)) then
+         sliding_limit = path%model%force(path%model%static_friction*fields%pressure)
+         if (load%control /= control_force .or. abs(segment%load(motion_approach)%rate) > 0.0_wp .or. &
+             .not. sliding_limit > 0.0_wp .or. path%model%compliance%has_block(block_wt)) then
             call path%set_status(slips(path%state%status), status)
             return
          end if
-         force = load%value + part*load%rate
+         force = load%value + fraction*load%rate
          if (reverses) force = 0.5_wp*(force - fields%force(motion_shift))
          force = max(sign(1.0_wp, load%rate)*force, 0.0_wp)
-         where (fields%pressure > sqrt(force/grip)*maxval(fields%pressure)) status = node_stick
+         where (fields%pressure > sqrt(force/sliding_limit)*maxval(fields%pressure)) status = node_stick
       end associate
       call path%set_status(in_contact(path%state%status), status)
    end subroutine guess_slip
@@ -379,22 +380,22 @@ contains
       if (.not. moves_nothing) return
       moves_nothing = .not. abs(segment%load(motion_shift)%rate) > 0.0_wp .and. .not. any(slips(path%state%status)) .and. &
                       max(maxval(abs(path%state%fields%shear)), maxval(abs(after%shear))) &
-                      <= max(nothing, path%system%noise)*max(path%certificate%traction_scale(), maxval(abs(after%pressure)))
+                      <= max(nothing, path%system%tolerance)*max(path%certificate%traction_scale(), maxval(abs(after%pressure)))
    end function moves_nothing
 
    !> Go where the chain leads.
-   subroutine take(path, chain)
+   subroutine accept_chain(path, chain)
       class(contact_path_type), intent(inout) :: path
       type(chain_type), intent(in) :: chain
       integer :: i
 
-      do i = 1, chain%parts
+      do i = 1, chain%increments
          path%state%status = chain%before(i)%status
          path%state%stuck_slip = chain%before(i)%stuck_slip
          call path%take_increment(chain%after(i), chain%after(i)%slip() - path%state%fields%slip(), 0.0_wp, &
                                   friction_work=chain%friction_work(:, i))
       end do
       call path%certificate%note_large_increment(chain%traction_error, chain%work_error, chain%work)
-   end subroutine take
+   end subroutine accept_chain
 
 end module mfv_leap

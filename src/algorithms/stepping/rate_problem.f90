@@ -15,7 +15,7 @@ module mfv_rate_problem
    use mfv_node_status
    implicit none
    private
-   public :: settle_by_rates
+   public :: find_statuses_by_rates
 
    !> What an unknown z is of which node: a gap, or slip to the right (1) or left (-1).
    integer, parameter :: opens = 0
@@ -24,18 +24,18 @@ contains
 
    !> Statuses with consistent rates for the loads of `constraints`, whose statuses do not count. `settled`: whether there are
    !> any; the path's statuses are then these, and as they were otherwise.
-   subroutine settle_by_rates(path, constraints, settled)
+   subroutine find_statuses_by_rates(path, constraints, found)
       class(contact_path_type), intent(inout) :: path
       type(constraints_type), intent(in) :: constraints
-      logical, intent(out) :: settled
+      logical, intent(out) :: found
       type(constraints_type) :: base
       integer, allocatable :: node(:), sort(:)
       real(wp), allocatable :: matrix(:, :), constant(:), z(:)
       integer :: status(size(path%state%status)), i
       logical :: singular, mask(size(path%state%status))
 
-      settled = .false.
-      if (path%dropping()) return
+      found = .false.
+      if (path%has_over_stress()) return
       if (path%model%scene%friction%acts()) then
          if (.not. path%model%scene%friction%law%is_linear() .or. path%model%scene%friction%law%drops()) return
       end if
@@ -47,8 +47,8 @@ contains
       base%status(node) = merge(node_stick, node_frictionless, path%model%tangential)
       call influence(path, base, node, sort, matrix, constant, singular)
       if (singular) return
-      call lemke(matrix, constant, z, settled)
-      if (.not. settled) return
+      call lemke(matrix, constant, z, found)
+      if (.not. found) return
       status = base%status
       do i = 1, size(node)
          if (.not. z(i) > 0.0_wp) cycle
@@ -58,7 +58,7 @@ contains
       end do
       mask = status /= path%state%status
       call path%set_status(mask, status)
-   end subroutine settle_by_rates
+   end subroutine find_statuses_by_rates
 
    !> The unknowns: node and sort of each.
    subroutine find_undecided(path, node, sort)

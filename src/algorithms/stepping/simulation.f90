@@ -9,18 +9,18 @@ module mfv_simulation
    use mfv_cycle, only: append_cycle, cycle_type, new_turning_point
    use mfv_error, only: error_type
    use mfv_contact_path, only: contact_path_type, new_contact_path, path_position_type, segment_type
-   use mfv_conventional, only: lead_conventionally
+   use mfv_conventional, only: apply_conventionally
    use mfv_error_bar, only: error_estimate_type
    use mfv_kinds, only: wp
-   use mfv_leap, only: lead_by_leaps
-   use mfv_load_way, only: load_way_type
+   use mfv_leap, only: apply_by_large_increments
+   use mfv_load_way, only: load_summary_type
    use mfv_motions, only: motion_count, control_keep, control_force, arm_unit
    use mfv_node_status, only: event_none, event_step_end, event_stopped
    use mfv_observer, only: observer_type
    use mfv_scene
    use mfv_slip_zones, only: leg_start_type, slip_record_type
    use mfv_status, only: MFV_COMPLETE
-   use mfv_straight, only: lead_straight
+   use mfv_straight, only: apply_directly
    use mfv_strings, only: to_text
    implicit none
    private
@@ -65,7 +65,7 @@ module mfv_simulation
       !> What is known of the slip zones of all straight segments so far.
       type(slip_record_type) :: slip
       !> What is known of the steps that were taken, the last one perhaps not to its end.
-      type(load_way_type) :: way
+      type(load_summary_type) :: load_summary
       !> What the loads control now.
       type(load_type) :: load(motion_count) = initial_loads
    end type position_type
@@ -76,7 +76,7 @@ module mfv_simulation
       integer :: status = 0
       character(:), allocatable :: message
       real(wp) :: perturbation = 1.0e-12_wp
-      !> The largest change of a pressure and of a shear traction, in parts of the largest traction; relative change of the
+      !> The largest change of a pressure and of a shear traction, relative to the largest traction; relative change of the
       !> dissipation;
       !> change of the stick ratio between nodes.
       real(wp) :: pressure = 0.0_wp, shear = 0.0_wp, dissipation = 0.0_wp, stick_ratio = 0.0_wp
@@ -114,7 +114,7 @@ module mfv_simulation
       !> See states_reversals and so on.
       integer :: keep_states = states_reversals
       !> Checksums of the way up to the end of every step taken, where something is kept of it; the first `way%steps` are in use.
-      integer(int64), allocatable, private :: trails(:)
+      integer(int64), allocatable, private :: history_checksums(:)
       !> The discretisation error of the present state, where it has been estimated (see mfv_discretisation_error).
       type(error_estimate_type), allocatable :: estimate
       !> How much the present state depends on round-off, where that has been found out (see mfv_sensitivity).
@@ -131,19 +131,19 @@ module mfv_simulation
       procedure :: run_segment
       procedure :: note_restart
       procedure :: resume
-      procedure :: trail
-      procedure :: came_through
+      procedure :: history_checksum
+      procedure :: passed_through
       procedure :: padded_state
       procedure :: padded
       procedure, private :: advance_segment
-      procedure, private :: lead_to
+      procedure, private :: apply_leg
       procedure, private :: begin_segment
       procedure, private :: take_snapshot
       procedure, private :: begin_cycles
       procedure, private :: end_of_leg
       procedure, private :: set_mark
       procedure, private :: change_since
-      procedure, private :: note_trail
+      procedure, private :: note_history_checksum
       procedure, private :: begin_step
       procedure, private :: end_step_early
    end type simulation_type
@@ -233,7 +233,7 @@ contains
       if (allocated(self%sensitivity)) deallocate (self%sensitivity)
       if (self%keep_restart) call self%note_restart()
       if (self%leg%number == 0) call self%begin_step(step)
-      call self%lead_to(step, before, segments, observer, error)
+      call self%apply_leg(step, before, segments, observer, error)
       if (allocated(error)) then
          call self%end_step_early(step, error)
          return
@@ -262,7 +262,7 @@ contains
       self%message = 'step '//to_text(self%steps_done)//' was reached'
       if (step%cycles > cycles) self%message = self%message//', steady after '//to_text(cycles)//' of '// &
                                                to_text(step%cycles)//' cycles'
-      call self%note_trail(step)
+      call self%note_history_checksum(step)
    end subroutine end_step
 
    !> Keep what it takes to continue from here, the start of a segment.
@@ -298,8 +298,8 @@ contains
          self%load = r%load
          self%steps_done = self%scene_steps_done
          do i = 1, self%scene_steps_done
-            call self%way%add(steps(i))
-            call self%note_trail(steps(i))
+            call self%load_summary%add(steps(i))
+            call self%note_history_checksum(steps(i))
          end do
          if (self%scene_steps_done > 0) self%message = 'step '//to_text(self%scene_steps_done)//' was reached'
          if (r%leg > 1) call continue_step(self, steps(self%scene_steps_done + 1), r%leg)
@@ -312,7 +312,7 @@ contains
       type(step_type), intent(in) :: step
       integer, intent(in) :: leg
 
-      call self%way%add(step)
+      call self%load_summary%add(step)
       self%leg%number = leg
       call set_ends(self, step, self%marks(mark_loading)%state)
    end subroutine continue_step
@@ -323,7 +323,7 @@ contains
       type(step_type), intent(in) :: step
       integer :: i
 
-      call self%way%add(step)
+      call self%load_summary%add(step)
       self%leg%number = 1
       do i = 1, motion_count
          if (step%control(i) /= control_keep) call self%contact%begin_motion(i)
@@ -352,11 +352,11 @@ contains
       self%outcome = error%status
       self%message = error%message
       self%failed_step = self%steps_done + 1
-      call self%note_trail(step)
+      call self%note_history_checksum(step)
    end subroutine end_step_early
 
    !> Add the step that has just been taken to the checksum of the way: what it was to do, and where it led.
-   subroutine note_trail(self, step)
+   subroutine note_history_checksum(self, step)
       class(simulation_type), intent(inout) :: self
       type(step_type), intent(in) :: step
       integer, parameter :: first_capacity = 16
@@ -365,42 +365,43 @@ contains
       integer(int8) :: mold(1)
 
       if (self%keep_history == history_none .and. self%keep_states == states_none) return
-      if (.not. allocated(self%trails)) allocate (self%trails(first_capacity), source=0_int64)
-      if (self%way%steps > size(self%trails)) then
-         allocate (longer(2*self%way%steps), source=0_int64)
-         longer(:size(self%trails)) = self%trails
-         call move_alloc(longer, self%trails)
+      if (.not. allocated(self%history_checksums)) allocate (self%history_checksums(first_capacity), source=0_int64)
+      if (self%load_summary%steps > size(self%history_checksums)) then
+         allocate (longer(2*self%load_summary%steps), source=0_int64)
+         longer(:size(self%history_checksums)) = self%history_checksums
+         call move_alloc(longer, self%history_checksums)
       end if
       checksum = 0
-      if (self%way%steps > 1) checksum = self%trails(self%way%steps - 1)
+      if (self%load_summary%steps > 1) checksum = self%history_checksums(self%load_summary%steps - 1)
       call add_to_checksum(transfer([step%control, step%cycles, &
                                      merge(1, 0, step%friction), self%contact%events], mold), checksum)
       associate (f => self%contact%state%fields)
          call add_to_checksum(transfer([step%target, step%steady_tolerance, f%force, f%motion, self%contact%state%dissipation], &
                                        mold), checksum)
       end associate
-      self%trails(self%way%steps) = checksum
-   end subroutine note_trail
+      self%history_checksums(self%load_summary%steps) = checksum
+   end subroutine note_history_checksum
 
    !> The checksum of the way up to now; 0 at its start, and where nothing is kept of it.
-   pure integer(int64) function trail(self)
+   pure integer(int64) function history_checksum(self)
       class(simulation_type), intent(in) :: self
 
-      trail = 0
-      if (allocated(self%trails) .and. self%way%steps > 0) trail = self%trails(self%way%steps)
-   end function trail
+      history_checksum = 0
+      if (allocated(self%history_checksums) .and. self%load_summary%steps > 0) &
+         history_checksum = self%history_checksums(self%load_summary%steps)
+   end function history_checksum
 
    !> Whether the way up to now led through a state after so many steps with this trail; where nothing is kept of it, through any.
-   pure logical function came_through(self, steps, trail)
+   pure logical function passed_through(self, steps, history_checksum)
       class(simulation_type), intent(in) :: self
       integer, intent(in) :: steps
-      integer(int64), intent(in) :: trail
+      integer(int64), intent(in) :: history_checksum
 
-      came_through = self%keep_history == history_none .and. self%keep_states == states_none
-      if (came_through) return
-      came_through = steps <= self%way%steps
-      if (came_through .and. steps > 0) came_through = self%trails(steps) == trail
-   end function came_through
+      passed_through = self%keep_history == history_none .and. self%keep_states == states_none
+      if (passed_through) return
+      passed_through = steps <= self%load_summary%steps
+      if (passed_through .and. steps > 0) passed_through = self%history_checksums(steps) == history_checksum
+   end function passed_through
 
    !> The cycles of a step begin from the present state.
    subroutine begin_cycles(self, cycle)
@@ -447,7 +448,7 @@ contains
       call append_cycle(self%cycles, self%cycle_count, cycle, self%keep_history == history_none)
    end subroutine end_of_leg
 
-   !> Largest change of a traction since the state `before`, on the same mesh, in parts of the largest traction so far.
+   !> Largest change of a traction since the state `before`, on the same mesh, relative to the largest traction so far.
    pure real(wp) function change_since(self, before)
       class(simulation_type), intent(in) :: self
       type(contact_state_type), intent(in) :: before
@@ -491,7 +492,7 @@ contains
    end function start_of
 
    !> Apply the loads of the leg, straight to where it goes.
-   subroutine lead_to(self, step, before, segments, observer, error)
+   subroutine apply_leg(self, step, before, segments, observer, error)
       class(simulation_type), intent(inout) :: self
       type(step_type), intent(in) :: step
       integer, intent(in) :: before, segments
@@ -503,20 +504,20 @@ contains
       call self%begin_segment(targets, step, before, segments)
       associate (method => self%contact%model%scene%method)
          if (method%algorithm == algorithm_conventional) then
-            call lead_conventionally(self%contact, self%leg%segment, observer, error)
+            call apply_conventionally(self%contact, self%leg%segment, observer, error)
          else if (method%stepping == stepping_leap) then
-            call lead_by_leaps(self%contact, self%leg%segment, observer, error)
+            call apply_by_large_increments(self%contact, self%leg%segment, observer, error)
          else
-            call lead_straight(self%contact, self%leg%segment, observer, error)
+            call apply_directly(self%contact, self%leg%segment, observer, error)
          end if
       end associate
       call self%slip%add_leg(self%contact%model, self%leg%start, self%contact%state, self%contact%slip_zone_nodes, &
-                             self%contact%system%noise)
+                             self%contact%system%tolerance)
       self%load%control = targets%control
       self%load%value = targets%value
       if (self%keep_history /= history_none) &
          call self%contact%record(merge(event_stopped, event_step_end, allocated(error)), 0, 0, self%leg%segment%step)
-   end subroutine lead_to
+   end subroutine apply_leg
 
    !> The segment from the present state to `targets`.
    subroutine begin_segment(self, targets, step, before, segments)
