@@ -1,14 +1,14 @@
-!> One increment of the Method of First Violation: with the statuses as they are, the rates, how far they lead, and which
-!> inequalities break there.
+!> One increment of the Method of First Violation at fixed statuses: the rates, the length of the increment, and the inequalities
+!> that are violated at its end.
 !>
-!> `event` stepping has the rates from the linear solve itself. `nominal` stepping is the dissertation's (section 2.3): a
-!> trial load step dL0 is solved, the first violation found by interpolation (2.3 to 2.5) and solved for again, and a wrong
-!> slip direction by bisection. Both lead to the same states; the count of linear solves differs.
+!> `event` stepping obtains the rates from the linear solve itself. `nominal` stepping is that of the dissertation (section 2.3):
+!> it solves a trial load step dL0, finds the first violation by interpolation (2.3 to 2.5), solves again there, and finds a wrong
+!> slip direction by bisection. Both give the same states with different numbers of linear solves.
 !>
-!> Where friction is not linear (Dahl, weakening), a predictor with tangents is followed by a corrector (Newton) until the
-!> lines of friction agree with where they lead: for Dahl's law the implicit midpoint rule, of second order. The difference
-!> of the two over the increment is what a method of first order would err by; the increment is shortened until that is
-!> within `friction_tolerance`, so that the error of the result falls with the tolerance itself.
+!> If friction is not linear (Dahl, weakening), a predictor with tangents is followed by a corrector (Newton) until the friction
+!> lines agree with the end of the increment; for Dahl's law this is the implicit midpoint rule, of second order. The difference of
+!> predictor and corrector estimates a first-order error. The increment is shortened until it is within `friction_tolerance`, so
+!> that the error of the result decreases with the tolerance.
 module mfv_increment
    use mfv_contact_fields, only: contact_fields_type
    use mfv_contact_path, only: contact_path_type
@@ -22,31 +22,32 @@ module mfv_increment
    private
    public :: increment_type, find_increment, no_step_of, tie_of
 
-   !> Steps below this part of the segment are none; steps this much longer than the first, in parts of it, are equal.
+   !> Steps below the first fraction of the segment count as zero; steps longer than the first violation by less than the second
+   !> fraction are tied with it.
    real(wp), parameter :: no_step = 1.0e-13_wp, tie = 1.0e-10_wp
 
    type :: increment_type
       type(response_type) :: response
       type(violations_type) :: violations
-      !> Length in parts of the segment (of the drop); and whether a violation ends it.
+      !> Length as a fraction of the segment (of the stress drop); and whether a violation ends the increment.
       real(wp) :: step = 0.0_wp
-      !> Violations up to this step happen together at its end.
+      !> Violations up to this step occur together at its end.
       real(wp) :: reach = 0.0_wp
       logical :: ends_in_event = .false.
-      !> The linear system has no solution, or the corrector does not converge; the increment is then of no use.
+      !> Whether the linear system is singular, or the corrector diverges; the increment is then invalid.
       logical :: singular = .false., diverges = .false.
    end type increment_type
 
 contains
 
-   !> Steps longer than the first by less than this part of it are equal to it.
+   !> Relative difference of steps below which they are tied.
    pure real(wp) function tie_of(path)
       class(contact_path_type), intent(in) :: path
 
       tie_of = max(tie, path%system%tolerance)
    end function tie_of
 
-   !> Steps below this part of the segment are none: noise of the state that makes small steps, but no more than the tie, for the
+   !> Steps below this fraction of the segment count as zero: the tolerance of the linear solver, but at most the tie, since the
    !> first events of a fine mesh are close to each other.
    pure real(wp) function no_step_of(path)
       class(contact_path_type), intent(in) :: path
@@ -54,9 +55,9 @@ contains
       no_step_of = max(no_step, min(path%system%tolerance, tie))
    end function no_step_of
 
-   !> `constraints`: as contact_path_type%find_constraints leaves them. `left`: what is left of the segment (of the drop: 1).
-   !> `drop`: whether excess tractions are let go at a fixed load. `round_off`: rates below this part of the largest are none.
-   !> `increment`: its storage is used again.
+   !> Find an increment. `constraints`: from contact_path_type%find_constraints. `left`: the rest of the segment (1 in a stress
+   !> drop). `relaxing`: whether over-stress relaxes at a fixed load. `rate_tolerance`: rates below this fraction of the largest
+   !> count as zero. `increment`: its storage is reused.
    subroutine find_increment(path, constraints, left, relaxing, rate_tolerance, increment)
       class(contact_path_type), intent(inout) :: path
       type(constraints_type), intent(in) :: constraints
@@ -81,7 +82,7 @@ contains
       end if
    end subroutine find_increment
 
-   !> Whether the line of some node's friction depends on where it leads.
+   !> Whether the friction line of some node depends on the end of the increment.
    logical function bends(path)
       class(contact_path_type), intent(in) :: path
       integer :: i
@@ -97,12 +98,12 @@ contains
       end associate
    end function bends
 
-   !> Violations by the rates, and the step to the first of them but no further than `longest`.
+   !> Violations from the rates, and the step to the first of them, at most `longest`.
    subroutine search(path, rate_tolerance, longest, increment)
       class(contact_path_type), intent(in) :: path
       real(wp), intent(in) :: rate_tolerance, longest
       type(increment_type), intent(inout) :: increment
-      ! What nothing leads to is this far away, in units of the load parameter: twice as far is a number still.
+      ! A step that is never reached; twice its value does not overflow.
       real(wp), parameter :: never = 0.25_wp*huge(1.0_wp)
       type(friction_event_type), allocatable :: events(:, :)
       real(wp) :: first
@@ -116,7 +117,7 @@ contains
       increment%ends_in_event = first*(1.0_wp - tie_of(path)) - no_step_of(path) <= longest
    end subroutine search
 
-   !> Lead friction that is not linear over an increment with a controlled error, or explicitly.
+   !> Integrate friction that is not linear over an increment, with a controlled error or explicitly.
    subroutine follow_friction(path, constraints, left, relaxing, rate_tolerance, increment)
       class(contact_path_type), intent(inout) :: path
       type(constraints_type), intent(in) :: constraints
@@ -137,7 +138,7 @@ contains
          call search(path, rate_tolerance, min(left, path%model%scene%method%load_step), increment)
          return
       end if
-      ! Of a node that has just touched, tangents know nothing: its part of the limit comes out of the increment itself.
+      ! The tangent is undefined at first contact; the traction follows from the increment itself.
       touched = any(creeps(path%state%status) .and. .not. path%state%fields%pressure > 0.0_wp)
       if (increment%step <= no_step_of(path) .and. .not. touched) return
       if (.not. path%trial > 0.0_wp) path%trial = first_trial
@@ -161,13 +162,13 @@ contains
       end do
       increment%diverges = .not. accepted
       if (increment%step <= no_step_of(path)) return
-      ! An increment that an event cut short says nothing against longer ones.
+      ! An increment cut short by an event is no reason for a shorter next one.
       length = max(length, increment%step)*max(change, least_shrink)
       path%trial = max(length, merge(path%trial, 10*shortest, attempt == 1))
    end subroutine follow_friction
 
-   !> Lines of friction that are right at the end of the increment; a violation on the way shortens it. `agrees`: whether they
-   !> could be found. The rates are those of the straight way to the end.
+   !> Friction lines that are right at the end of the increment; a violation shortens it. `agrees`: whether they were found. The
+   !> rates are those of the straight line from start to end.
    subroutine correct(path, constraints, length, relaxing, rate_tolerance, increment, agrees)
       class(contact_path_type), intent(inout) :: path
       type(constraints_type), intent(in) :: constraints
@@ -202,7 +203,7 @@ contains
       agrees = .false.
    end subroutine correct
 
-   !> Newton's iteration for the fields `after` a step; they come with a guess. `converges`: whether they were found.
+   !> Newton's iteration for the fields `after` a step, which contain a first guess. `converges`: whether it converged.
    subroutine find_end(path, constraints, step, relaxing, after, converges)
       class(contact_path_type), intent(inout) :: path
       type(constraints_type), intent(in) :: constraints
@@ -231,7 +232,7 @@ contains
       end do
    end subroutine find_end
 
-   !> A guess for nodes that creep since they have just touched: half way to the friction limit at the most.
+   !> A guess for creeping nodes that have just touched: at most half the friction limit.
    subroutine guess_touching(path, fields)
       class(contact_path_type), intent(in) :: path
       type(contact_fields_type), intent(inout) :: fields
@@ -241,7 +242,7 @@ contains
          fields%shear = sign(min(abs(fields%shear), half*path%model%static_friction*max(fields%pressure, 0.0_wp)), fields%shear)
    end subroutine guess_touching
 
-   !> How much the tractions of two fields differ, relative to the largest traction so far, there, or `elsewhere`.
+   !> Difference of the tractions of two fields, relative to the largest traction so far, of the second one, or `elsewhere`.
    pure real(wp) function difference(path, one, other, elsewhere)
       class(contact_path_type), intent(in) :: path
       type(contact_fields_type), intent(in) :: one, other
@@ -253,7 +254,7 @@ contains
       if (scale > 0.0_wp) difference = difference/scale
    end function difference
 
-   !> A nominal load step: a trial state, and the first violation on the way to it.
+   !> A nominal load step: a trial state, and the first violation on the line to it.
    subroutine nominal_increment(path, constraints, length, relaxing, rate_tolerance, increment)
       class(contact_path_type), intent(inout) :: path
       type(constraints_type), intent(in) :: constraints
@@ -267,7 +268,7 @@ contains
       call solve_trial(path, constraints, trial, increment)
       if (increment%singular) return
       call search(path, rate_tolerance, trial, increment)
-      ! A slip rate is constant between events: bisection finds that a wrong direction is wrong from the start.
+      ! Slip rates are constant between events: bisection shows whether a wrong direction is wrong from the start.
       do while (increment%step <= no_step_of(path) .and. any(increment%violations%kind == event_stick) .and. &
                 trial > shortest*length)
          trial = 0.5_wp*trial
@@ -279,7 +280,7 @@ contains
       if (increment%step < trial) call solve_trial(path, constraints, increment%step, increment)
    end subroutine nominal_increment
 
-   !> The state after a step with the statuses as they are; the rates are differences.
+   !> The state after a step at fixed statuses; the rates are differences.
    subroutine solve_trial(path, constraints, step, increment)
       class(contact_path_type), intent(inout) :: path
       type(constraints_type), intent(in) :: constraints
@@ -297,7 +298,7 @@ contains
       if (.not. increment%singular) call set_secant_rates(path, increment%response%state, step, increment%response)
    end subroutine solve_trial
 
-   !> The response that leads from the fields now straight to the fields `after` a step.
+   !> Rates of the straight line from the present fields to the fields `after` a step.
    subroutine set_secant_rates(path, after, step, response)
       class(contact_path_type), intent(in) :: path
       type(contact_fields_type), intent(in) :: after

@@ -1,6 +1,6 @@
-!> Segments in which no friction can act need no history: their end depends on the loads alone. They are led there at once, by
-!> the active set (mfv_active_set), and to where the bodies part, or wherever that does not succeed, by events. All others go by
-!> events.
+!> Load segments without friction depend on the final loads alone. They are applied in one large increment with the active set
+!> method (mfv_active_set). The method of events takes over where the bodies separate, and where no solution is found. Segments
+!> with friction are applied by events.
 module mfv_straight
    use mfv_active_set, only: first_guess, find_statuses
    use mfv_contact_fields, only: contact_fields_type
@@ -22,8 +22,8 @@ module mfv_straight
 
 contains
 
-   !> Apply the loads of one segment, straight to its end where no friction can act, else by violations. `observer` is notified of
-   !> the end, or of every increment. Errors: those of mfv_first_violation.
+   !> Apply the loads of a segment: at once if friction does not act, else by violations. `observer` is notified of the end or of
+   !> every increment. Errors: those of mfv_first_violation.
    subroutine apply_directly(path, segment, observer, error)
       class(contact_path_type), intent(inout) :: path
       type(segment_type), intent(in) :: segment
@@ -54,8 +54,8 @@ contains
       call apply_by_violations(path, subsegment(segment, fraction, 1.0_wp), observer, error)
    end subroutine apply_directly
 
-   !> After large increments to the part `part` of the segment: check the certificate, and notify the observer.
-   !> Errors MFV_NO_CONTINUATION: the certificate fails by far; MFV_INTERRUPTED.
+   !> After large increments to the fraction `fraction` of the segment: check the certificate and notify the observer.
+   !> Errors MFV_NO_CONTINUATION: the certificate is far too large; MFV_INTERRUPTED.
    subroutine finish_large_increment(path, segment, fraction, observer, error)
       class(contact_path_type), intent(in) :: path
       type(segment_type), intent(in) :: segment
@@ -69,8 +69,8 @@ contains
       if (.not. allocated(error)) call path%notify(segment, fraction, observer, error)
    end subroutine finish_large_increment
 
-   !> Statuses and fields at a part of the segment, on a mesh that grows with the contact where it may. `settled`: whether they
-   !> were found; the statuses are as they were otherwise. The fields of `path` stay those of the start.
+   !> Statuses and fields at a fraction of the segment, on a mesh that may grow with the contact. `found`: whether there are any;
+   !> otherwise the statuses are unchanged. The fields of `path` remain those of the start.
    subroutine find_statuses_and_grow(path, segment, fraction, fields, found)
       class(contact_path_type), intent(inout) :: path
       type(segment_type), intent(in) :: segment
@@ -91,9 +91,9 @@ contains
       end do
    end subroutine find_statuses_and_grow
 
-   !> Statuses and fields at a part of the segment. The statuses of `path` are the first guess; where nothing is in contact
-   !> there is another. `settled`: whether they were found, on this mesh; if not, the statuses are of no use, and `exceeded`
-   !> tells whether only the mesh is too short. The fields of `path` stay those of the start.
+   !> Statuses and fields at a fraction of the segment, on the present mesh. The first guess is the statuses of `path`, or an
+   !> estimate if nothing is in contact. `found`: whether there are any; if not, the statuses are invalid. `exceeded`: whether only
+   !> the mesh is too short. The fields of `path` remain those of the start.
    subroutine find_statuses_on_mesh(path, segment, fraction, fields, found, exceeded)
       class(contact_path_type), intent(inout) :: path
       type(segment_type), intent(in) :: segment
@@ -108,7 +108,7 @@ contains
       found = found .and. .not. exceeded
    end subroutine find_statuses_on_mesh
 
-   !> Lengthen the mesh, if it may grow. `grown`: whether it did.
+   !> Lengthen the mesh if it may grow. `grown`: whether it did.
    subroutine grow_mesh(path, grown)
       class(contact_path_type), intent(inout) :: path
       logical, intent(out) :: grown
@@ -118,7 +118,7 @@ contains
       if (grown) call path%widen(iteration)
    end subroutine grow_mesh
 
-   !> A first guess of the contact where there is none.
+   !> A first guess of the contact if there is none.
    subroutine guess_contact(path, segment, fraction)
       class(contact_path_type), intent(inout) :: path
       type(segment_type), intent(in) :: segment
@@ -133,8 +133,8 @@ contains
       call path%set_status(contact, status)
    end subroutine guess_contact
 
-   !> How far along the segment the bodies are certainly pressed together: the whole of it unless the normal force falls to
-   !> zero, then up to where little of it is left. (At zero the pressures of any contact are zero.)
+   !> The fraction of the segment up to which the bodies are certainly in contact: all of it unless the normal force decreases to
+   !> zero, then up to a small rest. (At zero force the pressures of any contact are zero.)
    pure real(wp) function before_separation(segment) result(fraction)
       type(segment_type), intent(in) :: segment
       real(wp), parameter :: nothing = 1.0e-9_wp, little = 1.0e-4_wp
@@ -148,8 +148,7 @@ contains
       end associate
    end function before_separation
 
-   !> Whether a force other than the normal one begins to act while the bodies are apart and only draw near: it has nothing to
-   !> carry it until they touch.
+   !> Whether a force other than the normal one acts while the bodies approach without contact, so that nothing balances it yet.
    pure logical function lacks_support(path, segment)
       class(contact_path_type), intent(in) :: path
       type(segment_type), intent(in) :: segment
@@ -167,7 +166,7 @@ contains
       end function acts
    end function lacks_support
 
-   !> The segment from a part `begin` of it to a part `end`.
+   !> The part of a segment from the fraction `begin` to the fraction `end`.
    pure type(segment_type) function subsegment(segment, begin, end) result(fraction)
       type(segment_type), intent(in) :: segment
       real(wp), intent(in) :: begin, end
