@@ -1,18 +1,18 @@
 !> The Method of First Violation (dissertation section 2.3).
 !>
-!> With all statuses fixed everything is linear in the load. One solve gives the state and its rates per unit of load;
-!> the load advances exactly to the first inequality that would break, that node changes its status, and so on. Every
-!> state on the way, not only at the events, satisfies every equality and inequality.
+!> At fixed statuses everything is linear in the load. One solve gives the state and its rates per unit of load. The load advances
+!> exactly to the first inequality that would be violated, that node changes its status, and so on. Every state between events
+!> satisfies every equality and inequality as well.
 !>
-!> At one load several changes can follow each other (a corner of the load path, a node that has just changed): they are
-!> increments of zero length in the same loop. All violations of one moment change together, so that what is symmetric
-!> stays symmetric. The status sets tried at one load are remembered; a repeated one means a cycle: then only the fastest
-!> violation changes at a time, and when that repeats too the rates of all are solved for at once (mfv_rate_problem). Where
-!> even that fails there is no admissible continuation (Klarbring 1990).
+!> Several changes can occur at one load (at a corner of the load history, or after a change of status): they are increments of
+!> zero length in the same loop. All simultaneous violations change together, so that symmetry is preserved. The status sets tried
+!> at one load are stored to detect cycling: then only the fastest violation changes at a time. If the statuses still cycle, the
+!> rates of all nodes are solved for at once (mfv_rate_problem). If that fails too, there is no admissible continuation (Klarbring
+!> 1990).
 !>
-!> Under static and kinetic friction a node that begins to slip has more shear traction than it may keep. The load then
-!> waits while the excess is let go, an internal load with the same search for events: so every state on the way is
-!> admissible, and cascades come out in their order.
+!> Under static and kinetic friction a node that begins to slip has more shear traction than kinetic friction allows. The
+!> over-stress relaxes at a fixed load, as an internal load with the same search for events. Every state of a stress drop is
+!> therefore admissible, and the events of a cascade occur in their order.
 module mfv_first_violation
    use mfv_accumulation, only: pass_accumulation
    use mfv_contact_path
@@ -31,44 +31,44 @@ module mfv_first_violation
    private
    public :: apply_by_violations, failed_certificate, tolerance_factor
 
-   !> So many steps in a row below the tie are no progress.
+   !> Most consecutive steps below the tie.
    integer, parameter :: most_tiny_steps = 200
-   !> So many increments for this part of a segment, and ten a node, are no progress either (stick-slip without end).
+   !> Most increments within `milestone_spacing`, a fraction of a segment, plus ten for each node (endless stick-slip).
    integer, parameter :: most_events = 5000
    real(wp), parameter :: milestone_spacing = 1.0e-5_wp
-   !> After so many increments within that part their events may accumulate at a finite load.
+   !> Increments within that fraction after which events may accumulate at a finite load.
    integer, parameter :: many_events = 100
-   !> So many changes at one load, and one a node, before the rates of all are solved for at once.
+   !> Changes at one load, plus one for each node, before the rates of all nodes are solved for at once.
    integer, parameter :: many_changes = 30
-   !> The rates' round-off where a cycle of statuses suggests that some of them are noise.
+   !> Tolerance of rates after cycling, which suggests that some of them are round-off.
    real(wp), parameter :: larger_rate_tolerance = 1.0e-9_wp
-   !> The shortest increment worth trying, in parts of a segment.
+   !> The shortest trial increment, as a fraction of a segment.
    real(wp), parameter :: shortest_trial = 1.0e-8_wp
-   !> A certificate beyond this is no result.
+   !> A state with a larger certificate is rejected.
    real(wp), parameter :: failed_certificate = 1.0e-6_wp
-   !> A jump of the tractions beyond this, relative to the largest, is no continuation.
+   !> The largest admissible jump of the tractions, relative to the largest traction.
    real(wp), parameter :: largest_jump = 1.0e-6_wp
-   !> Neither is less than so many times the linear solver's noise.
+   !> Both are at least this factor times the tolerance of the linear solver.
    real(wp), parameter :: tolerance_factor = 1.0e3_wp
 
-   !> Where on a segment the load is.
+   !> Progress in a segment.
    type :: progress_type
-      !> The part of the segment that is done; whether the last increment had a length, and whether it has reached the end.
+      !> Fraction of the segment that is done; whether the last increment had a length, and whether it has reached the end.
       real(wp) :: done = 0.0_wp
       logical :: moved = .false., at_end = .false.
-      !> The load now, and the increment from there.
+      !> The iteration at the present load, and the increment from there.
       type(iteration_type) :: iteration
       type(increment_type) :: increment
-      !> Whether the load advances: increments without a length in a row, tiny ones in a row, increments since the last milestone.
+      !> Consecutive increments of zero length, consecutive tiny ones, and increments since the last milestone.
       integer :: standing = 0, tiny = 0, since = 0
       real(wp) :: milestone = 0.0_wp
    end type progress_type
 
 contains
 
-   !> Apply the loads of one segment. `observer` is notified of every increment; and where one load takes long, because the mesh
-   !> grows (under an absurd force, far) or statuses change often.
-   !> Errors, each leaving the last admissible state in place: MFV_GROSS_SLIDING, MFV_SEPARATED, MFV_NO_CONTINUATION,
+   !> Apply the loads of a segment. `observer` is notified of every increment, and also while the mesh grows or statuses change at
+   !> one load.
+   !> Errors, each with the last admissible state left in place: MFV_GROSS_SLIDING, MFV_SEPARATED, MFV_NO_CONTINUATION,
    !> MFV_MESH_EXCEEDED, MFV_INADMISSIBLE_STEP, MFV_INTERRUPTED.
    subroutine apply_by_violations(path, segment, observer, error)
       class(contact_path_type), intent(inout) :: path
@@ -100,8 +100,8 @@ contains
       end do
    end subroutine apply_by_violations
 
-   !> With the statuses as they are, the next increment, and the way to its end. Where it has no length (not `progress%moved`) only
-   !> statuses are to change. Errors as apply_by_violations.
+   !> Find the next increment at fixed statuses and take it. If its length is zero (`progress%moved` is false), only statuses
+   !> change. Errors as apply_by_violations.
    subroutine make_increment(path, segment, progress, constraints, error)
       class(contact_path_type), intent(inout) :: path
       type(segment_type), intent(in) :: segment
@@ -161,8 +161,8 @@ contains
       end if
    end subroutine make_increment
 
-   !> The shortest step at the end of a segment. Where the normal force falls to zero, what is left of it can be round-off of
-   !> the largest so far: no contact is told from another by that, and the load goes to the end.
+   !> The shortest step at the end of a segment. Where the normal force decreases to zero, its rest can be round-off of the largest
+   !> force so far; the load then advances to the end.
    pure real(wp) function last_step(path, segment)
       class(contact_path_type), intent(in) :: path
       type(segment_type), intent(in) :: segment
@@ -177,7 +177,7 @@ contains
       end associate
    end function last_step
 
-   !> Whether the increment could be found. `found`: it was; else nodes have been let snap, and it is to be found again.
+   !> Check that the increment was found. If `found` is false, stress drops have begun and the increment is to be found again.
    !> Error MFV_NO_CONTINUATION.
    subroutine look_for_solution(path, progress, found, error)
       class(contact_path_type), intent(inout) :: path
@@ -198,9 +198,10 @@ contains
       if (.not. dropped) call path%no_continuation('the equations of friction have no solution nearby', error)
    end subroutine look_for_solution
 
-   !> Take a step of the load (of the drop) with the rates of the increment, and check it; the increment's state goes along.
-   !> Errors MFV_NO_CONTINUATION: the statuses would make the tractions jump, or the certificate fails by far (loads out of
-   !> all proportion, for example).
+   !> Take a step of the load (of the stress drop) with the rates of the increment, and check it; the state of the increment is
+   !> updated.
+   !> Errors MFV_NO_CONTINUATION: the statuses would make the tractions jump, or the certificate is far too large (for example
+   !> under extreme loads).
    subroutine advance(path, increment, relaxing, error)
       class(contact_path_type), intent(inout) :: path
       type(increment_type), intent(inout) :: increment
@@ -230,8 +231,8 @@ contains
                                    to_text(path%certificate%largest())//')', error)
    end subroutine advance
 
-   !> Change the statuses of the nodes whose inequalities break first, together.
-   !> Errors MFV_NO_CONTINUATION: every way out has been tried at this load; MFV_MESH_EXCEEDED.
+   !> Change the statuses of the nodes whose inequalities are violated first, together.
+   !> Errors MFV_NO_CONTINUATION: all alternatives have been tried at this load; MFV_MESH_EXCEEDED.
    subroutine change_statuses(path, segment, done, increment, iteration, error)
       class(contact_path_type), intent(inout) :: path
       type(segment_type), intent(in) :: segment
@@ -239,22 +240,22 @@ contains
       type(increment_type), intent(in) :: increment
       type(iteration_type), intent(inout) :: iteration
       type(error_type), allocatable, intent(out) :: error
-      logical :: changing(size(path%state%status)), dropped, passed
+      logical :: changing(size(path%state%status)), dropped, found, passed
       integer :: fastest
 
       call drop_if_unstable(path, increment, iteration, dropped)
       if (dropped) return
       if (was_tried(iteration, path%state%status)) then
          if (path%trial > shortest_trial) then
-            ! Over a shorter increment friction that is not linear may have rates that agree.
+            ! Nonlinear friction may have consistent rates over a shorter increment.
             path%trial = 0.1_wp*path%trial
             iteration%tries = 0
             return
          end if
          if (iteration%one_at_a_time .and. iteration%rate_tolerance >= larger_rate_tolerance) then
             if (.not. iteration%solved) then
-               call find_statuses_at_once(path, segment, done, dropped)
-               if (dropped) then
+               call find_statuses_at_once(path, segment, done, found)
+               if (found) then
                   call renew(iteration, iteration%event, iteration%node, iteration%count)
                   iteration%solved = .true.
                   return
@@ -266,8 +267,8 @@ contains
                iteration%dropped = .true.
                return
             end if
-            call path%no_continuation('no set of statuses has consistent rates; node '// &
-                                      to_text(maxloc(increment%violations%speed, dim=1))//' cannot decide', error)
+            call path%no_continuation('no consistent status for node '// &
+                                      to_text(maxloc(increment%violations%speed, dim=1)), error)
             return
          end if
          iteration%one_at_a_time = iteration%rate_tolerance >= larger_rate_tolerance
@@ -288,13 +289,13 @@ contains
                                                      path%model%tangential, path%state%slip_direction, &
                                                      path%holding(increment%response%rate%slip())))
          call pass_law_events(path, violations%kind, changing, passed)
-         ! Friction remembers something else, statuses are as they were: what was tried says nothing any more.
+         ! The memory of friction has changed: statuses tried before may be consistent now.
          if (passed) iteration%tries = 0
       end associate
       call path%keep_on_mesh(iteration, error)
    end subroutine change_statuses
 
-   !> Events of the friction law's own at the nodes of `changing`. `passed`: whether there are any that change no status.
+   !> Pass events of the friction law to the nodes of `changing`. `passed`: whether there are any that change no status.
    subroutine pass_law_events(path, kind, changing, passed)
       class(contact_path_type), intent(inout) :: path
       integer, intent(in) :: kind(:)
@@ -311,7 +312,7 @@ contains
       end do
    end subroutine pass_law_events
 
-   !> Statuses of all undecided nodes at once. `settled`: whether they were found.
+   !> Statuses of all undecided nodes at once. `found`: whether there are any.
    subroutine find_statuses_at_once(path, segment, done, found)
       class(contact_path_type), intent(inout) :: path
       type(segment_type), intent(in) :: segment
@@ -324,9 +325,8 @@ contains
       call find_statuses_by_rates(path, constraints, found)
    end subroutine find_statuses_at_once
 
-   !> Where a slipping node that may become unstable would turn back, it either comes to rest or the bodies can no longer unload as
-   !> fast
-   !> as its friction falls. Let it snap, once at each load: one that need not is caught again at once, and comes to rest.
+   !> Begin a stress drop, once at each load, at nodes that may be unstable and would slip back: they either stick, or the bodies
+   !> cannot unload as fast as friction decreases. A stress drop that is not needed ends at once, and the node sticks.
    subroutine drop_if_unstable(path, increment, iteration, dropped)
       class(contact_path_type), intent(inout) :: path
       type(increment_type), intent(in) :: increment
@@ -343,7 +343,7 @@ contains
       iteration%dropped = .true.
    end subroutine drop_if_unstable
 
-   !> Begin a new moment, in the storage there is; what changed first, where told.
+   !> Begin the iteration at a new load, in the same storage; optionally with the first change.
    pure subroutine renew(iteration, event, node, number)
       type(iteration_type), intent(inout) :: iteration
       integer, intent(in), optional :: event, node, number
@@ -372,7 +372,7 @@ contains
       if (was_tried) was_tried = is_among(status, iteration%tried(:, :iteration%tries))
    end function was_tried
 
-   !> Note that `status` has been tried; with a new number of nodes what was noted is of no use.
+   !> Note that `status` has been tried; earlier notes with another number of nodes are discarded.
    pure subroutine remember(iteration, status)
       type(iteration_type), intent(inout) :: iteration
       integer, intent(in) :: status(:)

@@ -1,17 +1,17 @@
-!> Large increments (`stepping='leap'`): a part of a load segment at once, as an integrator would take it.
+!> Large increments (`stepping='leap'`): load segments in a few implicit steps instead of event by event.
 !>
-!> A large increment holds stuck nodes at the slip that they have at its start, and asks at its end alone that every equality
-!> and inequality of dissertation Table 2.1 holds, slip counted from start to end (mfv_active_set): backward Euler. An interval
-!> is taken in one increment, then in 2, 4, 8, ... (a chain), until tractions and dissipation no longer change by more than
-!> half of `leap_tolerance`: tractions of the largest so far, dissipation of that of the interval itself, so that every leg of
-!> every cycle meets it. Where nodes slip one way only under constant pressures, one increment is exact (Mindlin).
+!> In a large increment stuck nodes hold at the slip of its start, and every equality and inequality of dissertation Table 2.1 is
+!> satisfied at its end only, with slip counted from start to end (mfv_active_set): backward Euler. An interval is divided into 1,
+!> 2, 4, 8, ... equal increments (a chain) until tractions and dissipation change by at most half of `leap_tolerance`: tractions
+!> relative to the largest so far, dissipation relative to that of the interval, so that every leg of every cycle meets the
+!> tolerance. If nodes slip one way only under constant pressures, one increment is exact (Mindlin).
 !>
-!> Tractions err at first order where the path matters: a node that touches on the way holds at about the slip that it then had,
-!> and a node that slips and sticks again within an increment is taken never to have slipped. Dissipation: see
+!> Tractions that depend on the path have an error of first order: a node that touches during an increment holds at an estimate of
+!> its slip at first contact, and a node that slips and sticks again within an increment is treated as stuck. Dissipation: see
 !> mfv_chain_dissipation.
 !>
-!> An interval that would take more solves than it has events goes by events (mfv_first_violation), which are exact; so gross
-!> sliding, separation and the like end as they do there. Of large increments the certificate checks the ends.
+!> An interval that would take more solves than it has events is applied by events (mfv_first_violation), which are exact; gross
+!> sliding and separation are therefore found there. The certificate checks large increments at their ends only.
 module mfv_leap
    use mfv_chain_dissipation, only: chain_dissipation, node_wise_dissipation
    use mfv_compliance, only: block_up, block_wt
@@ -31,50 +31,49 @@ module mfv_leap
    private
    public :: apply_by_large_increments
 
-   !> An interval shorter than this part of a segment is not divided for want of statuses.
+   !> An interval shorter than this fraction of a segment is not divided where no statuses are found.
    real(wp), parameter :: shortest = 0.2_wp
-   !> Increments of an interval at most.
+   !> Most increments of an interval.
    integer, parameter :: most_increments = 64
-   !> Linear solves of event stepping per node that changes its status; less, since it can update the inverse from solve to
-   !> solve, and an increment cannot.
+   !> Linear solves of event stepping per change of status. Less than one, since event stepping can update the inverse from solve
+   !> to solve, and a large increment cannot.
    real(wp), parameter :: solves_per_change = 0.6_wp
-   !> Those of an increment among many.
+   !> Linear solves of an increment in a long chain.
    real(wp), parameter :: solves_per_increment = 3.0_wp
-   !> What differences may be, in parts of the tolerance: the error of the finer chain is about as large as its difference from
-   !> one half as fine.
+   !> Allowed difference relative to the tolerance: the error of a chain is about its difference from one with half as many
+   !> increments.
    real(wp), parameter :: safety = 0.5_wp
 
-   !> Where on a segment the load is, in parts of the segment: what is done, how far large increments go, and the length of the next
-   !> interval. `by_violations`: whether events lead on from there.
+   !> Progress in a segment, as fractions of it: what is done, the goal of large increments, and the length of the next interval.
+   !> `by_violations`: whether that interval is applied by events.
    type :: progress_type
       real(wp) :: done = 0.0_wp, goal = 0.0_wp, length = 0.0_wp
       logical :: by_violations = .false.
    end type progress_type
 
-   !> An interval in equal increments.
+   !> An interval divided into equal increments.
    type :: chain_type
       integer :: increments = 0
-      !> States before each increment, with the statuses on the way; fields after it; shape (parts).
+      !> States before each increment, with the statuses of that increment; fields after it; shape (increments).
       type(contact_state_type), allocatable :: before(:)
       type(contact_fields_type), allocatable :: after(:)
-      !> What friction dissipates in each, force/length, shape (nodes, parts).
+      !> Friction dissipation of each increment, force/length, shape (nodes, increments).
       real(wp), allocatable :: friction_work(:, :)
-      !> Whether the statuses were found; if not, whether only the mesh was too short for them.
+      !> Whether the statuses were found; if not, whether only the mesh was too short.
       logical :: found = .false., exceeded = .false.
-      !> Linear solves, and nodes that changed their status where event stepping would have changed them one by one.
+      !> Linear solves, and changes of status that event stepping would make one by one.
       integer :: solves = 0, changes = 0
-      !> Estimated errors: of the tractions at the end (force/length^2), of what friction dissipates (force); and that, and the
-      !> largest traction.
+      !> Estimated errors of the final tractions, force/length^2, and of the dissipation, force; the dissipation, force, and the
+      !> largest traction, force/length^2.
       real(wp) :: traction_error = 0.0_wp, work_error = 0.0_wp, work = 0.0_wp, traction = 0.0_wp
-      !> What of the latter is by the corners that the dissipation has as a function of the load: one where a node changes its
-      !> status, force.
+      !> Error of the dissipation due to its corners as a function of the load, one for each change of status; force.
       real(wp) :: corner_error = 0.0_wp
    end type chain_type
 
 contains
 
-   !> Apply the loads of one segment by large increments. `observer` is notified of every interval.
-   !> Errors, each leaving the last admissible state in place: those of mfv_first_violation.
+   !> Apply the loads of a segment by large increments. `observer` is notified of every interval.
+   !> Errors, each with the last admissible state left in place: those of mfv_first_violation.
    subroutine apply_by_large_increments(path, segment, observer, error)
       class(contact_path_type), intent(inout) :: path
       type(segment_type), intent(in) :: segment
@@ -101,8 +100,7 @@ contains
       if (progress%goal < 1.0_wp) call apply_by_violations(path, subsegment(segment, progress%goal, 1.0_wp), observer, error)
    end subroutine apply_by_large_increments
 
-   !> Try the next interval, and take it where it is right; else a shorter one is next, or events lead on
-   !> (`progress%by_violations`).
+   !> Try the next interval. If it is not accurate, it is shortened or applied by events (`progress%by_violations`).
    subroutine try_large_increments(path, segment, progress, observer, error)
       class(contact_path_type), intent(inout) :: path
       type(segment_type), intent(in) :: segment
@@ -131,7 +129,7 @@ contains
       end associate
    end subroutine try_large_increments
 
-   !> Go by events where large increments do not lead on, or would cost more.
+   !> Apply the next interval by events.
    subroutine continue_by_violations(path, segment, progress, observer, error)
       class(contact_path_type), intent(inout) :: path
       type(segment_type), intent(in) :: segment
@@ -148,9 +146,9 @@ contains
       end associate
    end subroutine continue_by_violations
 
-   !> The interval from the fraction `done` of the segment as far as `length`, in chains of more and more increments, up to the first
-   !> that is right. `accepted`: whether there is one, at fewer solves than event stepping would take; `chain`: it, or the last
-   !> one. `path` stays as it is.
+   !> The interval of the given `length` from the fraction `done` of the segment, in chains of more and more increments.
+   !> `accepted`: whether one is accurate with fewer solves than event stepping; `chain`: that one, or the last. `path` is
+   !> unchanged.
    subroutine refine(path, segment, done, length, chain, accepted)
       class(contact_path_type), intent(inout) :: path
       type(segment_type), intent(in) :: segment
@@ -178,8 +176,8 @@ contains
       end do
    end subroutine refine
 
-   !> Whether a chain is right to the tolerance; if not, how many increments the next one has, 0: too many.
-   !> `traction`: the largest so far.
+   !> Whether a chain meets the tolerance; if not, the number of increments of the next one, 0: too many. `traction`: the largest
+   !> so far.
    pure subroutine choose(tolerance, traction, chain, accepted, increments)
       real(wp), intent(in) :: tolerance, traction
       type(chain_type), intent(in) :: chain
@@ -203,9 +201,8 @@ contains
       if (increments > most_increments .or. solves_per_increment*increments > solves_per_change*chain%changes) increments = 0
    end subroutine choose
 
-   !> Whether nodes that slip over the last increment of a chain would slip back at its end: they have come to rest on the way,
-   !> which
-   !> no chain sees. Where the pressures stay there are none.
+   !> Whether nodes that slip in the last increment would slip back at its end: they have stuck within the increment, which no
+   !> chain resolves. This does not occur under constant pressures.
    logical function turns_back(path, segment, chain)
       class(contact_path_type), intent(inout) :: path
       type(segment_type), intent(in) :: segment
@@ -232,8 +229,8 @@ contains
       end associate
    end function turns_back
 
-   !> An interval in `parts` equal increments. `coarser`: a chain of the same interval, for a first guess of the statuses.
-   !> `path` stays as it is.
+   !> An interval in a number of equal `increments`. `coarser`: a chain of the same interval, for a first guess of the statuses.
+   !> `path` is unchanged.
    subroutine make_chain(path, segment, done, length, increments, chain, coarser)
       class(contact_path_type), intent(inout) :: path
       type(segment_type), intent(in) :: segment
@@ -266,8 +263,8 @@ contains
 
    contains
 
-      !> How far the first i increments reach: where contact begins, evenly in its width for a parabola, whose load grows with the
-      !> square of that.
+      !> Fraction of the interval after i increments. If contact begins, increments are even in the contact width, which for a
+      !> parabola grows with the square root of the load.
       pure real(wp) function reached(i)
          integer, intent(in) :: i
 
@@ -276,7 +273,7 @@ contains
       end function reached
    end subroutine make_chain
 
-   !> Where increment `i` of `parts` ends as one of a coarser chain does, begin with the statuses there.
+   !> If increment `i` ends where one of a coarser chain does, start from the statuses there.
    subroutine guess_from(path, coarser, i, increments)
       class(contact_path_type), intent(inout) :: path
       type(chain_type), intent(in) :: coarser
@@ -288,15 +285,15 @@ contains
       end associate
    end subroutine guess_from
 
-   !> How many nodes change their status one by one (those that stick as a load is reversed do so all at once).
+   !> Number of nodes that change their status one by one (at a reversal of the load all slipping nodes stick at once).
    pure integer function count_changes(before, after)
       integer, intent(in) :: before(:), after(:)
 
       count_changes = count(before /= after .and. .not. (slips(before) .and. after == node_stick))
    end function count_changes
 
-   !> What the finer of two chains errs by: its tractions at the end at first order; what it dissipates, see
-   !> mfv_chain_dissipation. What it dissipates is put down to the nodes.
+   !> Errors of the finer of two chains: tractions at first order, dissipation by mfv_chain_dissipation, which is distributed over
+   !> the nodes.
    subroutine compare(path, coarser, finer)
       class(contact_path_type), intent(in) :: path
       type(chain_type), intent(in) :: coarser
@@ -322,10 +319,10 @@ contains
          finer%work = node_wise
          finer%work_error = node_wise_error
       else
-         ! Three states can agree with a straight line by chance: then with the other formula too, or on to more of them.
+         ! Three states can agree with a straight line by chance; then the two formulas must agree as well.
          if (finer%increments == 2) finer%work_error = max(finer%work_error, abs(finer%work - node_wise))
          stride = finer%increments/coarser%increments
-         ! The same formula on either chain: what the path makes of it.
+         ! The same formula for both chains: the error due to the path.
          call chain_dissipation(path%model, finer%before(1)%fields, coarser%after, 1, one, unused, unused_too)
          call chain_dissipation(path%model, finer%before(1)%fields, &
                                 finer%after(stride::stride), 1, other, unused, unused_too)
@@ -335,10 +332,9 @@ contains
       end if
    end subroutine compare
 
-   !> A first guess of who slips at the part `part` of the segment: where the tangential load changes, nodes slip with it.
-   !> Where the normal load does not change, nor the pressures with it, and the tangential force does, as many as slip in
-   !> Mindlin's contact of cylinders: the edge of the stick zone is there where the pressure is sqrt(Q/(mu P)) of the largest;
-   !> after a reversal with half the change in place of Q.
+   !> A first guess of the slipping nodes at a fraction of the segment: they slip in the direction of the tangential load. Under
+   !> constant pressures and tangential force control their number is that of Mindlin's contact of cylinders: the edge of the stick
+   !> zone is where the pressure is sqrt(Q/(mu P)) of the largest; after a reversal, with half the change in place of Q.
    subroutine guess_slip(path, segment, fraction)
       class(contact_path_type), intent(inout) :: path
       type(segment_type), intent(in) :: segment
@@ -365,8 +361,8 @@ contains
       call path%set_status(in_contact(path%state%status), status)
    end subroutine guess_slip
 
-   !> Whether pressing without coupling, tangential load or shear is all that an increment to the fields `after` does: no path
-   !> matters.
+   !> Whether an increment to the fields `after` is pure pressing without coupling, tangential load or shear, which does not depend
+   !> on the path.
    logical function moves_nothing(path, segment, after)
       class(contact_path_type), intent(in) :: path
       type(segment_type), intent(in) :: segment
@@ -383,7 +379,7 @@ contains
                       <= max(nothing, path%system%tolerance)*max(path%certificate%traction_scale(), maxval(abs(after%pressure)))
    end function moves_nothing
 
-   !> Go where the chain leads.
+   !> Accept the increments of a chain.
    subroutine accept_chain(path, chain)
       class(contact_path_type), intent(inout) :: path
       type(chain_type), intent(in) :: chain
