@@ -10,13 +10,13 @@ module mfv_contact_fields
    type :: contact_fields_type
       !> Pressure p >= 0 and shear traction tau on the lower body (positive to the right), force/length^2, shape (nodes).
       real(wp), allocatable :: pressure(:), shear(:)
-      !> Displacements of the surfaces against each other but for approach and shift, length, shape (nodes): how far the
-      !> surfaces draw apart, w of both bodies into themselves, and how far the lower one moves to the right of the upper
-      !> one, u of the lower less u of the upper. What the upper body's rotation does is in them.
+      !> Relative displacements of the surfaces except for approach and shift, length, shape (nodes). Normal: separation, the sum
+      !> of w of both bodies, each positive into the body. Tangential: u of the lower less u of the upper body, to the right. Both
+      !> include the effect of the rotation of the upper body.
       real(wp), allocatable :: normal(:), tangential(:)
       !> Motions of the upper body (mfv_motions): approach (down) and shift (right), length; rotation (counterclockwise), radians.
       real(wp) :: motion(motion_count) = 0.0_wp
-      !> Their forces, of the upper on the lower body per unit thickness: P (down) and Q (right), force/length; moment M
+      !> Forces of these motions, of the upper on the lower body per unit thickness: P (down) and Q (right), force/length; moment M
       !> (counterclockwise) about the centre of rotation, force.
       real(wp) :: force(motion_count) = 0.0_wp
    contains
@@ -49,7 +49,7 @@ contains
       call total%move(step, rate)
    end function plus
 
-   !> Become equal to `other`, in the storage there is.
+   !> Copy `other`, reusing storage.
    pure subroutine take(self, other)
       class(contact_fields_type), intent(inout) :: self
       type(contact_fields_type), intent(in) :: other
@@ -62,7 +62,7 @@ contains
       self%force = other%force
    end subroutine take
 
-   !> Become zero for `nodes` nodes, in the storage there is.
+   !> Set all fields to zero for `nodes` nodes, reusing storage.
    pure subroutine clear(self, nodes)
       class(contact_fields_type), intent(inout) :: self
       integer, intent(in) :: nodes
