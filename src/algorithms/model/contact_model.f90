@@ -479,7 +479,7 @@ contains
    end function slid
 
    !> Increase of the gap per unit of rotation, length, shape (nodes). A contact that has rolled by s has the gap g(arc - s), up to
-   !> a constant that the approach balances. For a parabola g = K arc^2/2 the change is -K s arc: the arm is the arc length. For
+   !> a constant that the approach compensates. For a parabola g = K arc^2/2 the change is -K s arc: the arm is the arc length. For
    !> other gaps, g = K arc^2/2 (1 + b arc^2), the arm arc + 2 b arc^3/3 keeps the least gap at s, to fourth order; the relative
    !> error of the curvature there is 2 b s^2 (see rolling_error).
    pure function rolling_arm(self) result(arm)

@@ -204,8 +204,8 @@ contains
       if (radius > 0.0_wp) x = radius*sin(arc/radius)
    end function x_of_arc
 
-   !> Whether both bodies have a surface at an arc length (length) from the origin of x: on a circle not beyond 90 degrees; with radial
-   !> normals, where the hole's radius meets the disk.
+   !> Whether both bodies have a surface at an arc length (length) from the origin of x: on a circle up to 90 degrees; with radial
+   !> normals, where the radius of the hole meets the disk.
    elemental logical function touchable(self, arc)
       class(scene_type), intent(in) :: self
       real(wp), intent(in) :: arc

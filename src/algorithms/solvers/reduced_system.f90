@@ -1,20 +1,20 @@
-!> The reduced system: unknowns are the pressures of the nodes in contact, the shear tractions of those that friction holds or
-!> brakes, and the rigid motions, all others eliminated from dissertation eq. 2.2.
+!> The reduced system: unknowns are the pressures of the nodes in contact, the shear tractions of those that stick, slip or creep,
+!> and the rigid motions; all others are eliminated from dissertation eq. 2.2.
 !>
-!> With every node in contact taken to be stuck its matrix is
+!> If every node in contact is taken to stick, its matrix is
 !>
 !>     [  C   -N ]
-!>     [ -N'   0 ],    C the compliance between these nodes, N what the rigid motions do to gap and slip,
+!>     [ -N'   0 ],    C the compliance between these nodes, N the effect of rigid motions on gap and slip,
 !>
-!> symmetric by reciprocity (tractions times the nodes' widths, where these differ). Its inverse is kept, and changed where
-!> nodes come into contact or leave it. What slips, creeps or is led by displacements is a constraint with an unknown slip or
-!> force (mfv_constrained_inverse); so a node that begins or ceases to slip costs as many operations as a few vectors have
-!> entries, and a reversal, where all stick again, nothing. The residuals of all rows are checked after every solve with the
-!> full compliance; where they are too large the solution is refined, and where that does not help the inverse is computed anew.
+!> symmetric by reciprocity (for tractions times the widths of the nodes, where these differ). Its inverse is stored, and updated
+!> when nodes enter or leave the contact. Slipping and creeping nodes and displacement control are constraints with an unknown slip
+!> or force (mfv_constrained_inverse). A node that begins or ceases to slip then costs a few vector operations, and a reversal,
+!> where all nodes stick again, nothing. The residuals of all rows are checked after every solve with the full compliance. If they
+!> are too large, the solution is refined; if that fails, the inverse is recomputed.
 !>
-!> Without the effect of shear on the normal problem (Goodman's coupling, none, no friction) the two problems are solved one
-!> after the other, each with an inverse of its own. Goodman's coupling with rotation or radial normals is not symmetric: there
-!> the augmented system takes over.
+!> Without the effect of shear on the normal problem (Goodman's coupling, none, no friction) the two problems are solved one after
+!> the other, each with its own inverse. Goodman's coupling with rotation or radial normals is not symmetric and uses the augmented
+!> system.
 module mfv_reduced_system
    use mfv_augmented_system, only: augmented_system_type
    use mfv_compliance, only: block_up, block_ut, block_wp, block_wt
@@ -29,43 +29,43 @@ module mfv_reduced_system
    private
    public :: reduced_system_type
 
-   !> What an unknown is: of a node, or of the upper body.
+   !> Types of unknowns: of a node, or of the upper body.
    integer, parameter :: a_pressure = 1, a_shear = 2, a_motion = 3
 
-   !> A part of the system that is solved on its own.
+   !> A subsystem that is solved independently.
    type :: subsystem_type
       type(constrained_inverse_type) :: system
-      !> Sort of every unknown, and its node or motion; shape (capacity), the first `unknowns` are in use.
+      !> Type of every unknown, and its node or motion; shape (capacity), the first `unknowns` are in use.
       integer :: unknowns = 0
       integer, allocatable :: sort(:), of(:)
       !> Right side and solution of the rows, and values of the constraints.
       real(wp), allocatable :: right(:), solution(:), values(:)
    end type subsystem_type
 
-   !> Magnitudes that what is missing is measured by: normal and tangential displacements, length; tractions, force/length^2;
-   !> all forces and tangential ones, force/length.
+   !> Magnitudes for relative residuals: normal and tangential displacements, length; tractions, force/length^2; all forces and
+   !> tangential ones, force/length.
    type :: scales_type
       real(wp) :: normal = 1.0_wp, tangential = 1.0_wp, traction = 1.0_wp, force = 1.0_wp, shear_force = 1.0_wp
    end type scales_type
 
    type, extends(contact_system_type) :: reduced_system_type
       private
-      !> Normal and tangential problem where they are apart, else both in the first.
+      !> Normal and tangential problem if uncoupled, else both in the first.
       type(subsystem_type) :: subsystem(2)
       logical :: apart = .false.
-      !> Where the unknowns of nodes and motions are in their part, by sort; and the constraints of their shear tractions and
-      !> of the motions; 0: nowhere, none. Shape (at least nodes and motion_count, sorts).
+      !> Positions of the unknowns of nodes and motions in their subsystem, by type; and numbers of the constraints of their shear
+      !> tractions and of the motions; 0: none. Shape (at least nodes and motion_count, types).
       integer, allocatable :: place(:, :), constraint_of(:, :)
-      !> Nodes that they are for; 0: they are of no use.
+      !> Number of nodes that these are for; 0: invalid.
       integer :: nodes = 0
-      !> What is prescribed of the fields that are solved for.
+      !> Prescribed values of the fields that are solved for.
       type(prescribed_type) :: prescribed
-      !> Unit of length: half the mesh when the first unknown came; it stays while the mesh grows.
+      !> Unit of length: half the length of the initial mesh; it does not change when the mesh grows.
       real(wp) :: length = 1.0_wp
-      !> What the inverses were built for.
+      !> Blocks and motions of the present inverses.
       logical :: block(4) = .false., moves(motion_count) = .false.
       type(augmented_system_type) :: augmented
-      !> How often a solution was refined.
+      !> Number of refinements.
       integer, public :: refinements = 0
    contains
       procedure :: solve
@@ -74,7 +74,7 @@ module mfv_reduced_system
 
 contains
 
-   !> How often inverses were computed anew.
+   !> Number of recomputed inverses.
    pure integer function rebuilds(self)
       class(reduced_system_type), intent(in) :: self
 
@@ -98,12 +98,12 @@ contains
       end if
       call match(self, model)
       call respond(self, model, constraints, start, .false., response, singular)
-      ! The inverse may have lost its digits: once more with a new one.
+      ! The inverse may be inaccurate: repeat with a new one.
       if (singular .and. .not. undetermined(self, model, constraints)) &
          call respond(self, model, constraints, start, .true., response, singular)
    end subroutine solve
 
-   !> State and rates. `anew`: with the inverse computed anew.
+   !> State and rates. `anew`: whether to recompute the inverse.
    subroutine respond(self, model, constraints, start, anew, response, singular)
       class(reduced_system_type), intent(inout) :: self
       type(contact_model_type), intent(in) :: model
@@ -124,7 +124,7 @@ contains
       call refine(self, model, constraints, .true., response%rate, singular)
    end subroutine respond
 
-   !> Whether a force is prescribed where nothing answers to it: without contact, or a moment on one node.
+   !> Whether a force is prescribed that nothing balances: without contact, or a moment on one node.
    pure logical function undetermined(self, model, constraints)
       class(reduced_system_type), intent(in) :: self
       type(contact_model_type), intent(in) :: model
@@ -135,8 +135,7 @@ contains
                            constraints%load(i)%control == control_force, i=1, motion_count)])
    end function undetermined
 
-   !> Forget what belongs to other blocks, or to a scene without rotation; follow the nodes where the mesh has grown. (An object
-   !> serves one model.)
+   !> Reset the system for other blocks or motions; renumber the nodes if the mesh has grown. (An object serves one model.)
    subroutine match(self, model)
       class(reduced_system_type), intent(inout) :: self
       type(contact_model_type), intent(in) :: model
@@ -185,7 +184,7 @@ contains
       end do
    end subroutine match
 
-   !> The part that an unknown of some sort belongs to.
+   !> The subsystem of an unknown.
    pure integer function subsystem_of(self, sort, number)
       class(reduced_system_type), intent(in) :: self
       integer, intent(in) :: sort, number
@@ -195,7 +194,7 @@ contains
       if (sort == a_shear .or. (sort == a_motion .and. number == motion_shift)) subsystem_of = 2
    end function subsystem_of
 
-   !> Bring unknowns and constraints to the statuses and controls of `constraints`. `anew`: compute the inverse anew.
+   !> Update unknowns and constraints to the statuses and controls of `constraints`. `anew`: whether to recompute the inverse.
    subroutine follow(self, model, constraints, anew, singular)
       class(reduced_system_type), intent(inout) :: self
       type(contact_model_type), intent(in) :: model
@@ -212,7 +211,7 @@ contains
       wanted(:self%nodes, a_shear) = has_shear(constraints%status)
       wanted(motion_approach, a_motion) = any(wanted(:, a_pressure))
       wanted(motion_shift, a_motion) = any(wanted(:, a_shear))
-      ! What only slides, a rotation where normals are along the radius, nothing but friction determines.
+      ! A motion that only slides (a rotation with radial normals) is determined by friction alone.
       do i = 1, motion_count
          if (motions(i)%optional .and. model%moves(i)) &
             wanted(i, a_motion) = count(wanted(:, a_pressure)) > 1 .and. (wanted(motion_shift, a_motion) .or. model%lifts(i))
@@ -226,7 +225,7 @@ contains
       if (.not. singular) call set_constraints(self, model, constraints)
    end subroutine follow
 
-   !> Release what is no longer constrained, or no longer there.
+   !> Remove constraints that no longer apply.
    subroutine lose_constraints(self, constraints, wanted)
       class(reduced_system_type), intent(inout) :: self
       type(constraints_type), intent(in) :: constraints
@@ -248,7 +247,7 @@ contains
       end do
    end subroutine lose_constraints
 
-   !> Add and remove unknowns one by one, or all of them anew where that is less work.
+   !> Add and remove unknowns one by one, or recompute all if that is less work.
    subroutine change_unknowns(self, model, wanted, singular)
       class(reduced_system_type), intent(inout) :: self
       type(contact_model_type), intent(in) :: model
@@ -266,7 +265,7 @@ contains
       end do
       if (all(changes <= max(few, self%subsystem%unknowns/2))) then
          call remove_unknowns(self, a_motion, wanted, singular)
-         ! What is added comes first: with little contact left in between the matrix would have no inverse.
+         ! Add first: with little contact in between the matrix would be singular.
          do subsystem = 1, 2
             if (.not. singular) call add_unknowns(self, model, subsystem, wanted, singular)
          end do
@@ -281,7 +280,7 @@ contains
       call rebuild(self, model, wanted, singular)
    end subroutine change_unknowns
 
-   !> Lose the unknowns of a sort that are no longer wanted, unless something is `singular` already.
+   !> Remove the unknowns of a type that are no longer wanted, unless already `singular`.
    subroutine remove_unknowns(self, sort, wanted, singular)
       class(reduced_system_type), intent(inout) :: self
       integer, intent(in) :: sort
@@ -295,7 +294,7 @@ contains
       end do
    end subroutine remove_unknowns
 
-   !> The unknowns of nodes that a part lacks.
+   !> Add the missing unknowns of nodes of a subsystem.
    subroutine add_unknowns(self, model, p, wanted, singular)
       class(reduced_system_type), intent(inout) :: self
       type(contact_model_type), intent(in) :: model
@@ -315,7 +314,7 @@ contains
       if (size(new_of) > 0) call add_named(self, model, p, new_sort, new_of, singular)
    end subroutine add_unknowns
 
-   !> More unknowns of a part: their sorts and nodes or motions.
+   !> Add unknowns to a subsystem: their types and nodes or motions.
    subroutine add_named(self, model, p, new_sort, new_of, singular)
       class(reduced_system_type), intent(inout) :: self
       type(contact_model_type), intent(in) :: model
@@ -334,7 +333,7 @@ contains
       call self%subsystem(p)%system%add_unknowns(borders, singular)
    end subroutine add_named
 
-   !> One more name in the list of the unknowns of its part.
+   !> Append an unknown to the list of its subsystem.
    subroutine enlist(self, sort, number)
       class(reduced_system_type), intent(inout) :: self
       integer, intent(in) :: sort, number
@@ -356,7 +355,7 @@ contains
       end associate
    end subroutine enlist
 
-   !> One unknown less; the last of the part takes its place.
+   !> Remove an unknown; the last one of the subsystem takes its place.
    subroutine remove_unknown(self, sort, number, singular)
       class(reduced_system_type), intent(inout) :: self
       integer, intent(in) :: sort, number
@@ -376,7 +375,7 @@ contains
       self%place(number, sort) = 0
    end subroutine remove_unknown
 
-   !> All unknowns anew, without constraints.
+   !> Recompute the inverses for all unknowns, without constraints.
    subroutine rebuild(self, model, wanted, singular)
       class(reduced_system_type), intent(inout) :: self
       type(contact_model_type), intent(in) :: model
@@ -406,21 +405,21 @@ contains
             deallocate (matrix)
          end associate
          if (.not. singular) cycle
-         ! Nothing is left of it: the next solve begins again.
+         ! Invalid: the next solve starts over.
          self%nodes = 0
          return
       end do
    end subroutine rebuild
 
-   !> Entries of the rows of a part in the column of one unknown, in units of the compliance's modulus and the mesh's length; shape
-   !> (unknowns).
+   !> Entries of the rows of a subsystem in the column of one unknown, in units of the modulus of the compliance and the length of
+   !> the mesh; shape (unknowns).
    subroutine entries_of(model, length, subsystem, column_sort, column_of, entries)
       type(contact_model_type), intent(in) :: model
       real(wp), intent(in) :: length
       type(subsystem_type), intent(in) :: subsystem
       integer, intent(in) :: column_sort, column_of
       real(wp), intent(out) :: entries(:)
-      !> Displacement of the row's sort by a traction of the column's.
+      !> Displacement of the type of the row by a traction of the type of the column.
       integer, parameter :: block(2, 2) = reshape([block_wp, block_up, block_wt, block_ut], [2, 2])
       real(wp) :: unit, block_entries(size(entries), 1)
       integer, allocatable :: at(:)
@@ -450,7 +449,7 @@ contains
       end associate
    end subroutine entries_of
 
-   !> Constraints of the nodes that slip or creep, and of the motions that are held.
+   !> Set the constraints of slipping and creeping nodes and of motions under displacement control.
    subroutine set_constraints(self, model, constraints)
       class(reduced_system_type), intent(inout) :: self
       type(contact_model_type), intent(in) :: model
@@ -468,7 +467,7 @@ contains
                if (c == 0) then
                   call system%constrain(self%place(i, a_shear), partner, slope, stiffness)
                   c = system%constraints
-                  ! Apart, the slope comes in with the known pressure.
+                  ! Uncoupled, the slope multiplies the known pressure.
                else if ((partner > 0 .and. abs(system%constraint(c)%slope - slope) > 0.0_wp) .or. &
                         abs(system%constraint(c)%stiffness - stiffness) > 0.0_wp) then
                   call system%change_constraint(c, slope, stiffness)
@@ -486,7 +485,7 @@ contains
       end do
    end subroutine set_constraints
 
-   !> Lose a constraint of part `p`; the last one takes its place.
+   !> Remove a constraint of subsystem `p`; the last one takes its place.
    subroutine release(self, p, number)
       class(reduced_system_type), intent(inout) :: self
       integer, intent(in) :: p, number
@@ -502,8 +501,8 @@ contains
       end associate
    end subroutine release
 
-   !> Correct the fields until they satisfy the constraints, or (`rates`) their rates; they come with a guess. `singular`: that
-   !> cannot be done.
+   !> Correct the fields, which contain a first guess, until they satisfy the constraints, or (`rates`) their rates. `singular`:
+   !> not possible.
    subroutine refine(self, model, constraints, rates, fields, singular)
       class(reduced_system_type), intent(inout) :: self
       type(contact_model_type), intent(in) :: model
@@ -525,7 +524,7 @@ contains
       call set_known_motions(self, model, fields)
       if (.not. rates) call open_up(self, model, fields)
       do pass = 1, most_passes
-         ! Rates begin at rest: nothing to measure by yet.
+         ! Rates start from zero: there is no scale yet.
          at_rest = rates .and. pass == 1
          if (.not. at_rest) then
             call find_scales(model, fields, first, scales)
@@ -548,7 +547,7 @@ contains
       end do
    end subroutine refine
 
-   !> Motions that are not among the unknowns, with what they do to the displacements.
+   !> Set the motions that are not unknowns, with their effect on the displacements.
    subroutine set_known_motions(self, model, fields)
       class(reduced_system_type), intent(in) :: self
       type(contact_model_type), intent(in) :: model
@@ -568,7 +567,7 @@ contains
       end associate
    end subroutine set_known_motions
 
-   !> No tractions on nodes without unknowns.
+   !> Set the tractions of nodes without unknowns to zero.
    subroutine open_up(self, model, fields)
       class(reduced_system_type), intent(in) :: self
       type(contact_model_type), intent(in) :: model
@@ -594,8 +593,8 @@ contains
       call model%displace(fields)
    end subroutine open_up
 
-   !> What is missing in every row and constraint, in their units, as right sides for a correction; and the largest of them, in
-   !> parts of the magnitude of their sort.
+   !> Residuals of all rows and constraints, in their units, as right sides for a correction; and the largest of them, relative to
+   !> the magnitude of its type.
    subroutine find_residual(self, model, constraints, fields, scales, largest)
       class(reduced_system_type), intent(inout) :: self
       type(contact_model_type), intent(in) :: model
@@ -639,10 +638,10 @@ contains
                   slip_rest = max(slip_rest, abs(missing))
                   subsystem%right(i) = missing*by_length
                else
-                  missing = missing_shear(self, constraints, fields, node)
+                  missing = shear_residual(self, constraints, fields, node)
                   stiffness = abs(constraints%row(node)%stiffness)
                   if (stiffness > 0.0_wp) then
-                     ! Its slip is known as well as that of a stuck node.
+                     ! Its slip is as accurate as that of a stuck node.
                      largest = max(largest, abs(missing)/max(scales%traction, stiffness*scales%tangential))
                   else
                      traction_rest = max(traction_rest, abs(missing))
@@ -656,8 +655,8 @@ contains
       largest = max(largest, gap_rest/scales%normal, slip_rest/scales%tangential, traction_rest/scales%traction)
    end subroutine find_residual
 
-   !> Magnitudes of the fields. Where these become zero, or bodies only slide on each other, what is left is round-off and no
-   !> measure: magnitudes count as at least a very small part of the `first` ones, and of what displacements could bring.
+   !> Magnitudes of the fields. Fields that vanish consist of round-off: magnitudes are at least a very small fraction of the
+   !> `first` ones, and of those that the displacements imply.
    pure subroutine find_scales(model, fields, first, scales)
       type(contact_model_type), intent(in) :: model
       type(contact_fields_type), intent(in) :: fields
@@ -690,7 +689,7 @@ contains
       scales = scales_type(normal, tangential, traction, max(force, shear_force), shear_force)
    end subroutine find_scales
 
-   !> A magnitude over its scale, or the largest real where that is less: of a load on a contact that carries nothing yet.
+   !> A magnitude relative to its scale, or the largest real if the quotient would overflow (a load on an empty contact).
    pure real(wp) function relative(magnitude, scale)
       real(wp), intent(in) :: magnitude, scale
 
@@ -698,22 +697,22 @@ contains
       if (magnitude < min(scale, 1.0_wp)*huge(1.0_wp)) relative = magnitude/scale
    end function relative
 
-   !> What is missing to the shear traction of a slipping or creeping node.
-   pure real(wp) function missing_shear(self, constraints, fields, node)
+   !> Residual of the shear traction of a slipping or creeping node.
+   pure real(wp) function shear_residual(self, constraints, fields, node)
       class(reduced_system_type), intent(in) :: self
       type(constraints_type), intent(in) :: constraints
       type(contact_fields_type), intent(in) :: fields
       integer, intent(in) :: node
 
       associate (row => constraints%row(node))
-         missing_shear = row%slope*fields%pressure(node) - fields%shear(node)
+         shear_residual = row%slope*fields%pressure(node) - fields%shear(node)
          if (abs(row%stiffness) > 0.0_wp) &
-            missing_shear = missing_shear + row%stiffness*(fields%tangential(node) - fields%motion(motion_shift))
-         missing_shear = missing_shear + self%prescribed%offset(node)
+            shear_residual = shear_residual + row%stiffness*(fields%tangential(node) - fields%motion(motion_shift))
+         shear_residual = shear_residual + self%prescribed%offset(node)
       end associate
-   end function missing_shear
+   end function shear_residual
 
-   !> Solve for a correction by the residuals found, and apply it.
+   !> Solve for a correction from the residuals, and apply it.
    subroutine correct(self, model, constraints, scales, fields, singular)
       class(reduced_system_type), intent(inout) :: self
       type(contact_model_type), intent(in) :: model
@@ -741,7 +740,7 @@ contains
       end do
    end subroutine correct
 
-   !> Add the solution of a part to the fields; tractions of slipping nodes are what their lines say.
+   !> Add the solution of a subsystem to the fields; shear tractions of slipping nodes follow from their lines.
    subroutine apply(self, model, constraints, p, fields)
       class(reduced_system_type), intent(in) :: self
       type(contact_model_type), intent(in) :: model
@@ -766,7 +765,7 @@ contains
       if (p /= subsystem_of(self, a_shear, 0)) return
       do i = 1, self%nodes
          if (self%constraint_of(i, a_shear) == 0 .or. abs(constraints%row(i)%stiffness) > 0.0_wp) cycle
-         fields%shear(i) = fields%shear(i) + missing_shear(self, constraints, fields, i)
+         fields%shear(i) = fields%shear(i) + shear_residual(self, constraints, fields, i)
       end do
    end subroutine apply
 

@@ -596,7 +596,7 @@ contains
             constraints%row(i) = self%model%scene%friction%law%row(self%state%status(i), here, there)
          end if
          if (relaxing) constraints%offset_rate(i) = slip_sign(self%state%status(i)) &
-                                                *self%model%scene%friction%law%release_rate(self%state%memory(:, i))
+                                                    *self%model%scene%friction%law%release_rate(self%state%memory(:, i))
       end do
    end subroutine set_rows
 
