@@ -32,7 +32,7 @@ module mfv_friction_dahl
       procedure :: set_parameter
       procedure :: is_linear => never
       procedure :: sticks => never
-      procedure :: bends
+      procedure :: depends_on_end
       procedure :: has_events
       procedure :: limit_fraction
       procedure :: has_soft_limit
@@ -82,13 +82,13 @@ contains
       never = .false.
    end function never
 
-   pure logical function bends(self, status, point)
+   pure logical function depends_on_end(self, status, point)
       class(dahl_law_type), intent(in) :: self
       integer, intent(in) :: status
       type(friction_point_type), intent(in) :: point
 
-      bends = creeps(status)
-   end function bends
+      depends_on_end = creeps(status)
+   end function depends_on_end
 
    pure logical function has_events(self)
       class(dahl_law_type), intent(in) :: self

@@ -61,7 +61,7 @@ module mfv_friction_law
       procedure :: sticks
       procedure :: drops
       procedure :: converges
-      procedure :: bends
+      procedure :: depends_on_end
       procedure :: has_memory
       procedure :: has_events
       !> Lines and limits.
@@ -182,13 +182,13 @@ contains
    end function converges
 
    !> Whether the line of a node depends on the end of the increment.
-   pure logical function bends(self, status, point)
+   pure logical function depends_on_end(self, status, point)
       class(friction_law_type), intent(in) :: self
       integer, intent(in) :: status
       type(friction_point_type), intent(in) :: point
 
-      bends = .false.
-   end function bends
+      depends_on_end = .false.
+   end function depends_on_end
 
    !> Whether it has memory.
    pure logical function has_memory(self)

@@ -26,7 +26,7 @@ module mfv_friction_weakening
       procedure :: parameters
       procedure :: set_parameter
       procedure :: is_linear
-      procedure :: bends
+      procedure :: depends_on_end
       procedure :: row
       procedure :: strength
       procedure :: secant
@@ -71,13 +71,13 @@ contains
       is_linear = .false.
    end function is_linear
 
-   pure logical function bends(self, status, point)
+   pure logical function depends_on_end(self, status, point)
       class(weakening_law_type), intent(in) :: self
       integer, intent(in) :: status
       type(friction_point_type), intent(in) :: point
 
-      bends = slips(status) .and. self%room(point) < huge(1.0_wp)
-   end function bends
+      depends_on_end = slips(status) .and. self%room(point) < huge(1.0_wp)
+   end function depends_on_end
 
    pure function row(self, status, before, after)
       class(weakening_law_type), intent(in) :: self

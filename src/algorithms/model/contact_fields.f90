@@ -21,7 +21,7 @@ module mfv_contact_fields
       real(wp) :: force(motion_count) = 0.0_wp
    contains
       procedure :: plus
-      procedure :: take
+      procedure :: copy_from
       procedure :: clear
       procedure :: move
       procedure :: slip
@@ -45,12 +45,12 @@ contains
       type(contact_fields_type), intent(in) :: rate
       type(contact_fields_type) :: total
 
-      call total%take(self)
+      call total%copy_from(self)
       call total%move(step, rate)
    end function plus
 
    !> Copy `other`, reusing storage.
-   pure subroutine take(self, other)
+   pure subroutine copy_from(self, other)
       class(contact_fields_type), intent(inout) :: self
       type(contact_fields_type), intent(in) :: other
 
@@ -60,7 +60,7 @@ contains
       self%tangential = other%tangential
       self%motion = other%motion
       self%force = other%force
-   end subroutine take
+   end subroutine copy_from
 
    !> Set all fields to zero for `nodes` nodes, reusing storage.
    pure subroutine clear(self, nodes)
@@ -78,7 +78,7 @@ contains
             return
          end if
       end if
-      call self%take(new_contact_fields(nodes))
+      call self%copy_from(new_contact_fields(nodes))
    end subroutine clear
 
    !> self = self + step*rate.

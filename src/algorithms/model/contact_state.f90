@@ -25,7 +25,7 @@ module mfv_contact_state
       real(wp), allocatable :: friction_work(:)
    contains
       procedure :: set_status
-      procedure :: take
+      procedure :: copy_from
       procedure :: friction_point
       procedure :: widen
       procedure :: contact_nodes
@@ -67,18 +67,18 @@ contains
    end subroutine set_status
 
    !> Copy `other`, reusing storage.
-   pure subroutine take(self, other)
+   pure subroutine copy_from(self, other)
       class(contact_state_type), intent(inout) :: self
       type(contact_state_type), intent(in) :: other
 
-      call self%fields%take(other%fields)
+      call self%fields%copy_from(other%fields)
       self%status = other%status
       self%stuck_slip = other%stuck_slip
       self%slip_direction = other%slip_direction
       self%memory = other%memory
       self%dissipation = other%dissipation
       self%friction_work = other%friction_work
-   end subroutine take
+   end subroutine copy_from
 
    !> State of node `node` for a friction law, with the given fields and coefficients of friction.
    pure function friction_point(self, fields, node, static, kinetic) result(point)

@@ -71,7 +71,7 @@ contains
          call self%inverse%add_prepared(singular)
          if (singular) return
          self%columns(self%inverse%order, :self%constraints) = 0.0_wp
-         call follow_change(self, self%inverse%order)
+         call apply_change(self, self%inverse%order)
       end do
    end subroutine add_unknowns
 
@@ -85,7 +85,7 @@ contains
       last = self%inverse%order
       call self%inverse%remove(row, singular)
       if (singular) return
-      call follow_change(self, last)
+      call apply_change(self, last)
       associate (k => self%constraints)
          if (k == 0) return
          self%columns(row, :k) = self%columns(last, :k)
@@ -95,7 +95,7 @@ contains
    end subroutine remove_unknown
 
    !> Apply the last change of the inverse, of `rows` rows, to the columns and to S.
-   subroutine follow_change(self, rows)
+   subroutine apply_change(self, rows)
       class(constrained_inverse_type), intent(inout) :: self
       integer, intent(in) :: rows
       real(wp), dimension(self%constraints) :: left, right, by_left, by_right
@@ -116,7 +116,7 @@ contains
          if (self%stale) return
          call dger(k, k, -weight/pivot, by_left, 1, by_right, 1, self%small, size(self%small, 1))
       end associate
-   end subroutine follow_change
+   end subroutine apply_change
 
    !> x(slot) - slope x(partner) of every constraint.
    pure function functional(self, x) result(values)

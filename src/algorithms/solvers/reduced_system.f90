@@ -103,21 +103,21 @@ contains
          call respond(self, model, constraints, start, .true., response, singular)
    end subroutine solve
 
-   !> State and rates. `anew`: whether to recompute the inverse.
-   subroutine respond(self, model, constraints, start, anew, response, singular)
+   !> State and rates. `recompute`: whether to recompute the inverse.
+   subroutine respond(self, model, constraints, start, recompute, response, singular)
       class(reduced_system_type), intent(inout) :: self
       type(contact_model_type), intent(in) :: model
       type(constraints_type), intent(in) :: constraints
       type(contact_fields_type), intent(in) :: start
-      logical, intent(in) :: anew
+      logical, intent(in) :: recompute
       type(response_type), intent(inout) :: response
       logical, intent(out) :: singular
 
-      if (anew) call match(self, model)
-      call follow(self, model, constraints, anew, singular)
+      if (recompute) call match(self, model)
+      call follow(self, model, constraints, recompute, singular)
       if (.not. singular) singular = undetermined(self, model, constraints)
       if (singular) return
-      call response%state%take(start)
+      call response%state%copy_from(start)
       call refine(self, model, constraints, .false., response%state, singular)
       if (singular) return
       call response%rate%clear(size(constraints%status))
@@ -194,12 +194,12 @@ contains
       if (sort == a_shear .or. (sort == a_motion .and. number == motion_shift)) subsystem_of = 2
    end function subsystem_of
 
-   !> Update unknowns and constraints to the statuses and controls of `constraints`. `anew`: whether to recompute the inverse.
-   subroutine follow(self, model, constraints, anew, singular)
+   !> Update unknowns and constraints to the statuses and controls of `constraints`. `recompute`: whether to recompute the inverse.
+   subroutine follow(self, model, constraints, recompute, singular)
       class(reduced_system_type), intent(inout) :: self
       type(contact_model_type), intent(in) :: model
       type(constraints_type), intent(in) :: constraints
-      logical, intent(in) :: anew
+      logical, intent(in) :: recompute
       logical, intent(out) :: singular
       logical, parameter :: touches(0:6) = [.false., .true., .true., .true., .true., .true., .true.], &
                             has_shear(0:6) = [.false., .true., .true., .true., .false., .true., .true.]
@@ -216,8 +216,8 @@ contains
          if (motions(i)%optional .and. model%moves(i)) &
             wanted(i, a_motion) = count(wanted(:, a_pressure)) > 1 .and. (wanted(motion_shift, a_motion) .or. model%lifts(i))
       end do
-      call lose_constraints(self, constraints, wanted)
-      if (anew) then
+      call remove_constraints(self, constraints, wanted)
+      if (recompute) then
          call rebuild(self, model, wanted, singular)
       else
          call change_unknowns(self, model, wanted, singular)
@@ -226,7 +226,7 @@ contains
    end subroutine follow
 
    !> Remove constraints that no longer apply.
-   subroutine lose_constraints(self, constraints, wanted)
+   subroutine remove_constraints(self, constraints, wanted)
       class(reduced_system_type), intent(inout) :: self
       type(constraints_type), intent(in) :: constraints
       logical, intent(in) :: wanted(:, :)
@@ -245,7 +245,7 @@ contains
          if (constraints%load(i)%control /= control_force .and. wanted(i, a_motion)) cycle
          call release(self, subsystem_of(self, a_motion, i), self%constraint_of(i, a_motion))
       end do
-   end subroutine lose_constraints
+   end subroutine remove_constraints
 
    !> Add and remove unknowns one by one, or recompute all if that is less work.
    subroutine change_unknowns(self, model, wanted, singular)
@@ -522,7 +522,7 @@ contains
       fine = merge(5.0e-14_wp, 1.0e-14_wp, rates)
       call find_prescribed(constraints, model, rates, self%prescribed)
       call set_known_motions(self, model, fields)
-      if (.not. rates) call open_up(self, model, fields)
+      if (.not. rates) call clear_open_nodes(self, model, fields)
       do pass = 1, most_passes
          ! Rates start from zero: there is no scale yet.
          at_rest = rates .and. pass == 1
@@ -568,7 +568,7 @@ contains
    end subroutine set_known_motions
 
    !> Set the tractions of nodes without unknowns to zero.
-   subroutine open_up(self, model, fields)
+   subroutine clear_open_nodes(self, model, fields)
       class(reduced_system_type), intent(in) :: self
       type(contact_model_type), intent(in) :: model
       type(contact_fields_type), intent(inout) :: fields
@@ -591,7 +591,7 @@ contains
       end do
       if (largest <= nothing*scale) return
       call model%displace(fields)
-   end subroutine open_up
+   end subroutine clear_open_nodes
 
    !> Residuals of all rows and constraints, in their units, as right sides for a correction; and the largest of them, relative to
    !> the magnitude of its type.

@@ -24,7 +24,7 @@ module mfv_contact_path
    use mfv_strings, only: to_text
    implicit none
    private
-   public :: contact_path_type, path_position_type, kept_path_type, new_contact_path, segment_type, iteration_type, note_change, &
+   public :: contact_path_type, path_position_type, saved_path_type, new_contact_path, segment_type, iteration_type, note_change, &
              first_true
 
    !> A load segment: a linear change of the controlled loads.
@@ -66,15 +66,15 @@ module mfv_contact_path
       real(wp), private :: start_force = 0.0_wp, start_shift = 0.0_wp
       !> Dissipation at the start of the segment, force.
       real(wp), private :: start_dissipation = 0.0_wp
-      logical, private :: awaits_increment = .false.
+      logical, private :: first_stiffness_pending = .false.
    contains
       procedure :: copy_without_history
-      procedure :: keep
-      procedure :: come_back
+      procedure :: save_to
+      procedure :: restore
       procedure :: resume
       procedure :: notify
       procedure, private :: model_as
-      procedure :: await_increment
+      procedure :: reset_first_stiffness
       procedure :: begin_motion
       procedure :: record
       procedure :: start_segment
@@ -94,7 +94,7 @@ module mfv_contact_path
       procedure :: holding
       procedure :: take_increment
       procedure :: record_changes
-      procedure :: keep_on_mesh
+      procedure :: extend_mesh_if_reached
       procedure :: widen
       procedure :: no_continuation
       procedure :: end_here
@@ -103,13 +103,13 @@ module mfv_contact_path
    end type contact_path_type
 
    !> A saved position, with the sizes of the history and the mesh and the modelled problem at that time.
-   type :: kept_path_type
+   type :: saved_path_type
       private
       type(path_position_type) :: position
       class(contact_system_type), allocatable :: system
       integer :: records = 0, added = 0
       logical :: tangential = .false., moves(motion_count) = .false.
-   end type kept_path_type
+   end type saved_path_type
 
    !> The iteration of statuses at one load.
    type :: iteration_type
@@ -155,33 +155,33 @@ contains
    end subroutine copy_without_history
 
    !> Save the state of the contact between two segments.
-   subroutine keep(self, kept)
+   subroutine save_to(self, saved)
       class(contact_path_type), intent(in) :: self
-      type(kept_path_type), intent(inout) :: kept
+      type(saved_path_type), intent(inout) :: saved
 
-      kept%position = self%path_position_type
+      saved%position = self%path_position_type
       ! Explicit deallocation: gfortran 12 leaks a polymorphic component on assignment.
-      if (allocated(kept%system)) deallocate (kept%system)
-      allocate (kept%system, source=self%system)
-      kept%records = self%history%records
-      kept%added = self%model%added
-      kept%tangential = self%model%tangential
-      kept%moves = self%model%moves
-   end subroutine keep
+      if (allocated(saved%system)) deallocate (saved%system)
+      allocate (saved%system, source=self%system)
+      saved%records = self%history%records
+      saved%added = self%model%added
+      saved%tangential = self%model%tangential
+      saved%moves = self%model%moves
+   end subroutine save_to
 
    !> Restore a saved state of this contact, or of one with the same scene. Later history records are dropped. The model is rebuilt
    !> if its mesh or problem has changed since.
-   subroutine come_back(self, kept)
+   subroutine restore(self, saved)
       class(contact_path_type), intent(inout) :: self
-      type(kept_path_type), intent(in) :: kept
+      type(saved_path_type), intent(in) :: saved
 
-      call self%history%move_nodes(kept%added - self%model%added)
-      call self%model_as(kept%added, kept%tangential, kept%moves)
-      self%path_position_type = kept%position
+      call self%history%move_nodes(saved%added - self%model%added)
+      call self%model_as(saved%added, saved%tangential, saved%moves)
+      self%path_position_type = saved%position
       deallocate (self%system)
-      allocate (self%system, source=kept%system)
-      self%history%records = min(kept%records, self%history%records)
-   end subroutine come_back
+      allocate (self%system, source=saved%system)
+      self%history%records = min(saved%records, self%history%records)
+   end subroutine restore
 
    !> Rebuild the model, if necessary, with `added` nodes at either end and with the given problems and motions.
    subroutine model_as(self, added, tangential, moves)
@@ -228,7 +228,7 @@ contains
    end subroutine notify
 
    !> Start to determine first_stiffness and slip_zone_nodes of a new segment.
-   subroutine await_increment(self)
+   subroutine reset_first_stiffness(self)
       class(contact_path_type), intent(inout) :: self
 
       self%first_stiffness = ieee_value(1.0_wp, ieee_quiet_nan)
@@ -236,9 +236,9 @@ contains
       self%start_shift = self%state%fields%motion(motion_shift)
       self%start_dissipation = self%state%dissipation
       self%slip_zone_nodes = 0
-      self%awaits_increment = self%model%scene%method%algorithm == algorithm_mfv .and. &
-                              self%model%scene%method%stepping /= stepping_leap
-   end subroutine await_increment
+      self%first_stiffness_pending = self%model%scene%method%algorithm == algorithm_mfv .and. &
+                                     self%model%scene%method%stepping /= stepping_leap
+   end subroutine reset_first_stiffness
 
    !> Set first_stiffness once the tangential force has changed by more than round-off. It is undefined for a held shift.
    subroutine find_first_stiffness(self)
@@ -249,7 +249,7 @@ contains
       force = self%state%fields%force(motion_shift) - self%start_force
       shift = self%state%fields%motion(motion_shift) - self%start_shift
       if (.not. abs(force) > visible*self%model%friction_scale*self%state%fields%force(motion_approach)) return
-      self%awaits_increment = .false.
+      self%first_stiffness_pending = .false.
       if (abs(force) < self%model%largest_stiffness()*abs(shift)) self%first_stiffness = force/shift
    end subroutine find_first_stiffness
 
@@ -656,9 +656,9 @@ contains
       real(wp) :: loss, part, fastest
       integer :: i
 
-      call self%before%take(self%state)
+      call self%before%copy_from(self%state)
       call remember_slip(self, after, dropped)
-      call self%state%fields%take(after)
+      call self%state%fields%copy_from(after)
       do i = 1, motion_count
          if (.not. self%model%moves(i)) self%state%fields%force(i) = self%model%resultant(i, after%pressure, after%shear)
       end do
@@ -683,7 +683,7 @@ contains
          if (abs(slip_rate(i)) > moving*fastest) self%state%slip_direction(i) = merge(1, -1, slip_rate(i) > 0.0_wp)
       end do
       call self%certificate%check_increment(self%model, self%before, self%state, present(friction_work))
-      if (self%awaits_increment) call find_first_stiffness(self)
+      if (self%first_stiffness_pending) call find_first_stiffness(self)
       call note_slip_zones(self)
       if (.not. self%model%moves(motion_rotation) .or. dropped > 0.0_wp) return
       associate (before => self%before%fields)
@@ -726,7 +726,7 @@ contains
    end subroutine remember_slip
 
    !> Lengthen the mesh if the contact has reached its end. Error MFV_MESH_EXCEEDED: it may not grow.
-   subroutine keep_on_mesh(self, iteration, error)
+   subroutine extend_mesh_if_reached(self, iteration, error)
       class(contact_path_type), intent(inout) :: self
       type(iteration_type), intent(inout) :: iteration
       type(error_type), allocatable, intent(out) :: error
@@ -738,7 +738,7 @@ contains
          call self%end_here(MFV_MESH_EXCEEDED, 'the contact reached the end of the mesh, '// &
                             to_text(self%model%length())//' from the origin of x', error)
       end if
-   end subroutine keep_on_mesh
+   end subroutine extend_mesh_if_reached
 
    !> Lengthen the mesh by a quarter on either side.
    subroutine widen(self, iteration)

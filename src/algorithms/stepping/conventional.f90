@@ -86,7 +86,7 @@ contains
       n = size(path%state%status)
       start = path%state%status
       call touch(path, segment, done, touched)
-      if (touched) call path%keep_on_mesh(iteration, error)
+      if (touched) call path%extend_mesh_if_reached(iteration, error)
       if (allocated(error)) return
       again = size(path%state%status) /= n
       if (again) return
@@ -117,7 +117,7 @@ contains
                                ' repairs at one load; last repaired: node '//to_text(repair%node), error)
             return
          end if
-         call path%keep_on_mesh(iteration, error)
+         call path%extend_mesh_if_reached(iteration, error)
          again = size(path%state%status) /= n
          if (again .or. allocated(error)) return
       end do

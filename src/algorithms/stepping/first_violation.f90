@@ -31,7 +31,7 @@ module mfv_first_violation
    private
    public :: apply_by_violations, failed_certificate, tolerance_factor
 
-   !> Most consecutive steps below the tie.
+   !> Most consecutive steps below the tie tolerance.
    integer, parameter :: most_tiny_steps = 200
    !> Most increments within `milestone_spacing`, a fraction of a segment, plus ten for each node (endless stick-slip).
    integer, parameter :: most_events = 5000
@@ -136,12 +136,12 @@ contains
          if (allocated(error)) return
          if (ready) exit
       end do
-      if (.not. progress%increment%step > no_step_of(path)) return
+      if (.not. progress%increment%step > shortest_step(path)) return
       call path%record_changes(segment, progress%iteration)
       associate (step => progress%increment%step)
-         progress%at_end = .not. relaxing .and. step*(1.0_wp + tie_of(path)) + last_step(path, segment) >= 1.0_wp - progress%done
+     progress%at_end = .not. relaxing .and. step*(1.0_wp + tie_tolerance(path)) + last_step(path, segment) >= 1.0_wp - progress%done
          if (progress%at_end) step = 1.0_wp - progress%done
-         if (relaxing .and. step*(1.0_wp + tie_of(path)) + no_step_of(path) >= 1.0_wp) step = 1.0_wp
+         if (relaxing .and. step*(1.0_wp + tie_tolerance(path)) + shortest_step(path) >= 1.0_wp) step = 1.0_wp
          relaxing_nodes = path%is_releasing()
          call advance(path, progress%increment, relaxing, error)
          if (allocated(error)) return
@@ -152,7 +152,7 @@ contains
          if (progress%at_end) return
          call renew(progress%iteration)
          progress%standing = 0
-         if (.not. relaxing) progress%tiny = merge(progress%tiny + 1, 0, step < tie_of(path))
+         if (.not. relaxing) progress%tiny = merge(progress%tiny + 1, 0, step < tie_tolerance(path))
       end associate
       progress%since = progress%since + 1
       if (progress%done > progress%milestone + milestone_spacing) then
@@ -169,7 +169,7 @@ contains
       real(wp), parameter :: round_off = 1.0e-14_wp, largest = 1.0e-6_wp
       real(wp) :: negligible
 
-      last_step = no_step_of(path)
+      last_step = shortest_step(path)
       negligible = max(round_off, path%system%tolerance)*path%certificate%force_scale()
       associate (normal => segment%load(motion_approach))
          if (normal%control /= control_force .or. .not. normal%rate < 0.0_wp) return
@@ -292,7 +292,7 @@ contains
          ! The memory of friction has changed: statuses tried before may be consistent now.
          if (passed) iteration%tries = 0
       end associate
-      call path%keep_on_mesh(iteration, error)
+      call path%extend_mesh_if_reached(iteration, error)
    end subroutine change_statuses
 
    !> Pass events of the friction law to the nodes of `changing`. `passed`: whether there are any that change no status.
@@ -335,7 +335,7 @@ contains
 
       dropped = .false.
       if (iteration%dropped .or. .not. any(increment%violations%kind == event_stick)) return
-      if (.not. any(increment%violations%kind == event_stick .and. increment%violations%step <= no_step_of(path) .and. &
+      if (.not. any(increment%violations%kind == event_stick .and. increment%violations%step <= shortest_step(path) .and. &
                     path%can_become_unstable())) return
       call path%begin_stress_drop(iteration, dropped)
       if (.not. dropped) return

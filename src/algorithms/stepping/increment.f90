@@ -20,11 +20,11 @@ module mfv_increment
    use mfv_scene, only: integration_explicit, stepping_nominal
    implicit none
    private
-   public :: increment_type, find_increment, no_step_of, tie_of
+   public :: increment_type, find_increment, shortest_step, tie_tolerance
 
-   !> Steps below the first fraction of the segment count as zero; steps longer than the first violation by less than the second
-   !> fraction are tied with it.
-   real(wp), parameter :: no_step = 1.0e-13_wp, tie = 1.0e-10_wp
+   !> Steps below `zero_step`, a fraction of the segment, count as zero; steps that differ by less than the fraction `least_tie`
+   !> are tied.
+   real(wp), parameter :: zero_step = 1.0e-13_wp, least_tie = 1.0e-10_wp
 
    type :: increment_type
       type(response_type) :: response
@@ -41,19 +41,19 @@ module mfv_increment
 contains
 
    !> Relative difference of steps below which they are tied.
-   pure real(wp) function tie_of(path)
+   pure real(wp) function tie_tolerance(path)
       class(contact_path_type), intent(in) :: path
 
-      tie_of = max(tie, path%system%tolerance)
-   end function tie_of
+      tie_tolerance = max(least_tie, path%system%tolerance)
+   end function tie_tolerance
 
-   !> Steps below this fraction of the segment count as zero: the tolerance of the linear solver, but at most the tie, since the
-   !> first events of a fine mesh are close to each other.
-   pure real(wp) function no_step_of(path)
+   !> Steps below this fraction of the segment count as zero: the tolerance of the linear solver, but at most `least_tie`, since
+   !> the first events of a fine mesh are close to each other.
+   pure real(wp) function shortest_step(path)
       class(contact_path_type), intent(in) :: path
 
-      no_step_of = max(no_step, min(path%system%tolerance, tie))
-   end function no_step_of
+      shortest_step = max(zero_step, min(path%system%tolerance, least_tie))
+   end function shortest_step
 
    !> Find an increment. `constraints`: from contact_path_type%find_constraints. `left`: the rest of the segment (1 in a stress
    !> drop). `relaxing`: whether over-stress relaxes at a fixed load. `rate_tolerance`: rates below this fraction of the largest
@@ -78,25 +78,25 @@ contains
                                 increment%singular)
          if (increment%singular) return
          call search(path, rate_tolerance, left, increment)
-         if (bends(path)) call follow_friction(path, constraints, left, relaxing, rate_tolerance, increment)
+         if (depends_on_end(path)) call integrate_friction(path, constraints, left, relaxing, rate_tolerance, increment)
       end if
    end subroutine find_increment
 
    !> Whether the friction line of some node depends on the end of the increment.
-   logical function bends(path)
+   logical function depends_on_end(path)
       class(contact_path_type), intent(in) :: path
       integer :: i
 
-      bends = .false.
+      depends_on_end = .false.
       if (.not. path%model%tangential) return
       associate (law => path%model%scene%friction%law)
          if (law%is_linear()) return
          do i = 1, size(path%state%status)
-            bends = law%bends(path%state%status(i), path%point(i, path%state%fields))
-            if (bends) return
+            depends_on_end = law%depends_on_end(path%state%status(i), path%point(i, path%state%fields))
+            if (depends_on_end) return
          end do
       end associate
-   end function bends
+   end function depends_on_end
 
    !> Violations from the rates, and the step to the first of them, at most `longest`.
    subroutine search(path, rate_tolerance, longest, increment)
@@ -113,12 +113,12 @@ contains
                            increment%response%rate, max(rate_tolerance, path%system%tolerance), increment%violations)
       first = min(minval(increment%violations%step), never)
       increment%step = min(first, longest)
-      increment%reach = first*(1.0_wp + tie_of(path)) + no_step_of(path)
-      increment%ends_in_event = first*(1.0_wp - tie_of(path)) - no_step_of(path) <= longest
+      increment%reach = first*(1.0_wp + tie_tolerance(path)) + shortest_step(path)
+      increment%ends_in_event = first*(1.0_wp - tie_tolerance(path)) - shortest_step(path) <= longest
    end subroutine search
 
    !> Integrate friction that is not linear over an increment, with a controlled error or explicitly.
-   subroutine follow_friction(path, constraints, left, relaxing, rate_tolerance, increment)
+   subroutine integrate_friction(path, constraints, left, relaxing, rate_tolerance, increment)
       class(contact_path_type), intent(inout) :: path
       type(constraints_type), intent(in) :: constraints
       real(wp), intent(in) :: left, rate_tolerance
@@ -140,7 +140,7 @@ contains
       end if
       ! The tangent is undefined at first contact; the traction follows from the increment itself.
       touched = any(creeps(path%state%status) .and. .not. path%state%fields%pressure > 0.0_wp)
-      if (increment%step <= no_step_of(path) .and. .not. touched) return
+      if (increment%step <= shortest_step(path) .and. .not. touched) return
       if (.not. path%trial > 0.0_wp) path%trial = first_trial
       tolerance = path%model%scene%method%friction_tolerance
       predicted = increment
@@ -161,11 +161,11 @@ contains
          length = length*max(change, least_shrink)
       end do
       increment%diverges = .not. accepted
-      if (increment%step <= no_step_of(path)) return
+      if (increment%step <= shortest_step(path)) return
       ! An increment cut short by an event is no reason for a shorter next one.
       length = max(length, increment%step)*max(change, least_shrink)
       path%trial = max(length, merge(path%trial, 10*shortest, attempt == 1))
-   end subroutine follow_friction
+   end subroutine integrate_friction
 
    !> Friction lines that are right at the end of the increment; a violation shortens it. `agrees`: whether they were found. The
    !> rates are those of the straight line from start to end.
@@ -196,7 +196,7 @@ contains
          call path%system%solve(path%model, secants, path%state%fields, increment%response, increment%singular)
          if (increment%singular) return
          call search(path, rate_tolerance, step, increment)
-         if (abs(increment%step - step) <= same*step + no_step_of(path) .or. increment%step <= no_step_of(path)) return
+         if (abs(increment%step - step) <= same*step + shortest_step(path) .or. increment%step <= shortest_step(path)) return
          step = increment%step
          after = path%state%fields%plus(step, increment%response%rate)
       end do
@@ -269,14 +269,14 @@ contains
       if (increment%singular) return
       call search(path, rate_tolerance, trial, increment)
       ! Slip rates are constant between events: bisection shows whether a wrong direction is wrong from the start.
-      do while (increment%step <= no_step_of(path) .and. any(increment%violations%kind == event_stick) .and. &
+      do while (increment%step <= shortest_step(path) .and. any(increment%violations%kind == event_stick) .and. &
                 trial > shortest*length)
          trial = 0.5_wp*trial
          call solve_trial(path, constraints, trial, increment)
          if (increment%singular) return
          call search(path, rate_tolerance, trial, increment)
       end do
-      if (increment%step <= no_step_of(path) .or. .not. increment%ends_in_event) return
+      if (increment%step <= shortest_step(path) .or. .not. increment%ends_in_event) return
       if (increment%step < trial) call solve_trial(path, constraints, increment%step, increment)
    end subroutine nominal_increment
 

@@ -5,7 +5,7 @@
 !> without them can be restored to any saved state of its scene.
 module mfv_kept_state
    use, intrinsic :: iso_fortran_env, only: int64
-   use mfv_contact_path, only: kept_path_type
+   use mfv_contact_path, only: saved_path_type
    use mfv_cycle, only: cycle_type
    use mfv_error, only: error_type, set_error
    use mfv_simulation, only: history_none, position_type, simulation_type
@@ -16,12 +16,12 @@ module mfv_kept_state
 
    type :: kept_state_type
       private
-      type(kept_path_type) :: contact
+      type(saved_path_type) :: contact
       type(position_type) :: position
       !> The last cycle, if there is no load history.
       type(cycle_type), allocatable :: last_cycle
       integer(int64) :: scene = 0, history_checksum = 0
-      logical :: is_kept = .false.
+      logical :: is_saved = .false.
    contains
       procedure :: keep
       procedure :: come_back
@@ -35,11 +35,11 @@ contains
       type(simulation_type), intent(in) :: simulation
       integer(int64), intent(in) :: scene
 
-      call simulation%contact%keep(self%contact)
+      call simulation%contact%save_to(self%contact)
       self%position = simulation%position_type
       if (allocated(self%last_cycle)) deallocate (self%last_cycle)
       if (simulation%cycle_count > 0 .and. simulation%keep_history == history_none) self%last_cycle = simulation%cycles(1)
-      self%is_kept = .true.
+      self%is_saved = .true.
       self%scene = scene
       self%history_checksum = simulation%history_checksum()
    end subroutine keep
@@ -52,7 +52,7 @@ contains
       integer(int64), intent(in) :: scene
       type(error_type), allocatable, intent(out) :: error
 
-      if (.not. self%is_kept) then
+      if (.not. self%is_saved) then
          call set_error(error, MFV_BAD_ARGUMENT, 'no state has been saved; save one first')
       else if (scene /= self%scene) then
          call set_error(error, MFV_BAD_ARGUMENT, 'the state is of another scene')
@@ -61,7 +61,7 @@ contains
                         "history='none', states='none' to restore any saved state")
       end if
       if (allocated(error)) return
-      call simulation%contact%come_back(self%contact)
+      call simulation%contact%restore(self%contact)
       simulation%position_type = self%position
       if (allocated(self%last_cycle) .and. simulation%keep_history == history_none) simulation%cycles = [self%last_cycle]
       if (allocated(simulation%estimate)) deallocate (simulation%estimate)

@@ -161,7 +161,7 @@ contains
       accepted = .false.
       call make_chain(path, segment, done, length, 1, chain)
       if (.not. chain%found) return
-      accepted = moves_nothing(path, segment, chain%after(1))
+      accepted = is_path_independent(path, segment, chain%after(1))
       if (accepted) return
       increments = 2
       do
@@ -171,7 +171,7 @@ contains
          if (.not. chain%found) return
          call choose(path%model%scene%method%leap_tolerance, max(path%certificate%traction_scale(), chain%traction), chain, &
                      accepted, increments)
-         if (accepted) accepted = .not. turns_back(path, subsegment(segment, done, done + length), chain)
+         if (accepted) accepted = .not. slips_back(path, subsegment(segment, done, done + length), chain)
          if (accepted .or. increments == 0) return
       end do
    end subroutine refine
@@ -203,7 +203,7 @@ contains
 
    !> Whether nodes that slip in the last increment would slip back at its end: they have stuck within the increment, which no
    !> chain resolves. This does not occur under constant pressures.
-   logical function turns_back(path, segment, chain)
+   logical function slips_back(path, segment, chain)
       class(contact_path_type), intent(inout) :: path
       type(segment_type), intent(in) :: segment
       type(chain_type), intent(in) :: chain
@@ -213,21 +213,21 @@ contains
       type(response_type) :: response
 
       associate (last => chain%after(chain%increments), begin => chain%before(1)%fields)
-         turns_back = maxval(abs(last%pressure - begin%pressure)) > max(negligible, path%system%tolerance)*chain%traction
-         if (.not. turns_back) return
+         slips_back = maxval(abs(last%pressure - begin%pressure)) > max(negligible, path%system%tolerance)*chain%traction
+         if (.not. slips_back) return
          start = path%state
          path%state = chain%before(chain%increments)
          path%state%fields = last
          call path%loads_at(segment, 1.0_wp, constraints)
          call path%set_rows(constraints, .false.)
-         call path%system%solve(path%model, constraints, last, response, turns_back)
+         call path%system%solve(path%model, constraints, last, response, slips_back)
          associate (rate => response%rate%slip())
-            if (.not. turns_back) &
-               turns_back = any(-slip_sign(path%state%status)*rate > max(negligible, path%system%tolerance)*maxval(abs(rate)))
+            if (.not. slips_back) &
+               slips_back = any(-slip_sign(path%state%status)*rate > max(negligible, path%system%tolerance)*maxval(abs(rate)))
          end associate
          path%state = start
       end associate
-   end function turns_back
+   end function slips_back
 
    !> An interval in a number of equal `increments`. `coarser`: a chain of the same interval, for a first guess of the statuses.
    !> `path` is unchanged.
@@ -363,21 +363,21 @@ contains
 
    !> Whether an increment to the fields `after` is pure pressing without coupling, tangential load or shear, which does not depend
    !> on the path.
-   logical function moves_nothing(path, segment, after)
+   logical function is_path_independent(path, segment, after)
       class(contact_path_type), intent(in) :: path
       type(segment_type), intent(in) :: segment
       type(contact_fields_type), intent(in) :: after
       real(wp), parameter :: nothing = 1.0e-14_wp
 
       associate (compliance => path%model%compliance, model => path%model)
-         moves_nothing = .not. (compliance%has_block(block_up) .or. compliance%has_block(block_wt) .or. &
-                                model%has_rigid_parts())
+         is_path_independent = .not. (compliance%has_block(block_up) .or. compliance%has_block(block_wt) .or. &
+                                      model%has_rigid_parts())
       end associate
-      if (.not. moves_nothing) return
-      moves_nothing = .not. abs(segment%load(motion_shift)%rate) > 0.0_wp .and. .not. any(slips(path%state%status)) .and. &
-                      max(maxval(abs(path%state%fields%shear)), maxval(abs(after%shear))) &
-                      <= max(nothing, path%system%tolerance)*max(path%certificate%traction_scale(), maxval(abs(after%pressure)))
-   end function moves_nothing
+      if (.not. is_path_independent) return
+      is_path_independent = .not. abs(segment%load(motion_shift)%rate) > 0.0_wp .and. .not. any(slips(path%state%status)) .and. &
+                            max(maxval(abs(path%state%fields%shear)), maxval(abs(after%shear))) &
+                          <= max(nothing, path%system%tolerance)*max(path%certificate%traction_scale(), maxval(abs(after%pressure)))
+   end function is_path_independent
 
    !> Accept the increments of a chain.
    subroutine accept_chain(path, chain)

@@ -138,7 +138,7 @@ module mfv_simulation
       procedure, private :: begin_segment
       procedure, private :: take_snapshot
       procedure, private :: begin_cycles
-      procedure, private :: end_of_leg
+      procedure, private :: complete_leg
       procedure, private :: set_mark
       procedure, private :: change_since
       procedure, private :: note_history_checksum
@@ -238,7 +238,7 @@ contains
       end if
       associate (i => self%leg%number)
          is_last = i == reversals(step)
-         if (step%cycles > 0) call self%end_of_leg(i, self%leg%cycle)
+         if (step%cycles > 0) call self%complete_leg(i, self%leg%cycle)
          if (mod(i, 2) == 0 .and. i > 2 .and. step%steady_tolerance > 0.0_wp) &
             is_last = is_last .or. self%leg%cycle%change <= step%steady_tolerance
          if (is_last .and. self%keep_states /= states_none .or. self%keep_states == states_reversals) &
@@ -419,7 +419,7 @@ contains
    end subroutine begin_cycles
 
    !> Complete leg `leg` of the cycles: loading if odd, return if even. Store the states and, after a complete cycle, the cycle.
-   subroutine end_of_leg(self, leg, cycle)
+   subroutine complete_leg(self, leg, cycle)
       class(simulation_type), intent(inout) :: self
       integer, intent(in) :: leg
       type(cycle_type), intent(inout) :: cycle
@@ -443,7 +443,7 @@ contains
       if (cycle%number == 1) cycle%first_dissipation = cycle%dissipation()
       if (cycle%number == 1) cycle%first_slip = cycle%slip()
       call append_cycle(self%cycles, self%cycle_count, cycle, self%keep_history == history_none)
-   end subroutine end_of_leg
+   end subroutine complete_leg
 
    !> Largest change of a traction since the state `before` on the same mesh, relative to the largest traction so far.
    pure real(wp) function change_since(self, before)
@@ -536,7 +536,7 @@ contains
       associate (state => self%contact%state)
          self%leg%start = leg_start_type(state%dissipation, state%fields%force, state%fields%shear)
       end associate
-      call self%contact%await_increment()
+      call self%contact%reset_first_stiffness()
    end subroutine begin_segment
 
    !> The load from `start` to `goal`, with its rate per segment. A change of force within round-off of the largest force so far,
