@@ -6,8 +6,8 @@
 !>
 !> The limit does not depend on the sequence: there p = tau = 0 at the node, its friction cone has shrunk to the apex, and all
 !> other nodes are unchanged. The node is therefore taken to the apex along the ray tau/p = constant, which starts at its present
-!> tractions and stays inside the cone. It slips in one direction only, against tau. Its dissipation is exact to first order in 1 -
-!> mu_k/mu_s, times the square of the remaining load. The node then opens.
+!> tractions and stays inside the cone. It slips in one direction only, against tau. The error of its dissipation is of first
+!> order in 1 - mu_k/mu_s and of second order in the remaining load. The node then opens.
 module mfv_accumulation
    use mfv_contact_path, only: contact_path_type
    use mfv_contact_system, only: constraints_type
