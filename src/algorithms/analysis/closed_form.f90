@@ -47,8 +47,8 @@ contains
                  force => simulation%contact%state%fields%force(motion_approach))
          if (.not. (force > 0.0_wp .and. scene%modulus() > 0.0_wp)) return
          if (model%compliance%elastic_block(block_wt) .and. model%tangential .and. .not. alike(scene)) return
-         if (any(simulation%way%controlled(motion_rotation + 1:))) return
-         if (simulation%way%controlled(motion_rotation) .and. .not. (is_hertz(scene) .and. model%rolls())) return
+         if (any(simulation%load_summary%controlled(motion_rotation + 1:))) return
+         if (simulation%load_summary%controlled(motion_rotation) .and. .not. (is_hertz(scene) .and. model%rolls())) return
          form%indenter = indenter_of(scene)
          if (.not. form%indenter%is_flat() .and. .not. any([scene%lower%shape, scene%upper%shape] == shape_flat_punch)) then
             form%half_width = form%indenter%half_width(0.5_wp*force/scene%modulus())
@@ -62,7 +62,7 @@ contains
          else
             return
          end if
-         if (simulation%way%controlled(motion_rotation)) then
+         if (simulation%load_summary%controlled(motion_rotation)) then
             if (is_carter(simulation, form%half_width)) call add_carter(form, simulation)
             return
          end if
@@ -78,7 +78,8 @@ contains
 
       associate (model => simulation%contact%model)
          position = model%x
-         if (simulation%way%controlled(motion_rotation)) position = model%arc - model%rolled(simulation%contact%state%fields)
+         if (simulation%load_summary%controlled(motion_rotation)) &
+            position = model%arc - model%rolled(simulation%contact%state%fields)
       end associate
    end function middle_at_zero
 
@@ -162,7 +163,7 @@ contains
                      model%compliance%elastic_block(block_up) .and. &
                      model%scene%friction%is_coulomb() .and. model%tangential .and. .not. alike(model%scene)
       end associate
-      is_spence = is_spence .and. simulation%way%pressed_harder
+      is_spence = is_spence .and. simulation%load_summary%pressed_harder
    end function is_spence
 
    subroutine add_spence(form, simulation)
@@ -189,13 +190,13 @@ contains
       type(closed_form_type), intent(in) :: form
       type(simulation_type), intent(in) :: simulation
 
-      associate (model => simulation%contact%model, way => simulation%way)
+      associate (model => simulation%contact%model, summary => simulation%load_summary)
          is_mindlin = .not. form%indenter%is_flat() .and. model%scene%friction%is_coulomb() .and. model%tangential .and. &
-                      way%pressed_then_sheared .and. way%sheared .and. &
-                      (.not. way%friction_in_press .or. alike(model%scene) .or. &
+                      summary%pressed_then_sheared .and. summary%sheared .and. &
+                      (.not. summary%friction_in_press .or. alike(model%scene) .or. &
                        .not. model%compliance%elastic_block(block_up)) .and. &
                       (simulation%keep_states == states_reversals .or. &
-                       simulation%keep_states == states_steps .and. .not. way%cycled)
+                       simulation%keep_states == states_steps .and. .not. summary%cycled)
       end associate
    end function is_mindlin
 

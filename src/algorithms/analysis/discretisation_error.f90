@@ -107,7 +107,7 @@ contains
             estimate%message = 'the run ended early'
          else if (.not. has_coarser_meshes(scene)) then
             estimate%message = "a body with shape='matrix' has no coarser mesh"
-         else if (simulation%way%steps /= size(scene%steps)) then
+         else if (simulation%load_summary%steps /= size(scene%steps)) then
             estimate%message = 'steps were taken that the case does not have'
          else if (simulation%contact%state%contact_nodes() < 2*fewest_contact_nodes) then
             estimate%message = to_text(2*fewest_contact_nodes)//' nodes in contact are needed, there are '// &

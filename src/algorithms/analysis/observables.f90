@@ -190,12 +190,12 @@ contains
       type(simulation_type), intent(in) :: simulation
       type(cycle_type), intent(in) :: cycle
       real(wp), intent(inout) :: values(:)
-      real(wp) :: grip, force
+      real(wp) :: sliding_limit, force
 
       associate (scene => simulation%contact%model%scene)
          force = cycle%return%force(motion_approach)
-         grip = scene%friction%static%largest()*force
-         if (grip > 0.0_wp) call put(values, 'force_number', cycle%force_amplitude()/grip)
+         sliding_limit = scene%friction%static%largest()*force
+         if (sliding_limit > 0.0_wp) call put(values, 'force_number', cycle%force_amplitude()/sliding_limit)
          call put(values, 'shift_number', cycle%shift_amplitude()*scene%curvature())
          if (.not. scene%modulus() > 0.0_wp) return
          if (force > 0.0_wp) call put(values, 'dissipation_number', cycle%dissipation()*scene%modulus()/force**2)

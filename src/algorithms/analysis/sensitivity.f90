@@ -36,7 +36,7 @@ contains
       if (simulation%outcome /= MFV_COMPLETE) then
          sensitivity%status = simulation%outcome
          sensitivity%message = 'the run ended early'
-      else if (simulation%way%steps /= size(scene%steps)) then
+      else if (simulation%load_summary%steps /= size(scene%steps)) then
          sensitivity%message = 'steps were taken that the case does not have'
       else if (.not. scene%friction%acts()) then
          sensitivity%message = 'the case has no friction'

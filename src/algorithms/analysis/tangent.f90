@@ -8,7 +8,7 @@ module mfv_tangent
    use mfv_contact_state, only: contact_state_type
    use mfv_contact_system
    use mfv_error, only: error_type, set_error
-   use mfv_first_violation, only: lead_by_violations
+   use mfv_first_violation, only: apply_by_violations
    use mfv_kinds, only: wp
    use mfv_motions, only: motion_count, control_displacement, arm_unit
    use mfv_node_status, only: in_contact
@@ -81,7 +81,7 @@ contains
       end if
       motion = motion/largest*(little*path%model%length())
       segment%load = [(load_type(control_displacement, path%state%fields%motion(i), motion(i)), i=1, motion_count)]
-      call lead_by_violations(path, segment, observer, error)
+      call apply_by_violations(path, segment, observer, error)
       if (.not. allocated(error)) return
       if (error%status == MFV_INTERRUPTED) deallocate (error)
    end subroutine turn

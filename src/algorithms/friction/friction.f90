@@ -1,5 +1,5 @@
-!> The friction of a scene: a law (each is a file of its own, see mfv_friction_law) and its coefficients along the surface.
-!> This is the one place that lists the laws.
+!> The friction of a scene: a law (one file for each, see mfv_friction_law) and its coefficients along the surface. Only this
+!> module lists the laws.
 module mfv_friction
    use mfv_friction_coefficient, only: friction_coefficient_type, uniform_coefficient
    use mfv_friction_coulomb, only: coulomb_law_type
@@ -17,9 +17,9 @@ module mfv_friction
    character(*), parameter :: friction_law_names = 'coulomb static_kinetic weakening dahl'
 
    type :: friction_type
-      !> Static and kinetic coefficient of friction (the same where the law knows only one).
+      !> Static and kinetic coefficient of friction (equal for laws with one coefficient).
       type(friction_coefficient_type) :: static, kinetic
-      !> Not there: no friction.
+      !> Not allocated: no friction.
       class(friction_law_type), allocatable :: law
    contains
       procedure :: name
@@ -34,7 +34,7 @@ module mfv_friction
 
 contains
 
-   !> The law of a name, with parameters that are still to be set; not allocated for 'none' and for names of no law.
+   !> The law with the given name, with its parameters still to be set; not allocated for 'none' and unknown names.
    subroutine new_friction_law(name, law)
       character(*), intent(in) :: name
       class(friction_law_type), allocatable, intent(out) :: law
@@ -69,8 +69,7 @@ contains
       call new_friction_law(name, friction%law)
    end function uniform_friction
 
-   !> Coulomb's law with the coefficient of friction mu >= 0. mu = 0 is no friction and costs no more: the tangential problem
-   !> is then not modelled.
+   !> Coulomb's law with the coefficient of friction mu >= 0. For mu = 0 the tangential problem is not modelled.
    function coulomb_friction(mu) result(friction)
       real(wp), intent(in) :: mu
       type(friction_type) :: friction
@@ -86,7 +85,7 @@ contains
       friction = uniform_friction('static_kinetic', mu_static, mu_kinetic)
    end function static_kinetic_friction
 
-   !> mu_static >= mu_kinetic >= 0; `distance` of the slip between them, length, > 0.
+   !> mu_static >= mu_kinetic >= 0; `distance`: slip over which friction decreases, length, > 0.
    function weakening_friction(mu_static, mu_kinetic, distance) result(friction)
       real(wp), intent(in) :: mu_static, mu_kinetic, distance
       type(friction_type) :: friction
@@ -105,7 +104,7 @@ contains
       call friction%law%set_parameter('exponent', exponent)
    end function dahl_friction
 
-   !> Coulomb's law in place of one that it is with equal static and kinetic coefficients everywhere.
+   !> Replace a law by Coulomb's law if it is equivalent: static and kinetic coefficients equal everywhere.
    subroutine simplify(self)
       class(friction_type), intent(inout) :: self
 
@@ -163,7 +162,7 @@ contains
       if (allocated(self%law)) converges = self%law%converges()
    end function converges
 
-   !> Whether it is Coulomb's law with one coefficient everywhere (closed forms know no other).
+   !> Whether it is Coulomb's law with a uniform coefficient, as closed forms assume.
    pure logical function is_coulomb(self)
       class(friction_type), intent(in) :: self
 

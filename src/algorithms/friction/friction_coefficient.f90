@@ -6,9 +6,9 @@ module mfv_friction_coefficient
    public :: friction_coefficient_type, uniform_coefficient
 
    type :: friction_coefficient_type
-      !> The coefficient: one value; or one at each `position`; or, without positions, one a node.
+      !> The coefficient: a single value; or one at each `position`; or, without positions, one for each node.
       real(wp), allocatable :: value(:)
-      !> Growing x of the values, length; between them the coefficient is linear, beyond them constant.
+      !> Increasing x of the values, length; between them the coefficient is linear, beyond them constant.
       real(wp), allocatable :: position(:)
    contains
       procedure :: at
@@ -27,7 +27,7 @@ contains
       self%value = [mu]
    end function uniform_coefficient
 
-   !> The coefficient at nodes at x (length), shape (nodes); zero where there is none.
+   !> The coefficient at nodes at x (length), shape (nodes); zero if not set.
    pure function at(self, x) result(mu)
       class(friction_coefficient_type), intent(in) :: self
       real(wp), intent(in) :: x(:)
@@ -47,16 +47,16 @@ contains
 
    pure real(wp) function interpolated(positions, values, x)
       real(wp), intent(in) :: positions(:), values(:), x
-      real(wp) :: part
+      real(wp) :: fraction
       integer :: i, n
 
       n = size(positions)
       i = min(max(count(positions <= x), 1), n - 1)
-      part = min(max((x - positions(i))/(positions(i + 1) - positions(i)), 0.0_wp), 1.0_wp)
-      interpolated = (1.0_wp - part)*values(i) + part*values(i + 1)
+      fraction = min(max((x - positions(i))/(positions(i + 1) - positions(i)), 0.0_wp), 1.0_wp)
+      interpolated = (1.0_wp - fraction)*values(i) + fraction*values(i + 1)
    end function interpolated
 
-   !> The largest value anywhere, zero where there is none.
+   !> The largest value; zero if not set.
    pure real(wp) function largest(self)
       class(friction_coefficient_type), intent(in) :: self
 
@@ -64,7 +64,7 @@ contains
       if (allocated(self%value)) largest = maxval(self%value)
    end function largest
 
-   !> Whether it is the same everywhere.
+   !> Whether it is uniform.
    pure logical function is_uniform(self)
       class(friction_coefficient_type), intent(in) :: self
 

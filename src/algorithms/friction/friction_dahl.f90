@@ -1,14 +1,14 @@
-!> Dahl's friction, dissertation eq. 3.9 and appendix B: bristles of stiffness sigma give way the more, the nearer the
-!> traction is to its limit mu p,
+!> Dahl's friction, dissertation eq. 3.9 and appendix B: bristles of stiffness sigma, which yield more the nearer the traction is
+!> to its limit mu p,
 !>
 !>     df/ds = sigma (1 - f/(mu p) sgn(s'))^gamma,   f = -tau,
 !>
-!> so that a node below the limit creeps (Table B.1's partial slip). At the limit it slips as under Coulomb's law; and there
-!> it is when mu p falls below |f|, whichever way it then moves. While mu p grows faster than the bristles load, they take over
-!> again.
+!> so that a node below the limit creeps (partial slip of Table B.1). At the limit it slips as under Coulomb's law. It is also at
+!> the limit when mu p decreases below |f|, whichever way it then moves. While mu p increases faster than the bristle load, the
+!> bristles take up the load again.
 !>
-!> A creeping node's tau1 = tau0 - K (s1 - s0) has K at the start of the increment (appendix B) or, in second order, half way
-!> to where the increment ends. The line is this equation linearised about the expected end (Newton): exact where it is right.
+!> For a creeping node tau1 = tau0 - K (s1 - s0) with K at the start of the increment (appendix B) or, in second order, at its
+!> midpoint. The line is this equation linearised about the expected end (Newton), and exact if that is right.
 module mfv_friction_dahl
    use mfv_friction_law
    use mfv_kinds, only: wp
@@ -18,10 +18,10 @@ module mfv_friction_dahl
    private
    public :: dahl_law_type
 
-   !> Dahl's traction comes to its limit only after endless slip: this near it is there.
-   real(wp), parameter :: full_part = 1.0_wp - 1.0e-6_wp
-   !> Round-off of the secants, in that of other rates.
-   real(wp), parameter :: secant_noise = 100.0_wp
+   !> Dahl's traction reaches its limit only after infinite slip; beyond this fraction it counts as at the limit.
+   real(wp), parameter :: full_fraction = 1.0_wp - 1.0e-6_wp
+   !> Factor on the tolerance for rates of secants.
+   real(wp), parameter :: secant_tolerance = 100.0_wp
 
    type, extends(friction_law_type) :: dahl_law_type
       !> Stiffness sigma > 0 of the bristles, force/length^3 (traction over slip), and exponent gamma >= 0.
@@ -32,9 +32,9 @@ module mfv_friction_dahl
       procedure :: set_parameter
       procedure :: is_linear => never
       procedure :: sticks => never
-      procedure :: bends
+      procedure :: depends_on_end
       procedure :: has_events
-      procedure :: limit_part
+      procedure :: limit_fraction
       procedure :: has_soft_limit
       procedure :: holding_status
       procedure :: over_stress
@@ -82,13 +82,13 @@ contains
       never = .false.
    end function never
 
-   pure logical function bends(self, status, point)
+   pure logical function depends_on_end(self, status, point)
       class(dahl_law_type), intent(in) :: self
       integer, intent(in) :: status
       type(friction_point_type), intent(in) :: point
 
-      bends = creeps(status)
-   end function bends
+      depends_on_end = creeps(status)
+   end function depends_on_end
 
    pure logical function has_events(self)
       class(dahl_law_type), intent(in) :: self
@@ -96,11 +96,11 @@ contains
       has_events = .true.
    end function has_events
 
-   pure real(wp) function limit_part(self)
+   pure real(wp) function limit_fraction(self)
       class(dahl_law_type), intent(in) :: self
 
-      limit_part = full_part
-   end function limit_part
+      limit_fraction = full_fraction
+   end function limit_fraction
 
    pure logical function has_soft_limit(self)
       class(dahl_law_type), intent(in) :: self
@@ -115,7 +115,7 @@ contains
       holding_status = merge(node_creep_left, node_creep_right, direction < 0)
    end function holding_status
 
-   !> Bristles at the limit load with one stiffness on, with another one back.
+   !> At the limit the stiffness of the bristles depends on the direction of motion.
    elemental real(wp) function over_stress(self, moved, growth)
       class(dahl_law_type), intent(in) :: self
       real(wp), intent(in) :: moved, growth
@@ -123,11 +123,11 @@ contains
 
       stiffness = self%stiffness
       if (self%exponent > 0.0_wp) &
-         stiffness = self%stiffness*merge(1.0_wp - full_part, 1.0_wp + full_part, moved > 0.0_wp)**self%exponent
+         stiffness = self%stiffness*merge(1.0_wp - full_fraction, 1.0_wp + full_fraction, moved > 0.0_wp)**self%exponent
       over_stress = stiffness*moved - growth
    end function over_stress
 
-   !> A creeping node turns round: its stiffness depends on the direction.
+   !> Event: a creeping node reverses its direction, on which its stiffness depends.
    pure subroutine find_events(self, status, here, there, events)
       class(dahl_law_type), intent(in) :: self
       integer, intent(in) :: status
@@ -137,10 +137,10 @@ contains
 
       if (.not. creeps(status)) return
       turning = max(self%turning(here), self%turning(there))
-      if (turning > 0.0_wp) events(1) = friction_event_type(event_reverse, by_motion=turning, noise=secant_noise)
+      if (turning > 0.0_wp) events(1) = friction_event_type(event_reverse, by_motion=turning, tolerance_factor=secant_tolerance)
    end subroutine find_events
 
-   !> By how much the stiffness of a creeping node depends on the direction in which it moves, force/length^3.
+   !> Difference of the stiffness of a creeping node between the two directions, force/length^3.
    pure real(wp) function turning(self, point)
       class(dahl_law_type), intent(in) :: self
       type(friction_point_type), intent(in) :: point
@@ -151,7 +151,7 @@ contains
       turning = abs(right%stiffness - left%stiffness)
    end function turning
 
-   !> Of a creeping node: the increment from point to point, and what a motion against its direction does to the traction.
+   !> For a creeping node: the residual of its increment, and the effect of a motion against its direction on the traction.
    pure real(wp) function defect(self, status, before, after, explicit)
       class(dahl_law_type), intent(in) :: self
       integer, intent(in) :: status
@@ -179,8 +179,7 @@ contains
       wrong_motion = -self%over_stress(moved, growth)
    end function wrong_motion
 
-   !> Bristles far stiffer than what one interval of the surface gives way. Such friction differs from Coulomb's by about the ratio
-   !> of
+   !> Explains bristles far stiffer than an interval of the surface. Such friction differs from Coulomb's by about the ratio of
    !> these stiffnesses.
    pure function explain_failure(self, interval_stiffness) result(text)
       class(dahl_law_type), intent(in) :: self
@@ -204,7 +203,7 @@ contains
       if (creeps(status)) then
          row = self%creeping_row(motion_sign(status), before, after)
       else
-         row%slope = -slip_sign(status)*before%static*full_part
+         row%slope = -slip_sign(status)*before%static*full_fraction
       end if
    end function row
 
@@ -252,7 +251,7 @@ contains
       class(dahl_law_type), intent(in) :: self
       type(friction_point_type), intent(in) :: point
 
-      strength = point%static*point%pressure*full_part
+      strength = point%static*point%pressure*full_fraction
    end function strength
 
    !> K of eq. B.2 half way between two points and minus its derivative by f/(mu p), force/length^3; and f and mu p there.
@@ -272,7 +271,7 @@ contains
       stiffness = self%stiffness
       steepness = 0.0_wp
       if (self%exponent > 0.0_wp) then
-         ! The law goes on beyond the limit with its sign (eq. 3.9), for the iterations; where they end it is not beyond.
+         ! For the iterations the law is continued beyond the limit with its sign (eq. 3.9); converged states are not beyond it.
          stiffness = self%stiffness*sign(abs(room)**self%exponent, room)
          steepness = self%stiffness*self%exponent &
                      *min(max(max(abs(room), 1.0e-9_wp)**(self%exponent - 1.0_wp), least_slope), most_slope)

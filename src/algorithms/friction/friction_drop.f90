@@ -1,9 +1,8 @@
-!> What laws have in common whose friction falls from a static to a kinetic coefficient: stress drops.
+!> Common part of laws whose friction decreases from a static to a kinetic coefficient: stress drops.
 !>
-!> Where |tau| must fall at an unchanged load, the over-stress r = |tau| - mu_k p is remembered and relaxed as a path of its own, on
-!> which every inequality holds (mfv_first_violation). If the pressure falls faster than r, r is all that the static limit allows,
-!> and
-!> falls with it: it is capped.
+!> If |tau| must decrease at a fixed load, the over-stress r = |tau| - mu_k p is stored and relaxes along a path of its own, on
+!> which every inequality is satisfied (mfv_first_violation). If the pressure decreases faster than r, r reaches the static limit
+!> and decreases with it: it is capped.
 module mfv_friction_drop
    use mfv_friction_law
    use mfv_kinds, only: wp
@@ -12,7 +11,7 @@ module mfv_friction_drop
    private
    public :: dropping_law_type, find_drop_events, pass_drop_event, remember_drop, slipped, over
 
-   !> What a node remembers: its slip since it last held, length; the over-stress, force/length^2; whether that is capped (0 or 1).
+   !> Memory of a node: its slip since it last held, length; the over-stress, force/length^2; whether that is capped (0 or 1).
    integer, parameter :: slipped = 1, over = 2, capped = 3
 
    type, abstract, extends(friction_law_type) :: dropping_law_type
@@ -62,7 +61,7 @@ contains
       end if
    end function releasing_row
 
-   !> The over-stress of a slipping node becomes all that the static limit allows.
+   !> Event: the over-stress of a slipping node reaches the static limit.
    pure subroutine find_drop_events(self, status, here, there, events)
       class(dropping_law_type), intent(in) :: self
       integer, intent(in) :: status

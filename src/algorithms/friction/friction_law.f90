@@ -1,14 +1,13 @@
-!> What every friction law tells the algorithms. A law is a file of its own that extends `friction_law_type` and contains all that
-!> is
-!> special to it; the algorithms ask it, and never for its name.
+!> Interface of friction laws. A law is a file of its own that extends `friction_law_type` and contains all that is specific to it;
+!> the algorithms use this interface and never its name.
 !>
-!> A node holds up to a limit, |tau| <= mu_s p unless the law says otherwise. Laws differ in what a node does that slips (or
-!> creeps): over an increment of the load its shear traction is the line
+!> A node holds up to a limit, by default |tau| <= mu_s p. Laws differ for nodes that slip (or creep): over an increment of the
+!> load the shear traction is on the line
 !>
 !>     tau = slope*p + stiffness*s + offset,
 !>
-!> a row of the augmented system (dissertation eq. 2.2, B.2). Laws that are not linear give a line that is right
-!> where the increment is expected to take the node; the algorithm iterates, and controls the error.
+!> a row of the augmented system (dissertation eq. 2.2, B.2). Nonlinear laws give a line that is right at the expected end of the
+!> increment; the algorithm iterates and controls the error.
 !>
 !> The defaults below are those of a law without memory whose nodes stick below the limit and slip at it.
 module mfv_friction_law
@@ -19,16 +18,16 @@ module mfv_friction_law
    private
    public :: friction_law_type, friction_point_type, friction_row_type, friction_event_type, memory_size, most_events
 
-   !> Numbers that a law can remember of each node; and events of its own that it can have at a node.
+   !> Memory values of each node; and most events of a law at a node.
    integer, parameter :: memory_size = 3, most_events = 3
 
-   !> What a law knows of one node.
+   !> State of a node for a friction law.
    type :: friction_point_type
       !> Static and kinetic coefficient of friction at the node.
       real(wp) :: static = 0.0_wp, kinetic = 0.0_wp
       !> Pressure p and shear traction tau, force/length^2; slip s = u - U, length.
       real(wp) :: pressure = 0.0_wp, shear = 0.0_wp, slip = 0.0_wp
-      !> What the law remembers of the node.
+      !> Memory of the law at the node.
       real(wp) :: memory(memory_size) = 0.0_wp
    end type friction_point_type
 
@@ -37,15 +36,15 @@ module mfv_friction_law
       real(wp) :: slope = 0.0_wp, stiffness = 0.0_wp, offset = 0.0_wp
    end type friction_row_type
 
-   !> An event of a law's own at a node: `slack` must not become negative, and changes at the rate
-   !> rate + by_pressure*(rate of p) + by_motion*(rate of slip in the direction of the node's motion).
+   !> An event of a friction law at a node: `slack` must not become negative, and changes at the rate rate + by_pressure*(rate of
+   !> p) + by_motion*(rate of slip in the direction of the motion of the node).
    type :: friction_event_type
       !> See mfv_node_status; event_none: no event.
       integer :: kind = event_none
       real(wp) :: slack = 0.0_wp, rate = 0.0_wp, by_pressure = 0.0_wp, by_motion = 0.0_wp
-      !> Whether `slack` is a length (else force/length^2); and how many times larger than others the rate's round-off is.
+      !> Whether `slack` is a length (else force/length^2); and the factor on the tolerance of its rate.
       logical :: is_length = .false.
-      real(wp) :: noise = 1.0_wp
+      real(wp) :: tolerance_factor = 1.0_wp
    end type friction_event_type
 
    type, abstract :: friction_law_type
@@ -56,20 +55,20 @@ module mfv_friction_law
       procedure :: set_parameter
       procedure :: has_two_coefficients
       procedure :: is_coulomb_if_equal
-      !> Its nature.
+      !> Properties.
       procedure :: is_proportional
       procedure :: is_linear
       procedure :: sticks
       procedure :: drops
       procedure :: converges
-      procedure :: bends
+      procedure :: depends_on_end
       procedure :: has_memory
       procedure :: has_events
       !> Lines and limits.
       procedure(row_interface), deferred :: row
       procedure(strength_interface), deferred :: strength
       procedure :: secant
-      procedure :: limit_part
+      procedure :: limit_fraction
       procedure :: limit_varies
       procedure :: limit
       procedure :: has_soft_limit
@@ -84,14 +83,14 @@ module mfv_friction_law
       procedure :: release_rate
       procedure :: can_become_unstable
       procedure :: release
-      !> Its part of the certificate, and of messages.
+      !> Certificate and messages.
       procedure :: defect
       procedure :: wrong_motion
       procedure :: explain_failure
    end type friction_law_type
 
    abstract interface
-      !> What &friction law calls it.
+      !> Value of the key &friction law.
       pure function name_interface(self) result(name)
          import :: friction_law_type
          class(friction_law_type), intent(in) :: self
@@ -118,7 +117,7 @@ module mfv_friction_law
 
 contains
 
-   !> Keys of &friction, besides the coefficients, that the law needs; and those that it can have.
+   !> Keys of &friction, besides the coefficients, that the law requires; and those that are optional.
    pure subroutine parameters(self, needed, optional_ones)
       class(friction_law_type), intent(in) :: self
       type(string_type), allocatable, intent(out) :: needed(:), optional_ones(:)
@@ -126,14 +125,14 @@ contains
       allocate (needed(0), optional_ones(0))
    end subroutine parameters
 
-   !> Give the parameter `key` its value.
+   !> Set the parameter `key`.
    pure subroutine set_parameter(self, key, value)
       class(friction_law_type), intent(inout) :: self
       character(*), intent(in) :: key
       real(wp), intent(in) :: value
    end subroutine set_parameter
 
-   !> Whether it has a static and a kinetic coefficient of friction; else they are one.
+   !> Whether it has both a static and a kinetic coefficient of friction.
    pure logical function has_two_coefficients(self)
       class(friction_law_type), intent(in) :: self
 
@@ -147,7 +146,7 @@ contains
       is_coulomb_if_equal = .false.
    end function is_coulomb_if_equal
 
-   !> Whether |tau| = mu p wherever a node slips, with one coefficient: what closed forms and large increments assume.
+   !> Whether |tau| = mu p wherever a node slips, with a single coefficient, as closed forms and large increments assume.
    pure logical function is_proportional(self)
       class(friction_law_type), intent(in) :: self
 
@@ -168,7 +167,7 @@ contains
       sticks = .true.
    end function sticks
 
-   !> Whether |tau| falls at once where a node begins to slip: it relaxes at a fixed load, as a path of its own.
+   !> Whether |tau| drops when a node begins to slip: it relaxes at a fixed load, along a path of its own.
    pure logical function drops(self)
       class(friction_law_type), intent(in) :: self
 
@@ -182,30 +181,30 @@ contains
       converges = .true.
    end function converges
 
-   !> Whether the line of a node depends on where the increment leads.
-   pure logical function bends(self, status, point)
+   !> Whether the line of a node depends on the end of the increment.
+   pure logical function depends_on_end(self, status, point)
       class(friction_law_type), intent(in) :: self
       integer, intent(in) :: status
       type(friction_point_type), intent(in) :: point
 
-      bends = .false.
-   end function bends
+      depends_on_end = .false.
+   end function depends_on_end
 
-   !> Whether it remembers anything of a node.
+   !> Whether it has memory.
    pure logical function has_memory(self)
       class(friction_law_type), intent(in) :: self
 
       has_memory = .false.
    end function has_memory
 
-   !> Whether it has events of its own.
+   !> Whether it has its own events.
    pure logical function has_events(self)
       class(friction_law_type), intent(in) :: self
 
       has_events = .false.
    end function has_events
 
-   !> The line through both ends of an increment at which `after` obeys the law; of a linear law its only line.
+   !> The line through both ends of an increment at whose end `after` the law is satisfied; the only line of a linear law.
    pure function secant(self, status, before, after) result(row)
       class(friction_law_type), intent(in) :: self
       integer, intent(in) :: status
@@ -215,14 +214,14 @@ contains
       row = self%row(status, before, before)
    end function secant
 
-   !> Part of the limit at which a holding node slips.
-   pure real(wp) function limit_part(self)
+   !> Fraction of the limit at which a holding node slips.
+   pure real(wp) function limit_fraction(self)
       class(friction_law_type), intent(in) :: self
 
-      limit_part = 1.0_wp
-   end function limit_part
+      limit_fraction = 1.0_wp
+   end function limit_fraction
 
-   !> Whether the coefficient of the limit depends on what the node remembers.
+   !> Whether the coefficient of the limit depends on the memory of the node.
    pure logical function limit_varies(self)
       class(friction_law_type), intent(in) :: self
 
@@ -237,14 +236,14 @@ contains
       limit = point%static
    end function limit
 
-   !> Whether creeping nodes reach the limit smoothly: a node that has just touched is then at a part of it.
+   !> Whether creeping nodes approach the limit smoothly, so that a node is below it at first contact.
    pure logical function has_soft_limit(self)
       class(friction_law_type), intent(in) :: self
 
       has_soft_limit = .false.
    end function has_soft_limit
 
-   !> Status of a node that holds, and that moves to `direction` (its sign, 0: not known) if it moves at all.
+   !> Status of a node that holds and would move in `direction` (its sign, 0: unknown).
    pure integer function holding_status(self, direction)
       class(friction_law_type), intent(in) :: self
       integer, intent(in) :: direction
@@ -252,11 +251,9 @@ contains
       holding_status = node_stick
    end function holding_status
 
-   !> By how much a node at the limit would load more than the limit grows if it crept on, force/length^2: while this is not
-   !> negative it
-   !> slips. Of laws whose nodes creep. `moved`: motion in the direction of the slip, length; `growth`: of the limit,
-   !> force/length^2; or
-   !> their rates.
+   !> For laws whose nodes creep: the excess of the load of a node at the limit over the growth of the limit if it continued to
+   !> creep, force/length^2. The node slips as long as this is not negative. `moved`: motion in the direction of slip, length;
+   !> `growth`: of the limit, force/length^2; or their rates.
    elemental real(wp) function over_stress(self, moved, growth)
       class(friction_law_type), intent(in) :: self
       real(wp), intent(in) :: moved, growth
@@ -265,7 +262,7 @@ contains
       if (moved > 0.0_wp) over_stress = 0.0_wp
    end function over_stress
 
-   !> Events of the law's own at a node with this `status`, in an increment that is expected to lead from `here` to `there`.
+   !> Events of the law at a node with this `status`, in an increment from `here` to the expected end `there`.
    pure subroutine find_events(self, status, here, there, events)
       class(friction_law_type), intent(in) :: self
       integer, intent(in) :: status
@@ -273,14 +270,14 @@ contains
       type(friction_event_type), intent(out) :: events(most_events)
    end subroutine find_events
 
-   !> One of these events has happened: what the node remembers from then on.
+   !> Update the memory after one of these events.
    pure subroutine pass_event(self, kind, memory)
       class(friction_law_type), intent(in) :: self
       integer, intent(in) :: kind
       real(wp), intent(inout) :: memory(:)
    end subroutine pass_event
 
-   !> A node changes its status `from`, `to`; `point`: at that load, with what it remembered until then.
+   !> Update the memory for a change of status. `point`: the state at that load, with the memory before the change.
    pure subroutine change_status(self, from, to, point, memory)
       class(friction_law_type), intent(in) :: self
       integer, intent(in) :: from, to
@@ -288,7 +285,7 @@ contains
       real(wp), intent(inout) :: memory(:)
    end subroutine change_status
 
-   !> What a node with this `status` remembers after an increment. `released`: part of the over-stress that has relaxed in it.
+   !> Update the memory after an increment. `released`: fraction of the over-stress that has relaxed in it.
    pure subroutine remember(self, status, before, after, released, memory)
       class(friction_law_type), intent(in) :: self
       integer, intent(in) :: status
@@ -297,7 +294,7 @@ contains
       real(wp), intent(inout) :: memory(:)
    end subroutine remember
 
-   !> Whether a node with this memory has over-stress that must relax before the load goes on.
+   !> Whether a node with this memory has over-stress that must relax before the load continues.
    pure logical function is_releasing(self, memory)
       class(friction_law_type), intent(in) :: self
       real(wp), intent(in) :: memory(:)
@@ -305,7 +302,7 @@ contains
       is_releasing = .false.
    end function is_releasing
 
-   !> How much |tau| falls while all over-stress relaxes, force/length^2.
+   !> Decrease of |tau| while all over-stress relaxes, force/length^2.
    pure real(wp) function release_rate(self, memory)
       class(friction_law_type), intent(in) :: self
       real(wp), intent(in) :: memory(:)
@@ -323,16 +320,15 @@ contains
       can_become_unstable = .false.
    end function can_become_unstable
 
-   !> Such a node, slipping now, begins to relax.
+   !> Begin the stress drop of such a node, which now slips.
    pure subroutine release(self, point, memory)
       class(friction_law_type), intent(in) :: self
       type(friction_point_type), intent(in) :: point
       real(wp), intent(inout) :: memory(:)
    end subroutine release
 
-   !> By how much the traction of a slipping or creeping node fails the law after an increment, force/length^2. `explicit`: lines
-   !> were
-   !> tangents at the start.
+   !> Residual of the law for a slipping or creeping node after an increment, force/length^2. `explicit`: lines were tangents at
+   !> the start.
    pure real(wp) function defect(self, status, before, after, explicit)
       class(friction_law_type), intent(in) :: self
       integer, intent(in) :: status
@@ -342,8 +338,8 @@ contains
       defect = after%shear + slip_sign(status)*self%strength(after)
    end function defect
 
-   !> By how much a slipping node has moved against its direction: length where nodes stick, else the traction that this makes,
-   !> force/length^2. `growth`: of the limit.
+   !> Motion of a slipping node against its direction: length if nodes stick, else the corresponding traction, force/length^2.
+   !> `growth`: of the limit.
    pure real(wp) function wrong_motion(self, moved, growth)
       class(friction_law_type), intent(in) :: self
       real(wp), intent(in) :: moved, growth
@@ -351,9 +347,8 @@ contains
       wrong_motion = -moved
    end function wrong_motion
 
-   !> What may be wrong with the law's parameters where no solution is found; empty, or begins with '; '. `interval_stiffness`:
-   !> contact
-   !> modulus over the interval, force/length^3.
+   !> Possible reason in the parameters of the law if no solution is found; empty, or begins with '; '. `interval_stiffness`:
+   !> contact modulus over the interval, force/length^3.
    pure function explain_failure(self, interval_stiffness) result(text)
       class(friction_law_type), intent(in) :: self
       real(wp), intent(in) :: interval_stiffness

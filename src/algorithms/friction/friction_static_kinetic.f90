@@ -1,8 +1,8 @@
-!> Static and kinetic friction (the dissertation's two-parameter friction, sections 3.4, 3.7 and 5.2): a node holds up to
-!> mu_s p and slips with mu_k p. Where it begins to slip, |tau| falls at once: see mfv_friction_drop.
+!> Static and kinetic friction (the two-parameter friction of the dissertation, sections 3.4, 3.7 and 5.2): a node sticks up to
+!> mu_s p and slips with mu_k p. When it begins to slip, |tau| drops: see mfv_friction_drop.
 !>
-!> The edge of the stick zone is singular under this law, and the strength that resists it vanishes with the interval: the
-!> stick ratio depends on the mesh (docs/theory.md). Weakening friction is the law that converges.
+!> The edge of the stick zone is singular under this law, and the resistance to it vanishes with the interval: the stick ratio
+!> depends on the mesh (docs/theory.md). Weakening friction converges with the mesh.
 module mfv_friction_static_kinetic
    use mfv_friction_drop, only: dropping_law_type, over
    use mfv_friction_law

@@ -1,13 +1,13 @@
-!> Slip-weakening friction: the coefficient falls from mu_s to mu_k, linearly over a slip distance D; a node that holds again
-!> has mu_s again. With D against zero it becomes static and kinetic friction; other than that it has a length of its own, so
-!> that results converge with the mesh. (Source: the linear law of fracture mechanics of faults, Ida 1972, J. Geophys. Res. 77,
-!> 3796; there tau against slip, here mu against slip.)
+!> Slip-weakening friction: the coefficient decreases from mu_s to mu_k, linearly over a slip distance D; a node that sticks again
+!> has mu_s again. For D -> 0 it becomes static and kinetic friction. For D > 0 it has a length scale, so that results converge
+!> with the mesh. (Source: the linear law of fault mechanics, Ida 1972, J. Geophys. Res. 77, 3796; there tau against slip, here mu
+!> against slip.)
 !>
-!> tau = -+ mu(slip) p is bilinear where p changes with the load: the line is linearised about the expected end of the
-!> increment (Newton) and exact where that is right.
+!> tau = -+ mu(slip) p is bilinear if p changes with the load: the line is linearised about the expected end of the increment
+!> (Newton) and exact if that is right.
 !>
-!> Where the bodies cannot unload as fast as friction falls, no slip in equilibrium begins: the node snaps. As under static and
-!> kinetic friction its traction then falls at a fixed load, until the law holds again or the node is at mu_k.
+!> If the bodies cannot unload as fast as friction decreases, slip cannot begin in equilibrium: an instability. As under static and
+!> kinetic friction the traction then relaxes at a fixed load, until the law is satisfied again or friction has decreased to mu_k.
 module mfv_friction_weakening
    use mfv_friction_drop, only: dropping_law_type, find_drop_events, over, pass_drop_event, remember_drop, slipped
    use mfv_friction_law
@@ -19,14 +19,14 @@ module mfv_friction_weakening
    public :: weakening_law_type
 
    type, extends(dropping_law_type) :: weakening_law_type
-      !> Slip over which mu falls from its static to its kinetic value, length, > 0.
+      !> Slip over which mu decreases from its static to its kinetic value, length, > 0.
       real(wp) :: distance = huge(1.0_wp)
    contains
       procedure :: name
       procedure :: parameters
       procedure :: set_parameter
       procedure :: is_linear
-      procedure :: bends
+      procedure :: depends_on_end
       procedure :: row
       procedure :: strength
       procedure :: secant
@@ -71,13 +71,13 @@ contains
       is_linear = .false.
    end function is_linear
 
-   pure logical function bends(self, status, point)
+   pure logical function depends_on_end(self, status, point)
       class(weakening_law_type), intent(in) :: self
       integer, intent(in) :: status
       type(friction_point_type), intent(in) :: point
 
-      bends = slips(status) .and. self%room(point) < huge(1.0_wp)
-   end function bends
+      depends_on_end = slips(status) .and. self%room(point) < huge(1.0_wp)
+   end function depends_on_end
 
    pure function row(self, status, before, after)
       class(weakening_law_type), intent(in) :: self
@@ -120,19 +120,19 @@ contains
       if (point%memory(over) > 0.0_wp) strength = point%kinetic*point%pressure + point%memory(over)
    end function strength
 
-   !> mu after the slip that the point remembers.
+   !> mu after the slip of the point.
    pure real(wp) function coefficient(self, point)
       class(weakening_law_type), intent(in) :: self
       type(friction_point_type), intent(in) :: point
-      real(wp) :: part
+      real(wp) :: fraction
 
       coefficient = point%static
       if (.not. point%kinetic < point%static) return
-      part = min(point%memory(slipped)/self%distance, 1.0_wp)
-      coefficient = (1.0_wp - part)*point%static + part*point%kinetic
+      fraction = min(point%memory(slipped)/self%distance, 1.0_wp)
+      coefficient = (1.0_wp - fraction)*point%static + fraction*point%kinetic
    end function coefficient
 
-   !> How much mu falls per slip, 1/length; 0 where it no longer does.
+   !> Decrease of mu per slip, 1/length; 0 at and beyond the distance.
    pure real(wp) function slope_of_coefficient(self, point) result(fall)
       class(weakening_law_type), intent(in) :: self
       type(friction_point_type), intent(in) :: point
@@ -141,7 +141,7 @@ contains
       if (self%room(point) < huge(1.0_wp)) fall = (point%static - point%kinetic)/self%distance
    end function slope_of_coefficient
 
-   !> How much further a slipping node can slip until its friction no longer falls, length; huge: it does not fall.
+   !> Remaining slip of a slipping node until its friction no longer decreases, length; huge if it does not decrease.
    pure real(wp) function room(self, point)
       class(weakening_law_type), intent(in) :: self
       type(friction_point_type), intent(in) :: point
@@ -152,7 +152,7 @@ contains
           point%memory(slipped) < self%distance*(1.0_wp - round_off)) room = self%distance - point%memory(slipped)
    end function room
 
-   !> Friction no longer falls; and a relaxing node is where the law holds again, (mu - mu_k) p beyond kinetic friction.
+   !> Events: friction no longer decreases; a relaxing node satisfies the law again, (mu - mu_k) p above kinetic friction.
    pure subroutine find_events(self, status, here, there, events)
       class(weakening_law_type), intent(in) :: self
       integer, intent(in) :: status
@@ -194,7 +194,7 @@ contains
       memory(slipped) = min(memory(slipped), self%distance)
    end subroutine remember
 
-   !> A node at its static limit, or on its way from static to kinetic friction.
+   !> Whether the node is at its static limit, or between static and kinetic friction.
    pure logical function can_become_unstable(self, status, point)
       class(weakening_law_type), intent(in) :: self
       integer, intent(in) :: status

@@ -196,9 +196,9 @@ contains
          tangential_rest = largest_or_nan(tangential_rest, fields%tangential(i) + rigid_tangential(i) - part(i, block_up) &
                                           - part(i, block_ut))
       end do
-      self%tangential = max(self%tangential, model%grip*self%normal, abs(fields%motion(motion_shift)))
+      self%tangential = max(self%tangential, model%friction_scale*self%normal, abs(fields%motion(motion_shift)))
       self%force(motion_approach) = max(self%force(motion_approach), abs(fields%force(motion_approach)), pressure_force)
-      self%force(motion_shift) = max(self%force(motion_shift), model%grip*self%force(motion_approach), shear_force, &
+      self%force(motion_shift) = max(self%force(motion_shift), model%friction_scale*self%force(motion_approach), shear_force, &
                                      abs(fields%force(motion_shift)))
       call note(self, elasticity_normal, normal_rest, max(self%normal, maxval(abs(rigid_normal))))
       call note(self, elasticity_tangential, tangential_rest, self%tangential)
@@ -294,7 +294,7 @@ contains
                law_defect = largest_or_nan(law_defect, law%defect(status, here, there, explicit))
                if (slips(status)) wrong_way = max(wrong_way, law%wrong_motion( &
                                                   slip_sign(status)*slipped, model%static_friction(i) &
-                                                  *(after%fields%pressure(i) - before%fields%pressure(i))*law%limit_part()))
+                                                  *(after%fields%pressure(i) - before%fields%pressure(i))*law%limit_fraction()))
             end if
          end do
          call note(self, stick_slip, sliding, self%tangential)

@@ -10,18 +10,18 @@ module mfv_contact_fields
    type :: contact_fields_type
       !> Pressure p >= 0 and shear traction tau on the lower body (positive to the right), force/length^2, shape (nodes).
       real(wp), allocatable :: pressure(:), shear(:)
-      !> Displacements of the surfaces against each other but for approach and shift, length, shape (nodes): how far the
-      !> surfaces draw apart, w of both bodies into themselves, and how far the lower one moves to the right of the upper
-      !> one, u of the lower less u of the upper. What the upper body's rotation does is in them.
+      !> Relative displacements of the surfaces except for approach and shift, length, shape (nodes). Normal: separation, the sum
+      !> of w of both bodies, each positive into the body. Tangential: u of the lower less u of the upper body, to the right. Both
+      !> include the effect of the rotation of the upper body.
       real(wp), allocatable :: normal(:), tangential(:)
       !> Motions of the upper body (mfv_motions): approach (down) and shift (right), length; rotation (counterclockwise), radians.
       real(wp) :: motion(motion_count) = 0.0_wp
-      !> Their forces, of the upper on the lower body per unit thickness: P (down) and Q (right), force/length; moment M
+      !> Forces of these motions, of the upper on the lower body per unit thickness: P (down) and Q (right), force/length; moment M
       !> (counterclockwise) about the centre of rotation, force.
       real(wp) :: force(motion_count) = 0.0_wp
    contains
       procedure :: plus
-      procedure :: take
+      procedure :: copy_from
       procedure :: clear
       procedure :: move
       procedure :: slip
@@ -45,12 +45,12 @@ contains
       type(contact_fields_type), intent(in) :: rate
       type(contact_fields_type) :: total
 
-      call total%take(self)
+      call total%copy_from(self)
       call total%move(step, rate)
    end function plus
 
-   !> Become equal to `other`, in the storage there is.
-   pure subroutine take(self, other)
+   !> Copy `other`, reusing storage.
+   pure subroutine copy_from(self, other)
       class(contact_fields_type), intent(inout) :: self
       type(contact_fields_type), intent(in) :: other
 
@@ -60,9 +60,9 @@ contains
       self%tangential = other%tangential
       self%motion = other%motion
       self%force = other%force
-   end subroutine take
+   end subroutine copy_from
 
-   !> Become zero for `nodes` nodes, in the storage there is.
+   !> Set all fields to zero for `nodes` nodes, reusing storage.
    pure subroutine clear(self, nodes)
       class(contact_fields_type), intent(inout) :: self
       integer, intent(in) :: nodes
@@ -78,7 +78,7 @@ contains
             return
          end if
       end if
-      call self%take(new_contact_fields(nodes))
+      call self%copy_from(new_contact_fields(nodes))
    end subroutine clear
 
    !> self = self + step*rate.

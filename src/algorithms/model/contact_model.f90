@@ -1,9 +1,9 @@
 !> A scene on its mesh: node positions, undeformed gaps and the compliance between the nodes.
 !>
-!> With vertical normals (docs/theory.md has the limits) nodes are at equal arc lengths from the pole on both bodies. Gaps
-!> are the exact ones at the nodes' x, that of the circle of scene%arc_radius; another radius would put the other body's
-!> nodes at other x, off by the third power of the angle. With radial normals, for a disk in a hole, nodes are at equal
-!> angles on both bodies, gaps are along the radii of the hole, and tractions are per unit of its arc.
+!> With vertical normals (limits in docs/theory.md) nodes are at equal arc lengths from the origin of x on both bodies. Gaps are
+!> exact at the x of the nodes, on the circle of scene%arc_radius. On a body of another radius the nodes would be at another x; the
+!> difference is of third order in the angle. With radial normals, for a disk in a hole, nodes are at equal angles on both bodies,
+!> gaps are along the radii of the hole, and tractions are per unit of its arc.
 module mfv_contact_model
    use mfv_body, only: body_type, gap_between, radial_gap_between, shape_matrix
    use mfv_body_pair, only: body_pair_type, new_body_pair
@@ -23,33 +23,33 @@ module mfv_contact_model
 
    type :: contact_model_type
       type(scene_type) :: scene
-      !> Positions of the nodes: x, and along the surface from the pole; lengths.
+      !> Positions of the nodes: x, and the arc length from the origin of x; lengths.
       real(wp), allocatable :: x(:), arc(:)
       !> Length of the surface that belongs to each node.
       real(wp), allocatable :: width(:)
-      !> Undeformed gaps g0, length; zero where a node has no surface opposite.
+      !> Undeformed gaps g0, length; zero where a node faces no surface.
       real(wp), allocatable :: initial_gap(:)
-      !> Whether both bodies have a surface at the node, so that it can touch at all.
+      !> Whether both bodies have a surface at the node, so that it can touch.
       logical, allocatable :: can_touch(:)
-      !> By how much a unit of every motion of the upper body (mfv_motions) lessens the gap, and carries its surface along the lower
-      !> one to the right; shape (nodes, motion_count), of approach and shift without unit, of rotation lengths.
+      !> Decrease of the gap, and displacement of the upper surface to the right along the lower one, for a unit of every motion of
+      !> the upper body (mfv_motions); shape (nodes, motion_count). Approach and shift: without unit; rotation: lengths.
       real(wp), allocatable :: normal_arm(:, :), tangential_arm(:, :)
-      !> Whether approach does nothing but lessen gaps and shift nothing but slide: normals are vertical.
+      !> Whether normals are vertical: approach only closes gaps, and shift only slides.
       logical :: upright = .true.
-      !> Static and kinetic coefficient of friction at the nodes, shape (nodes), and the part of the normal tractions that
-      !> shear can have: the largest coefficient, but no more than 1.
+      !> Static and kinetic coefficient of friction at the nodes, shape (nodes), and the friction scale: the largest ratio of shear
+      !> to pressure, at most 1.
       real(wp), allocatable :: static_friction(:), kinetic_friction(:)
-      real(wp) :: grip = 0.0_wp
+      real(wp) :: friction_scale = 0.0_wp
       type(body_pair_type) :: compliance
       !> Whether the tangential problem is modelled: friction acts in some step.
       logical :: tangential = .false.
-      !> Which motions are modelled; the others are held.
+      !> Which motions are modelled; the others are fixed.
       logical :: moves(motion_count) = .not. motions%optional
       !> Whether the mesh may grow with the contact.
       logical :: growing = .false.
-      !> How many nodes have been added at either end.
+      !> Number of nodes added at either end.
       integer :: added = 0
-      !> Time that the compliance took so far, seconds.
+      !> Time spent on the compliance so far, seconds.
       real(wp) :: assembly_seconds = 0.0_wp
    contains
       procedure :: nodes
@@ -81,7 +81,7 @@ module mfv_contact_model
       procedure, private :: place_nodes
    end type contact_model_type
 
-   !> Contact estimates leave this much room to the end of a chosen mesh.
+   !> Chosen half-width of the mesh relative to the estimated contact half-width.
    real(wp), parameter :: room = 1.2_wp
 
 contains
@@ -102,7 +102,7 @@ contains
       call model%place_nodes()
    end function new_contact_model
 
-   !> Number and width (length) of the intervals of a scene's mesh, and whether they may become more.
+   !> Number and width (length) of the intervals of the mesh of a scene, and whether the mesh may grow.
    subroutine choose_mesh(scene, nodes, interval, growing)
       type(scene_type), intent(in) :: scene
       integer, intent(out) :: nodes
@@ -130,8 +130,8 @@ contains
       end if
    end subroutine choose_mesh
 
-   !> Whether there is a length that a mesh can be chosen by: the user's, that of a shape, or that of the contact which the targets
-   !> of the steps make.
+   !> Whether there is a length from which to choose a mesh: that of the user, of a shape, or of the contact under the targets of
+   !> the steps.
    pure logical function can_choose_mesh(scene)
       type(scene_type), intent(in) :: scene
 
@@ -140,8 +140,8 @@ contains
       if (.not. can_choose_mesh) can_choose_mesh = largest_half_width(scene, huge(1.0_wp)) > 0.0_wp
    end function can_choose_mesh
 
-   !> Intervals of the width `interval` (length) that fit on the circle of a disk or hole; with radial normals on the circle of the
-   !> nodes, whose angles both bodies have.
+   !> Number of intervals of the width `interval` (length) on the circle of a disk or hole; with radial normals on the circle of
+   !> the nodes.
    pure real(wp) function intervals_round(scene, body, interval)
       type(scene_type), intent(in) :: scene
       type(body_type), intent(in) :: body
@@ -169,7 +169,7 @@ contains
       end do
    end function has_touchable_node
 
-   !> Whether a body's kernel needs a whole number of intervals on its circle.
+   !> Whether a body's kernel requires an integer number of intervals on its circle.
    pure logical function by_fourier(scene)
       type(scene_type), intent(in) :: scene
 
@@ -177,7 +177,7 @@ contains
                    any([scene%lower%kernel, scene%upper%kernel] == kernel_fourier)
    end function by_fourier
 
-   !> Stiffnesses above this, force/length^2, are ratios to a displacement that is round-off.
+   !> Larger stiffnesses, force/length^2, are ratios to a displacement of round-off.
    pure real(wp) function largest_stiffness(self)
       class(contact_model_type), intent(in) :: self
       real(wp), parameter :: elastic = 1.0e8_wp
@@ -185,7 +185,7 @@ contains
       largest_stiffness = elastic*self%compliance%modulus
    end function largest_stiffness
 
-   !> Model the tangential problem from now on: friction acts in a step that the scene did not have.
+   !> Model the tangential problem from now on: friction acts in a step that was not in the scene.
    subroutine add_tangential(self)
       class(contact_model_type), intent(inout) :: self
 
@@ -231,7 +231,7 @@ contains
       interval = self%compliance%interval
    end function interval
 
-   !> The surface of the nodes of `mask`, shape (nodes), in (mean) intervals: on equal ones, their number.
+   !> Length of the surface of the nodes of `mask`, shape (nodes), in (mean) intervals; for equal intervals their number.
    pure real(wp) function intervals(self, mask)
       class(contact_model_type), intent(in) :: self
       logical, intent(in) :: mask(:)
@@ -239,14 +239,14 @@ contains
       intervals = sum(self%width/self%interval(), mask=mask)
    end function intervals
 
-   !> Half the length of the mesh, length: the scale of the scene.
+   !> Half the length of the mesh, length: the length scale of the scene.
    pure real(wp) function length(self)
       class(contact_model_type), intent(in) :: self
 
       length = 0.5_wp*self%interval()*self%nodes()
    end function length
 
-   !> Gap g0 - delta + w of every node, length (where a node has no surface opposite: of no meaning).
+   !> Gap g0 - delta + w of every node, length (meaningless where a node faces no surface).
    pure function gap(self, fields)
       class(contact_model_type), intent(in) :: self
       type(contact_fields_type), intent(in) :: fields
@@ -255,8 +255,8 @@ contains
       gap = self%initial_gap - fields%motion(motion_approach) + fields%normal
    end function gap
 
-   !> Displacements of the surfaces against each other by deformation and rigid parts, as contact_fields_type has them, from the
-   !> tractions and motions in `fields`; shape (nodes), length.
+   !> Relative displacements of the surfaces by deformation and rigid motions, as in contact_fields_type, from the tractions and
+   !> motions in `fields`; shape (nodes), length.
    subroutine relative_displacements(self, fields, normal, tangential)
       class(contact_model_type), intent(in) :: self
       type(contact_fields_type), intent(in) :: fields
@@ -268,7 +268,7 @@ contains
       tangential = tangential - self%rigid_tangential(fields)
    end subroutine relative_displacements
 
-   !> Give the fields the displacements that belong to their tractions and motions.
+   !> Set the displacements of the fields from their tractions and motions.
    subroutine displace(self, fields)
       class(contact_model_type), intent(in) :: self
       type(contact_fields_type), intent(inout) :: fields
@@ -279,15 +279,15 @@ contains
       fields%tangential = tangential
    end subroutine displace
 
-   !> Whether motions of the upper body do more than lessen all gaps alike and slide all nodes alike: one besides approach and shift
-   !> is modelled, or normals lean. Without, rigid_normal and rigid_tangential are zero.
+   !> Whether motions of the upper body change gaps or slip non-uniformly: another motion than approach and shift is modelled, or
+   !> normals are inclined. Otherwise rigid_normal and rigid_tangential are zero.
    pure logical function has_rigid_parts(self)
       class(contact_model_type), intent(in) :: self
 
       has_rigid_parts = any(self%moves .and. motions%optional) .or. .not. self%upright
    end function has_rigid_parts
 
-   !> Whether a motion lessens gaps; if not, it only slides.
+   !> Whether a motion changes gaps; otherwise it only slides.
    pure logical function lifts(self, motion)
       class(contact_model_type), intent(in) :: self
       integer, intent(in) :: motion
@@ -295,38 +295,38 @@ contains
       lifts = any(abs(self%normal_arm(:, motion)) > 0.0_wp)
    end function lifts
 
-   !> By how much the upper body's motion lessens the gaps, but for the approach itself; shape (nodes), length.
+   !> Decrease of the gaps by the motions of the upper body, beyond the approach itself; shape (nodes), length.
    pure function rigid_normal(self, fields)
       class(contact_model_type), intent(in) :: self
       type(contact_fields_type), intent(in) :: fields
       real(wp) :: rigid_normal(self%compliance%nodes)
 
-      rigid_normal = carried(self%normal_arm, motion_approach, fields%motion)
+      rigid_normal = moved(self%normal_arm, motion_approach, fields%motion)
    end function rigid_normal
 
-   !> How far the upper body's motion carries its surface to the right, but for the shift itself; shape (nodes), length.
+   !> Displacement of the upper surface to the right by its motions, beyond the shift itself; shape (nodes), length.
    pure function rigid_tangential(self, fields)
       class(contact_model_type), intent(in) :: self
       type(contact_fields_type), intent(in) :: fields
       real(wp) :: rigid_tangential(self%compliance%nodes)
 
-      rigid_tangential = carried(self%tangential_arm, motion_shift, fields%motion)
+      rigid_tangential = moved(self%tangential_arm, motion_shift, fields%motion)
    end function rigid_tangential
 
-   !> How far motions carry the nodes by their `arm` (shape (nodes, motion_count)), less the motion `own` itself.
-   pure function carried(arm, own, motion)
+   !> Displacement of the nodes by motions with their `arm`, shape (nodes, motion_count), less the motion `own` itself.
+   pure function moved(arm, own, motion)
       real(wp), intent(in) :: arm(:, :), motion(motion_count)
       integer, intent(in) :: own
-      real(wp) :: carried(size(arm, 1))
+      real(wp) :: moved(size(arm, 1))
       integer :: i
 
-      carried = 0.0_wp
+      moved = 0.0_wp
       do i = 1, motion_count
-         carried = carried + (arm(:, i) - merge(1.0_wp, 0.0_wp, i == own))*motion(i)
+         moved = moved + (arm(:, i) - merge(1.0_wp, 0.0_wp, i == own))*motion(i)
       end do
-   end function carried
+   end function moved
 
-   !> How much further the upper body must approach until the node with the least way to go closes its `gap`, length.
+   !> Further approach of the upper body until the nearest node closes its `gap`, length.
    pure real(wp) function nearest_approach(self, gap)
       class(contact_model_type), intent(in) :: self
       real(wp), intent(in) :: gap(:)
@@ -342,8 +342,8 @@ contains
       force = ddot(size(traction), self%width, 1, traction, 1)
    end function force
 
-   !> What the tractions amount to on the lower body, the force of a motion (mfv_motions): normal force down, tangential force to
-   !> the right, force/length; moment about the centre of rotation, counterclockwise, force.
+   !> Resultant of the tractions on the lower body for a motion (mfv_motions): normal force down, tangential force to the right,
+   !> force/length; moment about the centre of rotation, counterclockwise, force.
    pure real(wp) function resultant(self, motion, pressure, shear)
       class(contact_model_type), intent(in) :: self
       integer, intent(in) :: motion
@@ -358,7 +358,7 @@ contains
       end if
    end function resultant
 
-   !> Whether the contact statuses (true: in contact) reach an end of the mesh beyond which both bodies go on.
+   !> Whether the contact (true: in contact) reaches an end of the mesh beyond which both bodies continue.
    pure logical function reaches_end(self, contact)
       class(contact_model_type), intent(in) :: self
       logical, intent(in) :: contact(:)
@@ -369,7 +369,7 @@ contains
                     .or. contact(n) .and. self%scene%touchable(self%arc(n) + self%interval())
    end function reaches_end
 
-   !> How many nodes there could still be at either end: a circle ends.
+   !> Number of nodes that can still be added at either end; limited on a circle.
    pure integer function spare_nodes(self)
       class(contact_model_type), intent(in) :: self
 
@@ -391,7 +391,7 @@ contains
       call self%place_nodes()
    end subroutine grow
 
-   !> Positions symmetric to the last bit.
+   !> Set positions; they are exactly symmetric.
    subroutine place_nodes(self)
       class(contact_model_type), intent(inout) :: self
       integer :: i, n
@@ -414,13 +414,13 @@ contains
       self%can_touch = self%scene%touchable(self%arc)
       self%static_friction = self%scene%friction%static%at(self%x)
       self%kinetic_friction = self%scene%friction%kinetic%at(self%x)
-      self%grip = min(self%scene%friction%static%largest(), 1.0_wp)
+      self%friction_scale = min(self%scene%friction%static%largest(), 1.0_wp)
       call place_arms(self)
    end subroutine place_nodes
 
-   !> Arms of the rotation of the upper body: about the centre of the upper body where it is a circle, else of the lower
-   !> one where that is, else about the pole. Counterclockwise it lifts the right side, and a surface below the centre moves to
-   !> the right (eq. 4.24, M there in units of R and with its own signs). Circles roll: see rolling_arm.
+   !> Arms of the rotation of the upper body: about its centre if it is a circle, else about that of the lower one if that is, else
+   !> about the origin of x. Counterclockwise it lifts the right side and moves a surface below the centre to the right (eq. 4.24,
+   !> where M is in units of R and has its own signs). Circles roll: see rolling_arm.
    subroutine place_arms(self)
       class(contact_model_type), intent(inout) :: self
       integer :: n
@@ -440,7 +440,7 @@ contains
       self%tangential_arm(:, motion_rotation) = self%centre_height()
    end subroutine place_arms
 
-   !> Height of the centre of rotation above the pole, length: negative where it is that of a disk below; 0 without a circle.
+   !> Height of the centre of rotation above the origin of x, length: negative for a disk below; 0 without a circle.
    pure real(wp) function centre_height(self)
       class(contact_model_type), intent(in) :: self
 
@@ -452,7 +452,7 @@ contains
       end if
    end function centre_height
 
-   !> Whether a rotation rolls the bodies on each other: circles, on each other or on a straight surface, normals vertical.
+   !> Whether a rotation rolls the bodies on each other: circles, on each other or on a straight surface, with vertical normals.
    pure logical function rolls(self)
       class(contact_model_type), intent(in) :: self
 
@@ -460,8 +460,8 @@ contains
               .not. self%scene%mesh%radial
    end function rolls
 
-   !> How far the contact has rolled to the right along the surfaces, length: a rotation moves it by -1/K, K the relative
-   !> curvature, whichever of the bodies turns. 0 where the bodies do not roll.
+   !> Distance that the contact has rolled to the right along the surfaces, length: a rotation moves it by -1/K, K the relative
+   !> curvature, whichever body rotates. 0 if the bodies do not roll.
    pure real(wp) function rolled(self, fields)
       class(contact_model_type), intent(in) :: self
       type(contact_fields_type), intent(in) :: fields
@@ -470,7 +470,7 @@ contains
       if (self%rolls()) rolled = -fields%motion(motion_rotation)/self%scene%curvature()
    end function rolled
 
-   !> How far the upper surface has slid over the lower one at the pole, as rigid bodies, to the right, length.
+   !> Rigid sliding of the upper surface over the lower one at the origin of x, to the right, length.
    pure real(wp) function slid(self, fields)
       class(contact_model_type), intent(in) :: self
       type(contact_fields_type), intent(in) :: fields
@@ -478,12 +478,10 @@ contains
       slid = fields%motion(motion_shift) + self%centre_height()*fields%motion(motion_rotation)
    end function slid
 
-   !> By how much the gap grows per unit of rotation, length, shape (nodes). A contact that has rolled along by s has the gap
-   !> g(arc - s), but for a constant that the approach takes up. For a parabola g = K arc^2/2 this is K arc^2/2 - K s arc: the arm
-   !> is
-   !> the arc. For other gaps the arm arc + 2 b arc^3/3, with g = K arc^2/2 (1 + b arc^2), keeps the least gap at s, to fourth
-   !> order;
-   !> there the curvature is then wrong by the part 2 b s^2 (see rolling_error).
+   !> Increase of the gap per unit of rotation, length, shape (nodes). A contact that has rolled by s has the gap g(arc - s), up to
+   !> a constant that the approach compensates. For a parabola g = K arc^2/2 the change is -K s arc: the arm is the arc length. For
+   !> other gaps, g = K arc^2/2 (1 + b arc^2), the arm arc + 2 b arc^3/3 keeps the least gap at s, to fourth order; the relative
+   !> error of the curvature there is 2 b s^2 (see rolling_error).
    pure function rolling_arm(self) result(arm)
       class(contact_model_type), intent(in) :: self
       real(wp) :: arm(self%compliance%nodes)
@@ -493,8 +491,7 @@ contains
          arm = (self%arc + 4.0_wp*self%initial_gap/(self%scene%curvature()*self%arc))/3.0_wp
    end function rolling_arm
 
-   !> By which part the relative curvature is wrong where the contact has rolled to, see rolling_arm: zero for parabolas on
-   !> straight lines.
+   !> Relative error of the curvature where the contact has rolled to, see rolling_arm: zero for parabolas on straight lines.
    pure real(wp) function rolling_error(self, fields)
       class(contact_model_type), intent(in) :: self
       type(contact_fields_type), intent(in) :: fields
@@ -507,8 +504,8 @@ contains
       rolling_error = 2.0_wp*(2.0_wp*self%initial_gap(i)/(self%scene%curvature()*self%arc(i)**2) - 1.0_wp)
    end function rolling_error
 
-   !> The same with normals along the radius: where the normal leans, approach and shift have parts of each other's, and a
-   !> rotation only slides the surfaces on each other. `side`: 1 where the lower body is the disk, -1 where it is the hole.
+   !> The arms with radial normals: where the normal is inclined, approach and shift have components along both directions; a
+   !> rotation only slides the surfaces. `side`: 1 if the lower body is the disk, -1 if it is the hole.
    subroutine place_radial_arms(self)
       class(contact_model_type), intent(inout) :: self
       real(wp) :: side
@@ -523,8 +520,8 @@ contains
       self%tangential_arm(:, motion_rotation) = -side*self%scene%upper%radius
    end subroutine place_radial_arms
 
-   !> Half-width of a mesh for a scene that asks for none, length along the surface: the punch itself, the whole profile, or
-   !> the contact that the closed form expects of the largest load with some room.
+   !> Default half-width of a mesh, length along the surface: that of the punch, of the profile, or of the contact that the closed
+   !> form expects for the largest load, with a margin.
    function estimated_half_width(scene) result(half_width)
       type(scene_type), intent(in) :: scene
       real(wp) :: half_width, largest, beyond

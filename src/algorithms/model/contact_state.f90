@@ -1,4 +1,4 @@
-!> A contact state: the fields and what the nodes remember.
+!> A contact state: the fields and the memory of the nodes.
 module mfv_contact_state
    use mfv_contact_fields, only: contact_fields_type, new_contact_fields
    use mfv_friction_law, only: friction_point_type, memory_size
@@ -13,11 +13,11 @@ module mfv_contact_state
       type(contact_fields_type) :: fields
       !> Statuses, see mfv_node_status, shape (nodes).
       integer, allocatable :: status(:)
-      !> Slip at which a stuck node holds, or a slipping one last held, length, shape (nodes).
+      !> Slip at which a stuck node holds, or a slipping node last held, length, shape (nodes).
       real(wp), allocatable :: stuck_slip(:)
-      !> Sign of the last slip rate, 0 when there was none, shape (nodes).
+      !> Sign of the last slip rate, 0 for none, shape (nodes).
       integer, allocatable :: slip_direction(:)
-      !> What the friction law remembers of the nodes, shape (memory_size, nodes).
+      !> Memory of the friction law, shape (memory_size, nodes).
       real(wp), allocatable :: memory(:, :)
       !> Work dissipated by friction so far, force (energy per unit thickness).
       real(wp) :: dissipation = 0.0_wp
@@ -25,7 +25,7 @@ module mfv_contact_state
       real(wp), allocatable :: friction_work(:)
    contains
       procedure :: set_status
-      procedure :: take
+      procedure :: copy_from
       procedure :: friction_point
       procedure :: widen
       procedure :: contact_nodes
@@ -48,8 +48,8 @@ contains
       allocate (state%stuck_slip(nodes), state%friction_work(nodes), source=0.0_wp)
    end function new_contact_state
 
-   !> Give the nodes of `mask` the new statuses; a node that sticks holds at the slip it has, one that slips as it touches has held
-   !> there.
+   !> Set the statuses of the nodes of `mask`. A node that sticks holds at its present slip; one that slips at first contact has
+   !> held there.
    pure subroutine set_status(self, mask, status)
       class(contact_state_type), intent(inout) :: self
       logical, intent(in) :: mask(:)
@@ -66,22 +66,21 @@ contains
       end do
    end subroutine set_status
 
-   !> Become equal to `other`, in the storage there is.
-   pure subroutine take(self, other)
+   !> Copy `other`, reusing storage.
+   pure subroutine copy_from(self, other)
       class(contact_state_type), intent(inout) :: self
       type(contact_state_type), intent(in) :: other
 
-      call self%fields%take(other%fields)
+      call self%fields%copy_from(other%fields)
       self%status = other%status
       self%stuck_slip = other%stuck_slip
       self%slip_direction = other%slip_direction
       self%memory = other%memory
       self%dissipation = other%dissipation
       self%friction_work = other%friction_work
-   end subroutine take
+   end subroutine copy_from
 
-   !> What a friction law knows of node `node` where the fields are `fields` and the coefficients of friction `static` and
-   !> `kinetic`.
+   !> State of node `node` for a friction law, with the given fields and coefficients of friction.
    pure function friction_point(self, fields, node, static, kinetic) result(point)
       class(contact_state_type), intent(in) :: self
       type(contact_fields_type), intent(in) :: fields
@@ -114,7 +113,7 @@ contains
       contact_nodes = count(in_contact(self%status))
    end function contact_nodes
 
-   !> All three in one pass: nodes in contact, nodes that hold, nodes that slip.
+   !> Numbers of nodes in contact, that hold and that slip, in one pass.
    pure subroutine count_nodes(self, contact, stick, slip)
       class(contact_state_type), intent(in) :: self
       integer, intent(out) :: contact, stick, slip
@@ -130,7 +129,7 @@ contains
       slip = sum(having, mask=slips([(i, i=first, last)]))
    end subroutine count_nodes
 
-   !> Nodes that hold: stuck, or creeping below the friction limit.
+   !> Number of nodes that hold: stuck, or creeping below the friction limit.
    pure integer function stick_nodes(self)
       class(contact_state_type), intent(in) :: self
 

@@ -12,9 +12,9 @@ module mfv_history
       real(wp) :: motion(motion_count) = 0.0_wp, force(motion_count) = 0.0_wp
       real(wp) :: dissipation = 0.0_wp
       integer :: contact_nodes = 0, stick_nodes = 0
-      !> What happened (see mfv_node_status), to which node first, and to how many together.
+      !> The event (see mfv_node_status), its first node, and the number of nodes with it.
       integer :: event_kind = 0, event_node = 0, event_count = 0
-      !> Step of the load history, and linear solves so far.
+      !> Step of the load history, and number of linear solves so far.
       integer :: step = 0, linear_solves = 0
    end type history_record_type
 
@@ -30,7 +30,7 @@ module mfv_history
 
 contains
 
-   !> Append a record of `state`, after the event (`kind`, first `node`, `count` nodes together).
+   !> Append a record of `state` after an event (`kind`, first `node`, `count` nodes).
    subroutine append(self, state, kind, node, count, step, linear_solves)
       class(history_type), intent(inout) :: self
       type(contact_state_type), intent(in) :: state
@@ -54,7 +54,7 @@ contains
       call move_alloc(wider, self%record)
    end subroutine double_capacity
 
-   !> Keep the node numbers right when `extra` nodes have come in front of the first one.
+   !> Renumber the nodes after `extra` nodes were added before the first one.
    subroutine move_nodes(self, extra)
       class(history_type), intent(inout) :: self
       integer, intent(in) :: extra

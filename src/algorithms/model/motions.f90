@@ -1,7 +1,7 @@
-!> The motions of the upper body against the lower one, and the force that works on each: a table with a row for each. Whatever
-!> has a value for every motion (loads, controls, arms, records, tangents, keys, fields) is an array in the order of the rows.
-!> A new motion needs a row here and its arms (place_arms of mfv_contact_model), and its names for users: in mfv, step_to of
-!> mfv_contact, include/mfv.h, python/mfv/loads.py and Step of python/mfv/scene.py.
+!> The motions of the upper body relative to the lower one, and their forces: a table with a row for each. Arrays with a value for
+!> every motion (loads, controls, arms, records, tangents, keys, fields) have the order of the rows. A new motion requires a row
+!> here, its arms (place_arms of mfv_contact_model), and its names for users: in mfv, step_to of mfv_contact, include/mfv.h,
+!> python/mfv/loads.py and Step of python/mfv/scene.py.
 module mfv_motions
    use mfv_kinds, only: wp
    implicit none
@@ -9,36 +9,35 @@ module mfv_motions
    public :: motion_type, motions, motion_count, motion_approach, motion_shift, motion_rotation, control_keep, control_force, &
              control_displacement, controlled_key, arm_unit
 
-   !> Approach (down), shift (to the right) and rotation (counterclockwise) of the upper body, and how many motions there are.
+   !> Approach (down), shift (to the right) and rotation (counterclockwise) of the upper body, and the number of motions.
    integer, parameter :: motion_approach = 1, motion_shift = 2, motion_rotation = 3, motion_count = 3
 
-   !> What a step does with a motion: keep its load as it is, prescribe its force (moment), or prescribe its displacement
-   !> (rotation).
+   !> Control of a motion by a step: unchanged load, prescribed force (moment), prescribed displacement (rotation).
    integer, parameter :: control_keep = 0, control_force = 1, control_displacement = 2
 
    type :: motion_type
-      !> What keys and fields call the displacement and its force.
+      !> Keys and field names of the displacement and its force.
       character(len=8) :: key
       character(len=16) :: force_key
-      !> What messages call the force.
+      !> Name of the force in messages.
       character(len=16) :: force_name
       !> Units in terms of length and force (forces are per unit thickness).
       character(len=7) :: unit
       character(len=12) :: force_unit
-      !> What the fields of a result are.
+      !> Meaning of the fields of a result.
       character(len=64) :: meaning
       character(len=96) :: force_meaning
-      !> What the keys of a &step prescribe.
+      !> Meaning of the keys of a &step.
       character(len=96) :: target
       character(len=144) :: force_target
-      !> The residual of its balance with the tractions, and what that is.
+      !> The residual of its balance with the tractions, and its meaning.
       character(len=24) :: balance
       character(len=32) :: balance_meaning
       !> Whether the force cannot be negative.
       logical :: pushes = .false.
-      !> Whether its arms are lengths, so that its force is one times a length.
+      !> Whether its arms are lengths, so that its force is a moment.
       logical :: turns = .false.
-      !> Whether it is modelled only when a step controls it (until then it is held); approach and shift always are.
+      !> Whether it is fixed and not modelled until a step controls it; approach and shift are always modelled.
       logical :: optional = .false.
    end type motion_type
 
@@ -61,12 +60,12 @@ module mfv_motions
                                    force_meaning='moment M of the upper on the lower body per unit thickness, counterclockwise', &
                                    target='target of the rotation of the upper body about the same point, in place of moment', &
             force_target='target of the moment M about the centre of the upper disk or hole, else of the lower one, else about '// &
-                                   'the pole; counterclockwise', &
+                                   'the origin of x; counterclockwise', &
                             balance='moment_balance', balance_meaning='M - moment of the tractions', turns=.true., optional=.true.)]
 
 contains
 
-   !> The key of what a step prescribes of a motion: of its force, or of its displacement; padded with blanks.
+   !> The key for the force or the displacement of a motion; padded with blanks.
    pure character(len=16) function controlled_key(motion, control)
       integer, intent(in) :: motion, control
 
@@ -74,7 +73,7 @@ contains
       if (control == control_force) controlled_key = motions(motion)%force_key
    end function controlled_key
 
-   !> Unit of the arms of a motion: `length`, or 1 where they have none.
+   !> Unit of the arms of a motion: `length`, or 1 if they are dimensionless.
    elemental real(wp) function arm_unit(motion, length)
       integer, intent(in) :: motion
       real(wp), intent(in) :: length

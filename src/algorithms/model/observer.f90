@@ -1,4 +1,4 @@
-!> How a caller watches a run, and stops it: an object of its own that is told of every increment.
+!> An observer of a run, notified of every increment; it can stop the run.
 module mfv_observer
    use mfv_contact_state, only: contact_state_type
    use mfv_kinds, only: wp
@@ -14,8 +14,8 @@ module mfv_observer
    end type observer_type
 
    abstract interface
-      !> Told after every increment. `segment`, `segments`: which of the straight parts of the load history is on its
-      !> way; `fraction`: how much of it is done. `stop_wanted`: set to end the run here, as interrupted.
+      !> Called after every increment. `segment`, `segments`: number of the current load segment, and of all segments; `fraction`:
+      !> how much of it is done. `stop_wanted`: set to interrupt the run.
       subroutine notify_interface(self, state, segment, segments, fraction, stop_wanted)
          import :: contact_state_type, observer_type, wp
          class(observer_type), intent(inout) :: self
@@ -26,11 +26,11 @@ module mfv_observer
       end subroutine notify_interface
    end interface
 
-   !> Tells a caller of one run among several, all as one work.
+   !> Notifies a caller of one of several runs, all as one work.
    type, extends(observer_type) :: relay_type
-      !> Who is told; not associated: nobody.
+      !> The observer of the caller, if associated.
       class(observer_type), pointer :: caller => null()
-      !> Runs before this one, and of all.
+      !> Number of runs before this one, and of all runs.
       integer :: before = 0, runs = 1
       !> Whether the caller has stopped it.
       logical :: ended = .false.
@@ -40,13 +40,13 @@ module mfv_observer
 
 contains
 
-   !> Another part of the work begins, such as solving on coarser meshes.
+   !> Called when another stage of the work begins, such as solving on coarser meshes.
    subroutine begin_work(self, work)
       class(observer_type), intent(inout) :: self
       character(*), intent(in) :: work
    end subroutine begin_work
 
-   !> Something that does not end the run, but that a user should know at once.
+   !> Called for a warning that a user should see at once; the run continues.
    subroutine warn(self, text)
       class(observer_type), intent(inout) :: self
       character(*), intent(in) :: text

@@ -1,4 +1,4 @@
-!> A scene: what touches what, on which mesh, with which friction, and how it is loaded. No files, no solution.
+!> A scene: bodies, mesh, friction, load history and method. No files, no solution.
 module mfv_scene
    use, intrinsic :: ieee_arithmetic, only: ieee_is_finite
    use mfv_body, only: body_type
@@ -17,59 +17,59 @@ module mfv_scene
 
    !> The Method of First Violation (dissertation section 2.3) or the conventional algorithm (2.2).
    integer, parameter :: algorithm_mfv = 1, algorithm_conventional = 2
-   !> How the Method of First Violation finds an event: from rates, or from a trial load step and interpolation (2.3 to 2.5); or
-   !> how it goes without events: a whole part of the load history at once, halved where halves lead elsewhere.
+   !> Stepping of the Method of First Violation: from rates; from a trial load step and interpolation (2.3 to 2.5); or in large
+   !> increments without events, refined until they are accurate.
    integer, parameter :: stepping_event = 1, stepping_nominal = 2, stepping_leap = 3
-   !> Linear solvers: chosen by size and structure; the augmented system with LAPACK's dgesv; the reduced system with a
-   !> factorisation that is updated; products through FFTW and Krylov's iteration.
+   !> Linear solvers: chosen by size and structure; the augmented system with LAPACK's dgesv; the reduced system with an updated
+   !> factorisation; Krylov iteration with products through FFTW.
    integer, parameter :: solver_auto = 0, solver_dgesv = 1, solver_reduced = 2, solver_fft = 3
-   !> How friction laws that are not linear are led: with controlled error of second order, or explicitly (appendix B).
+   !> Integration of nonlinear friction laws: second order with controlled error, or explicit (appendix B).
    integer, parameter :: integration_second_order = 1, integration_explicit = 2
-   !> Cycles that one step can have.
+   !> Most cycles of a step.
    integer, parameter :: most_cycles = 1000000
 
-   !> One step of the load history; targets are reached linearly from the step before.
+   !> A step of the load history; targets are reached linearly from the previous step.
    type :: step_type
-      !> What it does with every motion (mfv_motions), and the target: normal force P >= 0 or approach delta, tangential force Q or
-      !> shift U to the right, moment M or rotation counterclockwise; force/length, force (moment), length, radians.
+      !> Control of every motion (mfv_motions), and its target: normal force P >= 0 or approach delta, tangential force Q or shift
+      !> U to the right, moment M or rotation counterclockwise; force/length, force (moment), length, radians.
       integer :: control(motion_count) = control_keep
       real(wp) :: target(motion_count) = 0.0_wp
       !> Whether friction acts during this step.
       logical :: friction = .true.
-      !> 0: go to the targets and stay; n: go there and back to where the step began, n times.
+      !> 0: apply the targets once; n: load to the targets and return to the start of the step, n times.
       integer :: cycles = 0
-      !> Cycles end early when two in a row are equal to within this part of the largest traction; 0: never.
+      !> Cycles end early when two consecutive ones are equal within this fraction of the largest traction; 0: never.
       real(wp) :: steady_tolerance = 0.0_wp
    end type step_type
 
-   !> How a scene is solved.
+   !> Algorithm and solver of a scene.
    type :: method_type
       integer :: algorithm = algorithm_mfv, stepping = stepping_event, integration = integration_second_order
-      !> The nominal load step dL0 of nominal stepping, the conventional algorithm and explicit integration: part of each
-      !> straight part of the load history.
+      !> The nominal load step dL0 of nominal stepping, the conventional algorithm and explicit integration, as a fraction of each
+      !> load segment.
       real(wp) :: load_step = 0.05_wp
-      !> Error that an increment may make in the tractions where friction is not linear, in parts of the largest traction.
+      !> Tolerance of the tractions for an increment with nonlinear friction, relative to the largest traction.
       real(wp) :: friction_tolerance = 1.0e-4_wp
-      !> Iterations that the conventional algorithm may take at one load.
+      !> Most iterations of the conventional algorithm at one load.
       integer :: most_iterations = 1000
       integer :: linear_solver = solver_auto
-      !> Relative residual to which an iterative linear solver goes.
+      !> Tolerance of the relative residual of an iterative linear solver.
       real(wp) :: linear_tolerance = 1.0e-12_wp
-      !> Largest error of large increments: of tractions, in parts of the largest; of what a segment dissipates, in parts of that.
+      !> Tolerance of large increments: of tractions, relative to the largest; of the dissipation of a segment, relative to that.
       real(wp) :: leap_tolerance = 1.0e-3_wp
    end type method_type
 
-   !> What the user asked of the mesh. Unset: chosen from an estimate of the contact.
+   !> Mesh settings of the user; what is not set is chosen from an estimate of the contact.
    type :: mesh_request_type
       integer :: nodes = 101
       !> Nodes are the centres of equal intervals over [-half_width, half_width], length along the surface; 0: chosen, and
-      !> grown when the contact needs it.
+      !> increased when the contact requires it.
       real(wp) :: half_width = 0.0_wp
-      !> Whether `nodes` intervals make up the whole circle: only those near the contact are carried.
+      !> Whether `nodes` intervals cover the whole circle; only those near the contact are modelled.
       logical :: whole_circle = .false.
-      !> Hertz's parabolas in place of circles in the gap.
+      !> Whether gaps are those of parabolas instead of circles (Hertz).
       logical :: parabolic = .false.
-      !> Normals along the radius, not vertical: for a disk in a hole.
+      !> Whether normals are radial instead of vertical: for a disk in a hole.
       logical :: radial = .false.
    end type mesh_request_type
 
@@ -98,9 +98,8 @@ module mfv_scene
 
 contains
 
-   !> Whether the scene needs the tangential problem at all: a law with friction, and a step in which it acts. Steps that are still
-   !> to
-   !> be told, where the scene has none, may be such ones.
+   !> Whether the scene requires the tangential problem: a friction law, and a step in which it acts. A scene without steps may get
+   !> such steps later.
    pure logical function tangential(self)
       class(scene_type), intent(in) :: self
 
@@ -109,7 +108,7 @@ contains
       if (size(self%steps) > 0) tangential = tangential .and. any(self%steps%friction)
    end function tangential
 
-   !> Which motions the scene needs: those that are always modelled, and those that a step controls.
+   !> Which motions the scene requires: those that are always modelled, and those that a step controls.
    pure function moves(self)
       class(scene_type), intent(in) :: self
       logical :: moves(motion_count)
@@ -122,8 +121,8 @@ contains
       end do
    end function moves
 
-   !> Contact modulus of both bodies, force/length^2: 1/m = 1/m1 + 1/m2 with m = 4 G/(kappa + 1) of each elastic one; the
-   !> A of dissertation eq. 6.1, less its misprint, is 1/m. Zero where a body has no material of its own.
+   !> Contact modulus of both bodies, force/length^2: 1/m = 1/m1 + 1/m2 with m = 4 G/(kappa + 1) of each elastic body; A in
+   !> dissertation eq. 6.1, corrected for a misprint, is 1/m. Zero if a body has no material.
    pure real(wp) function modulus(self)
       class(scene_type), intent(in) :: self
       real(wp) :: flexibility
@@ -142,25 +141,25 @@ contains
       curvature = self%lower%curvature() + self%upper%curvature()
    end function curvature
 
-   !> Dundurs' second parameter, eq. 6.1: positive where the lower body couples more.
+   !> Dundurs' second parameter beta, eq. 6.1: positive if the coupling of the lower body is stronger.
    pure real(wp) function dundurs_beta(self)
       class(scene_type), intent(in) :: self
 
       dundurs_beta = 0.0_wp
-      if (self%lower%material%shear_modulus > 0.0_wp) dundurs_beta = part(self%lower)
-      if (self%upper%material%shear_modulus > 0.0_wp) dundurs_beta = dundurs_beta - part(self%upper)
+      if (self%lower%material%shear_modulus > 0.0_wp) dundurs_beta = share(self%lower)
+      if (self%upper%material%shear_modulus > 0.0_wp) dundurs_beta = dundurs_beta - share(self%upper)
 
    contains
 
-      pure real(wp) function part(body)
+      pure real(wp) function share(body)
          type(body_type), intent(in) :: body
 
-         part = self%modulus()*(body%material%kolosov - 1.0_wp)/(4.0_wp*body%material%shear_modulus)
-      end function part
+         share = self%modulus()*(body%material%kolosov - 1.0_wp)/(4.0_wp*body%material%shear_modulus)
+      end function share
    end function dundurs_beta
 
-   !> Distance, length, at which the displacements of both bodies together are measured: the mean of the logarithms of
-   !> their datums, weighed with their flexibilities.
+   !> Datum of the displacements of both bodies together, length: the mean of the logarithms of their datums, weighted with their
+   !> flexibilities.
    pure real(wp) function datum(self)
       class(scene_type), intent(in) :: self
       real(wp) :: logarithm
@@ -181,8 +180,8 @@ contains
       end function weighed
    end function datum
 
-   !> Radius of the circle on which the nodes lie, length: with radial normals the hole, along whose radii gaps are measured; else
-   !> the smaller one of the elastic circles; 0 where the nodes lie on a straight line.
+   !> Radius of the circle of the nodes, length: with radial normals that of the hole, along whose radii gaps are measured; else
+   !> that of the smaller elastic circle; 0 for nodes on a straight line.
    pure real(wp) function arc_radius(self)
       class(scene_type), intent(in) :: self
 
@@ -194,7 +193,7 @@ contains
       if (.not. arc_radius > 0.0_wp .or. self%lower%radius < arc_radius) arc_radius = self%lower%radius
    end function arc_radius
 
-   !> x of the node at an arc length from the pole, lengths.
+   !> x of the node at an arc length from the origin of x, lengths.
    elemental real(wp) function x_of_arc(self, arc) result(x)
       class(scene_type), intent(in) :: self
       real(wp), intent(in) :: arc
@@ -205,8 +204,8 @@ contains
       if (radius > 0.0_wp) x = radius*sin(arc/radius)
    end function x_of_arc
 
-   !> Whether both bodies have a surface at an arc length (length) from the pole: on a circle not beyond 90 degrees; with radial
-   !> normals, where the hole's radius meets the disk.
+   !> Whether both bodies have a surface at an arc length (length) from the origin of x: on a circle up to 90 degrees; with radial
+   !> normals, where the radius of the hole meets the disk.
    elemental logical function touchable(self, arc)
       class(scene_type), intent(in) :: self
       real(wp), intent(in) :: arc
@@ -222,11 +221,11 @@ contains
       if (radius > 0.0_wp) touchable = touchable .and. abs(arc) < 0.5_wp*pi*radius
    end function touchable
 
-   !> The lower or `upper` body under tractions, see mfv_interior. With radial normals the nodes' angles are common to both bodies
-   !> and
-   !> their forces are equal; arcs and tractions are not. `contact_edge`, `stick_edge`: edges of the zones between nodes, in
-   !> ascending order at the nodes whose values are finite, the left and the right one of each zone in turn; shape (nodes).
-   !> `available`: false for a rigid body or a mere matrix. `fewest_elements`: see mfv_surface_tractions.
+   !> The lower or `upper` body under tractions, see mfv_interior. With radial normals the angles of the nodes are common to both
+   !> bodies and their forces are equal; arcs and tractions are not.
+   !> `contact_edge`, `stick_edge`: edges of the zones between nodes, ascending at the nodes with finite values, the left and the
+   !> right one of each zone in turn; shape (nodes). `available`: false for a rigid body or a given matrix. `fewest_elements`: see
+   !> mfv_surface_tractions.
    subroutine interior(self, upper, arc, width, pressure, shear, contact_edge, stick_edge, inside, available, fewest_elements)
       class(scene_type), intent(in) :: self
       logical, intent(in) :: upper
@@ -261,7 +260,7 @@ contains
       end if
    end subroutine interior
 
-   !> The finite values as pairs, shape (2, pairs); none if they do not ascend.
+   !> The finite values as pairs, shape (2, pairs); none if they are not ascending.
    pure function pairs(edges)
       real(wp), intent(in) :: edges(:)
       real(wp), allocatable :: pairs(:, :)

@@ -1,4 +1,4 @@
-!> The gap of a scene as closed forms have it, and the contact that they expect.
+!> The gap of a scene in terms of closed forms, and the contact that they expect.
 module mfv_scene_indenter
    use mfv_body, only: body_type, shape_flat_punch, shape_half_plane, shape_matrix, shape_power, shape_profile, &
                        shape_rounded_punch
@@ -12,7 +12,7 @@ module mfv_scene_indenter
 
 contains
 
-   !> The gap of both bodies, circles as parabolas and flat punches as half-planes; flat where a body has no such form.
+   !> The gap of both bodies, with circles as parabolas and flat punches as half-planes; flat for bodies without a closed form.
    pure function indenter_of(scene) result(indenter)
       type(scene_type), intent(in) :: scene
       type(indenter_type) :: indenter
@@ -24,7 +24,7 @@ contains
       call add_body(indenter, scene%upper)
    end function indenter_of
 
-   !> Whether neither body has an edge, a curvature or another shape by which they would be apart somewhere.
+   !> Whether the surfaces touch everywhere: neither body has an edge, a curvature or another shape.
    pure logical function touches_everywhere(scene)
       type(scene_type), intent(in) :: scene
       type(indenter_type) :: indenter
@@ -36,7 +36,7 @@ contains
                            .not. any(shapes == shape_flat_punch .or. shapes == shape_profile .or. shapes == shape_matrix)
    end function touches_everywhere
 
-   !> Whether a body's shape is one of which there are closed forms.
+   !> Whether there are closed forms for the shape of a body.
    pure logical function has_form(body)
       type(body_type), intent(in) :: body
 
@@ -51,9 +51,8 @@ contains
       if (body%shape == shape_rounded_punch) call indenter%add(rounded_punch_indenter(body%flat_half_width, body%radius))
    end subroutine add_body
 
-   !> The largest contact half-width, length, that the closed form expects of the targets of the scene's steps, of approaches at
-   !> most
-   !> `most` (length); 0 where there is no closed form, or none of the targets presses.
+   !> The largest contact half-width, length, that the closed form expects for the targets of the scene, for approaches of at most
+   !> `most` (length); 0 without a closed form or a target that presses.
    pure real(wp) function largest_half_width(scene, most) result(largest)
       type(scene_type), intent(in) :: scene
       real(wp), intent(in) :: most
@@ -67,7 +66,7 @@ contains
          largest = max(largest, indenter%half_width_at_approach(approach, scene%datum(), most))
    end function largest_half_width
 
-   !> The same of the normal forces alone.
+   !> The largest half-width for the normal forces only.
    pure real(wp) function half_width_of_forces(scene) result(half_width)
       type(scene_type), intent(in) :: scene
       type(indenter_type) :: indenter
@@ -80,8 +79,8 @@ contains
          half_width = indenter%half_width(0.5_wp*force/scene%modulus())
    end function half_width_of_forces
 
-   !> How far from the contact, length, the displacements of a body are measured unless the user says: the radius of a circle; else
-   !> the smaller length of both shapes; else the contact half-width that the closed form expects of the normal forces; else 0.
+   !> Default distance from the contact at which the displacements of a body are measured, length: the radius of a circle; else the
+   !> smaller length of both shapes; else the contact half-width that the closed form expects for the normal forces; else 0.
    pure real(wp) function default_datum(scene, body, other) result(datum)
       type(scene_type), intent(in) :: scene
       type(body_type), intent(in) :: body, other

@@ -1,14 +1,13 @@
-!> The augmented system of dissertation eq. 2.2, solved by LAPACK's dgesv: the reference among the linear solvers.
+!> The augmented system of dissertation eq. 2.2, solved by LAPACK's dgesv: the reference linear solver.
 !>
-!> Carried are the nodes in contact and their open neighbours. Unknowns, for m carried nodes: pressures p, shear
-!> tractions tau, w - delta, s = u - U, and delta, U, P, Q; 4m + 4 in all (4n + 12 for one patch of n contact nodes).
-!> Rows: elasticity, force balance (eq. 2.1), one normal and one tangential constraint a node (Table 2.1), and the two
-!> controlled loads. While no node can carry shear (friction off or absent), tau, s, U and Q are left out: 2m + 2.
-!> Where rotation (or another motion) is modelled it and the moment come as well (eq. 4.24): w and s then contain what it does.
+!> Included are the nodes in contact and their open neighbours. Unknowns, for m included nodes: pressures p, shear tractions tau, w
+!> - delta, s = u - U, and delta, U, P, Q; 4m + 4 in all (4n + 12 for one patch of n contact nodes). Rows: elasticity, force
+!> balance (eq. 2.1), one normal and one tangential constraint for each node (Table 2.1), and the two controlled loads. If no node
+!> has shear (friction off or absent), tau, s, U and Q are omitted: 2m + 2. If rotation (or another motion) is modelled, it and the
+!> moment are added (eq. 4.24); w and s then include its effect.
 !>
-!> The unknowns are scaled by the compliance's modulus and the mesh's length, so that units do not matter, and shear also
-!> by mu where that is small. One
-!> factorisation serves two right-hand sides: the state and its rates.
+!> The unknowns are scaled by the modulus of the compliance and the length of the mesh, so that units do not matter; shear also by
+!> a small mu. One factorisation serves two right-hand sides: the state and its rates.
 module mfv_augmented_system
    use, intrinsic :: ieee_arithmetic, only: ieee_is_finite
    use mfv_compliance, only: block_up, block_ut, block_wp, block_wt, compliance_type
@@ -28,19 +27,19 @@ module mfv_augmented_system
       procedure :: solve
    end type augmented_system_type
 
-   !> The scaled matrix with its two right-hand sides (state, rates), and where the unknowns are.
+   !> The scaled matrix with its two right-hand sides (state, rates), and the positions of the unknowns.
    type :: assembly_type
-      !> Carried nodes.
+      !> Included nodes.
       integer, allocatable :: nodes(:)
       !> Whether tau, s, U and Q are unknowns.
       logical :: tangential = .false.
       real(wp), allocatable :: matrix(:, :), right(:, :)
-      !> Unknowns before those of the first carried node, by field; and places of motions and forces, 0 for those that are none.
+      !> Number of unknowns before those of the first included node, by field; and positions of motions and forces, 0 for those
+      !> that are not unknowns.
       integer :: pressure = 0, shear = 0, normal = 0, slip = 0
       integer :: motion(motion_count) = 0, force(motion_count) = 0
-      !> Where normals are vertical the unknown in the place of the shift U is the sliding U + h phi, which is small where the
-      !> bodies
-      !> roll and U and h phi nearly cancel: the height h of the centre of rotation, length; else 0.
+      !> With vertical normals the unknown at the position of the shift U is the sliding U + h phi, which is small if the bodies
+      !> roll and U and h phi nearly cancel. h: height of the centre of rotation, length; else 0.
       real(wp) :: height = 0.0_wp
       !> Units of pressure, shear traction and length; of the arms, motions and forces.
       real(wp) :: stress = 1.0_wp, shear_stress = 1.0_wp, length = 1.0_wp
@@ -84,23 +83,23 @@ contains
       response%rate = extracted(assembly, model, constraints%status, rate%load, assembly%right(:, 2))
    end subroutine solve
 
-   !> An assembly of zeros for the nodes in contact and their neighbours.
+   !> An empty assembly for the nodes in contact and their neighbours.
    type(assembly_type) function new_assembly(model, status) result(assembly)
       type(contact_model_type), intent(in) :: model
       integer, intent(in) :: status(:)
-      logical :: carried(size(status))
+      logical :: included(size(status))
       integer :: i, m, n
 
       n = size(status)
-      carried = in_contact(status)
-      carried(2:) = carried(2:) .or. in_contact(status(:n - 1))
-      carried(:n - 1) = carried(:n - 1) .or. in_contact(status(2:))
-      assembly%nodes = pack([(i, i=1, n)], carried)
+      included = in_contact(status)
+      included(2:) = included(2:) .or. in_contact(status(:n - 1))
+      included(:n - 1) = included(:n - 1) .or. in_contact(status(2:))
+      assembly%nodes = pack([(i, i=1, n)], included)
       assembly%tangential = any(holds(status) .or. slips(status))
       assembly%stress = model%compliance%modulus
       assembly%length = model%length()
       assembly%shear_stress = assembly%stress
-      if (assembly%tangential) assembly%shear_stress = assembly%stress*model%grip
+      if (assembly%tangential) assembly%shear_stress = assembly%stress*model%friction_scale
       assembly%arm = [(arm_unit(i, assembly%length), i=1, motion_count)]
       assembly%motion_unit = assembly%length/assembly%arm
       assembly%force_unit = assembly%stress*(assembly%length*assembly%arm)
@@ -124,8 +123,8 @@ contains
       allocate (assembly%matrix(n, n), assembly%right(n, 2), source=0.0_wp)
    end function new_assembly
 
-   !> Rows of eq. 2.1, (w - delta) + delta - C_wp p - C_wt tau = 0 and s + U - C_up p - C_ut tau = 0, but for the motions (see
-   !> add_motion); a `shift` (and its rate) that is no unknown comes on the right.
+   !> Rows of eq. 2.1, (w - delta) + delta - C_wp p - C_wt tau = 0 and s + U - C_up p - C_ut tau = 0, except for the motions (see
+   !> add_motion). A `shift` (and its rate) that is not an unknown is on the right side.
    subroutine add_elasticity(assembly, model, shift)
       type(assembly_type), intent(inout) :: assembly
       type(contact_model_type), intent(in) :: model
@@ -211,8 +210,8 @@ contains
       end do
    end subroutine add_normal_constraints
 
-   !> Rows s = s0 for stuck nodes, tau - slope*p - stiffness*s = offset for slipping and creeping ones, tau = 0 for the
-   !> others; divided by what is largest in them.
+   !> Rows s = s0 for stuck nodes, tau - slope*p - stiffness*s = offset for slipping and creeping ones, tau = 0 for the others;
+   !> divided by their largest coefficient.
    subroutine add_tangential_constraints(assembly, constraints, state, rate)
       type(assembly_type), intent(inout) :: assembly
       type(constraints_type), intent(in) :: constraints
@@ -240,7 +239,7 @@ contains
       end do
    end subroutine add_tangential_constraints
 
-   !> Rows that prescribe P or delta, Q or U, M or the rotation, in the places of the forces.
+   !> Rows that prescribe P or delta, Q or U, M or the rotation, at the positions of the forces.
    subroutine add_loads(assembly, load)
       type(assembly_type), intent(inout) :: assembly
       type(load_type), intent(in) :: load(motion_count)
@@ -262,15 +261,15 @@ contains
          assembly%matrix(assembly%force(motion_shift), assembly%motion(motion_rotation)) = -assembly%height/assembly%length
    end subroutine add_loads
 
-   !> Fields from a scaled solution. `load`: what the loads prescribe. Displacements that are not among the unknowns are products
-   !> with the compliance.
+   !> Fields from a scaled solution. `load`: prescribed loads. Displacements that are not unknowns are computed with the
+   !> compliance.
    type(contact_fields_type) function extracted(assembly, model, status, load, solution) result(fields)
       type(assembly_type), intent(in) :: assembly
       type(contact_model_type), intent(in) :: model
       integer, intent(in) :: status(:)
       real(wp), intent(in) :: load(motion_count), solution(:)
       real(wp), dimension(size(status)) :: normal, tangential
-      logical :: carried(size(status))
+      logical :: included(size(status))
       integer :: i, m
 
       m = size(assembly%nodes)
@@ -295,10 +294,10 @@ contains
             fields%force(motion_shift) = model%resultant(motion_shift, fields%pressure, fields%shear)
          end if
          call model%relative_displacements(fields, normal, tangential)
-         carried = .false.
-         carried(nodes) = .true.
-         where (.not. carried) fields%normal = normal
-         where (.not. (carried .and. assembly%tangential)) fields%tangential = tangential
+         included = .false.
+         included(nodes) = .true.
+         where (.not. included) fields%normal = normal
+         where (.not. (included .and. assembly%tangential)) fields%tangential = tangential
       end associate
    end function extracted
 

@@ -1,13 +1,13 @@
-!> A symmetric linear system with constraints that come and go.
+!> A symmetric linear system with constraints that are added and removed.
 !>
-!> The system A x = b + sum over c of lambda(c) e(slot(c)) has an unknown on the right side of the rows `slot`, and as many
-!> constraints more,
+!> The system A x = b + sum over c of lambda(c) e(slot(c)) has an unknown lambda on the right side of the rows `slot`, and an equal
+!> number of constraints,
 !>
 !>     x(slot) - slope x(partner) - stiffness lambda = value.
 !>
-!> With the inverse T of A (mfv_updated_inverse) and its columns Q = T e(slot), the unknowns lambda come from the small system
-!> S = Q(slot, :) - slope Q(partner, :) - stiffness, whose inverse is kept and updated too: a constraint costs a column of T and
-!> as many operations as S has entries, and when all of them go nothing is left to do.
+!> With the inverse T of A (mfv_updated_inverse) and its columns Q = T e(slot), the unknowns lambda follow from the small system S
+!> = Q(slot, :) - slope Q(partner, :) - stiffness, whose inverse is stored and updated too. A constraint costs a column of T and a
+!> number of operations proportional to the entries of S; removing all constraints costs nothing.
 module mfv_constrained_inverse
    use mfv_kinds, only: wp
    use mfv_lapack, only: dgemv, dger, dgetrf, dgetri
@@ -27,8 +27,8 @@ module mfv_constrained_inverse
       !> The constraints, shape (capacity); the first `constraints` ones are in use.
       integer :: constraints = 0
       type(constraint_type), allocatable :: constraint(:)
-      !> Columns of the inverse, shape (rows, constraints), and the inverse of S, shape (constraints, constraints); leading
-      !> parts. `stale`: the latter must be computed anew.
+      !> Columns of the inverse, shape (rows, constraints), and the inverse of S, shape (constraints, constraints); leading parts.
+      !> `stale`: the inverse of S must be recomputed.
       real(wp), allocatable, private :: columns(:, :), small(:, :)
       logical, private :: stale = .false.
    contains
@@ -44,12 +44,12 @@ module mfv_constrained_inverse
       procedure :: solve
    end type constrained_inverse_type
 
-   !> Pivots below this part of what they are made of are none.
+   !> Pivots below this fraction of their terms count as zero.
    real(wp), parameter :: no_pivot = 1.0e-12_wp
 
 contains
 
-   !> No unknowns, no constraints.
+   !> Remove all unknowns and constraints.
    subroutine clear(self)
       class(constrained_inverse_type), intent(inout) :: self
 
@@ -57,8 +57,7 @@ contains
       call self%release_all()
    end subroutine clear
 
-   !> More unknowns, the last ones; `borders`: see mfv_updated_inverse. `singular`: that cannot be done; what is left is of no
-   !> use then.
+   !> Append unknowns; `borders`: see mfv_updated_inverse. `singular`: not possible; the object is then invalid.
    subroutine add_unknowns(self, borders, singular)
       class(constrained_inverse_type), intent(inout) :: self
       real(wp), intent(in) :: borders(:, :)
@@ -72,11 +71,11 @@ contains
          call self%inverse%add_prepared(singular)
          if (singular) return
          self%columns(self%inverse%order, :self%constraints) = 0.0_wp
-         call follow_change(self, self%inverse%order)
+         call apply_change(self, self%inverse%order)
       end do
    end subroutine add_unknowns
 
-   !> Lose unknown `row`, which no constraint may name; the last one then takes its place.
+   !> Remove unknown `row`, which no constraint refers to; the last one takes its place.
    subroutine remove_unknown(self, row, singular)
       class(constrained_inverse_type), intent(inout) :: self
       integer, intent(in) :: row
@@ -86,7 +85,7 @@ contains
       last = self%inverse%order
       call self%inverse%remove(row, singular)
       if (singular) return
-      call follow_change(self, last)
+      call apply_change(self, last)
       associate (k => self%constraints)
          if (k == 0) return
          self%columns(row, :k) = self%columns(last, :k)
@@ -95,29 +94,29 @@ contains
       end associate
    end subroutine remove_unknown
 
-   !> The last change of the inverse, of `rows` rows, in the columns and in S.
-   subroutine follow_change(self, rows)
+   !> Apply the last change of the inverse, of `rows` rows, to the columns and to S.
+   subroutine apply_change(self, rows)
       class(constrained_inverse_type), intent(inout) :: self
       integer, intent(in) :: rows
-      real(wp), dimension(self%constraints) :: along, across, by_along, by_across
+      real(wp), dimension(self%constraints) :: left, right, by_left, by_right
       real(wp) :: pivot
       integer :: c, k
 
       k = self%constraints
       if (k == 0) return
       associate (change => self%inverse%change, weight => self%inverse%change_weight)
-         across = [(change(self%constraint(c)%slot), c=1, k)]
-         call dger(rows, k, weight, change, 1, across, 1, self%columns, size(self%columns, 1))
+         right = [(change(self%constraint(c)%slot), c=1, k)]
+         call dger(rows, k, weight, change, 1, right, 1, self%columns, size(self%columns, 1))
          if (self%stale) return
-         along = functional(self, change)
-         call dgemv('N', k, k, 1.0_wp, self%small, size(self%small, 1), along, 1, 0.0_wp, by_along, 1)
-         call dgemv('T', k, k, 1.0_wp, self%small, size(self%small, 1), across, 1, 0.0_wp, by_across, 1)
-         pivot = 1.0_wp + weight*dot_product(across, by_along)
+         left = functional(self, change)
+         call dgemv('N', k, k, 1.0_wp, self%small, size(self%small, 1), left, 1, 0.0_wp, by_left, 1)
+         call dgemv('T', k, k, 1.0_wp, self%small, size(self%small, 1), right, 1, 0.0_wp, by_right, 1)
+         pivot = 1.0_wp + weight*dot_product(right, by_left)
          self%stale = abs(pivot) < no_pivot*max(1.0_wp, abs(pivot - 1.0_wp))
          if (self%stale) return
-         call dger(k, k, -weight/pivot, by_along, 1, by_across, 1, self%small, size(self%small, 1))
+         call dger(k, k, -weight/pivot, by_left, 1, by_right, 1, self%small, size(self%small, 1))
       end associate
-   end subroutine follow_change
+   end subroutine apply_change
 
    !> x(slot) - slope x(partner) of every constraint.
    pure function functional(self, x) result(values)
@@ -134,7 +133,7 @@ contains
       end do
    end function functional
 
-   !> One more constraint, the last.
+   !> Append a constraint.
    subroutine constrain(self, slot, partner, slope, stiffness)
       class(constrained_inverse_type), intent(inout) :: self
       integer, intent(in) :: slot, partner
@@ -154,7 +153,7 @@ contains
       call border_small(self, row)
    end subroutine constrain
 
-   !> S has a new last row and column.
+   !> Update the inverse of S for a new last row and column.
    subroutine border_small(self, row)
       class(constrained_inverse_type), intent(inout) :: self
       real(wp), intent(in) :: row(:)
@@ -177,7 +176,7 @@ contains
       self%small(k + 1, k + 1) = 1.0_wp/pivot
    end subroutine border_small
 
-   !> Lose constraint `number`; the last one then takes its place.
+   !> Remove constraint `number`; the last one takes its place.
    subroutine release(self, number)
       class(constrained_inverse_type), intent(inout) :: self
       integer, intent(in) :: number
@@ -204,7 +203,7 @@ contains
       if (k == 1) self%stale = .false.
    end subroutine release
 
-   !> Lose all constraints.
+   !> Remove all constraints.
    subroutine release_all(self)
       class(constrained_inverse_type), intent(inout) :: self
 
@@ -212,14 +211,14 @@ contains
       self%stale = .false.
    end subroutine release_all
 
-   !> Many constraints are about to go: their small system is computed anew when it is needed.
+   !> Recompute the inverse of S when it is next needed, before many constraints are removed.
    subroutine postpone(self)
       class(constrained_inverse_type), intent(inout) :: self
 
       self%stale = self%constraints > 0
    end subroutine postpone
 
-   !> Other coefficients for constraint `number`.
+   !> Change the coefficients of constraint `number`.
    subroutine change_constraint(self, number, slope, stiffness)
       class(constrained_inverse_type), intent(inout) :: self
       integer, intent(in) :: number
@@ -230,8 +229,7 @@ contains
       self%stale = .true.
    end subroutine change_constraint
 
-   !> Everything but the matrix anew: columns and S from the inverse of `matrix`, shape (unknowns, unknowns). `singular`: it has
-   !> none.
+   !> Recompute the inverse of `matrix`, shape (unknowns, unknowns), its columns and S. `singular`: it has no inverse.
    subroutine refresh(self, matrix, singular)
       class(constrained_inverse_type), intent(inout) :: self
       real(wp), intent(in) :: matrix(:, :)
@@ -247,8 +245,8 @@ contains
       self%stale = self%constraints > 0
    end subroutine refresh
 
-   !> x for the right side `right`, shape (unknowns), and the constraints' values, shape (constraints). `singular`: the
-   !> constraints do not determine it.
+   !> Solve for x with the right side `right`, shape (unknowns), and the values of the constraints, shape (constraints).
+   !> `singular`: the constraints do not determine x.
    subroutine solve(self, right, values, x, singular)
       class(constrained_inverse_type), intent(inout) :: self
       real(wp), intent(in) :: right(:), values(:)
@@ -288,7 +286,7 @@ contains
       self%stale = singular
    end subroutine rebuild_small
 
-   !> Room for `rows` unknowns and `constraints` constraints.
+   !> Reserve storage for `rows` unknowns and `constraints` constraints.
    subroutine reserve(self, rows, constraints)
       class(constrained_inverse_type), intent(inout) :: self
       integer, intent(in) :: rows, constraints

@@ -1,5 +1,4 @@
-!> What a linear solver offers to the Method of First Violation: with the status of every node and the controlled
-!> loads given, the state and its rates per unit of load.
+!> Interface of linear solvers: for given statuses and controlled loads, the state and its rates per unit of load.
 module mfv_contact_system
    use, intrinsic :: iso_fortran_env, only: int64
    use mfv_contact_fields, only: contact_fields_type
@@ -11,7 +10,7 @@ module mfv_contact_system
    private
    public :: contact_system_type, load_type, response_type, constraints_type, prescribed_type, find_prescribed, initial_loads
 
-   !> One controlled load: force (moment) or rigid displacement (rotation), its value now and its rate per unit of load.
+   !> A controlled load: force (moment) or displacement (rotation), its present value and its rate per unit of load.
    type :: load_type
       integer :: control = control_force
       real(wp) :: value = 0.0_wp
@@ -19,7 +18,7 @@ module mfv_contact_system
    end type load_type
 
    integer :: motion
-   !> Loads of bodies that nothing has been prescribed for: no forces; motions that need not be modelled are held.
+   !> Loads before the first step: no forces; optional motions are fixed.
    type(load_type), parameter :: initial_loads(motion_count) = &
                          [(load_type(merge(control_displacement, control_force, motions(motion)%optional)), motion=1, motion_count)]
 
@@ -33,13 +32,14 @@ module mfv_contact_system
       !> the offset per unit of load; shape (nodes).
       type(friction_row_type), allocatable :: row(:)
       real(wp), allocatable :: offset_rate(:)
-      !> Rates with which nodes in contact part and stuck nodes slip, length per unit of load, shape (nodes); not there: none.
+      !> Rates of the gaps of nodes in contact and of the slip of stuck nodes, length per unit of load, shape (nodes); not
+      !> allocated: zero.
       real(wp), allocatable :: gap_rate(:), slip_rate(:)
-      !> The load of every motion; of no meaning where the motion is not modelled.
+      !> The load of every motion; meaningless for motions that are not modelled.
       type(load_type) :: load(motion_count)
    end type constraints_type
 
-   !> What the constraints prescribe of the state, or of its rates per unit of load.
+   !> Prescribed values of the state, or of its rates per unit of load.
    type :: prescribed_type
       !> Opening w - delta of nodes in contact and slip s of stuck ones, length; offsets of the lines of slipping and creeping ones,
       !> force/length^2; shape (nodes).
@@ -54,22 +54,22 @@ module mfv_contact_system
    end type response_type
 
    type, abstract :: contact_system_type
-      !> What &solver linear_solver calls it.
+      !> Value of &solver linear_solver.
       character(len=7) :: name = 'dgesv'
       !> Linear solves so far.
       integer :: solves = 0
-      !> Of solvers that iterate: iterations, and products with the compliance, so far.
+      !> Numbers of iterations, and of products with the compliance, so far (iterative solvers).
       integer(int64) :: iterations = 0, products = 0
-      !> Tractions, motions and their rates are known to this part of the largest, what is below is noise; 0: to round-off.
-      real(wp) :: noise = 0.0_wp
+      !> Tolerance of tractions, motions and their rates, relative to the largest; 0: round-off.
+      real(wp) :: tolerance = 0.0_wp
    contains
       procedure(solve_interface), deferred :: solve
    end type contact_system_type
 
    abstract interface
-      !> Solve for state and rates. `start`: fields at or near which the state is expected (those now, when statuses have
-      !> changed): a guess, of which the result does not depend beyond the solver's tolerance. `singular`: the constraints do
-      !> not determine them; the response is then of no use. `response`: its storage is used again.
+      !> Solve for state and rates. `start`: a first guess (the present fields, after a change of statuses); the result depends on
+      !> it only within the tolerance. `singular`: the constraints do not determine the fields; the response is then invalid.
+      !> `response`: its storage is reused.
       subroutine solve_interface(self, model, constraints, start, response, singular)
          import :: constraints_type, contact_fields_type, contact_model_type, contact_system_type, response_type
          class(contact_system_type), intent(inout) :: self
@@ -83,7 +83,7 @@ module mfv_contact_system
 
 contains
 
-   !> What the constraints prescribe of the state of a model, or (`rates`) of its rates. `prescribed`: its storage is used again.
+   !> The prescribed values of the state of a model, or (`rates`) of its rates. `prescribed`: its storage is reused.
    pure subroutine find_prescribed(constraints, model, rates, prescribed)
       type(constraints_type), intent(in) :: constraints
       type(contact_model_type), intent(in) :: model

@@ -1,4 +1,4 @@
-!> The method of generalised minimal residuals (Saad and Schultz 1986), with the matrix left to the caller:
+!> The method of generalised minimal residuals (Saad and Schultz 1986); the caller multiplies by the matrix:
 !>
 !>     call gmres%start(residual)
 !>     do while (gmres%residual() > target .and. .not. gmres%is_full())
@@ -13,7 +13,7 @@ module mfv_gmres
    private
    public :: gmres_type
 
-   !> Steps until it has to begin anew.
+   !> Most steps before a restart.
    integer, parameter :: most_steps = 60
 
    type :: gmres_type
@@ -22,7 +22,7 @@ module mfv_gmres
       logical :: complete = .false.
       !> Orthonormal basis, shape (at least size, most_steps + 1).
       real(wp), allocatable :: basis(:, :)
-      !> Triangular factor of Hessenberg's matrix, Givens' rotations and the turned right-hand side.
+      !> Triangular factor of the Hessenberg matrix, Givens rotations and the rotated right-hand side.
       real(wp) :: triangle(most_steps + 1, most_steps) = 0.0_wp
       real(wp) :: cosine(most_steps) = 0.0_wp, sine(most_steps) = 0.0_wp, right(most_steps + 1) = 0.0_wp
    contains
@@ -36,7 +36,7 @@ module mfv_gmres
 
 contains
 
-   !> Begin with the residual of the first guess, any shape (n).
+   !> Start from the residual of the first guess, any shape (n).
    subroutine start(self, first)
       class(gmres_type), intent(inout) :: self
       real(wp), intent(in) :: first(:)
@@ -54,21 +54,21 @@ contains
       self%complete = .not. self%right(1) > 0.0_wp
    end subroutine start
 
-   !> The 2-norm of the residual that is reached.
+   !> The 2-norm of the present residual.
    pure real(wp) function residual(self)
       class(gmres_type), intent(in) :: self
 
       residual = abs(self%right(self%steps + 1))
    end function residual
 
-   !> Whether there is no further step: the memory is full, or the solution is all that the matrix can give.
+   !> Whether no further step is possible: the memory is full, or the solution cannot be improved.
    pure logical function is_full(self)
       class(gmres_type), intent(in) :: self
 
       is_full = self%complete .or. self%steps == most_steps
    end function is_full
 
-   !> The vector to be multiplied by the matrix next, shape (n).
+   !> The next vector to be multiplied by the matrix, shape (n).
    pure subroutine direction(self, vector)
       class(gmres_type), intent(in) :: self
       real(wp), intent(out) :: vector(:)
@@ -76,7 +76,7 @@ contains
       vector = self%basis(:self%size, self%steps + 1)
    end subroutine direction
 
-   !> Take its product with the matrix, shape (n), used as work space: one more step.
+   !> Extend the basis by the product with the matrix, shape (n), which is used as work space.
    subroutine extend(self, image)
       class(gmres_type), intent(inout) :: self
       real(wp), intent(inout) :: image(:)
@@ -101,7 +101,7 @@ contains
          column(i) = turned
       end do
       turned = hypot(column(k), length)
-      ! The matrix takes the direction to nothing new: it is singular.
+      ! The direction yields no new vector: the matrix is singular.
       if (.not. turned > nothing*before) return
       self%cosine(k) = column(k)/turned
       self%sine(k) = length/turned
@@ -112,7 +112,7 @@ contains
       self%steps = k
    end subroutine extend
 
-   !> Add the correction found so far to `solution`, shape (n).
+   !> Add the present correction to `solution`, shape (n).
    subroutine add_solution(self, solution)
       class(gmres_type), intent(in) :: self
       real(wp), intent(inout) :: solution(:)

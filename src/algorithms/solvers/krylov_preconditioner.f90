@@ -1,13 +1,13 @@
 !> Approximate inverses of the diagonal blocks C_wp and C_ut on the nodes of a contact, each in O(n log n).
 !>
-!> Every elastic body's surface answers tractions nearby like a half-plane, by the logarithm of the distance. On nodes without
-!> gaps that is a Toeplitz matrix, and its inverse is known exactly (mfv_toeplitz_inverse): of a half-plane nothing is left to
-!> iterate on but the coupling of pressure and shear, whose strength does not depend on the mesh. Where a set of nodes has gaps,
+!> The surface of every elastic body responds to nearby tractions like a half-plane, by the logarithm of the distance. On
+!> consecutive nodes this is a Toeplitz matrix with a known exact inverse (mfv_toeplitz_inverse). On a half-plane the iteration
+!> then only resolves the coupling of pressure and shear, whose strength does not depend on the mesh. If a set of nodes has gaps,
 !> the inverse on all nodes between its ends is restricted to it.
 !>
-!> Nodes that bristles hold (softness c > 0, mfv_krylov_system) need 1/(C_ut + c): their rows are interpolated between inverses
-!> for a few values of c, circulant ones. Those of nodes whose friction falls with slip (c < 0) are taken by themselves: where the
-!> bodies can unload as fast as friction falls, |c| is the larger part of C_ut + c.
+!> Nodes held by bristles (softness c > 0, mfv_krylov_system) need 1/(C_ut + c): their rows are interpolated between circulant
+!> inverses for a few values of c. Nodes whose friction decreases with slip (c < 0) are treated as independent: where the bodies
+!> can unload as fast as friction decreases, |c| dominates C_ut + c.
 module mfv_krylov_preconditioner
    use mfv_compliance, only: block_wp, compliance_type
    use mfv_fourier, only: back_transform, fast_length, real_transform
@@ -21,19 +21,19 @@ module mfv_krylov_preconditioner
    !> Inverse on a set of nodes.
    type :: block_type
       type(toeplitz_inverse_type) :: inverse
-      !> The nodes, and the one before the first.
+      !> The nodes, and the number of the node before the first.
       integer, allocatable :: nodes(:)
       integer :: before = 0
    end type block_type
 
    type :: krylov_preconditioner_type
       private
-      !> Entries by distance, length^3/force in the system's units.
+      !> Entries by distance, length^3/force in the units of the system.
       real(wp), allocatable :: kernel(:)
-      !> (Allocatable each: of two that are not, gfortran 12 does not free the components of the second.)
+      !> (Both allocatable: otherwise gfortran 12 does not free the components of the second.)
       type(block_type), allocatable :: contact, held
-      !> Softness of the held nodes, shape (held), where there is any; weights of the levels, shape (held, 0 to levels), and the
-      !> inverses there, shape (length/2 + 1, levels).
+      !> Softness of the held nodes, shape (held), if any is nonzero; weights of the levels, shape (held, 0 to levels), and the
+      !> inverses of the levels, shape (length/2 + 1, levels).
       logical :: soft = .false.
       real(wp), allocatable :: softness(:), weight(:, :), symbol(:, :)
       !> Work space.
@@ -49,7 +49,7 @@ module mfv_krylov_preconditioner
 
 contains
 
-   !> Know a compliance, whose number of nodes can have changed. `unit`: of the blocks' entries, length^3/force.
+   !> Prepare for a compliance, whose number of nodes may have changed. `unit`: of the entries of the blocks, length^3/force.
    subroutine prepare(self, compliance, unit)
       class(krylov_preconditioner_type), intent(inout) :: self
       class(compliance_type), intent(in) :: compliance
@@ -74,14 +74,14 @@ contains
       allocate (self%contact, self%held)
    end subroutine prepare
 
-   !> About the smallest eigenvalue of the blocks, in the system's units.
+   !> Approximate smallest eigenvalue of the blocks, in the units of the system.
    pure real(wp) function smallest(self)
       class(krylov_preconditioner_type), intent(in) :: self
 
       smallest = 0.5_wp*(self%kernel(1) - self%kernel(2))
    end function smallest
 
-   !> The nodes in contact, ascending.
+   !> Set the nodes in contact, ascending.
    subroutine set_contact(self, nodes)
       class(krylov_preconditioner_type), intent(inout) :: self
       integer, intent(in) :: nodes(:)
@@ -89,7 +89,7 @@ contains
       call set_nodes(self, self%contact, nodes)
    end subroutine set_contact
 
-   !> The nodes whose shear is unknown, ascending, and their softness, shape (held).
+   !> Set the nodes whose shear is unknown, ascending, and their softness, shape (held).
    subroutine set_held(self, nodes, softness)
       class(krylov_preconditioner_type), intent(inout) :: self
       integer, intent(in) :: nodes(:)
@@ -116,8 +116,8 @@ contains
       call block%inverse%set_order(self%kernel, nodes(size(nodes)) - block%before)
    end subroutine set_nodes
 
-   !> Levels of softness, a constant ratio apart, from where it does not matter to where nothing else does; and the weights with
-   !> which the nodes lie between them.
+   !> Levels of softness with a constant ratio, from negligible to dominant softness, and the weights for interpolation between
+   !> them.
    subroutine set_levels(self, softness)
       type(krylov_preconditioner_type), intent(inout) :: self
       real(wp), intent(in) :: softness(:)
@@ -159,7 +159,7 @@ contains
       call apply_block(self, self%contact, values)
    end subroutine apply_contact
 
-   !> The same of the held nodes, shape (held).
+   !> Tractions of the held nodes by displacements, shape (held), both in `values`.
    subroutine apply_held(self, values)
       class(krylov_preconditioner_type), intent(inout) :: self
       real(wp), intent(inout) :: values(:)
@@ -170,7 +170,7 @@ contains
          return
       end if
       right = values
-      ! What is by itself has no part in the others' displacements.
+      ! Independent nodes do not contribute to the displacements of the others.
       where (sum(self%weight, dim=2) <= 0.0_wp) values = 0.0_wp
       right = merge(right/merge(self%softness, 1.0_wp, abs(self%softness) > 0.0_wp), values, &
                     sum(self%weight, dim=2) <= 0.0_wp)
@@ -178,7 +178,7 @@ contains
       where (sum(self%weight, dim=2) <= 0.0_wp) values = right
    end subroutine apply_held
 
-   !> The inverses of all levels, each weighed.
+   !> The weighted sum of the inverses of all levels.
    subroutine add_levels(self, values)
       type(krylov_preconditioner_type), intent(inout) :: self
       real(wp), intent(inout) :: values(:)

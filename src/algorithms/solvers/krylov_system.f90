@@ -1,8 +1,8 @@
-!> State and rates without any matrix, in memory O(n): products with the compliance through FFTW, and Krylov's iteration.
+!> State and rates without a stored matrix, in memory O(n): products with the compliance through FFTW, and Krylov iteration.
 !>
-!> Unknowns are the pressures of the nodes in contact, the shear tractions of the held nodes and the rigid motions of the upper
-!> body that no load prescribes. Held nodes are the stuck ones and those whose line of friction depends on slip; the others slip,
-!> and their shear tau = slope*p + offset is put into the rows of elasticity. Rows, with the arms a of the motions y:
+!> Unknowns are the pressures of the nodes in contact, the shear tractions of the held nodes and the motions of the upper body
+!> under force control. Held nodes are the stuck ones and those whose friction line depends on slip; the others slip, and their
+!> shear tau = slope*p + offset is inserted into the rows of elasticity. Rows, with the arms a of the motions y:
 !>
 !>     C_wp p + C_wt tau - a_w y              = -g0              nodes in contact
 !>     C_up p + C_ut tau - a_u y              = s0               stuck nodes
@@ -10,10 +10,10 @@
 !>     resultants of p and tau                = P, Q, M          free motions
 !>
 !> The preconditioner is block triangular: pressures by the inverse of C_wp (mfv_krylov_preconditioner), then shear tractions by
-!> that of C_ut with what these pressures do taken off; the free motions follow from a Schur complement of at most three rows.
-!> GMRES works on the preconditioned rows: its residual is then the error of the unknowns themselves, up to the coupling, and
-!> `linear_tolerance` is the error of tractions and motions in parts of all of them (2-norms). On nodes without gaps iterations
-!> do not depend on their number: a dozen for nu = 0.3 and mu = 0.5, three dozen for nu = 0 and mu = 3.
+!> that of C_ut after subtracting the effect of these pressures; the free motions follow from a Schur complement of at most three
+!> rows. GMRES is applied to the preconditioned rows: up to the coupling its residual is the error of the unknowns, and
+!> `linear_tolerance` is the relative error of tractions and motions (2-norms). On consecutive nodes the number of iterations does
+!> not depend on that of nodes: about 12 for nu = 0.3 and mu = 0.5, about 36 for nu = 0 and mu = 3.
 module mfv_krylov_system
    use, intrinsic :: ieee_arithmetic, only: ieee_is_finite
    use mfv_compliance, only: block_up
@@ -30,13 +30,13 @@ module mfv_krylov_system
    private
    public :: krylov_system_type
 
-   !> What the constraints prescribe, of the state or of the rates, in the system's units.
+   !> Prescribed values of the state or of the rates, in the units of the system.
    type :: right_side_type
       !> The right-hand sides of all rows, shape (unknowns).
       real(wp), allocatable :: rows(:)
       !> Offsets of the slip lines, shape (nodes).
       real(wp), allocatable :: offset(:)
-      !> Motions that are prescribed, and zero for the free ones.
+      !> Prescribed motions, and zero for the free ones.
       real(wp) :: motion(motion_count) = 0.0_wp
    end type right_side_type
 
@@ -58,21 +58,21 @@ module mfv_krylov_system
       logical :: coupled = .false.
       !> Preconditioned columns of the free motions, shape (contact + held, free), and the Schur complement, shape (free, free).
       real(wp), allocatable :: columns(:, :), schur(:, :)
-      !> Tractions and displacements last multiplied, shape (nodes); and those of the last residual: pressure, shear, normal,
+      !> Tractions and displacements of the last product, shape (nodes); and those of the last residual: pressure, shear, normal,
       !> tangential, shape (nodes, 4).
       real(wp), allocatable :: pressure(:), shear(:), normal(:), tangential(:), found(:, :)
-      !> The rates found last, shape (nodes), and their motions.
+      !> The last rates, shape (nodes), and their motions.
       real(wp), allocatable :: last_pressure(:), last_shear(:)
-      !> First and last node in contact and held then; zero where there were gaps.
+      !> First and last node in contact and held node for these rates; zero if there were gaps.
       integer :: last_contact(2) = 0, last_held(2) = 0
       real(wp) :: last_motion(motion_count) = 0.0_wp
    contains
       procedure :: solve
    end type krylov_system_type
 
-   !> The iteration is begun anew so often.
+   !> Most restarts of the iteration.
    integer, parameter :: most_passes = 20
-   !> Noise in parts of the tolerance: the 2-norm says little of a single node.
+   !> Factor on the tolerance for single nodes, since the iteration controls the 2-norm only.
    real(wp), parameter :: margin = 4.0_wp
 
 contains
@@ -90,8 +90,8 @@ contains
       real(wp), allocatable :: unknowns(:)
 
       self%solves = self%solves + 1
-      self%noise = max(self%noise, margin*model%scene%method%linear_tolerance)
-      call meet_mesh(self, model)
+      self%tolerance = max(self%tolerance, margin*model%scene%method%linear_tolerance)
+      call fit_to_mesh(self, model)
       call choose_unknowns(self, model, constraints)
       call prepare_preconditioner(self, model, singular)
       if (singular) return
@@ -117,8 +117,8 @@ contains
       self%last_motion = motion_of(self, right%motion, unknowns)
    end subroutine solve
 
-   !> Units, arms and work space of the mesh as it is now; the last rates go along with a mesh that has grown.
-   subroutine meet_mesh(self, model)
+   !> Set units, arms and work space for the present mesh; move the last rates to a mesh that has grown.
+   subroutine fit_to_mesh(self, model)
       class(krylov_system_type), intent(inout) :: self
       type(contact_model_type), intent(in) :: model
       integer :: i, n
@@ -149,9 +149,9 @@ contains
       end if
       call widen(self%last_pressure, n)
       call widen(self%last_shear, n)
-   end subroutine meet_mesh
+   end subroutine fit_to_mesh
 
-   !> The values on a mesh of `n` nodes that has grown by equally many at either end.
+   !> Extend values to a mesh of `n` nodes that has grown equally at either end.
    subroutine widen(values, n)
       real(wp), allocatable, intent(inout) :: values(:)
       integer, intent(in) :: n
@@ -166,7 +166,7 @@ contains
       call move_alloc(wider, values)
    end subroutine widen
 
-   !> Which nodes and motions have unknowns, and the lines of friction.
+   !> Choose the nodes and motions with unknowns, and the friction lines.
    subroutine choose_unknowns(self, model, constraints)
       class(krylov_system_type), intent(inout) :: self
       type(contact_model_type), intent(in) :: model
@@ -198,7 +198,7 @@ contains
       self%free = pack([(i, i=1, motion_count)], free)
    end subroutine choose_unknowns
 
-   !> The preconditioner for these unknowns. `singular`: the free motions are not determined.
+   !> Prepare the preconditioner for these unknowns. `singular`: the free motions are not determined.
    subroutine prepare_preconditioner(self, model, singular)
       class(krylov_system_type), intent(inout) :: self
       type(contact_model_type), intent(in) :: model
@@ -231,7 +231,7 @@ contains
       if (.not. singular) singular = smallest_pivot(scaled) < no_pivot
    end subroutine prepare_preconditioner
 
-   !> The smallest pivot of a small matrix in complete elimination.
+   !> The smallest pivot of a small matrix by complete elimination.
    pure real(wp) function smallest_pivot(matrix) result(smallest)
       real(wp), intent(in) :: matrix(:, :)
       real(wp) :: left(size(matrix, 1), size(matrix, 2))
@@ -251,7 +251,7 @@ contains
       end do
    end function smallest_pivot
 
-   !> The right-hand sides that the constraints prescribe, for nodes of these statuses.
+   !> The right-hand sides for the prescribed values and statuses.
    type(right_side_type) function right_side(self, model, status, prescribed) result(right)
       class(krylov_system_type), intent(in) :: self
       type(contact_model_type), intent(in) :: model
@@ -270,8 +270,8 @@ contains
       end associate
    end function right_side
 
-   !> The rates found last as a guess: on nodes without gaps stretched to where these are now, so that what is singular at the
-   !> ends stays there; else node by node.
+   !> The last rates as a guess: stretched to the present ends of consecutive nodes, so that singularities stay at the ends; node
+   !> by node if there are gaps.
    function guess_of_rates(self) result(unknowns)
       class(krylov_system_type), intent(in) :: self
       real(wp), allocatable :: unknowns(:)
@@ -284,7 +284,7 @@ contains
       unknowns = [pressure(self%contact), shear(self%held), self%last_motion(self%free)]
    end function guess_of_rates
 
-   !> First and last of nodes without gaps; zero where there are gaps, or none.
+   !> First and last of consecutive nodes; zero if there are gaps or no nodes.
    pure function ends_of(nodes) result(ends)
       integer, intent(in) :: nodes(:)
       integer :: ends(2)
@@ -294,7 +294,7 @@ contains
       if (nodes(size(nodes)) - nodes(1) == size(nodes) - 1) ends = [nodes(1), nodes(size(nodes))]
    end function ends_of
 
-   !> Values between the nodes `old(1)` and `old(2)` on those between `new(1)` and `new(2)`, by linear interpolation.
+   !> Values between the nodes `old(1)` and `old(2)`, interpolated linearly to `new(1)` to `new(2)`.
    pure subroutine stretch(old, new, values)
       integer, intent(in) :: old(2), new(2)
       real(wp), intent(inout) :: values(:)
@@ -311,7 +311,7 @@ contains
       end do
    end subroutine stretch
 
-   !> All motions: the free ones out of the unknowns, the others `prescribed`.
+   !> All motions: the free ones from the unknowns, the others `prescribed`.
    pure function motion_of(self, prescribed, unknowns) result(motion)
       class(krylov_system_type), intent(in) :: self
       real(wp), intent(in) :: prescribed(motion_count), unknowns(:)
@@ -321,7 +321,7 @@ contains
       motion(self%free) = unknowns(size(self%contact) + size(self%held) + 1:)
    end function motion_of
 
-   !> Improve `unknowns` until they are right. `fails`: they do not become so. `found` is then theirs.
+   !> Iterate until the `unknowns` meet the tolerance. `fails`: they do not. `found` then belongs to them.
    subroutine iterate(self, model, right, unknowns, fails)
       class(krylov_system_type), intent(inout) :: self
       type(contact_model_type), intent(in) :: model
@@ -346,7 +346,7 @@ contains
          fails = .not. ieee_is_finite(reached)
          if (fails) return
          if (pass == 1 .and. reached > worth_keeping*norm2(unknowns)) then
-            ! Nothing is nearer than that guess.
+            ! A zero initial guess is better.
             if (any(abs(unknowns) > 0.0_wp)) then
                unknowns = 0.0_wp
                call find_residual(self, model, right, unknowns, rows)
@@ -356,7 +356,7 @@ contains
          end if
          scale = max(scale, reached, norm2(unknowns))
          target = max(model%scene%method%linear_tolerance*scale, round_off(self, right))
-         ! What is right but for the noise stays.
+         ! A guess within the tolerance is not changed.
          if (reached <= merge(near_enough, 1.0_wp, pass == 1)*target) return
          if (reached > progress*before) exit
          before = reached
@@ -365,7 +365,7 @@ contains
       fails = reached > max(good_enough*scale, 1.0e2_wp*target)
    end subroutine iterate
 
-   !> What round-off in the displacements makes of the unknowns (2-norm).
+   !> Error of the unknowns due to round-off of the displacements (2-norm).
    real(wp) function round_off(self, right)
       class(krylov_system_type), intent(in) :: self
       type(right_side_type), intent(in) :: right
@@ -378,7 +378,7 @@ contains
       round_off = epsilon(1.0_wp)*largest/self%preconditioner%smallest()*sqrt(real(size(right%rows), wp))
    end function round_off
 
-   !> One cycle of GMRES on the preconditioned residual `rows`; `done`: it has come to the target.
+   !> One GMRES cycle on the preconditioned residual `rows`; `done`: the target was reached.
    subroutine improve(self, model, rows, target, unknowns, done)
       class(krylov_system_type), intent(inout) :: self
       type(contact_model_type), intent(in) :: model
@@ -400,7 +400,7 @@ contains
       done = self%gmres%residual() <= target
    end subroutine improve
 
-   !> Right-hand side less what the unknowns make, which is kept in `found`.
+   !> Residual of the unknowns; their fields are stored in `found`.
    subroutine find_residual(self, model, right, unknowns, rows)
       class(krylov_system_type), intent(inout) :: self
       type(contact_model_type), intent(in) :: model
@@ -419,7 +419,7 @@ contains
       rows = right%rows - rows
    end subroutine find_residual
 
-   !> The rows of a change of the unknowns.
+   !> Product of the matrix with a change of the unknowns.
    subroutine multiply(self, model, unknowns, rows)
       class(krylov_system_type), intent(inout) :: self
       type(contact_model_type), intent(in) :: model
@@ -432,7 +432,7 @@ contains
       call collect_rows(self, motion_of(self, at_rest, unknowns), rows)
    end subroutine multiply
 
-   !> Tractions of all nodes from the unknowns; of the slip lines without offset.
+   !> Tractions of all nodes from the unknowns; slipping nodes without offset.
    subroutine spread_tractions(self, unknowns)
       class(krylov_system_type), intent(inout) :: self
       real(wp), intent(in) :: unknowns(:)
@@ -458,7 +458,7 @@ contains
       self%products = self%products + 1
    end subroutine displace
 
-   !> Left-hand sides of all rows with the tractions and displacements of now.
+   !> Left-hand sides of all rows for the present tractions and displacements.
    subroutine collect_rows(self, motion, rows)
       class(krylov_system_type), intent(in) :: self
       real(wp), intent(in) :: motion(motion_count)
@@ -488,7 +488,7 @@ contains
       end do
    end subroutine collect_rows
 
-   !> Resultant of the tractions of now, as mfv_contact_model has it.
+   !> Resultant of the present tractions, as in mfv_contact_model.
    pure real(wp) function resultant(self, motion)
       class(krylov_system_type), intent(in) :: self
       integer, intent(in) :: motion
@@ -502,7 +502,7 @@ contains
       end do
    end function resultant
 
-   !> Unknowns, approximately, by the rows: the free motions so that the resultants are right.
+   !> Approximate unknowns for the given rows; the free motions satisfy the resultants.
    subroutine precondition(self, model, rows)
       class(krylov_system_type), intent(inout) :: self
       type(contact_model_type), intent(in) :: model
@@ -523,7 +523,7 @@ contains
       rows(n + 1:) = motion
    end subroutine precondition
 
-   !> Tractions, approximately, by the displacements in `rows`, shape (contact + held), with no motion.
+   !> Approximate tractions for the displacements in `rows`, shape (contact + held), without motions.
    subroutine precondition_tractions(self, model, rows)
       class(krylov_system_type), intent(inout) :: self
       type(contact_model_type), intent(in) :: model
@@ -545,8 +545,7 @@ contains
       call self%preconditioner%apply_held(rows(m + 1:))
    end subroutine precondition_tractions
 
-   !> Fields of the tractions and displacements in `found` and the motions. Forces and motions that are prescribed to the last
-   !> digit.
+   !> Fields from the tractions and displacements in `found` and the motions. Prescribed forces and motions are exact.
    type(contact_fields_type) function fields_of(self, model, prescribed, right, unknowns) result(fields)
       class(krylov_system_type), intent(in) :: self
       type(contact_model_type), intent(in) :: model

@@ -1,4 +1,4 @@
-!> Which linear solver a scene gets.
+!> Choice of the linear solver of a scene.
 module mfv_linear_solvers
    use mfv_augmented_system, only: augmented_system_type
    use mfv_body, only: shape_matrix, shape_profile
@@ -15,9 +15,9 @@ module mfv_linear_solvers
 
 contains
 
-   !> The linear solver that the model's scene asks for. 'auto': the reduced system up to a number of nodes that depends on the
-   !> structure (mfv_solver_costs), beyond it fft, whose memory does not grow with the square. A user's matrix has no fast products:
-   !> it takes the reduced system.
+   !> The linear solver of the scene of a model. 'auto': the reduced system up to a number of nodes that depends on the structure
+   !> (mfv_solver_costs), beyond it fft, whose memory is proportional to that number. A user's matrix has no fast products and
+   !> always uses the reduced system.
    subroutine new_contact_system(model, system)
       type(contact_model_type), intent(in) :: model
       class(contact_system_type), allocatable, intent(out) :: system
@@ -38,7 +38,7 @@ contains
       end select
    end subroutine new_contact_system
 
-   !> The number of nodes up to which the reduced system is taken.
+   !> The largest number of nodes for the reduced system.
    pure integer function most_reduced(model) result(most)
       type(contact_model_type), intent(in) :: model
       logical :: coupled, one_way, at_once

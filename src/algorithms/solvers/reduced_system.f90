@@ -1,20 +1,20 @@
-!> The reduced system: unknowns are the pressures of the nodes in contact, the shear tractions of those that friction holds or
-!> brakes, and the rigid motions, all others eliminated from dissertation eq. 2.2.
+!> The reduced system: unknowns are the pressures of the nodes in contact, the shear tractions of those that stick, slip or creep,
+!> and the rigid motions; all others are eliminated from dissertation eq. 2.2.
 !>
-!> With every node in contact taken to be stuck its matrix is
+!> If every node in contact is taken to stick, its matrix is
 !>
 !>     [  C   -N ]
-!>     [ -N'   0 ],    C the compliance between these nodes, N what the rigid motions do to gap and slip,
+!>     [ -N'   0 ],    C the compliance between these nodes, N the effect of rigid motions on gap and slip,
 !>
-!> symmetric by reciprocity (tractions times the nodes' widths, where these differ). Its inverse is kept, and changed where
-!> nodes come into contact or leave it. What slips, creeps or is led by displacements is a constraint with an unknown slip or
-!> force (mfv_constrained_inverse); so a node that begins or ceases to slip costs as many operations as a few vectors have
-!> entries, and a reversal, where all stick again, nothing. The residuals of all rows are checked after every solve with the
-!> full compliance; where they are too large the solution is refined, and where that does not help the inverse is computed anew.
+!> symmetric by reciprocity (for tractions times the widths of the nodes, where these differ). Its inverse is stored, and updated
+!> when nodes enter or leave the contact. Slipping and creeping nodes and displacement control are constraints with an unknown slip
+!> or force (mfv_constrained_inverse). A node that begins or ceases to slip then costs a few vector operations, and a reversal,
+!> where all nodes stick again, nothing. The residuals of all rows are checked after every solve with the full compliance. If they
+!> are too large, the solution is refined; if that fails, the inverse is recomputed.
 !>
-!> Without the effect of shear on the normal problem (Goodman's coupling, none, no friction) the two problems are solved one
-!> after the other, each with an inverse of its own. Goodman's coupling with rotation or radial normals is not symmetric: there
-!> the augmented system takes over.
+!> Without the effect of shear on the normal problem (Goodman's coupling, none, no friction) the two problems are solved one after
+!> the other, each with its own inverse. Goodman's coupling with rotation or radial normals is not symmetric and uses the augmented
+!> system.
 module mfv_reduced_system
    use mfv_augmented_system, only: augmented_system_type
    use mfv_compliance, only: block_up, block_ut, block_wp, block_wt
@@ -29,43 +29,43 @@ module mfv_reduced_system
    private
    public :: reduced_system_type
 
-   !> What an unknown is: of a node, or of the upper body.
+   !> Types of unknowns: of a node, or of the upper body.
    integer, parameter :: a_pressure = 1, a_shear = 2, a_motion = 3
 
-   !> A part of the system that is solved on its own.
-   type :: part_type
+   !> A subsystem that is solved independently.
+   type :: subsystem_type
       type(constrained_inverse_type) :: system
-      !> Sort of every unknown, and its node or motion; shape (capacity), the first `unknowns` are in use.
+      !> Type of every unknown, and its node or motion; shape (capacity), the first `unknowns` are in use.
       integer :: unknowns = 0
       integer, allocatable :: sort(:), of(:)
       !> Right side and solution of the rows, and values of the constraints.
       real(wp), allocatable :: right(:), solution(:), values(:)
-   end type part_type
+   end type subsystem_type
 
-   !> Magnitudes that what is missing is measured by: normal and tangential displacements, length; tractions, force/length^2;
-   !> all forces and tangential ones, force/length.
+   !> Magnitudes for relative residuals: normal and tangential displacements, length; tractions, force/length^2; all forces and
+   !> tangential ones, force/length.
    type :: scales_type
       real(wp) :: normal = 1.0_wp, tangential = 1.0_wp, traction = 1.0_wp, force = 1.0_wp, shear_force = 1.0_wp
    end type scales_type
 
    type, extends(contact_system_type) :: reduced_system_type
       private
-      !> Normal and tangential problem where they are apart, else both in the first.
-      type(part_type) :: part(2)
+      !> Normal and tangential problem if uncoupled, else both in the first.
+      type(subsystem_type) :: subsystem(2)
       logical :: apart = .false.
-      !> Where the unknowns of nodes and motions are in their part, by sort; and the constraints of their shear tractions and
-      !> of the motions; 0: nowhere, none. Shape (at least nodes and motion_count, sorts).
+      !> Positions of the unknowns of nodes and motions in their subsystem, by type; and numbers of the constraints of their shear
+      !> tractions and of the motions; 0: none. Shape (at least nodes and motion_count, types).
       integer, allocatable :: place(:, :), constraint_of(:, :)
-      !> Nodes that they are for; 0: they are of no use.
+      !> Number of nodes that these are for; 0: invalid.
       integer :: nodes = 0
-      !> What is prescribed of the fields that are solved for.
+      !> Prescribed values of the fields that are solved for.
       type(prescribed_type) :: prescribed
-      !> Unit of length: half the mesh when the first unknown came; it stays while the mesh grows.
+      !> Unit of length: half the length of the initial mesh; it does not change when the mesh grows.
       real(wp) :: length = 1.0_wp
-      !> What the inverses were built for.
+      !> Blocks and motions of the present inverses.
       logical :: block(4) = .false., moves(motion_count) = .false.
       type(augmented_system_type) :: augmented
-      !> How often a solution was refined.
+      !> Number of refinements.
       integer, public :: refinements = 0
    contains
       procedure :: solve
@@ -74,11 +74,11 @@ module mfv_reduced_system
 
 contains
 
-   !> How often inverses were computed anew.
+   !> Number of recomputed inverses.
    pure integer function rebuilds(self)
       class(reduced_system_type), intent(in) :: self
 
-      rebuilds = sum(self%part%system%inverse%rebuilds)
+      rebuilds = sum(self%subsystem%system%inverse%rebuilds)
    end function rebuilds
 
    !> See mfv_contact_system.
@@ -98,33 +98,33 @@ contains
       end if
       call match(self, model)
       call respond(self, model, constraints, start, .false., response, singular)
-      ! The inverse may have lost its digits: once more with a new one.
+      ! The inverse may be inaccurate: repeat with a new one.
       if (singular .and. .not. undetermined(self, model, constraints)) &
          call respond(self, model, constraints, start, .true., response, singular)
    end subroutine solve
 
-   !> State and rates. `anew`: with the inverse computed anew.
-   subroutine respond(self, model, constraints, start, anew, response, singular)
+   !> State and rates. `recompute`: whether to recompute the inverse.
+   subroutine respond(self, model, constraints, start, recompute, response, singular)
       class(reduced_system_type), intent(inout) :: self
       type(contact_model_type), intent(in) :: model
       type(constraints_type), intent(in) :: constraints
       type(contact_fields_type), intent(in) :: start
-      logical, intent(in) :: anew
+      logical, intent(in) :: recompute
       type(response_type), intent(inout) :: response
       logical, intent(out) :: singular
 
-      if (anew) call match(self, model)
-      call follow(self, model, constraints, anew, singular)
+      if (recompute) call match(self, model)
+      call follow(self, model, constraints, recompute, singular)
       if (.not. singular) singular = undetermined(self, model, constraints)
       if (singular) return
-      call response%state%take(start)
+      call response%state%copy_from(start)
       call refine(self, model, constraints, .false., response%state, singular)
       if (singular) return
       call response%rate%clear(size(constraints%status))
       call refine(self, model, constraints, .true., response%rate, singular)
    end subroutine respond
 
-   !> Whether a force is prescribed where nothing answers to it: without contact, or a moment on one node.
+   !> Whether a force is prescribed that nothing balances: without contact, or a moment on one node.
    pure logical function undetermined(self, model, constraints)
       class(reduced_system_type), intent(in) :: self
       type(contact_model_type), intent(in) :: model
@@ -135,8 +135,7 @@ contains
                            constraints%load(i)%control == control_force, i=1, motion_count)])
    end function undetermined
 
-   !> Forget what belongs to other blocks, or to a scene without rotation; follow the nodes where the mesh has grown. (An object
-   !> serves one model.)
+   !> Reset the system for other blocks or motions; renumber the nodes if the mesh has grown. (An object serves one model.)
    subroutine match(self, model)
       class(reduced_system_type), intent(inout) :: self
       type(contact_model_type), intent(in) :: model
@@ -160,8 +159,10 @@ contains
             call move_alloc(constraint_of, self%constraint_of)
             self%nodes = n
             do i = 1, 2
-               associate (part => self%part(i))
-                  where (part%sort(:part%unknowns) /= a_motion) part%of(:part%unknowns) = part%of(:part%unknowns) + extra
+               associate (subsystem => self%subsystem(i))
+                  associate (sort => subsystem%sort(:subsystem%unknowns), of => subsystem%of(:subsystem%unknowns))
+                     where (sort /= a_motion) of = of + extra
+                  end associate
                end associate
             end do
             return
@@ -175,30 +176,30 @@ contains
       if (allocated(self%place)) deallocate (self%place, self%constraint_of)
       allocate (self%place(room, a_motion), self%constraint_of(room, a_motion), source=0)
       do i = 1, 2
-         call self%part(i)%system%clear()
-         self%part(i)%unknowns = 0
-         if (.not. allocated(self%part(i)%sort)) &
-            allocate (self%part(i)%sort(0), self%part(i)%of(0), self%part(i)%right(0), self%part(i)%solution(0), &
-                      self%part(i)%values(0))
+         call self%subsystem(i)%system%clear()
+         self%subsystem(i)%unknowns = 0
+         if (.not. allocated(self%subsystem(i)%sort)) &
+            allocate (self%subsystem(i)%sort(0), self%subsystem(i)%of(0), self%subsystem(i)%right(0), &
+                      self%subsystem(i)%solution(0), self%subsystem(i)%values(0))
       end do
    end subroutine match
 
-   !> The part that an unknown of some sort belongs to.
-   pure integer function part_of(self, sort, number)
+   !> The subsystem of an unknown.
+   pure integer function subsystem_of(self, sort, number)
       class(reduced_system_type), intent(in) :: self
       integer, intent(in) :: sort, number
 
-      part_of = 1
+      subsystem_of = 1
       if (.not. self%apart) return
-      if (sort == a_shear .or. (sort == a_motion .and. number == motion_shift)) part_of = 2
-   end function part_of
+      if (sort == a_shear .or. (sort == a_motion .and. number == motion_shift)) subsystem_of = 2
+   end function subsystem_of
 
-   !> Bring unknowns and constraints to the statuses and controls of `constraints`. `anew`: compute the inverse anew.
-   subroutine follow(self, model, constraints, anew, singular)
+   !> Update unknowns and constraints to the statuses and controls of `constraints`. `recompute`: whether to recompute the inverse.
+   subroutine follow(self, model, constraints, recompute, singular)
       class(reduced_system_type), intent(inout) :: self
       type(contact_model_type), intent(in) :: model
       type(constraints_type), intent(in) :: constraints
-      logical, intent(in) :: anew
+      logical, intent(in) :: recompute
       logical, intent(out) :: singular
       logical, parameter :: touches(0:6) = [.false., .true., .true., .true., .true., .true., .true.], &
                             has_shear(0:6) = [.false., .true., .true., .true., .false., .true., .true.]
@@ -210,13 +211,13 @@ contains
       wanted(:self%nodes, a_shear) = has_shear(constraints%status)
       wanted(motion_approach, a_motion) = any(wanted(:, a_pressure))
       wanted(motion_shift, a_motion) = any(wanted(:, a_shear))
-      ! What only slides, a rotation where normals are along the radius, nothing but friction determines.
+      ! A motion that only slides (a rotation with radial normals) is determined by friction alone.
       do i = 1, motion_count
          if (motions(i)%optional .and. model%moves(i)) &
             wanted(i, a_motion) = count(wanted(:, a_pressure)) > 1 .and. (wanted(motion_shift, a_motion) .or. model%lifts(i))
       end do
-      call lose_constraints(self, constraints, wanted)
-      if (anew) then
+      call remove_constraints(self, constraints, wanted)
+      if (recompute) then
          call rebuild(self, model, wanted, singular)
       else
          call change_unknowns(self, model, wanted, singular)
@@ -224,53 +225,53 @@ contains
       if (.not. singular) call set_constraints(self, model, constraints)
    end subroutine follow
 
-   !> Release what is no longer constrained, or no longer there.
-   subroutine lose_constraints(self, constraints, wanted)
+   !> Remove constraints that no longer apply.
+   subroutine remove_constraints(self, constraints, wanted)
       class(reduced_system_type), intent(inout) :: self
       type(constraints_type), intent(in) :: constraints
       logical, intent(in) :: wanted(:, :)
       logical :: going(self%nodes)
-      integer :: i, part
+      integer :: i, subsystem
 
-      part = part_of(self, a_shear, 0)
+      subsystem = subsystem_of(self, a_shear, 0)
       going = self%constraint_of(:self%nodes, a_shear) > 0 .and. &
               .not. (wanted(:self%nodes, a_shear) .and. constraints%status /= node_stick)
-      if (2*count(going) > self%part(part)%system%constraints) call self%part(part)%system%postpone()
+      if (2*count(going) > self%subsystem(subsystem)%system%constraints) call self%subsystem(subsystem)%system%postpone()
       do i = 1, self%nodes
-         if (going(i)) call release(self, part, self%constraint_of(i, a_shear))
+         if (going(i)) call release(self, subsystem, self%constraint_of(i, a_shear))
       end do
       do i = 1, motion_count
          if (self%constraint_of(i, a_motion) == 0) cycle
          if (constraints%load(i)%control /= control_force .and. wanted(i, a_motion)) cycle
-         call release(self, part_of(self, a_motion, i), self%constraint_of(i, a_motion))
+         call release(self, subsystem_of(self, a_motion, i), self%constraint_of(i, a_motion))
       end do
-   end subroutine lose_constraints
+   end subroutine remove_constraints
 
-   !> Add and remove unknowns one by one, or all of them anew where that is less work.
+   !> Add and remove unknowns one by one, or recompute all if that is less work.
    subroutine change_unknowns(self, model, wanted, singular)
       class(reduced_system_type), intent(inout) :: self
       type(contact_model_type), intent(in) :: model
       logical, intent(in) :: wanted(:, :)
       logical, intent(out) :: singular
       integer, parameter :: few = 16
-      integer :: changes(2), i, sort, part
+      integer :: changes(2), i, sort, subsystem
 
       singular = .false.
       if (all(wanted .eqv. self%place > 0)) return
       changes = 0
       do sort = a_pressure, a_shear
-         part = part_of(self, sort, 0)
-         changes(part) = changes(part) + count(wanted(:, sort) .neqv. self%place(:, sort) > 0)
+         subsystem = subsystem_of(self, sort, 0)
+         changes(subsystem) = changes(subsystem) + count(wanted(:, sort) .neqv. self%place(:, sort) > 0)
       end do
-      if (all(changes <= max(few, self%part%unknowns/2))) then
+      if (all(changes <= max(few, self%subsystem%unknowns/2))) then
          call remove_unknowns(self, a_motion, wanted, singular)
-         ! What is added comes first: with little contact left in between the matrix would have no inverse.
-         do part = 1, 2
-            if (.not. singular) call add_unknowns(self, model, part, wanted, singular)
+         ! Add first: with little contact in between the matrix would be singular.
+         do subsystem = 1, 2
+            if (.not. singular) call add_unknowns(self, model, subsystem, wanted, singular)
          end do
          do i = 1, motion_count
             if (.not. wanted(i, a_motion) .or. self%place(i, a_motion) > 0 .or. singular) cycle
-            call add_named(self, model, part_of(self, a_motion, i), [a_motion], [i], singular)
+            call add_named(self, model, subsystem_of(self, a_motion, i), [a_motion], [i], singular)
          end do
          call remove_unknowns(self, a_shear, wanted, singular)
          call remove_unknowns(self, a_pressure, wanted, singular)
@@ -279,7 +280,7 @@ contains
       call rebuild(self, model, wanted, singular)
    end subroutine change_unknowns
 
-   !> Lose the unknowns of a sort that are no longer wanted, unless something is `singular` already.
+   !> Remove the unknowns of a type that are no longer wanted, unless already `singular`.
    subroutine remove_unknowns(self, sort, wanted, singular)
       class(reduced_system_type), intent(inout) :: self
       integer, intent(in) :: sort
@@ -293,7 +294,7 @@ contains
       end do
    end subroutine remove_unknowns
 
-   !> The unknowns of nodes that a part lacks.
+   !> Add the missing unknowns of nodes of a subsystem.
    subroutine add_unknowns(self, model, p, wanted, singular)
       class(reduced_system_type), intent(inout) :: self
       type(contact_model_type), intent(in) :: model
@@ -305,7 +306,7 @@ contains
       singular = .false.
       number = 0
       do sort = a_pressure, a_shear
-         if (part_of(self, sort, 0) /= p) cycle
+         if (subsystem_of(self, sort, 0) /= p) cycle
          do i = 1, size(wanted, 1)
             if (self%place(i, sort) > 0 .or. .not. wanted(i, sort)) cycle
             number = number + 1
@@ -316,7 +317,7 @@ contains
       if (number > 0) call add_named(self, model, p, new_sort(:number), new_of(:number), singular)
    end subroutine add_unknowns
 
-   !> More unknowns of a part: their sorts and nodes or motions.
+   !> Add unknowns to a subsystem: their types and nodes or motions.
    subroutine add_named(self, model, p, new_sort, new_of, singular)
       class(reduced_system_type), intent(inout) :: self
       type(contact_model_type), intent(in) :: model
@@ -328,36 +329,36 @@ contains
       do i = 1, size(new_sort)
          call enlist(self, new_sort(i), new_of(i))
       end do
-      allocate (borders(self%part(p)%unknowns, size(new_sort)))
+      allocate (borders(self%subsystem(p)%unknowns, size(new_sort)))
       do i = 1, size(new_sort)
-         call entries_of(model, self%length, self%part(p), new_sort(i), new_of(i), borders(:, i))
+         call entries_of(model, self%length, self%subsystem(p), new_sort(i), new_of(i), borders(:, i))
       end do
-      call self%part(p)%system%add_unknowns(borders, singular)
+      call self%subsystem(p)%system%add_unknowns(borders, singular)
    end subroutine add_named
 
-   !> One more name in the list of the unknowns of its part.
+   !> Append an unknown to the list of its subsystem.
    subroutine enlist(self, sort, number)
       class(reduced_system_type), intent(inout) :: self
       integer, intent(in) :: sort, number
       integer, parameter :: some = 32
       integer :: i, room
 
-      associate (part => self%part(part_of(self, sort, number)))
-         part%unknowns = part%unknowns + 1
-         if (part%unknowns > size(part%sort)) then
-            room = part%unknowns/2 + some
-            part%sort = [part%sort, (0, i=1, room)]
-            part%of = [part%of, (0, i=1, room)]
-            deallocate (part%right, part%solution)
-            allocate (part%right(size(part%sort)), part%solution(size(part%sort)))
+      associate (subsystem => self%subsystem(subsystem_of(self, sort, number)))
+         subsystem%unknowns = subsystem%unknowns + 1
+         if (subsystem%unknowns > size(subsystem%sort)) then
+            room = subsystem%unknowns/2 + some
+            subsystem%sort = [subsystem%sort, (0, i=1, room)]
+            subsystem%of = [subsystem%of, (0, i=1, room)]
+            deallocate (subsystem%right, subsystem%solution)
+            allocate (subsystem%right(size(subsystem%sort)), subsystem%solution(size(subsystem%sort)))
          end if
-         part%sort(part%unknowns) = sort
-         part%of(part%unknowns) = number
-         self%place(number, sort) = part%unknowns
+         subsystem%sort(subsystem%unknowns) = sort
+         subsystem%of(subsystem%unknowns) = number
+         self%place(number, sort) = subsystem%unknowns
       end associate
    end subroutine enlist
 
-   !> One unknown less; the last of the part takes its place.
+   !> Remove an unknown; the last one of the subsystem takes its place.
    subroutine remove_unknown(self, sort, number, singular)
       class(reduced_system_type), intent(inout) :: self
       integer, intent(in) :: sort, number
@@ -365,19 +366,19 @@ contains
       integer :: here, last
 
       here = self%place(number, sort)
-      associate (part => self%part(part_of(self, sort, number)))
-         call part%system%remove_unknown(here, singular)
+      associate (subsystem => self%subsystem(subsystem_of(self, sort, number)))
+         call subsystem%system%remove_unknown(here, singular)
          if (singular) return
-         last = part%unknowns
-         part%sort(here) = part%sort(last)
-         part%of(here) = part%of(last)
-         self%place(part%of(here), part%sort(here)) = here
-         part%unknowns = last - 1
+         last = subsystem%unknowns
+         subsystem%sort(here) = subsystem%sort(last)
+         subsystem%of(here) = subsystem%of(last)
+         self%place(subsystem%of(here), subsystem%sort(here)) = here
+         subsystem%unknowns = last - 1
       end associate
       self%place(number, sort) = 0
    end subroutine remove_unknown
 
-   !> All unknowns anew, without constraints.
+   !> Recompute the inverses for all unknowns, without constraints.
    subroutine rebuild(self, model, wanted, singular)
       class(reduced_system_type), intent(inout) :: self
       type(contact_model_type), intent(in) :: model
@@ -389,8 +390,8 @@ contains
       self%constraint_of = 0
       self%place = 0
       do p = 1, 2
-         call self%part(p)%system%release_all()
-         self%part(p)%unknowns = 0
+         call self%subsystem(p)%system%release_all()
+         self%subsystem(p)%unknowns = 0
       end do
       do sort = a_pressure, a_motion
          do i = 1, size(wanted, 1)
@@ -398,36 +399,36 @@ contains
          end do
       end do
       do p = 1, 2
-         associate (part => self%part(p))
-            allocate (matrix(part%unknowns, part%unknowns))
-            do j = 1, part%unknowns
-               call entries_of(model, self%length, part, part%sort(j), part%of(j), matrix(:, j))
+         associate (subsystem => self%subsystem(p))
+            allocate (matrix(subsystem%unknowns, subsystem%unknowns))
+            do j = 1, subsystem%unknowns
+               call entries_of(model, self%length, subsystem, subsystem%sort(j), subsystem%of(j), matrix(:, j))
             end do
-            call part%system%refresh(matrix, singular)
+            call subsystem%system%refresh(matrix, singular)
             deallocate (matrix)
          end associate
          if (.not. singular) cycle
-         ! Nothing is left of it: the next solve begins again.
+         ! Invalid: the next solve starts over.
          self%nodes = 0
          return
       end do
    end subroutine rebuild
 
-   !> Entries of the rows of a part in the column of one unknown, in units of the compliance's modulus and the mesh's length; shape
-   !> (unknowns).
-   subroutine entries_of(model, length, part, column_sort, column_of, entries)
+   !> Entries of the rows of a subsystem in the column of one unknown, in units of the modulus of the compliance and the length of
+   !> the mesh; shape (unknowns).
+   subroutine entries_of(model, length, subsystem, column_sort, column_of, entries)
       type(contact_model_type), intent(in) :: model
       real(wp), intent(in) :: length
-      type(part_type), intent(in) :: part
+      type(subsystem_type), intent(in) :: subsystem
       integer, intent(in) :: column_sort, column_of
       real(wp), intent(out) :: entries(:)
-      !> Displacement of the row's sort by a traction of the column's.
+      !> Displacement of the type of the row by a traction of the type of the column.
       integer, parameter :: block(2, 2) = reshape([block_wp, block_up, block_wt, block_ut], [2, 2])
       real(wp) :: unit, block_entries(size(entries), 1)
       integer :: at(size(entries)), number, i, row_sort
 
       entries = 0.0_wp
-      associate (n => size(entries), sort => part%sort, of => part%of)
+      associate (n => size(entries), sort => subsystem%sort, of => subsystem%of)
          if (column_sort == a_motion) then
             do i = 1, n
                if (sort(i) == a_pressure) entries(i) = -model%normal_arm(of(i), column_of)/arm_unit(column_of, length)
@@ -455,7 +456,7 @@ contains
       end associate
    end subroutine entries_of
 
-   !> Constraints of the nodes that slip or creep, and of the motions that are held.
+   !> Set the constraints of slipping and creeping nodes and of motions under displacement control.
    subroutine set_constraints(self, model, constraints)
       class(reduced_system_type), intent(inout) :: self
       type(contact_model_type), intent(in) :: model
@@ -463,7 +464,7 @@ contains
       real(wp) :: stiffness
       integer :: i, partner
 
-      associate (system => self%part(part_of(self, a_shear, 0))%system)
+      associate (system => self%subsystem(subsystem_of(self, a_shear, 0))%system)
          do i = 1, self%nodes
             if (self%place(i, a_shear) == 0 .or. constraints%status(i) == node_stick) cycle
             partner = 0
@@ -473,7 +474,7 @@ contains
                if (c == 0) then
                   call system%constrain(self%place(i, a_shear), partner, slope, stiffness)
                   c = system%constraints
-                  ! Apart, the slope comes in with the known pressure.
+                  ! Uncoupled, the slope multiplies the known pressure.
                else if ((partner > 0 .and. abs(system%constraint(c)%slope - slope) > 0.0_wp) .or. &
                         abs(system%constraint(c)%stiffness - stiffness) > 0.0_wp) then
                   call system%change_constraint(c, slope, stiffness)
@@ -484,31 +485,31 @@ contains
       do i = 1, motion_count
          if (self%place(i, a_motion) == 0 .or. self%constraint_of(i, a_motion) > 0) cycle
          if (constraints%load(i)%control == control_force) cycle
-         associate (system => self%part(part_of(self, a_motion, i))%system)
+         associate (system => self%subsystem(subsystem_of(self, a_motion, i))%system)
             call system%constrain(self%place(i, a_motion), 0, 0.0_wp, 0.0_wp)
             self%constraint_of(i, a_motion) = system%constraints
          end associate
       end do
    end subroutine set_constraints
 
-   !> Lose a constraint of part `p`; the last one takes its place.
+   !> Remove a constraint of subsystem `p`; the last one takes its place.
    subroutine release(self, p, number)
       class(reduced_system_type), intent(inout) :: self
       integer, intent(in) :: p, number
       integer :: gone, slot
 
       gone = number
-      associate (part => self%part(p))
-         slot = part%system%constraint(part%system%constraints)%slot
-         self%constraint_of(part%of(slot), part%sort(slot)) = gone
-         slot = part%system%constraint(gone)%slot
-         self%constraint_of(part%of(slot), part%sort(slot)) = 0
-         call part%system%release(gone)
+      associate (subsystem => self%subsystem(p))
+         slot = subsystem%system%constraint(subsystem%system%constraints)%slot
+         self%constraint_of(subsystem%of(slot), subsystem%sort(slot)) = gone
+         slot = subsystem%system%constraint(gone)%slot
+         self%constraint_of(subsystem%of(slot), subsystem%sort(slot)) = 0
+         call subsystem%system%release(gone)
       end associate
    end subroutine release
 
-   !> Correct the fields until they satisfy the constraints, or (`rates`) their rates; they come with a guess. `singular`: that
-   !> cannot be done.
+   !> Correct the fields, which contain a first guess, until they satisfy the constraints, or (`rates`) their rates. `singular`:
+   !> not possible.
    subroutine refine(self, model, constraints, rates, fields, singular)
       class(reduced_system_type), intent(inout) :: self
       type(contact_model_type), intent(in) :: model
@@ -528,9 +529,9 @@ contains
       fine = merge(5.0e-14_wp, 1.0e-14_wp, rates)
       call find_prescribed(constraints, model, rates, self%prescribed)
       call set_known_motions(self, model, fields)
-      if (.not. rates) call open_up(self, model, fields)
+      if (.not. rates) call clear_open_nodes(self, model, fields)
       do pass = 1, most_passes
-         ! Rates begin at rest: nothing to measure by yet.
+         ! Rates start from zero: there is no scale yet.
          at_rest = rates .and. pass == 1
          if (.not. at_rest) then
             call find_scales(model, fields, first, scales)
@@ -553,7 +554,7 @@ contains
       end do
    end subroutine refine
 
-   !> Motions that are not among the unknowns, with what they do to the displacements.
+   !> Set the motions that are not unknowns, with their effect on the displacements.
    subroutine set_known_motions(self, model, fields)
       class(reduced_system_type), intent(in) :: self
       type(contact_model_type), intent(in) :: model
@@ -573,8 +574,8 @@ contains
       end associate
    end subroutine set_known_motions
 
-   !> No tractions on nodes without unknowns.
-   subroutine open_up(self, model, fields)
+   !> Set the tractions of nodes without unknowns to zero.
+   subroutine clear_open_nodes(self, model, fields)
       class(reduced_system_type), intent(in) :: self
       type(contact_model_type), intent(in) :: model
       type(contact_fields_type), intent(inout) :: fields
@@ -597,10 +598,10 @@ contains
       end do
       if (largest <= nothing*scale) return
       call model%displace(fields)
-   end subroutine open_up
+   end subroutine clear_open_nodes
 
-   !> What is missing in every row and constraint, in their units, as right sides for a correction; and the largest of them, in
-   !> parts of the magnitude of their sort.
+   !> Residuals of all rows and constraints, in their units, as right sides for a correction; and the largest of them, relative to
+   !> the magnitude of its type.
    subroutine find_residual(self, model, constraints, fields, scales, largest)
       class(reduced_system_type), intent(inout) :: self
       type(contact_model_type), intent(in) :: model
@@ -618,42 +619,42 @@ contains
       traction_rest = 0.0_wp
       largest = 0.0_wp
       do p = 1, 2
-         associate (part => self%part(p), prescribed => self%prescribed)
-            if (size(part%values) < part%system%constraints) then
-               deallocate (part%values)
-               allocate (part%values(2*part%system%constraints))
+         associate (subsystem => self%subsystem(p), prescribed => self%prescribed)
+            if (size(subsystem%values) < subsystem%system%constraints) then
+               deallocate (subsystem%values)
+               allocate (subsystem%values(2*subsystem%system%constraints))
             end if
-            do i = 1, part%unknowns
-               node = part%of(i)
-               if (part%sort(i) == a_pressure) then
+            do i = 1, subsystem%unknowns
+               node = subsystem%of(i)
+               if (subsystem%sort(i) == a_pressure) then
                   missing = fields%motion(motion_approach) - fields%normal(node) + prescribed%opening(node)
                   gap_rest = max(gap_rest, abs(missing))
-                  part%right(i) = missing*by_length
-               else if (part%sort(i) == a_motion .and. self%constraint_of(node, a_motion) > 0) then
+                  subsystem%right(i) = missing*by_length
+               else if (subsystem%sort(i) == a_motion .and. self%constraint_of(node, a_motion) > 0) then
                   missing = (prescribed%load(node) - fields%motion(node))*arm_unit(node, self%length)
                   largest = max(largest, relative(abs(missing), scales%normal))
-                  part%values(self%constraint_of(node, a_motion)) = missing*by_length
-                  part%right(i) = 0.0_wp
-               else if (part%sort(i) == a_motion) then
+                  subsystem%values(self%constraint_of(node, a_motion)) = missing*by_length
+                  subsystem%right(i) = 0.0_wp
+               else if (subsystem%sort(i) == a_motion) then
                   missing = (model%resultant(node, fields%pressure, fields%shear) - prescribed%load(node)) &
                             /arm_unit(node, self%length)
                   largest = max(largest, relative(abs(missing), merge(scales%shear_force, scales%force, node == motion_shift)))
-                  part%right(i) = missing*by_stress
+                  subsystem%right(i) = missing*by_stress
                else if (constraints%status(node) == node_stick) then
                   missing = fields%motion(motion_shift) - fields%tangential(node) + prescribed%slip(node)
                   slip_rest = max(slip_rest, abs(missing))
-                  part%right(i) = missing*by_length
+                  subsystem%right(i) = missing*by_length
                else
-                  missing = missing_shear(self, constraints, fields, node)
+                  missing = shear_residual(self, constraints, fields, node)
                   stiffness = abs(constraints%row(node)%stiffness)
                   if (stiffness > 0.0_wp) then
-                     ! Its slip is known as well as that of a stuck node.
+                     ! Its slip is as accurate as that of a stuck node.
                      largest = max(largest, abs(missing)/max(scales%traction, stiffness*scales%tangential))
                   else
                      traction_rest = max(traction_rest, abs(missing))
                   end if
-                  part%values(self%constraint_of(node, a_shear)) = missing*model%width(node)*by_stress
-                  part%right(i) = 0.0_wp
+                  subsystem%values(self%constraint_of(node, a_shear)) = missing*model%width(node)*by_stress
+                  subsystem%right(i) = 0.0_wp
                end if
             end do
          end associate
@@ -661,8 +662,8 @@ contains
       largest = max(largest, gap_rest/scales%normal, slip_rest/scales%tangential, traction_rest/scales%traction)
    end subroutine find_residual
 
-   !> Magnitudes of the fields. Where these become zero, or bodies only slide on each other, what is left is round-off and no
-   !> measure: magnitudes count as at least a very small part of the `first` ones, and of what displacements could bring.
+   !> Magnitudes of the fields. Fields that vanish consist of round-off: magnitudes are at least a very small fraction of the
+   !> `first` ones, and of those that the displacements imply.
    pure subroutine find_scales(model, fields, first, scales)
       type(contact_model_type), intent(in) :: model
       type(contact_fields_type), intent(in) :: fields
@@ -686,16 +687,16 @@ contains
          force = force + model%width(i)*abs(fields%pressure(i))
          shear_force = shear_force + model%width(i)*abs(fields%shear(i))
       end do
-      tangential = max(tangential, model%grip*normal)
+      tangential = max(tangential, model%friction_scale*normal)
       normal = max(normal, tangential)
       possible = least*model%compliance%modulus*normal
       traction = max(traction, possible/model%length())
       force = max(force, least*first%force, possible)
-      shear_force = max(shear_force, model%grip*force, least*first%shear_force)
+      shear_force = max(shear_force, model%friction_scale*force, least*first%shear_force)
       scales = scales_type(normal, tangential, traction, max(force, shear_force), shear_force)
    end subroutine find_scales
 
-   !> A magnitude over its scale, or the largest real where that is less: of a load on a contact that carries nothing yet.
+   !> A magnitude relative to its scale, or the largest real if the quotient would overflow (a load on an empty contact).
    pure real(wp) function relative(magnitude, scale)
       real(wp), intent(in) :: magnitude, scale
 
@@ -703,22 +704,22 @@ contains
       if (magnitude < min(scale, 1.0_wp)*huge(1.0_wp)) relative = magnitude/scale
    end function relative
 
-   !> What is missing to the shear traction of a slipping or creeping node.
-   pure real(wp) function missing_shear(self, constraints, fields, node)
+   !> Residual of the shear traction of a slipping or creeping node.
+   pure real(wp) function shear_residual(self, constraints, fields, node)
       class(reduced_system_type), intent(in) :: self
       type(constraints_type), intent(in) :: constraints
       type(contact_fields_type), intent(in) :: fields
       integer, intent(in) :: node
 
       associate (row => constraints%row(node))
-         missing_shear = row%slope*fields%pressure(node) - fields%shear(node)
+         shear_residual = row%slope*fields%pressure(node) - fields%shear(node)
          if (abs(row%stiffness) > 0.0_wp) &
-            missing_shear = missing_shear + row%stiffness*(fields%tangential(node) - fields%motion(motion_shift))
-         missing_shear = missing_shear + self%prescribed%offset(node)
+            shear_residual = shear_residual + row%stiffness*(fields%tangential(node) - fields%motion(motion_shift))
+         shear_residual = shear_residual + self%prescribed%offset(node)
       end associate
-   end function missing_shear
+   end function shear_residual
 
-   !> Solve for a correction by the residuals found, and apply it.
+   !> Solve for a correction from the residuals, and apply it.
    subroutine correct(self, model, constraints, scales, fields, singular)
       class(reduced_system_type), intent(inout) :: self
       type(contact_model_type), intent(in) :: model
@@ -731,21 +732,22 @@ contains
 
       singular = .false.
       do p = 1, 2
-         if (self%part(p)%unknowns == 0) cycle
+         if (self%subsystem(p)%unknowns == 0) cycle
          if (p == 2) call find_residual(self, model, constraints, fields, scales, residual)
-         associate (part => self%part(p), n => self%part(p)%unknowns)
-            call part%system%solve(part%right(:n), part%values(:part%system%constraints), part%solution(:n), singular)
+         associate (subsystem => self%subsystem(p), n => self%subsystem(p)%unknowns)
+            call subsystem%system%solve(subsystem%right(:n), subsystem%values(:subsystem%system%constraints), &
+                                        subsystem%solution(:n), singular)
             ! NaN would pass the residual check.
-            if (.not. singular) singular = .not. all(abs(part%solution(:n)) <= huge(1.0_wp))
+            if (.not. singular) singular = .not. all(abs(subsystem%solution(:n)) <= huge(1.0_wp))
          end associate
          if (singular) return
          call apply(self, model, constraints, p, fields)
-         if (self%apart .and. p == 1 .and. self%part(2)%unknowns > 0 .and. .not. self%block(block_up)) cycle
+         if (self%apart .and. p == 1 .and. self%subsystem(2)%unknowns > 0 .and. .not. self%block(block_up)) cycle
          call model%displace(fields)
       end do
    end subroutine correct
 
-   !> Add the solution of a part to the fields; tractions of slipping nodes are what their lines say.
+   !> Add the solution of a subsystem to the fields; shear tractions of slipping nodes follow from their lines.
    subroutine apply(self, model, constraints, p, fields)
       class(reduced_system_type), intent(in) :: self
       type(contact_model_type), intent(in) :: model
@@ -754,12 +756,12 @@ contains
       type(contact_fields_type), intent(inout) :: fields
       integer :: i
 
-      associate (part => self%part(p), stress => model%compliance%modulus*model%interval())
-         do i = 1, part%unknowns
-            associate (node => part%of(i), change => part%solution(i))
-               if (part%sort(i) == a_motion) then
+      associate (subsystem => self%subsystem(p), stress => model%compliance%modulus*model%interval())
+         do i = 1, subsystem%unknowns
+            associate (node => subsystem%of(i), change => subsystem%solution(i))
+               if (subsystem%sort(i) == a_motion) then
                   fields%motion(node) = fields%motion(node) + change*self%length/arm_unit(node, self%length)
-               else if (part%sort(i) == a_pressure) then
+               else if (subsystem%sort(i) == a_pressure) then
                   fields%pressure(node) = fields%pressure(node) + stress/model%width(node)*change
                else
                   fields%shear(node) = fields%shear(node) + stress/model%width(node)*change
@@ -767,10 +769,10 @@ contains
             end associate
          end do
       end associate
-      if (p /= part_of(self, a_shear, 0)) return
+      if (p /= subsystem_of(self, a_shear, 0)) return
       do i = 1, self%nodes
          if (self%constraint_of(i, a_shear) == 0 .or. abs(constraints%row(i)%stiffness) > 0.0_wp) cycle
-         fields%shear(i) = fields%shear(i) + missing_shear(self, constraints, fields, i)
+         fields%shear(i) = fields%shear(i) + shear_residual(self, constraints, fields, i)
       end do
    end subroutine apply
 

@@ -1,4 +1,4 @@
-!> What linear solvers cost, as bench/measure.py has measured it (docs/performance.md), and which is the cheapest.
+!> Cost of the linear solvers, as measured by bench/measure.py (docs/performance.md), and the cheapest one.
 module mfv_solver_costs
    use mfv_kinds, only: wp
    use mfv_scene, only: solver_dgesv, solver_fft, solver_reduced
@@ -7,19 +7,19 @@ module mfv_solver_costs
    public :: cheapest_solver, seconds_of_solve, most_coupled, most_one_way, most_apart, most_at_once, &
              most_bristles
 
-   !> Seconds that one linear solve with m unknown tractions takes on the way from event to event, with all that goes with it:
-   !> dgesv coefficient*m^3, reduced coefficient*m^2, fft coefficient*m*log2(m). Full coupling, one thread.
+   !> Seconds per linear solve with m unknown tractions in event stepping, including all other work: dgesv coefficient*m^3, reduced
+   !> coefficient*m^2, fft coefficient*m*log2(m). Full coupling, one thread.
    real(wp), parameter :: dgesv_seconds = 1.3e-10_wp, reduced_seconds = 2.4e-10_wp, fft_seconds = 6.8e-8_wp
 
-   !> Nodes of the mesh up to which linear_solver='auto' takes the reduced system, and beyond which it takes fft. By events: with
-   !> pressures and shear coupled, coupled one way (Goodman), and apart (the last two have an exact inverse in fft on a
-   !> half-plane). Straight to the end of a segment or by large increments without coupling, where the reduced system has little to
-   !> update; and with bristles, whose rows change with every increment, or by large increments with coupling.
+   !> Most nodes for which linear_solver='auto' uses the reduced system; fft beyond. Event stepping: pressures and shear coupled,
+   !> coupled one way (Goodman), and uncoupled (in the last two cases fft has an exact inverse on a half-plane). Without events and
+   !> without coupling, where the reduced system has little to update. With bristles, whose rows change in every increment, or
+   !> large increments with coupling.
    integer, parameter :: most_coupled = 1800, most_one_way = 1400, most_apart = 900, most_at_once = 100, most_bristles = 300
 
 contains
 
-   !> The solver with the least cost for a number of unknown tractions.
+   !> The cheapest solver for a number of unknown tractions.
    pure integer function cheapest_solver(unknowns) result(solver)
       real(wp), intent(in) :: unknowns
 
@@ -28,7 +28,7 @@ contains
       if (seconds_of_solve(solver_fft, unknowns) < seconds_of_solve(solver, unknowns)) solver = solver_fft
    end function cheapest_solver
 
-   !> Seconds that one linear solve takes, about.
+   !> Approximate seconds per linear solve.
    pure real(wp) function seconds_of_solve(solver, unknowns) result(seconds)
       integer, intent(in) :: solver
       real(wp), intent(in) :: unknowns

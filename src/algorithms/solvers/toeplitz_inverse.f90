@@ -1,12 +1,12 @@
-!> The inverse of a symmetric positive definite Toeplitz matrix T(i, j) = t(|i - j|) of changing order, in memory O(n).
+!> The inverse of a symmetric positive definite Toeplitz matrix T(i, j) = t(|i - j|) of variable order, in memory O(n).
 !>
-!> By Gohberg and Semencul (1972) the inverse is made of one vector: with the monic predictor a, T a = (E, 0, ..., 0), a(1) = 1,
+!> The inverse is determined by one vector (Gohberg and Semencul 1972): with the monic predictor a, T a = (E, 0, ..., 0), a(1) = 1,
 !>
 !>     T^-1 = [ L(a) L(a)^T - L(b) L(b)^T ]/E,    b = (0, a(m), ..., a(2)),
 !>
 !> L(a): the lower triangular Toeplitz matrix with the first column a. A product with it takes six real transforms of twice the
-!> order. Levinson's recursion takes the predictor from one order to the next in O(m), up and down (Golub and Van Loan, Matrix
-!> Computations, 4th edition, section 4.7): a contact that changes by a node at a time never pays for more.
+!> order. Levinson's recursion changes the order of the predictor by one in O(m), up and down (Golub and Van Loan, Matrix
+!> Computations, 4th edition, section 4.7), which is cheap for a contact that changes by single nodes.
 module mfv_toeplitz_inverse
    use mfv_fourier, only: back_transform, fast_length, real_transform
    use mfv_kinds, only: wp
@@ -19,7 +19,7 @@ module mfv_toeplitz_inverse
       !> The predictor a, shape (at least order), and E.
       real(wp), allocatable :: predictor(:)
       real(wp) :: error = 1.0_wp
-      !> Length of the transforms; 0: the spectra of a and b, shape (length/2 + 1), do not belong to the predictor now.
+      !> Length of the transforms; 0: the spectra of a and b, shape (length/2 + 1), are not up to date.
       integer :: length = 0
       complex(wp), allocatable :: forward(:), backward(:)
       !> Work space, shapes (length) and (length/2 + 1).
@@ -33,8 +33,8 @@ module mfv_toeplitz_inverse
 
 contains
 
-   !> Orders up to `order` of the matrix with the entries `kernel`(distance + 1), shape (at least order). The kernel must be that
-   !> of the calls before, or the order 0 in between.
+   !> Set the order of the matrix with the entries `kernel`(distance + 1), shape (at least order). The kernel must be the same in
+   !> all calls, unless the order was set to 0 in between.
    subroutine set_order(self, kernel, order)
       class(toeplitz_inverse_type), intent(inout) :: self
       real(wp), intent(in) :: kernel(:)
@@ -43,7 +43,7 @@ contains
       if (order == self%order) return
       self%length = 0
       call make_room(self, order)
-      ! From far above it is no longer to begin anew.
+      ! Starting over is no slower than a large decrease.
       if (order < self%order/2) self%order = 0
       if (self%order == 0 .and. order > 0) then
          self%order = 1
@@ -58,7 +58,7 @@ contains
       end do
    end subroutine set_order
 
-   !> Take over the order of another inverse with the same kernel.
+   !> Copy the order of another inverse with the same kernel.
    subroutine copy_order(self, other)
       class(toeplitz_inverse_type), intent(inout) :: self
       class(toeplitz_inverse_type), intent(in) :: other
@@ -70,7 +70,7 @@ contains
       self%length = 0
    end subroutine copy_order
 
-   !> Room for a predictor of `order`, and some to grow; what is known stays.
+   !> Reserve storage for a predictor of `order` with a margin; its values are retained.
    subroutine make_room(self, order)
       class(toeplitz_inverse_type), intent(inout) :: self
       integer, intent(in) :: order
@@ -84,7 +84,7 @@ contains
       call move_alloc(wider, self%predictor)
    end subroutine make_room
 
-   !> From the order m to m + 1.
+   !> Increase the order from m to m + 1.
    subroutine step_up(self, kernel)
       class(toeplitz_inverse_type), intent(inout) :: self
       real(wp), intent(in) :: kernel(:)
@@ -111,7 +111,7 @@ contains
       self%order = m + 1
    end subroutine step_up
 
-   !> From the order m to m - 1: the same backwards.
+   !> Decrease the order from m to m - 1: the inverse recursion.
    subroutine step_down(self)
       class(toeplitz_inverse_type), intent(inout) :: self
       real(wp) :: reflection, factor, low, high

@@ -1,14 +1,14 @@
-!> The inverse of a symmetric matrix that gains and loses rows (with their columns), at the cost of a few vectors a change.
+!> The inverse of a symmetric matrix to which rows (with their columns) are added and removed, in O(n^2) each.
 !>
-!> With a column b and a diagonal d, the inverse T of the matrix becomes (bordering; Golub and Van Loan, Matrix
-!> Computations, section 2.1.4; Higham, Accuracy and Stability of Numerical Algorithms, section 14.2)
+!> With a column b and a diagonal d, the inverse T of the matrix becomes (bordering; Golub and Van Loan, Matrix Computations,
+!> section 2.1.4; Higham, Accuracy and Stability of Numerical Algorithms, section 14.2)
 !>
 !>     [ T  0 ]   1 [ y ]
 !>     [ 0  0 ] + - [-1 ] [ y' -1 ],    y = T b,  s = d - b' y,
 !>                s
 !>
-!> and losing row j it becomes T - q q'/q(j), q its column j. Both add a product of a vector with itself. Such products are
-!> kept apart until there are `most_pending` of them, and then added together, as fast as matrices are multiplied.
+!> and without row j it becomes T - q q'/q(j), q its column j. Both changes have rank one. They are stored as pending until there
+!> are `most_pending` of them, and then added together by a matrix product.
 module mfv_updated_inverse
    use mfv_kinds, only: wp
    use mfv_lapack, only: dgemm, dgemv, dgetrf, dgetri
@@ -19,16 +19,16 @@ module mfv_updated_inverse
    integer, parameter :: most_pending = 32
 
    type :: updated_inverse_type
-      !> Rows now.
+      !> Present number of rows.
       integer :: order = 0
-      !> How often the inverse was computed anew.
+      !> Number of times the inverse was recomputed.
       integer :: rebuilds = 0
-      !> The inverse but for the pending products: base + sum of weight(k) vector(:, k) vector(:, k)'; leading parts of
-      !> shapes (capacity, capacity), (capacity, most_pending), (most_pending).
+      !> The inverse except for the pending changes: base + sum of weight(k) vector(:, k) vector(:, k)'; leading parts of shapes
+      !> (capacity, capacity), (capacity, most_pending), (most_pending).
       real(wp), allocatable, private :: base(:, :), vector(:, :), weight(:), weighed(:, :)
       integer, private :: pending = 0
-      !> Rows that are to come: their entries, shape (rows there and to come, number), products of the inverse with them, and
-      !> the changes that they made so far; how many have come.
+      !> Rows to be added: their entries, shape (rows including these, number), products of the inverse with them, and the changes
+      !> by those added so far; number of rows added so far.
       real(wp), allocatable, private :: borders(:, :), products(:, :), changes(:, :), weights(:)
       integer, private :: prepared = 0
       !> The last change: its vector and weight; the leading `order` values (before rows moved) are in use.
@@ -46,7 +46,7 @@ module mfv_updated_inverse
 
 contains
 
-   !> Back to no rows at all; the storage stays.
+   !> Remove all rows; the storage is retained.
    subroutine clear(self)
       class(updated_inverse_type), intent(inout) :: self
 
@@ -54,9 +54,9 @@ contains
       self%pending = 0
    end subroutine clear
 
-   !> Get ready for `number` more rows: products with all of them at once cost little more than with one. `borders`: their
-   !> entries in the rows there are and in themselves, shape (order + number, number). To be followed by `number` calls of
-   !> add_prepared, and no other change in between.
+   !> Prepare to add `number` rows: products with all of them together cost little more than with one. `borders`: their entries in
+   !> the present and the new rows, shape (order + number, number). Must be followed by `number` calls of add_prepared, without
+   !> other changes in between.
    subroutine prepare(self, borders)
       class(updated_inverse_type), intent(inout) :: self
       real(wp), intent(in) :: borders(:, :)
@@ -74,7 +74,7 @@ contains
       allocate (self%weights(number))
       if (n == 0) return
       rows = size(self%base, 1)
-      ! In panels of columns that stay in the cache: faster than one narrow product of matrices.
+      ! Panels of columns that fit into the cache are faster than one narrow matrix product.
       do first = 1, n, panel
          do c = 1, number
             call dgemv('N', n, min(panel, n - first + 1), 1.0_wp, self%base(1, first), rows, self%borders(first, c), 1, 1.0_wp, &
@@ -86,7 +86,7 @@ contains
       end do
    end subroutine prepare
 
-   !> Add the next of the prepared rows, as the last. `singular`: the larger matrix has no inverse; it is then left as it was.
+   !> Append the next prepared row. `singular`: the larger matrix has no inverse; nothing is changed.
    subroutine add_prepared(self, singular)
       class(updated_inverse_type), intent(inout) :: self
       logical, intent(out) :: singular
@@ -116,7 +116,7 @@ contains
       call append(self, 1.0_wp/pivot)
    end subroutine add_prepared
 
-   !> Lose row `row`; the last row then takes its place. `singular`: the smaller matrix has no inverse.
+   !> Remove row `row`; the last row takes its place. `singular`: the smaller matrix has no inverse.
    subroutine remove(self, row, singular)
       class(updated_inverse_type), intent(inout) :: self
       integer, intent(in) :: row
@@ -152,7 +152,7 @@ contains
       end associate
    end subroutine column
 
-   !> The inverse times `right`, shapes (order). A right side with only a few entries costs only their columns.
+   !> The inverse times `right`, shapes (order). A right side with few nonzero entries costs only their columns.
    subroutine multiply(self, right, product)
       class(updated_inverse_type), intent(in) :: self
       real(wp), intent(in) :: right(:)
@@ -179,17 +179,17 @@ contains
       class(updated_inverse_type), intent(in) :: self
       real(wp), intent(in) :: right(:)
       real(wp), intent(inout) :: product(:)
-      real(wp) :: along(most_pending)
+      real(wp) :: coefficients(most_pending)
 
       if (self%pending == 0) return
       associate (n => self%order, rows => size(self%vector, 1), k => self%pending)
-         call dgemv('T', n, k, 1.0_wp, self%vector, rows, right, 1, 0.0_wp, along, 1)
-         along(:k) = self%weight(:k)*along(:k)
-         call dgemv('N', n, k, 1.0_wp, self%vector, rows, along, 1, 1.0_wp, product, 1)
+         call dgemv('T', n, k, 1.0_wp, self%vector, rows, right, 1, 0.0_wp, coefficients, 1)
+         coefficients(:k) = self%weight(:k)*coefficients(:k)
+         call dgemv('N', n, k, 1.0_wp, self%vector, rows, coefficients, 1, 1.0_wp, product, 1)
       end associate
    end subroutine add_pending
 
-   !> The inverse of `matrix`, shape (n, n), from nothing. `singular`: it has none.
+   !> Compute the inverse of `matrix`, shape (n, n). `singular`: it has none.
    subroutine rebuild(self, matrix, singular)
       class(updated_inverse_type), intent(inout) :: self
       real(wp), intent(in) :: matrix(:, :)
@@ -215,7 +215,7 @@ contains
       self%order = n
    end subroutine rebuild
 
-   !> Room for `rows` rows.
+   !> Reserve storage for `rows` rows.
    subroutine reserve(self, rows)
       class(updated_inverse_type), intent(inout) :: self
       integer, intent(in) :: rows
@@ -240,7 +240,7 @@ contains
       if (.not. allocated(self%weight)) allocate (self%weight(most_pending))
    end subroutine reserve
 
-   !> Keep the product of `change` with itself pending; add up all pending ones when there are many.
+   !> Add the rank-one change of `change` to the pending ones; apply these when there are many.
    subroutine append(self, weight)
       class(updated_inverse_type), intent(inout) :: self
       real(wp), intent(in) :: weight

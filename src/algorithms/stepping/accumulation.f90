@@ -1,13 +1,13 @@
-!> Stick-slip whose events accumulate at a finite load, and the way past it.
+!> Stick-slip events that accumulate at a finite load, and how to pass them.
 !>
-!> Under static and kinetic friction a node near the edge of a contact that shrinks sticks at |tau| = mu_k p, slips when p has
-!> fallen so far that |tau| = mu_s p, drops to mu_k p, sticks again. Its events follow each other in a geometric sequence, with a
-!> ratio near mu_k/mu_s, that accumulates where its pressure vanishes.
+!> Under static and kinetic friction a node near the edge of a shrinking contact sticks at |tau| = mu_k p, slips when p has
+!> decreased so far that |tau| = mu_s p, drops to mu_k p, and sticks again. Its events form a geometric sequence with a ratio near
+!> mu_k/mu_s, which accumulates where its pressure vanishes.
 !>
-!> The limit does not depend on the sequence: there p = tau = 0 at the node, its friction cone has shrunk to its apex, and all other
-!> nodes are as they were. So the node is led to the apex along the ray tau/p = constant, which begins where the node is
-!> and stays inside the cone. Its slip on the way has one direction, for it slips only against tau; what it dissipates is exact to
-!> first order in 1 - mu_k/mu_s, of the square of the remaining load. The node then opens.
+!> The limit does not depend on the sequence: there p = tau = 0 at the node, its friction cone has shrunk to the apex, and all
+!> other nodes are unchanged. The node is therefore taken to the apex along the ray tau/p = constant, which starts at its present
+!> tractions and stays inside the cone. It slips in one direction only, against tau. The error of its dissipation is of first
+!> order in 1 - mu_k/mu_s and of second order in the remaining load. The node then opens.
 module mfv_accumulation
    use mfv_contact_path, only: contact_path_type
    use mfv_contact_system, only: constraints_type
@@ -21,15 +21,15 @@ module mfv_accumulation
 
 contains
 
-   !> Go to where the first pressures vanish with all nodes that slip again and again on the way, if that is within `near`, a part
-   !> of the segment, and nothing else happens before.
-   !> `constraints`: as contact_path_type%settle_loads leaves them. `left`: what is left of the segment. `round_off`: rates
-   !> below this part of the largest count as zero. `increment`: the way there, if `passed`; the path's statuses are then those on
-   !> it. Otherwise nothing has changed, except that `increment` is of no use.
-   subroutine pass_accumulation(path, constraints, left, near, round_off, increment, passed)
+   !> Advance to the load at which the first pressures vanish, with all nodes that alternate between stick and slip, if it is
+   !> within the fraction `near` of the segment and no other event occurs before.
+   !> `constraints`: from contact_path_type%find_constraints. `left`: the rest of the segment. `rate_tolerance`: rates below this
+   !> fraction of the largest count as zero. `passed`: whether it succeeds; `increment` and the statuses of `path` are then set.
+   !> Otherwise only `increment` has changed and is invalid.
+   subroutine pass_accumulation(path, constraints, left, near, rate_tolerance, increment, passed)
       class(contact_path_type), intent(inout) :: path
       type(constraints_type), intent(in) :: constraints
-      real(wp), intent(in) :: left, near, round_off
+      real(wp), intent(in) :: left, near, rate_tolerance
       type(increment_type), intent(inout) :: increment
       logical, intent(out) :: passed
       type(constraints_type) :: rays
@@ -38,8 +38,8 @@ contains
 
       passed = .false.
       if (.not. path%model%scene%friction%acts()) return
-      if (.not. path%model%scene%friction%law%drops() .or. path%dropping()) return
-      call find_increment(path, constraints, left, .false., round_off, increment)
+      if (.not. path%model%scene%friction%law%drops() .or. path%has_over_stress()) return
+      call find_increment(path, constraints, left, .false., rate_tolerance, increment)
       if (increment%singular) return
       alternates = vanish(path, increment, near)
       if (.not. any(alternates)) return
@@ -47,12 +47,12 @@ contains
       rays = constraints
       call set_rays(path, alternates, rays)
       call path%state%set_status(alternates, rays%status)
-      call find_increment(path, rays, left, .false., round_off, increment)
+      call find_increment(path, rays, left, .false., rate_tolerance, increment)
       passed = opens_first(increment, alternates, near)
       if (.not. passed) path%state%status = status
    end subroutine pass_accumulation
 
-   !> The nodes with shear whose pressure vanishes soon.
+   !> Nodes with shear whose pressure vanishes soon.
    pure function vanish(path, increment, near)
       class(contact_path_type), intent(in) :: path
       type(increment_type), intent(in) :: increment
@@ -66,7 +66,7 @@ contains
       end associate
    end function vanish
 
-   !> Let these nodes slip against their shear traction, along tau = (tau/p) p.
+   !> Let these nodes slip against their shear traction, on the line tau = (tau/p) p.
    pure subroutine set_rays(path, nodes, constraints)
       class(contact_path_type), intent(in) :: path
       logical, intent(in) :: nodes(:)
@@ -82,7 +82,7 @@ contains
       end do
    end subroutine set_rays
 
-   !> Whether the increment ends soon because nodes among these open, and they only.
+   !> Whether the increment ends soon because nodes of this set, and no others, open.
    pure logical function opens_first(increment, nodes, near)
       type(increment_type), intent(in) :: increment
       logical, intent(in) :: nodes(:)

@@ -1,14 +1,14 @@
-!> The statuses at one load without the way there: all nodes that violate an inequality of dissertation Table 2.1 change
-!> together, solve again, until none does (the primal-dual active set method: Hintermueller, Ito and Kunisch, SIAM J. Optim.
-!> 13, 2003). Without friction the end is the state that every way leads to. With Coulomb friction stuck nodes hold at the slip
-!> that they have at the start (nodes that touch on the way: at about the slip that they had then), and the end is what one step
-!> of an integrator leads to.
+!> The statuses at one load, independent of the load history: all nodes that violate an inequality of dissertation Table 2.1 change
+!> together, and the system is solved again, until no inequality is violated (the primal-dual active set method: Hintermueller, Ito
+!> and Kunisch, SIAM J. Optim. 13, 2003). Without friction the result is the state of every load history. With Coulomb friction
+!> stuck nodes hold at the slip of the start (nodes that touch: at about their slip at first contact), as in one implicit step of
+!> an integrator.
 !>
-!> Where a zone is a little too large, its traction (less the friction limit) has K/sqrt(t) + A sqrt(t) at the distance t from
-!> its edge, and moving the edge by s changes K by A s/2, whatever the other edges do. So the edge belongs at twice the distance
-!> at which the sign changes; and where the zone is too small, at two thirds of the distance up to which the surfaces overlap.
-!> With this an edge converges quadratically: the number of solves hardly depends on the number of nodes. Changing just the
-!> violating nodes halves the distance only.
+!> If a zone is slightly too large, its traction (less the friction limit) is K/sqrt(t) + A sqrt(t) at the distance t from its
+!> edge; moving the edge by s changes K by A s/2, whatever the other edges do. The edge therefore belongs at twice the distance at
+!> which the sign changes. If the zone is too small, it belongs at two thirds of the distance up to which the surfaces overlap. An
+!> edge then converges quadratically, and the number of solves hardly depends on the number of nodes. Changing only the violating
+!> nodes would just halve the distance.
 module mfv_active_set
    use mfv_contact_fields, only: contact_fields_type
    use mfv_contact_path, only: contact_path_type, segment_type
@@ -18,26 +18,26 @@ module mfv_active_set
    use mfv_node_status
    implicit none
    private
-   public :: settle_at, first_guess
+   public :: find_statuses, first_guess
 
-   !> Violations below this part of the largest magnitude of their sort are round-off.
+   !> Violations below this fraction of the largest magnitude of their type are round-off.
    real(wp), parameter :: round_off = 1.0e-11_wp
-   !> Linear solves at one load.
+   !> Most linear solves at one load.
    integer, parameter :: most_solves = 60
 
 contains
 
-   !> Statuses and fields at the part `done` of the segment, from the statuses of `path` as a first guess and its fields as the
-   !> start. `settled`: whether they were found; `path` then has the statuses, and as stuck_slip of every node the slip from
-   !> which its slip on the way counts; its fields are still those of the start. Not found: the system is singular, the
-   !> statuses come again, nothing is in contact that carries a prescribed force, or every node slips; the statuses of `path`
-   !> are then of no use.
-   subroutine settle_at(path, segment, done, fields, settled)
+   !> Statuses and fields at the fraction `done` of the segment. The first guess is the statuses of `path`; the start is its
+   !> fields.
+   !> `found`: whether there are any. `path` then has the statuses, and in stuck_slip the slip from which that of the increment
+   !> counts; its fields remain those of the start. If not found, the statuses are invalid: the system is singular, the statuses
+   !> cycle, nothing balances a prescribed force, or every node slips.
+   subroutine find_statuses(path, segment, done, fields, found)
       class(contact_path_type), intent(inout) :: path
       type(segment_type), intent(in) :: segment
       real(wp), intent(in) :: done
       type(contact_fields_type), intent(out) :: fields
-      logical, intent(out) :: settled
+      logical, intent(out) :: found
       type(constraints_type) :: constraints
       type(response_type) :: response
       integer, dimension(size(path%state%status)) :: wanted
@@ -46,7 +46,7 @@ contains
       logical :: possible, singular, by_edges
       integer :: solve, first
 
-      settled = .false.
+      found = .false.
       by_edges = .true.
       first = 1
       fields = path%state%fields
@@ -61,8 +61,8 @@ contains
          if (singular) return
          fields = response%state
          call find_wanted(path, segment, fields, wanted)
-         settled = all(wanted == path%state%status)
-         if (settled) return
+         found = all(wanted == path%state%status)
+         if (found) return
          if (by_edges) call move_edges(path%state%status, wanted)
          call find_touching(path, fields, wanted, hold)
          call path%set_status(wanted /= path%state%status, wanted)
@@ -72,15 +72,14 @@ contains
          by_edges = .false.
          first = solve + 1
       end do
-   end subroutine settle_at
+   end subroutine find_statuses
 
-   !> Nodes that a first contact may have, where there is none yet: those that the undeformed surfaces would share at an
-   !> approach of P/(pi m), m the contact modulus (for a parabola exactly those that it has under the force P).
-   !> `part`: part of the segment.
-   subroutine first_guess(path, segment, part, contact)
+   !> A first guess of the contact: nodes at which the undeformed surfaces overlap at an approach of P/(pi m), m the contact
+   !> modulus (exact for a parabola under the force P). `fraction`: fraction of the segment.
+   subroutine first_guess(path, segment, fraction, contact)
       class(contact_path_type), intent(in) :: path
       type(segment_type), intent(in) :: segment
-      real(wp), intent(in) :: part
+      real(wp), intent(in) :: fraction
       logical, intent(out) :: contact(:)
       real(wp), parameter :: deformed = 0.25_wp
       real(wp), dimension(size(contact)) :: gap, normal, tangential
@@ -91,12 +90,12 @@ contains
       fields = path%state%fields
       turned = motions%optional .and. path%model%moves .and. segment%load%control == control_displacement
       if (any(turned)) then
-         where (turned) fields%motion = segment%load%value + part*segment%load%rate
+         where (turned) fields%motion = segment%load%value + fraction*segment%load%rate
          call path%model%relative_displacements(fields, normal, tangential)
          fields%normal = normal
       end if
       gap = path%model%gap(fields)
-      level = segment%load(motion_approach)%value + part*segment%load(motion_approach)%rate
+      level = segment%load(motion_approach)%value + fraction*segment%load(motion_approach)%rate
       if (segment%load(motion_approach)%control == control_force) then
          level = level/(pi*path%model%compliance%modulus)
       else
@@ -106,8 +105,8 @@ contains
       contact = path%model%can_touch .and. gap <= level*path%model%normal_arm(:, motion_approach)
    end subroutine first_guess
 
-   !> The constraints at the part `done` of the segment, without rates. `possible`: false where a prescribed force (moment) has
-   !> nothing to carry it, or every node slips under a prescribed tangential force.
+   !> The constraints at the fraction `done` of the segment, without rates. `possible`: false if nothing balances a prescribed
+   !> force (moment), or if every node slips under a prescribed tangential force.
    subroutine constrain(path, segment, done, constraints, possible)
       class(contact_path_type), intent(in) :: path
       type(segment_type), intent(in) :: segment
@@ -133,20 +132,20 @@ contains
       constraints%load(motion_shift) = load_type(control_displacement, path%state%fields%motion(motion_shift), 0.0_wp)
    end subroutine constrain
 
-   !> The statuses that the nodes want with the `fields`: where an inequality breaks, the other status.
+   !> The statuses that the `fields` require: nodes change where an inequality is violated.
    subroutine find_wanted(path, segment, fields, wanted)
       class(contact_path_type), intent(in) :: path
       type(segment_type), intent(in) :: segment
       type(contact_fields_type), intent(in) :: fields
       integer, intent(out) :: wanted(:)
       real(wp), dimension(size(wanted)) :: gap, slipped
-      real(wp) :: traction, motion, noise
+      real(wp) :: traction, motion, tolerance
       integer :: i, closed
 
-      noise = max(round_off, path%system%noise)
-      traction = noise*max(maxval(abs(fields%pressure)), maxval(abs(fields%shear)), path%certificate%traction_scale())
-      motion = noise*max(maxval(abs(fields%normal)), maxval(abs(fields%tangential)), abs(fields%motion(motion_approach)), &
-                         abs(fields%motion(motion_shift)))
+      tolerance = max(round_off, path%system%tolerance)
+      traction = tolerance*max(maxval(abs(fields%pressure)), maxval(abs(fields%shear)), path%certificate%traction_scale())
+      motion = tolerance*max(maxval(abs(fields%normal)), maxval(abs(fields%tangential)), abs(fields%motion(motion_approach)), &
+                             abs(fields%motion(motion_shift)))
       gap = path%model%gap(fields)
       slipped = 0.0_wp
       if (path%model%tangential) slipped = fields%slip() - path%state%stuck_slip
@@ -165,11 +164,11 @@ contains
             wanted(i) = node_stick
          end if
       end do
-      if (closed == node_stick) call go_with_neighbours(path%state%status, wanted)
+      if (closed == node_stick) call follow_neighbours(path%state%status, wanted)
    end subroutine find_wanted
 
-   !> The slip at which nodes hold that close on the way: that of the moment at which they touch, were gap and slip to change
-   !> evenly from the start to the `fields`, in which the nodes are still open.
+   !> The slip at which closing nodes hold: that at first contact, if gap and slip change linearly from the start to the `fields`,
+   !> in which these nodes are still open.
    subroutine find_touching(path, fields, wanted, hold)
       class(contact_path_type), intent(in) :: path
       type(contact_fields_type), intent(in) :: fields
@@ -185,8 +184,8 @@ contains
          hold = slip + before/(before - after)*(fields%slip() - slip)
    end subroutine find_touching
 
-   !> Nodes that close at an edge of the contact do as the edge does.
-   pure subroutine go_with_neighbours(status, wanted)
+   !> Nodes that close at an edge of the contact get the status of the edge.
+   pure subroutine follow_neighbours(status, wanted)
       integer, intent(in) :: status(:)
       integer, intent(inout) :: wanted(:)
       integer :: i, n
@@ -207,9 +206,9 @@ contains
 
          closes = .not. in_contact(status(node)) .and. in_contact(wanted(node))
       end function closes
-   end subroutine go_with_neighbours
+   end subroutine follow_neighbours
 
-   !> Where the nodes that change lie at one edge of their zone, move the edge to where it belongs (see above).
+   !> If the changing nodes lie at one edge of their zone, move the edge to where it belongs (see above).
    subroutine move_edges(status, wanted)
       integer, intent(in) :: status(:)
       integer, intent(inout) :: wanted(:)
@@ -243,14 +242,14 @@ contains
 
    contains
 
-      !> Whether the change makes a zone of contact or of stick larger.
+      !> Whether the change enlarges a zone of contact or of stick.
       pure logical function grows(from, to)
          integer, intent(in) :: from, to
 
          grows = from == node_open .or. to == node_stick
       end function grows
 
-      !> The zone that the nodes first to last leave ends further in; but half of what is left of it stays.
+      !> The zone that the nodes first to last leave shrinks further, by at most half of its rest.
       subroutine go_further(first, last, left, right)
          integer, intent(in) :: first, last
          logical, intent(in) :: left, right
@@ -271,7 +270,7 @@ contains
          end do
       end subroutine go_further
 
-      !> The zone that the nodes first to last are to join gets the nearer two thirds of them.
+      !> The zone that the nodes first to last join gets the nearer two thirds of them.
       subroutine stay_behind(first, last, left, right)
          integer, intent(in) :: first, last
          logical, intent(in) :: left, right

@@ -1,13 +1,13 @@
-!> What friction dissipates along a chain of large increments.
+!> Friction dissipation of a chain of large increments.
 !>
-!> Along the path of the exact solution the dissipation is -int tau ds, summed over the surface. Each node's part has corners
-!> where it begins to slip, to stick or to touch; the sum is smooth (by energy: it is the work of the loads, less what is
-!> stored), and what the compliance makes of shear in it, tau C dtau, is integrated exactly by every interpolation of tau,
-!> since C is symmetric. So the sum is integrated with parabolas through three states each (Simpson's rule), and improved once
-!> (Boole's rule, Richardson 1911). How much that changes with half the number of states tells the error.
+!> Along the exact solution the dissipation is -int tau ds, summed over the surface. The contribution of a node has corners where
+!> it begins to slip, to stick or to touch. The sum is smooth: by energy it is the work of the loads less the stored energy. Its
+!> elastic part tau C dtau is integrated exactly by any interpolation of tau, since C is symmetric. The sum is therefore integrated
+!> with parabolas through three states each (Simpson's rule), extrapolated once (Boole's rule, Richardson 1911). The change from
+!> half the number of states estimates the error.
 !>
-!> Node by node tau is mu p wherever a node slips, so that what it dissipates lies between its slip times the smaller and times
-!> the larger limit at both ends of an increment. Under constant pressures that is exact.
+!> For a single node tau is mu p wherever it slips, so that its dissipation lies between its slip times the smaller and the larger
+!> limit at both ends of an increment. Under constant pressures this is exact.
 module mfv_chain_dissipation
    use mfv_contact_fields, only: contact_fields_type
    use mfv_contact_model, only: contact_model_type
@@ -20,52 +20,52 @@ module mfv_chain_dissipation
 
 contains
 
-   !> What friction dissipates from the fields `start` through the fields `after`, evenly spaced along a smooth path, shape
-   !> (parts), a power of two; force. `error`: what of it is estimated to be wrong, the change from half the number of states to
-   !> this one (which has a fraction of that error), or that from Simpson's to Boole's rule. `corners`: what the corners of this
-   !> path make of it, one where a node changes its status, at `changes` of them. (A corner is taken for part of a parabola: an
-   !> error of random sign, 0.4 of that of the trapezoidal rule for each on the average, if they share the curvature.)
+   !> The friction dissipation from the fields `start` through the fields `after`, evenly spaced on a smooth path, shape
+   !> (increments), a power of two; force. `error`: its estimated error, the larger of the change from half the number of states
+   !> and that from Simpson's to Boole's rule. `corners`: the error due to corners, one for each of the `changes` of status. (A
+   !> corner is taken for part of a parabola: an error of random sign, on average 0.4 of that of the trapezoidal rule if all
+   !> corners share the curvature.)
    subroutine chain_dissipation(model, start, after, changes, work, error, corners)
       class(contact_model_type), intent(in) :: model
       type(contact_fields_type), intent(in) :: start, after(:)
       integer, intent(in) :: changes
       real(wp), intent(out) :: work, error, corners
-      real(wp), parameter :: part = 0.8_wp
-      integer :: parts
+      real(wp), parameter :: share = 0.8_wp
+      integer :: increments
       real(wp) :: simpson, coarser, unused
 
-      parts = size(after)
+      increments = size(after)
       call integrate(1, work, simpson)
       error = abs(work)
       corners = 0.0_wp
-      if (parts == 1) return
-      corners = part*abs(trapezoidal() - simpson)/sqrt(real(max(changes, 1), wp))
+      if (increments == 1) return
+      corners = share*abs(trapezoidal() - simpson)/sqrt(real(max(changes, 1), wp))
       call integrate(2, coarser, unused)
       error = max(abs(work - coarser), abs(work - simpson))
 
    contains
 
-      !> The best rule for every `stride`-th state, and Simpson's for them.
+      !> The best rule for every `stride`-th state, and Simpson's rule.
       subroutine integrate(stride, best, simpson)
          integer, intent(in) :: stride
          real(wp), intent(out) :: best, simpson
 
          simpson = composite(stride)
          best = simpson
-         if (parts/stride >= 4) best = simpson + (simpson - composite(2*stride))/15.0_wp
+         if (increments/stride >= 4) best = simpson + (simpson - composite(2*stride))/15.0_wp
       end subroutine integrate
 
-      !> Parabolas through every `stride`-th state; one interval alone: a straight line.
+      !> Parabolas through every `stride`-th state; a straight line for a single interval.
       real(wp) function composite(stride)
          integer, intent(in) :: stride
          integer :: i
 
-         if (parts == stride) then
-            composite = straight(start, after(parts))
+         if (increments == stride) then
+            composite = straight(start, after(increments))
             return
          end if
          composite = curved(start, after(stride), after(2*stride))
-         do i = 2*stride, parts - 2*stride, 2*stride
+         do i = 2*stride, increments - 2*stride, 2*stride
             composite = composite + curved(after(i), after(i + stride), after(i + 2*stride))
          end do
       end function composite
@@ -75,7 +75,7 @@ contains
          integer :: i
 
          trapezoidal = straight(start, after(1))
-         do i = 2, parts
+         do i = 2, increments
             trapezoidal = trapezoidal + straight(after(i - 1), after(i))
          end do
       end function trapezoidal
@@ -100,17 +100,17 @@ contains
       end function curved
    end subroutine chain_dissipation
 
-   !> What friction dissipates node by node on the way from `before`, which has the statuses on the way, to the fields `after`,
-   !> force/length, shape (nodes); and by how much the sum may err, force. Nodes that slip already at the start do so with
-   !> tractions from those then to those after: the trapezoid. Others begin to slip on the way, half way on the average; and
-   !> nodes that part do so half way on the average. `noise`: the linear solver's.
-   pure subroutine node_wise_dissipation(model, before, after, noise, work, error)
+   !> The friction dissipation of each node from the state `before`, with the statuses of the increment, to the fields `after`;
+   !> force/length, shape (nodes). `error`: estimated error of its sum, force. Nodes that slip from the start follow the
+   !> trapezoidal rule; others begin to slip, and separating nodes open, half way on average. `tolerance`: that of the linear
+   !> solver.
+   pure subroutine node_wise_dissipation(model, before, after, tolerance, work, error)
       class(contact_model_type), intent(in) :: model
       type(contact_state_type), intent(in) :: before
       type(contact_fields_type), intent(in) :: after
-      real(wp), intent(in) :: noise
+      real(wp), intent(in) :: tolerance
       real(wp), intent(out) :: work(:), error
-      real(wp), parameter :: at_limit = 1.0e-9_wp, noises = 100.0_wp
+      real(wp), parameter :: at_limit = 1.0e-9_wp, tolerance_factor = 100.0_wp
       real(wp), dimension(size(work)) :: slipped, limit, limit_after
       logical :: on(size(work))
 
@@ -118,7 +118,7 @@ contains
       limit = model%static_friction*before%fields%pressure
       limit_after = model%static_friction*max(after%pressure, 0.0_wp)
       on = slips(before%status) .and. -before%fields%shear*slip_sign(before%status) &
-           >= limit*(1.0_wp - max(at_limit, noises*noise))
+           >= limit*(1.0_wp - max(at_limit, tolerance_factor*tolerance))
       where (on)
          work = -0.5_wp*(before%fields%shear + after%shear)*slipped
       elsewhere(slips(before%status))

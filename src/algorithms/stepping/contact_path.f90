@@ -1,5 +1,5 @@
-!> A contact on its way through a load history: the model, its state now, and what every algorithm does with them: begin a
-!> straight part of the history, hold what nothing determines, change statuses, record.
+!> The path of a contact through its load history: the model, the present state, and what all algorithms share: starting a segment,
+!> holding undetermined motions, changing statuses, recording.
 module mfv_contact_path
    use, intrinsic :: ieee_arithmetic, only: ieee_quiet_nan, ieee_value
    use mfv_certificate, only: certificate_type, new_certificate
@@ -24,31 +24,31 @@ module mfv_contact_path
    use mfv_strings, only: to_text
    implicit none
    private
-   public :: contact_path_type, path_position_type, kept_path_type, new_contact_path, segment_type, moment_type, note_change, &
+   public :: contact_path_type, path_position_type, saved_path_type, new_contact_path, segment_type, iteration_type, note_change, &
              first_true
 
-   !> A straight part of the load history: the controlled loads with their targets, and whether friction acts.
+   !> A load segment: a linear change of the controlled loads.
    type :: segment_type
       type(load_type) :: load(motion_count) = initial_loads
       logical :: friction = .true.
-      !> Number of this segment, how many there are, and the step that it belongs to: for records and progress.
+      !> Number of this segment, number of segments, and the step that it belongs to; for records and progress.
       integer :: number = 1, segments = 1, step = 1
-      !> Where this one begins and ends in parts of the whole that it belongs to, for progress.
+      !> Start and end as fractions of the whole segment that this one belongs to; for progress.
       real(wp) :: from = 0.0_wp, to = 1.0_wp
    end type segment_type
 
-   !> What a contact needs to continue from here, besides the work of the linear solver and what only grows (history records).
+   !> Restart state of a contact, except for the linear solver and the history records.
    type :: path_position_type
       type(contact_state_type) :: state
       type(certificate_type) :: certificate
       !> Events so far: loads at which statuses changed.
       integer :: events = 0
-      !> Length of the increment to try next where friction is not linear, in parts of a segment; 0: not known yet.
+      !> Trial length of the next increment where friction is not linear, as a fraction of a segment; 0: not yet known.
       real(wp) :: trial = 0.0_wp
-      !> Tangential force over shift on the first increment of this segment, force/length^2; NaN where there is none yet, and of
-      !> load steps and leaps, which are no first increments.
+      !> Tangential stiffness of the first increment of this segment, force/length^2. NaN: not yet known, or not defined (nominal
+      !> load steps and large increments).
       real(wp) :: first_stiffness = 0.0_wp
-      !> How the bodies roll on each other.
+      !> Rolling of the bodies on each other.
       type(rolling_type) :: rolling
       !> Nodes of the widest slip zone that has dissipated in this segment, see mfv_slip_zones.
       integer :: slip_zone_nodes = 0
@@ -62,25 +62,25 @@ module mfv_contact_path
       type(history_type) :: history
       !> Whether every event is recorded, or only what the caller records.
       logical :: record_events = .true.
-      !> Tangential force and shift where the segment begins, while the first increment is waited for.
+      !> Tangential force and shift at the start of the segment, until the first increment is known.
       real(wp), private :: start_force = 0.0_wp, start_shift = 0.0_wp
-      !> The dissipation where the segment begins, force.
+      !> Dissipation at the start of the segment, force.
       real(wp), private :: start_dissipation = 0.0_wp
-      logical, private :: awaits_increment = .false.
+      logical, private :: first_stiffness_pending = .false.
    contains
       procedure :: copy_without_history
-      procedure :: keep
-      procedure :: come_back
+      procedure :: save_to
+      procedure :: restore
       procedure :: resume
       procedure :: notify
       procedure, private :: model_as
-      procedure :: await_increment
+      procedure :: reset_first_stiffness
       procedure :: begin_motion
       procedure :: record
       procedure :: start_segment
-      procedure :: settle_loads
+      procedure :: find_constraints
       procedure :: loads_at
-      procedure :: dropping
+      procedure :: has_over_stress
       procedure :: is_releasing
       procedure :: point
       procedure, private :: has_memory
@@ -88,13 +88,13 @@ module mfv_contact_path
       procedure :: friction_limits
       procedure :: can_become_unstable
       procedure :: remember_status
-      procedure :: snap
+      procedure :: begin_stress_drop
       procedure :: set_rows
       procedure :: set_status
       procedure :: holding
       procedure :: take_increment
-      procedure :: keep_settled
-      procedure :: keep_on_mesh
+      procedure :: record_changes
+      procedure :: extend_mesh_if_reached
       procedure :: widen
       procedure :: no_continuation
       procedure :: end_here
@@ -102,33 +102,33 @@ module mfv_contact_path
       procedure :: close_nearest
    end type contact_path_type
 
-   !> A position that was kept, with what tells how much had grown by then, and what was modelled.
-   type :: kept_path_type
+   !> A saved position, with the sizes of the history and the mesh and the modelled problem at that time.
+   type :: saved_path_type
       private
       type(path_position_type) :: position
       class(contact_system_type), allocatable :: system
       integer :: records = 0, added = 0
       logical :: tangential = .false., moves(motion_count) = .false.
-   end type kept_path_type
+   end type saved_path_type
 
-   !> What is known at one load while statuses settle.
-   type :: moment_type
-      !> Status sets tried here, shape (nodes, at least `tries`).
+   !> The iteration of statuses at one load.
+   type :: iteration_type
+      !> Status sets tried at this load, shape (nodes, at least `tries`).
       integer, allocatable :: tried(:, :)
       integer :: tries = 0
-      !> Rates below this part of the largest are round-off.
-      real(wp) :: round_off = 1.0e-12_wp
-      !> One change at a time, after a cycle.
+      !> Rates below this fraction of the largest count as zero.
+      real(wp) :: rate_tolerance = 1.0e-12_wp
+      !> Whether one node changes at a time, after cycling.
       logical :: one_at_a_time = .false.
-      !> Whether nodes have been let snap here, and whether the rates of all have been solved for.
-      logical :: snapped = .false., solved = .false.
-      !> First change at this load: event and node; and how many nodes changed with it.
+      !> Whether stress drops have begun at this load, and whether the rates of all nodes have been solved for.
+      logical :: dropped = .false., solved = .false.
+      !> First change at this load: event, node, and number of nodes that changed with it.
       integer :: event = event_none, node = 0, count = 0
-   end type moment_type
+   end type iteration_type
 
 contains
 
-   !> An unloaded contact, the bodies just touching.
+   !> An unloaded contact; the bodies just touch.
    subroutine new_contact_path(model, record_events, self)
       type(contact_model_type), intent(in) :: model
       logical, intent(in) :: record_events
@@ -143,7 +143,7 @@ contains
       self%record_events = record_events
    end subroutine new_contact_path
 
-   !> A copy to try something on, that records nothing.
+   !> A copy for trial increments, without history records.
    subroutine copy_without_history(self, copy)
       class(contact_path_type), intent(in) :: self
       type(contact_path_type), intent(out) :: copy
@@ -154,37 +154,36 @@ contains
       copy%record_events = .false.
    end subroutine copy_without_history
 
-   !> Keep the contact as it is between segments.
-   subroutine keep(self, kept)
+   !> Save the state of the contact between two segments.
+   subroutine save_to(self, saved)
       class(contact_path_type), intent(in) :: self
-      type(kept_path_type), intent(inout) :: kept
+      type(saved_path_type), intent(inout) :: saved
 
-      kept%position = self%path_position_type
-      ! By hand: gfortran 12 leaks what a polymorphic component held before an assignment.
-      if (allocated(kept%system)) deallocate (kept%system)
-      allocate (kept%system, source=self%system)
-      kept%records = self%history%records
-      kept%added = self%model%added
-      kept%tangential = self%model%tangential
-      kept%moves = self%model%moves
-   end subroutine keep
+      saved%position = self%path_position_type
+      ! Explicit deallocation: gfortran 12 leaks a polymorphic component on assignment.
+      if (allocated(saved%system)) deallocate (saved%system)
+      allocate (saved%system, source=self%system)
+      saved%records = self%history%records
+      saved%added = self%model%added
+      saved%tangential = self%model%tangential
+      saved%moves = self%model%moves
+   end subroutine save_to
 
-   !> Come back to what was kept of this contact, or of one with the same scene. History records since then are dropped. A mesh
-   !> that has grown, or a problem that has come to be modelled since, is modelled anew as it was.
-   subroutine come_back(self, kept)
+   !> Restore a saved state of this contact, or of one with the same scene. Later history records are dropped. The model is rebuilt
+   !> if its mesh or problem has changed since.
+   subroutine restore(self, saved)
       class(contact_path_type), intent(inout) :: self
-      type(kept_path_type), intent(in) :: kept
+      type(saved_path_type), intent(in) :: saved
 
-      call self%history%move_nodes(kept%added - self%model%added)
-      call self%model_as(kept%added, kept%tangential, kept%moves)
-      self%path_position_type = kept%position
+      call self%history%move_nodes(saved%added - self%model%added)
+      call self%model_as(saved%added, saved%tangential, saved%moves)
+      self%path_position_type = saved%position
       deallocate (self%system)
-      allocate (self%system, source=kept%system)
-      self%history%records = min(kept%records, self%history%records)
-   end subroutine come_back
+      allocate (self%system, source=saved%system)
+      self%history%records = min(saved%records, self%history%records)
+   end subroutine restore
 
-   !> Model the contact with so many nodes added at either end, and with the problems and motions that are named; anew where it was
-   !> otherwise.
+   !> Rebuild the model, if necessary, with `added` nodes at either end and with the given problems and motions.
    subroutine model_as(self, added, tangential, moves)
       class(contact_path_type), intent(inout) :: self
       integer, intent(in) :: added
@@ -201,9 +200,8 @@ contains
       if (added > 0) call self%model%grow(added)
    end subroutine model_as
 
-   !> Continue from a position that a contact of the same scene has reached, with `added` nodes more at either end. The linear
-   !> solver
-   !> starts anew.
+   !> Continue from a position of a contact of the same scene, on a mesh with `added` more nodes at either end. The linear solver
+   !> starts without history.
    subroutine resume(self, position, added)
       class(contact_path_type), intent(inout) :: self
       type(path_position_type), intent(in) :: position
@@ -214,7 +212,7 @@ contains
       call self%certificate%claim(self%model)
    end subroutine resume
 
-   !> Notify an observer, if there is one, of the load at the part `done` of a segment. Error MFV_INTERRUPTED: it stops the run.
+   !> Notify the observer, if present, of the load at the fraction `done` of a segment. Error MFV_INTERRUPTED: it requests a stop.
    subroutine notify(self, segment, done, observer, error)
       class(contact_path_type), intent(in) :: self
       type(segment_type), intent(in) :: segment
@@ -229,8 +227,8 @@ contains
       if (stop_wanted) call self%end_here(MFV_INTERRUPTED, 'stopped on request', error)
    end subroutine notify
 
-   !> A segment begins: have its first_stiffness and slip_zone_nodes found.
-   subroutine await_increment(self)
+   !> Start to determine first_stiffness and slip_zone_nodes of a new segment.
+   subroutine reset_first_stiffness(self)
       class(contact_path_type), intent(inout) :: self
 
       self%first_stiffness = ieee_value(1.0_wp, ieee_quiet_nan)
@@ -238,11 +236,11 @@ contains
       self%start_shift = self%state%fields%motion(motion_shift)
       self%start_dissipation = self%state%dissipation
       self%slip_zone_nodes = 0
-      self%awaits_increment = self%model%scene%method%algorithm == algorithm_mfv .and. &
-                              self%model%scene%method%stepping /= stepping_leap
-   end subroutine await_increment
+      self%first_stiffness_pending = self%model%scene%method%algorithm == algorithm_mfv .and. &
+                                     self%model%scene%method%stepping /= stepping_leap
+   end subroutine reset_first_stiffness
 
-   !> Find first_stiffness where the tangential force has changed by more than round-off. A held shift has none.
+   !> Set first_stiffness once the tangential force has changed by more than round-off. It is undefined for a held shift.
    subroutine find_first_stiffness(self)
       class(contact_path_type), intent(inout) :: self
       real(wp), parameter :: visible = 1.0e-6_wp
@@ -250,13 +248,13 @@ contains
 
       force = self%state%fields%force(motion_shift) - self%start_force
       shift = self%state%fields%motion(motion_shift) - self%start_shift
-      if (.not. abs(force) > visible*self%model%grip*self%state%fields%force(motion_approach)) return
-      self%awaits_increment = .false.
+      if (.not. abs(force) > visible*self%model%friction_scale*self%state%fields%force(motion_approach)) return
+      self%first_stiffness_pending = .false.
       if (abs(force) < self%model%largest_stiffness()*abs(shift)) self%first_stiffness = force/shift
    end subroutine find_first_stiffness
 
-   !> Turn friction on or off in the nodes that touch; with the first friction the tangential problem begins to be
-   !> modelled. Error MFV_INADMISSIBLE_STEP: friction off where there is shear.
+   !> Switch friction on or off at the nodes in contact. The first friction starts the tangential problem. Error
+   !> MFV_INADMISSIBLE_STEP: friction is switched off under shear traction.
    subroutine start_segment(self, segment, error)
       class(contact_path_type), intent(inout) :: self
       type(segment_type), intent(in) :: segment
@@ -276,8 +274,7 @@ contains
       call self%set_status(in_contact(self%state%status), status)
    end subroutine start_segment
 
-   !> Friction comes on: model the tangential problem if that has not been done yet, and begin it from the present
-   !> pressures.
+   !> Start the tangential problem from the present pressures, if it is not modelled yet.
    subroutine begin_tangential(self)
       class(contact_path_type), intent(inout) :: self
       real(wp) :: normal(self%model%nodes())
@@ -287,7 +284,7 @@ contains
       call self%model%relative_displacements(self%state%fields, normal, self%state%fields%tangential)
    end subroutine begin_tangential
 
-   !> Model a motion from now on, from the force that the tractions have.
+   !> Model a motion from now on; its force is the resultant of the present tractions.
    subroutine begin_motion(self, motion)
       class(contact_path_type), intent(inout) :: self
       integer, intent(in) :: motion
@@ -300,42 +297,41 @@ contains
       end associate
    end subroutine begin_motion
 
-   !> The loads at the part `done` of the segment, as they are prescribed.
+   !> The prescribed loads at the fraction `done` of the segment.
    subroutine loads_at(self, segment, done, constraints)
       class(contact_path_type), intent(in) :: self
       type(segment_type), intent(in) :: segment
       real(wp), intent(in) :: done
       type(constraints_type), intent(inout) :: constraints
 
-      constraints%load = at_part(segment%load, done)
+      constraints%load = load_at(segment%load, done)
    end subroutine loads_at
 
-   !> The constraints at the part `done` of the segment. A load that nothing in the present contact determines is held
-   !> (its displacement stays): the tangential one without friction, all without contact; the rotation while no two nodes
-   !> are in contact.
-   !> `settled`: false when statuses changed here and the loads must be looked at again.
-   !> Error MFV_GROSS_SLIDING: a tangential force that nothing can carry.
-   subroutine settle_loads(self, segment, done, moment, constraints, settled, error)
+   !> The constraints at the fraction `done` of the segment. Motions that the present contact does not determine are held: the
+   !> shift without friction, all motions without contact, the rotation with fewer than two nodes in contact.
+   !> `ready`: false if statuses changed here and the constraints must be determined again.
+   !> Error MFV_GROSS_SLIDING: friction cannot balance the tangential force.
+   subroutine find_constraints(self, segment, done, iteration, constraints, ready, error)
       class(contact_path_type), intent(inout) :: self
       type(segment_type), intent(in) :: segment
       real(wp), intent(in) :: done
-      type(moment_type), intent(inout) :: moment
+      type(iteration_type), intent(inout) :: iteration
       type(constraints_type), intent(inout) :: constraints
-      logical, intent(out) :: settled
+      logical, intent(out) :: ready
       type(error_type), allocatable, intent(out) :: error
-      logical :: contact, slides, drop
+      logical :: contact, slides, relaxing
       integer :: i
 
-      settled = .true.
+      ready = .true.
       call self%loads_at(segment, done, constraints)
-      drop = self%dropping()
-      if (drop) constraints%load%rate = 0.0_wp
-      call self%set_rows(constraints, drop)
+      relaxing = self%has_over_stress()
+      if (relaxing) constraints%load%rate = 0.0_wp
+      call self%set_rows(constraints, relaxing)
       contact = any(in_contact(self%state%status))
       if (.not. contact .and. constraints%load(motion_approach)%control == control_force) then
          if (constraints%load(motion_approach)%rate > 0.0_wp) then
-            call self%close_nearest(segment, moment)
-            settled = .false.
+            call self%close_nearest(segment, iteration)
+            ready = .false.
             return
          end if
          constraints%load(motion_approach) = load_type(control_displacement, self%state%fields%motion(motion_approach), 0.0_wp)
@@ -343,26 +339,25 @@ contains
 
       slides = .not. any(holds(self%state%status))
       if (slides .and. constraints%load(motion_shift)%control == control_force) then
-         call hold_motion(self, constraints, motion_shift, settled, error)
-         if (allocated(error) .or. .not. settled) return
+         call hold_motion(self, constraints, motion_shift, ready, error)
+         if (allocated(error) .or. .not. ready) return
       end if
       do i = 1, motion_count
          if (.not. (motions(i)%optional .and. self%model%moves(i)) .or. constraints%load(i)%control /= control_force) cycle
-         call settle_optional(self, i, slides, constraints, settled, error)
-         if (allocated(error) .or. .not. settled) return
+         call hold_if_undetermined(self, i, slides, constraints, ready, error)
+         if (allocated(error) .or. .not. ready) return
       end do
-   end subroutine settle_loads
+   end subroutine find_constraints
 
-   !> A prescribed moment, or force of another motion besides approach and shift. While no two nodes are in contact nothing
-   !> determines the rotation: it is held, which only a moment of zero allows (a tangential force at the surface makes another
-   !> one). The same where no node sticks and the motion only slides: a rotation where normals are along the radius.
+   !> Hold a motion with a prescribed force (such as the rotation under a moment) if nothing determines it: with fewer than two
+   !> nodes in contact, where only a zero force is possible; or if no node sticks and the motion only slides.
    !> Errors MFV_NO_CONTINUATION: the moment tips the upper body over; MFV_GROSS_SLIDING.
-   subroutine settle_optional(self, motion, slides, constraints, settled, error)
+   subroutine hold_if_undetermined(self, motion, slides, constraints, ready, error)
       class(contact_path_type), intent(inout) :: self
       integer, intent(in) :: motion
       logical, intent(in) :: slides
       type(constraints_type), intent(inout) :: constraints
-      logical, intent(inout) :: settled
+      logical, intent(inout) :: ready
       type(error_type), allocatable, intent(out) :: error
       real(wp), parameter :: no_moment = 1.0e-14_wp
       real(wp) :: scale
@@ -371,27 +366,26 @@ contains
          associate (load => constraints%load(motion), length => self%model%length())
             scale = self%model%compliance%modulus*(length*arm_unit(motion, length))
             if (max(abs(load%value), abs(load%rate), abs(self%state%fields%force(motion) - load%value)) > no_moment*scale) &
-               call no_continuation(self, 'fewer than two nodes are in contact, and the '//trim(motions(motion)%force_name)// &
+               call no_continuation(self, 'fewer than two nodes are in contact; the '//trim(motions(motion)%force_name)// &
                                     ' tips the upper body over', error)
          end associate
          constraints%load(motion) = load_type(control_displacement, self%state%fields%motion(motion), 0.0_wp)
       else if (slides .and. .not. self%model%lifts(motion)) then
-         call hold_motion(self, constraints, motion, settled, error)
+         call hold_motion(self, constraints, motion, ready, error)
       end if
-   end subroutine settle_optional
+   end subroutine hold_if_undetermined
 
-   !> No node is stuck and the force of a motion that slides (shift, rotation) is prescribed, so that no equation determines the
-   !> motion. Hold it where friction balances the force all the same: no friction, no contact, or equal slip to both
-   !> sides. Otherwise the upper body moves towards the missing force; nodes that slip with it will stick first: let them
-   !> (`settled` is then false). Error MFV_GROSS_SLIDING where there are none: every contact node already gives all it has
-   !> against the force.
-   subroutine hold_motion(self, constraints, motion, settled, error)
+   !> No node is stuck and the force of a sliding motion is prescribed, so that no equation determines the motion. Hold it where
+   !> friction balances the force anyway: without friction, without contact, or with equal slip to both sides. Otherwise the nodes
+   !> that slip with the unbalanced force stick first (`ready` is then false).
+   !> Error MFV_GROSS_SLIDING: there are no such nodes; every contact node is at its sliding limit.
+   subroutine hold_motion(self, constraints, motion, ready, error)
       class(contact_path_type), intent(inout) :: self
       type(constraints_type), intent(inout) :: constraints
       integer, intent(in) :: motion
-      logical, intent(inout) :: settled
+      logical, intent(inout) :: ready
       type(error_type), allocatable, intent(out) :: error
-      real(wp), parameter :: balanced = 1.0e-9_wp, nothing = 1.0e-12_wp, noises = 10.0_wp
+      real(wp), parameter :: balanced = 1.0e-9_wp, nothing = 1.0e-12_wp, tolerance_factor = 10.0_wp
       type(constraints_type) :: trial
       type(response_type) :: response
       real(wp) :: wanted, missing, scale, arm, negligible, none
@@ -400,7 +394,7 @@ contains
       integer :: i
 
       wanted = constraints%load(motion)%rate
-      none = max(nothing, noises*self%system%noise)
+      none = max(nothing, tolerance_factor*self%system%tolerance)
       constraints%load(motion) = load_type(control_displacement, self%state%fields%motion(motion), 0.0_wp)
       arm = arm_unit(motion, self%model%length())
       negligible = none*self%certificate%force_scale()*arm
@@ -408,10 +402,10 @@ contains
       if (.not. any(slips(self%state%status))) then
          if (abs(wanted) > max(balanced*self%state%fields%force(motion_approach)*arm, negligible)) &
             call self%end_here(merge(MFV_GROSS_SLIDING, MFV_SEPARATED, pressed), &
-                               'no node in contact has friction to carry a '//trim(motions(motion)%force_name), error)
+                               'no node in contact has friction to balance the '//trim(motions(motion)%force_name), error)
          return
       end if
-      ! What is lifted off opens next; its last round-off of pressure slides nothing.
+      ! Bodies about to separate: the remaining pressure is round-off.
       if (.not. pressed .and. abs(wanted) <= negligible .and. constraints%load(motion_approach)%rate < 0.0_wp) return
       trial = constraints
       do i = 1, motion_count
@@ -424,27 +418,27 @@ contains
       if (.not. singular) then
          missing = wanted - self%model%resultant(motion, response%rate%pressure, response%rate%shear)
          scale = max(scale, self%model%force(abs(response%rate%shear*self%model%tangential_arm(:, motion))))
-         if (abs(missing) <= max(balanced*scale, noises*self%system%noise*scale, negligible)) return
+         if (abs(missing) <= max(balanced*scale, tolerance_factor*self%system%tolerance*scale, negligible)) return
       end if
       yielding = slips(self%state%status)
       if (.not. singular) yielding = yielding .and. &
                                      slip_sign(self%state%status)*self%model%tangential_arm(:, motion)*missing > 0.0_wp
       if (any(yielding)) then
          call self%set_status(yielding, self%holding(real(-slip_sign(self%state%status), wp)))
-         settled = .false.
+         ready = .false.
       else if (pressed) then
          call self%end_here(MFV_GROSS_SLIDING, 'gross sliding: every contact node slips', error)
       else
-         call self%end_here(MFV_SEPARATED, 'the bodies are no longer pressed together to carry a '// &
+         call self%end_here(MFV_SEPARATED, 'the bodies are no longer pressed together; nothing balances the '// &
                             trim(motions(motion)%force_name), error)
       end if
    end subroutine hold_motion
 
-   !> Force control without contact: move the upper body, free of load, until its nearest nodes touch.
-   subroutine close_nearest(self, segment, moment)
+   !> Force control without contact: move the upper body, without load, until its nearest nodes touch.
+   subroutine close_nearest(self, segment, iteration)
       class(contact_path_type), intent(inout) :: self
       type(segment_type), intent(in) :: segment
-      type(moment_type), intent(inout) :: moment
+      type(iteration_type), intent(inout) :: iteration
       real(wp), dimension(self%model%nodes()) :: gap, normal, tangential
       real(wp) :: smallest, round_off
       integer :: status(self%model%nodes())
@@ -461,17 +455,17 @@ contains
       touching = self%model%can_touch .and. gap - smallest <= round_off
       status = status_after(event_close, node_open, segment%friction .and. self%model%tangential, 0, &
                             self%holding(self%state%fields%shear))
-      call note_change(moment, event_close, touching)
+      call note_change(iteration, event_close, touching)
       call self%set_status(touching, status)
    end subroutine close_nearest
 
-   !> Whether over-stress of some node must relax before the load goes on.
-   pure logical function dropping(self)
+   !> Whether the over-stress of some node must relax before the load continues.
+   pure logical function has_over_stress(self)
       class(contact_path_type), intent(in) :: self
 
-      dropping = self%has_memory()
-      if (dropping) dropping = any(self%is_releasing())
-   end function dropping
+      has_over_stress = self%has_memory()
+      if (has_over_stress) has_over_stress = any(self%is_releasing())
+   end function has_over_stress
 
    !> Nodes whose over-stress must relax.
    pure function is_releasing(self)
@@ -486,7 +480,7 @@ contains
       end do
    end function is_releasing
 
-   !> What the friction law knows of node `node` where the fields are `fields`.
+   !> The state of node `node` for the friction law, with the given fields.
    pure function point(self, node, fields)
       class(contact_path_type), intent(in) :: self
       integer, intent(in) :: node
@@ -496,7 +490,7 @@ contains
       point = self%state%friction_point(fields, node, self%model%static_friction(node), self%model%kinetic_friction(node))
    end function point
 
-   !> Whether the friction law remembers anything.
+   !> Whether the friction law has memory.
    pure logical function has_memory(self)
       class(contact_path_type), intent(in) :: self
 
@@ -504,9 +498,8 @@ contains
       if (allocated(self%model%scene%friction%law)) has_memory = self%model%scene%friction%law%has_memory()
    end function has_memory
 
-   !> Events of the friction law's own in an increment that is expected to lead to the fields `after`, shape (most_events, nodes);
-   !> not
-   !> allocated where it has none.
+   !> Events of the friction law in an increment with the expected end `after`, shape (most_events, nodes); not allocated for laws
+   !> without events.
    subroutine find_events(self, after, events)
       class(contact_path_type), intent(in) :: self
       type(contact_fields_type), intent(in) :: after
@@ -552,35 +545,34 @@ contains
       end do
    end function can_become_unstable
 
-   !> Where nodes can neither hold nor slip on in equilibrium, have them slip and their traction relax. `snapped`: whether there are
-   !> any;
-   !> the first of them is then what changes at this load, unless something else has changed before.
-   subroutine snap(self, moment, snapped)
+   !> Begin stress drops: nodes that can neither stick nor slip in equilibrium slip, and their over-stress relaxes. `dropped`:
+   !> whether there are any.
+   subroutine begin_stress_drop(self, iteration, dropped)
       class(contact_path_type), intent(inout) :: self
-      type(moment_type), intent(inout) :: moment
-      logical, intent(out) :: snapped
+      type(iteration_type), intent(inout) :: iteration
+      logical, intent(out) :: dropped
       logical :: mask(size(self%state%status))
       integer :: status(size(self%state%status)), i
 
       mask = self%can_become_unstable()
-      snapped = any(mask)
-      if (.not. snapped) return
+      dropped = any(mask)
+      if (.not. dropped) return
       status = merge(node_slip_left, node_slip_right, self%state%fields%shear > 0.0_wp)
-      call note_change(moment, merge(event_slip_left, event_slip_right, status(first_true(mask)) == node_slip_left), mask)
+      call note_change(iteration, merge(event_slip_left, event_slip_right, status(first_true(mask)) == node_slip_left), mask)
       call self%set_status(mask, status)
       do i = 1, size(mask)
          if (mask(i)) call self%model%scene%friction%law%release(self%point(i, self%state%fields), self%state%memory(:, i))
       end do
-   end subroutine snap
+   end subroutine begin_stress_drop
 
-   !> Statuses and lines of friction as constraints: tangents, or lines for where the fields are expected to be `after` an
-   !> increment; with `straight` the secants to there. `drop`: whether over-stress relaxes, all of it per unit of load.
-   subroutine set_rows(self, constraints, drop, after, straight)
+   !> Statuses and friction lines as constraints: tangents; or lines linearised about the expected fields `after`; or, if `secants`
+   !> is present, the secants to these. `relaxing`: whether over-stress relaxes, by all of it per unit of load.
+   subroutine set_rows(self, constraints, relaxing, after, secants)
       class(contact_path_type), intent(in) :: self
       type(constraints_type), intent(inout) :: constraints
-      logical, intent(in) :: drop
+      logical, intent(in) :: relaxing
       type(contact_fields_type), intent(in), optional :: after
-      logical, intent(in), optional :: straight
+      logical, intent(in), optional :: secants
       type(friction_point_type) :: here, there
       integer :: i, n
 
@@ -598,17 +590,17 @@ contains
          here = self%point(i, self%state%fields)
          there = here
          if (present(after)) there = self%point(i, after)
-         if (present(straight)) then
+         if (present(secants)) then
             constraints%row(i) = self%model%scene%friction%law%secant(self%state%status(i), here, there)
          else
             constraints%row(i) = self%model%scene%friction%law%row(self%state%status(i), here, there)
          end if
-         if (drop) constraints%offset_rate(i) = slip_sign(self%state%status(i)) &
-                                                *self%model%scene%friction%law%release_rate(self%state%memory(:, i))
+         if (relaxing) constraints%offset_rate(i) = slip_sign(self%state%status(i)) &
+                                                    *self%model%scene%friction%law%release_rate(self%state%memory(:, i))
       end do
    end subroutine set_rows
 
-   !> Give the nodes of `mask` the new statuses, with what their friction then remembers.
+   !> Set the statuses of the nodes of `mask` and update the memory of friction.
    subroutine set_status(self, mask, status)
       class(contact_path_type), intent(inout) :: self
       logical, intent(in) :: mask(:)
@@ -624,7 +616,7 @@ contains
       call self%state%set_status(mask, status)
    end subroutine set_status
 
-   !> What the law remembers of the nodes of `mask` as if they had slipped until they got their statuses.
+   !> Set the memory of the nodes of `mask` as if they had slipped until now.
    subroutine remember_status(self, mask)
       class(contact_path_type), intent(inout) :: self
       logical, intent(in) :: mask(:)
@@ -637,7 +629,7 @@ contains
       end do
    end subroutine remember_status
 
-   !> The status that each node has if it holds; `slip_rate`: with which rates it moves, any unit, shape (nodes).
+   !> The status of each node if it holds, with the given slip rates (any unit), shape (nodes).
    pure function holding(self, slip_rate) result(status)
       class(contact_path_type), intent(in) :: self
       real(wp), intent(in) :: slip_rate(:)
@@ -652,10 +644,9 @@ contains
       end do
    end function holding
 
-   !> Go to the fields `after`: memories, dissipation, directions and the certificate go along. `slip_rate`: rates of slip on
-   !> the way, any unit, shape (nodes); `dropped`: part of the over-stress that has relaxed. `friction_work`: what
-   !> friction dissipates over a large increment, whose path is not known (force/length, shape (nodes)); else everything is linear
-   !> on the way.
+   !> Advance to the fields `after`; update memory, dissipation, slip directions and certificate. `slip_rate`: any unit, shape
+   !> (nodes). `dropped`: the fraction of the over-stress that has relaxed. `friction_work`: dissipation of a large increment,
+   !> force/length, shape (nodes); if absent, all fields are linear over the increment.
    subroutine take_increment(self, after, slip_rate, dropped, friction_work)
       class(contact_path_type), intent(inout) :: self
       type(contact_fields_type), intent(in) :: after
@@ -665,9 +656,9 @@ contains
       real(wp) :: loss, part, fastest
       integer :: i
 
-      call self%before%take(self%state)
+      call self%before%copy_from(self%state)
       call remember_slip(self, after, dropped)
-      call self%state%fields%take(after)
+      call self%state%fields%copy_from(after)
       do i = 1, motion_count
          if (.not. self%model%moves(i)) self%state%fields%force(i) = self%model%resultant(i, after%pressure, after%shear)
       end do
@@ -692,7 +683,7 @@ contains
          if (abs(slip_rate(i)) > moving*fastest) self%state%slip_direction(i) = merge(1, -1, slip_rate(i) > 0.0_wp)
       end do
       call self%certificate%check_increment(self%model, self%before, self%state, present(friction_work))
-      if (self%awaits_increment) call find_first_stiffness(self)
+      if (self%first_stiffness_pending) call find_first_stiffness(self)
       call note_slip_zones(self)
       if (.not. self%model%moves(motion_rotation) .or. dropped > 0.0_wp) return
       associate (before => self%before%fields)
@@ -701,7 +692,7 @@ contains
       end associate
    end subroutine take_increment
 
-   !> Whether the normal and the tangential force stay as they are, to round-off of the normal force.
+   !> Whether the normal and the tangential force are constant, up to round-off of the normal force.
    pure logical function forces_stay(before, after)
       type(contact_fields_type), intent(in) :: before, after
       real(wp), parameter :: round_off = 1.0e-9_wp
@@ -709,8 +700,8 @@ contains
       forces_stay = maxval(abs(after%force(:motion_shift) - before%force(:motion_shift))) <= round_off*after%force(motion_approach)
    end function forces_stay
 
-   !> Keep slip_zone_nodes, but for slip zones of round-off: where a cycle repeats the tractions of one before, many nodes come to
-   !> their limit together at the very end.
+   !> Update slip_zone_nodes, except by slip zones of round-off: in a repeated cycle many nodes reach their limit together at the
+   !> very end.
    subroutine note_slip_zones(self)
       class(contact_path_type), intent(inout) :: self
       real(wp), parameter :: round_off = 1.0e-6_wp
@@ -720,7 +711,7 @@ contains
          self%slip_zone_nodes = max(self%slip_zone_nodes, widest_slip_zone(self%state%status))
    end subroutine note_slip_zones
 
-   !> What the friction law remembers after an increment to the fields `after`.
+   !> Update the memory of friction after an increment to the fields `after`.
    subroutine remember_slip(self, after, dropped)
       class(contact_path_type), intent(inout) :: self
       type(contact_fields_type), intent(in) :: after
@@ -734,25 +725,25 @@ contains
       end do
    end subroutine remember_slip
 
-   !> Where the contact has reached an end of the mesh, lengthen it. Error MFV_MESH_EXCEEDED: it may not grow.
-   subroutine keep_on_mesh(self, moment, error)
+   !> Lengthen the mesh if the contact has reached its end. Error MFV_MESH_EXCEEDED: it may not grow.
+   subroutine extend_mesh_if_reached(self, iteration, error)
       class(contact_path_type), intent(inout) :: self
-      type(moment_type), intent(inout) :: moment
+      type(iteration_type), intent(inout) :: iteration
       type(error_type), allocatable, intent(out) :: error
 
       if (.not. self%model%reaches_end(in_contact(self%state%status))) return
       if (self%model%growing) then
-         call self%widen(moment)
+         call self%widen(iteration)
       else
          call self%end_here(MFV_MESH_EXCEEDED, 'the contact reached the end of the mesh, '// &
-                            to_text(self%model%length())//' from the pole', error)
+                            to_text(self%model%length())//' from the origin of x', error)
       end if
-   end subroutine keep_on_mesh
+   end subroutine extend_mesh_if_reached
 
    !> Lengthen the mesh by a quarter on either side.
-   subroutine widen(self, moment)
+   subroutine widen(self, iteration)
       class(contact_path_type), intent(inout) :: self
-      type(moment_type), intent(inout) :: moment
+      type(iteration_type), intent(inout) :: iteration
       integer, parameter :: fewest = 4
       integer :: extra, n
 
@@ -762,8 +753,8 @@ contains
       call self%model%grow(extra)
       call self%state%widen(extra)
       call self%history%move_nodes(extra)
-      if (moment%node > 0) moment%node = moment%node + extra
-      moment%tries = 0
+      if (iteration%node > 0) iteration%node = iteration%node + extra
+      iteration%tries = 0
       call fill_ends(self%model, self%state%fields, extra)
    end subroutine widen
 
@@ -790,35 +781,35 @@ contains
       call self%history%append(self%state, kind, node, count, step, self%system%solves)
    end subroutine record
 
-   !> The statuses at this load have settled: count and record what changed them.
-   subroutine keep_settled(self, segment, moment)
+   !> The statuses at this load are final: count and record the change.
+   subroutine record_changes(self, segment, iteration)
       class(contact_path_type), intent(inout) :: self
       type(segment_type), intent(in) :: segment
-      type(moment_type), intent(in) :: moment
+      type(iteration_type), intent(in) :: iteration
 
-      if (moment%event == event_none) return
+      if (iteration%event == event_none) return
       self%events = self%events + 1
-      if (self%record_events) call self%record(moment%event, moment%node, moment%count, segment%step)
-   end subroutine keep_settled
+      if (self%record_events) call self%record(iteration%event, iteration%node, iteration%count, segment%step)
+   end subroutine record_changes
 
-   !> The load at the part `done` of its way.
-   elemental type(load_type) function at_part(load, done)
+   !> The load at the fraction `done` of the segment.
+   elemental type(load_type) function load_at(load, done)
       type(load_type), intent(in) :: load
       real(wp), intent(in) :: done
 
-      at_part = load_type(load%control, load%value + done*load%rate, load%rate)
-   end function at_part
+      load_at = load_type(load%control, load%value + done*load%rate, load%rate)
+   end function load_at
 
-   !> Keep the first change at a load.
-   subroutine note_change(moment, event, changing)
-      type(moment_type), intent(inout) :: moment
+   !> Note the first change at a load.
+   subroutine note_change(iteration, event, changing)
+      type(iteration_type), intent(inout) :: iteration
       integer, intent(in) :: event
       logical, intent(in) :: changing(:)
 
-      if (moment%event /= event_none) return
-      moment%event = event
-      moment%node = first_true(changing)
-      moment%count = count(changing)
+      if (iteration%event /= event_none) return
+      iteration%event = event
+      iteration%node = first_true(changing)
+      iteration%count = count(changing)
    end subroutine note_change
 
    pure integer function first_true(mask)
@@ -827,7 +818,7 @@ contains
       first_true = findloc(mask, .true., dim=1)
    end function first_true
 
-   !> Nothing consistent leads on from here, and why.
+   !> Error: there is no admissible continuation, and why.
    subroutine no_continuation(self, why, error)
       class(contact_path_type), intent(in) :: self
       character(*), intent(in) :: why
@@ -841,7 +832,7 @@ contains
       call self%end_here(MFV_NO_CONTINUATION, 'no admissible continuation: '//why//hint, error)
    end subroutine no_continuation
 
-   !> An early end: why, and the load and contact now.
+   !> Error with the reason and the present load and contact.
    subroutine end_here(self, status, why, error)
       class(contact_path_type), intent(in) :: self
       integer, intent(in) :: status

@@ -1,10 +1,10 @@
 !> The conventional algorithm, for comparison: dissertation section 2.2 and Fig. 2.2 (Algorithm I, after Ahn and Barber).
 !>
-!> The load goes on by nominal steps dL0. At the new load the nodes that were in contact are all taken to be stuck; then one
-!> status is repaired at a time, the worst of the first sort there is: interpenetration, negative pressure, shear beyond the
-!> friction limit, slip in the wrong direction (the last one is not in the figure's list, but it is in Table 2.1). With every
-!> repair the augmented system is solved again. Nothing says that this ends, or that what it ends with is where the load
-!> history leads: a set of statuses that comes again means cycling, too many repairs no admissible state.
+!> The load advances by nominal steps dL0. At the new load all nodes that were in contact are assumed to stick. Then one status is
+!> repaired at a time, the worst violation of the first of these types: interpenetration, negative pressure, shear beyond the
+!> friction limit, slip in the wrong direction (not listed in the figure, but in Table 2.1). The augmented system is solved again
+!> after every repair. Neither termination nor the correct state is guaranteed: a repeated set of statuses means cycling, and too
+!> many repairs mean that no admissible state was found.
 module mfv_conventional
    use mfv_contact_fields, only: contact_fields_type
    use mfv_contact_path
@@ -20,22 +20,22 @@ module mfv_conventional
    use mfv_strings, only: to_text
    implicit none
    private
-   public :: lead_conventionally
+   public :: apply_conventionally
 
-   !> Violations below this part of the largest magnitude of their sort are round-off.
+   !> Violations below this fraction of the largest magnitude of their type are round-off.
    real(wp), parameter :: round_off = 1.0e-11_wp
 
-   !> What is to be repaired next.
+   !> The next repair.
    type :: repair_type
       integer :: kind = event_none, node = 0
    end type repair_type
 
 contains
 
-   !> Apply the loads of one segment in nominal steps. `observer` is notified of every load step.
-   !> Errors, each leaving the last converged state in place: MFV_CYCLING, MFV_INADMISSIBLE, MFV_GROSS_SLIDING, MFV_SEPARATED,
+   !> Apply the loads of a segment in nominal steps. `observer` is notified of every load step.
+   !> Errors, each with the last converged state left in place: MFV_CYCLING, MFV_INADMISSIBLE, MFV_GROSS_SLIDING, MFV_SEPARATED,
    !> MFV_MESH_EXCEEDED, MFV_INADMISSIBLE_STEP, MFV_INTERRUPTED.
-   subroutine lead_conventionally(path, segment, observer, error)
+   subroutine apply_conventionally(path, segment, observer, error)
       class(contact_path_type), intent(inout) :: path
       type(segment_type), intent(in) :: segment
       class(observer_type), intent(inout), optional :: observer
@@ -63,37 +63,37 @@ contains
          end do
          call path%notify(segment, done, observer, error)
       end do
-   end subroutine lead_conventionally
+   end subroutine apply_conventionally
 
-   !> Repair statuses at the part `done` of the segment until nothing is violated, and go there. `again`: the mesh has grown,
-   !> or the bodies have just touched; begin this load again.
+   !> Repair statuses at the fraction `done` of the segment until no inequality is violated, and accept the state. `again`: repeat
+   !> this load, since the mesh has grown or the bodies have just touched.
    subroutine solve_load(path, segment, done, again, error)
       class(contact_path_type), intent(inout) :: path
       type(segment_type), intent(in) :: segment
       real(wp), intent(in) :: done
       logical, intent(out) :: again
       type(error_type), allocatable, intent(out) :: error
-      type(moment_type) :: moment
+      type(iteration_type) :: iteration
       type(constraints_type) :: constraints
       type(response_type) :: response
       type(repair_type) :: repair
       type(contact_fields_type) :: expected
       integer, allocatable :: tried(:, :), start(:)
-      integer :: iteration, n
+      integer :: repairs, n
       logical :: singular, touched
 
       again = .false.
       n = size(path%state%status)
       start = path%state%status
       call touch(path, segment, done, touched)
-      if (touched) call path%keep_on_mesh(moment, error)
+      if (touched) call path%extend_mesh_if_reached(iteration, error)
       if (allocated(error)) return
       again = size(path%state%status) /= n
       if (again) return
       call stick_all(path)
       allocate (tried(n, 0))
       expected = path%state%fields
-      do iteration = 1, path%model%scene%method%most_iterations
+      do repairs = 1, path%model%scene%method%most_iterations
          call constrain(path, segment, done, expected, constraints, error)
          if (allocated(error)) return
          call path%system%solve(path%model, constraints, path%state%fields, response, singular)
@@ -106,18 +106,18 @@ contains
             expected = response%state
             cycle
          else if (repair%kind == event_none) then
-            call accept(path, segment, response%state, moment)
+            call accept(path, segment, response%state, iteration)
             return
          end if
          tried = reshape([tried, path%state%status], [n, size(tried, 2) + 1])
-         call make(path, segment, repair, moment)
+         call apply_repair(path, segment, repair, iteration)
          if (is_among(path%state%status, tried)) then
             path%state%status = start
-            call path%end_here(MFV_CYCLING, 'cycling: after '//to_text(iteration)//' repairs at one load the statuses are '// &
-                               'as before; node '//to_text(repair%node)//' was the last', error)
+            call path%end_here(MFV_CYCLING, 'cycling: the statuses are repeated after '//to_text(repairs)// &
+                               ' repairs at one load; last repaired: node '//to_text(repair%node), error)
             return
          end if
-         call path%keep_on_mesh(moment, error)
+         call path%extend_mesh_if_reached(iteration, error)
          again = size(path%state%status) /= n
          if (again .or. allocated(error)) return
       end do
@@ -126,20 +126,20 @@ contains
                          ' repairs at one load left an inequality violated at node '//to_text(repair%node), error)
    end subroutine solve_load
 
-   !> A growing normal force without contact: the bodies touch first.
+   !> An increasing normal force without contact: the bodies touch first.
    subroutine touch(path, segment, done, touched)
       class(contact_path_type), intent(inout) :: path
       type(segment_type), intent(in) :: segment
       real(wp), intent(in) :: done
       logical, intent(out) :: touched
-      type(moment_type) :: moment
+      type(iteration_type) :: iteration
 
       touched = .not. any(in_contact(path%state%status)) .and. segment%load(motion_approach)%control == control_force .and. &
                 segment%load(motion_approach)%value + done*segment%load(motion_approach)%rate > 0.0_wp
-      if (touched) call path%close_nearest(segment, moment)
+      if (touched) call path%close_nearest(segment, iteration)
    end subroutine touch
 
-   !> Every node in contact is stuck at the slip it has. (A creeping node goes on as it did.)
+   !> Let all slipping nodes stick at their present slip; creeping nodes continue.
    subroutine stick_all(path)
       class(contact_path_type), intent(inout) :: path
       integer :: status(size(path%state%status))
@@ -148,7 +148,7 @@ contains
       call change(path, slips(path%state%status), status)
    end subroutine stick_all
 
-   !> Change statuses; what friction remembers stays through the repairs.
+   !> Change statuses; the memory of friction is unchanged during repairs.
    subroutine change(path, mask, status)
       class(contact_path_type), intent(inout) :: path
       logical, intent(in) :: mask(:)
@@ -160,7 +160,7 @@ contains
       path%state%memory = memory
    end subroutine change
 
-   !> Whether friction that is not linear is right at the end of the load step: its lines were made for `expected`.
+   !> Whether the lines of nonlinear friction, made for `expected`, are right at the end of the load step.
    logical function agrees(path, expected, fields)
       class(contact_path_type), intent(in) :: path
       type(contact_fields_type), intent(in) :: expected, fields
@@ -172,8 +172,9 @@ contains
                <= 0.1_wp*round_off*maxval(abs(fields%pressure))
    end function agrees
 
-   !> The constraints at the part `done` of the segment, with friction right where the fields `expected` are. (Rates of the loads
-   !> are there, and of no use here.) Errors MFV_GROSS_SLIDING, MFV_SEPARATED: a tangential force that nothing can carry.
+   !> The constraints at the fraction `done` of the segment, with friction lines for the fields `expected`. (The rates of the loads
+   !> are not used.)
+   !> Errors MFV_GROSS_SLIDING, MFV_SEPARATED: nothing balances the tangential force.
    subroutine constrain(path, segment, done, expected, constraints, error)
       class(contact_path_type), intent(in) :: path
       type(segment_type), intent(in) :: segment
@@ -193,19 +194,19 @@ contains
       if (any(slips(path%state%status))) then
          call path%end_here(MFV_GROSS_SLIDING, 'gross sliding: every contact node slips', error)
       else if (abs(constraints%load(motion_shift)%value) > no_force*scale .and. any(in_contact(path%state%status))) then
-         call path%end_here(MFV_GROSS_SLIDING, 'no node in contact has friction to carry a tangential force', error)
+         call path%end_here(MFV_GROSS_SLIDING, 'no node in contact has friction to balance the tangential force', error)
       else if (abs(constraints%load(motion_shift)%value) > no_force*scale) then
-         call path%end_here(MFV_SEPARATED, 'no node is in contact to carry a tangential force', error)
+         call path%end_here(MFV_SEPARATED, 'no node is in contact to balance the tangential force', error)
       end if
       constraints%load(motion_shift) = load_type(control_displacement, path%state%fields%motion(motion_shift), 0.0_wp)
    end subroutine constrain
 
-   !> The worst violation of the first sort there is, and its repair.
+   !> The worst violation of the first violated type, and its repair.
    function worst_violation(path, trial) result(repair)
       class(contact_path_type), intent(in) :: path
       type(contact_fields_type), intent(in) :: trial
       type(repair_type) :: repair
-      real(wp), dimension(size(path%state%status)) :: gap, excess, slipped
+      real(wp), dimension(size(path%state%status)) :: gap, over_stress, slipped
       real(wp) :: traction, motion
 
       associate (status => path%state%status)
@@ -216,8 +217,8 @@ contains
          repair = worst(event_close, -gap, path%model%can_touch .and. .not. in_contact(status), motion)
          if (repair%kind == event_none) repair = worst(event_open, -trial%pressure, in_contact(status), traction)
          if (repair%kind /= event_none) return
-         excess = abs(trial%shear) - path%friction_limits()*trial%pressure
-         repair = worst(event_slip_right, excess, holds(status), traction)
+         over_stress = abs(trial%shear) - path%friction_limits()*trial%pressure
+         repair = worst(event_slip_right, over_stress, holds(status), traction)
          if (repair%kind /= event_none) then
             if (trial%shear(repair%node) > 0.0_wp) repair%kind = event_slip_left
             return
@@ -229,7 +230,7 @@ contains
       end associate
    end function worst_violation
 
-   !> Where nodes creep instead of sticking: slipping ones whose bristles take over again. Their `slipped` then counts as none.
+   !> Repair of slipping nodes whose bristles take up the load again, for laws with creep. Their `slipped` is then set to zero.
    subroutine mend_bristles(path, trial, slipped, repair, allowed)
       class(contact_path_type), intent(in) :: path
       type(contact_fields_type), intent(in) :: trial
@@ -240,14 +241,14 @@ contains
 
       associate (law => path%model%scene%friction%law, status => path%state%status)
          if (law%sticks()) return
-         yields = law%over_stress(motion_sign(status)*slipped, law%limit_part()*path%friction_limits() &
+         yields = law%over_stress(motion_sign(status)*slipped, law%limit_fraction()*path%friction_limits() &
                                   *(trial%pressure - path%state%fields%pressure))
          repair = worst(event_stick, -yields, slips(status), allowed)
          where (slips(status)) slipped = 0.0_wp
       end associate
    end subroutine mend_bristles
 
-   !> The node of `mask` with the largest violation, if that is beyond `allowed`.
+   !> The node of `mask` with the largest violation, if beyond `allowed`.
    pure type(repair_type) function worst(kind, violation, mask, allowed)
       integer, intent(in) :: kind
       real(wp), intent(in) :: violation(:), allowed
@@ -259,33 +260,33 @@ contains
       worst%node = maxloc(violation, mask=mask, dim=1)
    end function worst
 
-   !> Make one repair.
-   subroutine make(path, segment, repair, moment)
+   !> Make a repair.
+   subroutine apply_repair(path, segment, repair, iteration)
       class(contact_path_type), intent(inout) :: path
       type(segment_type), intent(in) :: segment
       type(repair_type), intent(in) :: repair
-      type(moment_type), intent(inout) :: moment
+      type(iteration_type), intent(inout) :: iteration
       logical :: mask(size(path%state%status))
       logical :: friction
 
       mask = .false.
       mask(repair%node) = .true.
       friction = segment%friction .and. path%model%tangential
-      call note_change(moment, repair%kind, mask)
+      call note_change(iteration, repair%kind, mask)
       call change(path, mask, status_after(repair%kind, path%state%status, friction, path%state%slip_direction, &
                                            path%holding(real(-motion_sign(path%state%status), wp))))
-   end subroutine make
+   end subroutine apply_repair
 
-   !> Nothing is violated: go there, count and record.
-   subroutine accept(path, segment, fields, moment)
+   !> No inequality is violated: accept the state, count and record.
+   subroutine accept(path, segment, fields, iteration)
       class(contact_path_type), intent(inout) :: path
       type(segment_type), intent(in) :: segment
       type(contact_fields_type), intent(in) :: fields
-      type(moment_type), intent(in) :: moment
+      type(iteration_type), intent(in) :: iteration
 
       call path%take_increment(fields, fields%slip() - path%state%fields%slip(), 0.0_wp)
       call path%remember_status(.not. slips(path%state%status))
-      call path%keep_settled(segment, moment)
+      call path%record_changes(segment, iteration)
    end subroutine accept
 
 end module mfv_conventional

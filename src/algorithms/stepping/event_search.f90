@@ -1,6 +1,6 @@
-!> The first violation: with the rates per unit of load known, which inequality of dissertation Table 2.1 breaks first,
-!> and after which step. Equations 2.3 to 2.5 with rates in place of a trial state; a slip in the wrong direction, which
-!> on rates is seen at once, breaks after no step at all.
+!> The first violation: the inequality of dissertation Table 2.1 that is violated first at the given rates per unit of load, and
+!> the step to it. Equations 2.3 to 2.5 with rates in place of a trial state. A slip rate in the wrong direction is a violation
+!> after a step of zero.
 module mfv_event_search
    use mfv_contact_fields, only: contact_fields_type
    use mfv_contact_model, only: contact_model_type
@@ -13,34 +13,33 @@ module mfv_event_search
    private
    public :: violations_type, find_violations, status_after
 
-   !> For every node the first inequality that breaks.
+   !> For every node the inequality that is violated first.
    type :: violations_type
-      !> What happens to the node (see mfv_node_status), `event_none` where nothing does, shape (nodes).
+      !> The event at the node (see mfv_node_status), `event_none` if there is none, shape (nodes).
       integer, allocatable :: kind(:)
-      !> Load step after which it happens, in units of the load parameter, shape (nodes).
+      !> Step to the event, in units of the load parameter, shape (nodes).
       real(wp), allocatable :: step(:)
-      !> How fast the inequality breaks, in units of the largest rate of its sort, shape (nodes).
+      !> Rate at which the inequality is violated, relative to the largest rate of its type, shape (nodes).
       real(wp), allocatable :: speed(:)
    end type violations_type
 
 contains
 
-   !> All violations that the rates lead to.
-   !> `status`: shape (nodes). `limit`: coefficients of the friction limit, shape (nodes). `events`: what the friction
-   !> law adds, shape (most_events, nodes); none if not allocated.
-   !> `state`, `rate`: fields now and their rates per unit of the load parameter. Rates below the part `round_off` of the
-   !> largest one of their sort count as zero. `violations`: their storage is used again.
-   subroutine find_violations(model, status, limit, events, state, rate, round_off, violations)
+   !> All violations at the given rates. `status`: shape (nodes). `limit`: coefficients of the friction limit, shape (nodes).
+   !> `events`: those of the friction law, shape (most_events, nodes); not allocated if there are none. `state`, `rate`: present
+   !> fields and their rates per unit of the load parameter. Rates below the fraction `rate_tolerance` of the largest of their type
+   !> count as zero. `violations`: its storage is reused.
+   subroutine find_violations(model, status, limit, events, state, rate, rate_tolerance, violations)
       type(contact_model_type), intent(in) :: model
       integer, intent(in) :: status(:)
       real(wp), intent(in) :: limit(:)
       type(friction_event_type), allocatable, intent(in) :: events(:, :)
       type(contact_fields_type), intent(in) :: state, rate
-      real(wp), intent(in) :: round_off
+      real(wp), intent(in) :: rate_tolerance
       type(violations_type), intent(inout) :: violations
-      real(wp) :: traction_scale, motion_scale, mu, full, gap_rate, slip_rate, noise
+      real(wp) :: traction_scale, motion_scale, mu, full, gap_rate, slip_rate, least_rate
       logical :: soft_limit, sticks
-      real(wp), parameter :: secant_noise = 100.0_wp
+      real(wp), parameter :: secant_tolerance = 100.0_wp
       integer :: i, n
 
       n = size(status)
@@ -55,13 +54,13 @@ contains
       sticks = .true.
       soft_limit = .false.
       if (allocated(model%scene%friction%law)) then
-         ! Of a node that has just touched, explicit tangents say nothing about its limit; the corrector's rates do.
+         ! Explicit tangents do not determine the limit at first contact; the rates of the corrector do.
          soft_limit = model%scene%friction%law%has_soft_limit() .and. model%scene%method%integration == integration_explicit
-         full = model%scene%friction%law%limit_part()
+         full = model%scene%friction%law%limit_fraction()
          sticks = model%scene%friction%law%sticks()
       end if
       call find_scales(rate, traction_scale, motion_scale)
-      noise = round_off*traction_scale
+      least_rate = rate_tolerance*traction_scale
       do i = 1, n
          slip_rate = rate%tangential(i) - rate%motion(motion_shift)
          select case (status(i))
@@ -74,7 +73,7 @@ contains
          case (node_stick, node_creep_right, node_creep_left)
             mu = full*limit(i)
             if (mu*rate%pressure(i) - abs(rate%shear(i)) < 0.0_wp) then
-               if (.not. (soft_limit .and. .not. state%pressure(i) > 0.0_wp .and. rate%pressure(i) > noise)) then
+               if (.not. (soft_limit .and. .not. state%pressure(i) > 0.0_wp .and. rate%pressure(i) > least_rate)) then
                   call consider(event_slip_right, mu*state%pressure(i) + state%shear(i), &
                                 mu*rate%pressure(i) + rate%shear(i), max(mu, 1.0_wp)*traction_scale)
                   call consider(event_slip_left, mu*state%pressure(i) - state%shear(i), &
@@ -89,7 +88,7 @@ contains
                call consider(event_stick, 0.0_wp, &
                              model%scene%friction%law%over_stress(slip_sign(status(i))*slip_rate, &
                                                                   full*limit(i)*rate%pressure(i)), &
-                             secant_noise*traction_scale)
+                             secant_tolerance*traction_scale)
             end if
          end select
          if (allocated(events)) call consider_events(i)
@@ -98,7 +97,7 @@ contains
 
    contains
 
-      !> Events of the friction law's own at node `i`.
+      !> Events of the friction law at node `i`.
       subroutine consider_events(i)
          integer, intent(in) :: i
          integer :: k
@@ -108,18 +107,18 @@ contains
                if (event%kind == event_none) cycle
                call consider(event%kind, event%slack, event%rate + event%by_pressure*rate%pressure(i) &
                              + event%by_motion*(motion_sign(status(i))*slip_rate), &
-                             event%noise*merge(motion_scale, traction_scale, event%is_length))
+                             event%tolerance_factor*merge(motion_scale, traction_scale, event%is_length))
             end associate
          end do
       end subroutine consider_events
 
-      !> Note that `slack`, which must stay >= 0 and changes at `slack_rate`, ends earlier than what was found so far.
+      !> Note a violation of `slack` >= 0, which changes at `slack_rate`, if it is earlier than those found so far.
       subroutine consider(kind, slack, slack_rate, scale)
          integer, intent(in) :: kind
          real(wp), intent(in) :: slack, slack_rate, scale
          real(wp) :: step
 
-         if (.not. slack_rate < -round_off*scale) return
+         if (.not. slack_rate < -rate_tolerance*scale) return
          step = max(slack, 0.0_wp)/(-slack_rate)
          if (step > violations%step(i)) return
          if (.not. step < violations%step(i) .and. -slack_rate/scale < violations%speed(i)) return
@@ -144,8 +143,8 @@ contains
       end do
    end subroutine find_scales
 
-   !> Status of a node with this `status` after an event. `friction`: whether friction acts; `direction`: sign of the slip rate
-   !> that a closing node had while open, 0 for none: it goes on slipping that way or, with none, holds (dissertation 2.3.3).
+   !> Status of a node with this `status` after an event. `friction`: whether friction acts; `direction`: sign of the slip rate of
+   !> a closing node while it was open, 0 for none: it continues to slip that way or, without one, holds (dissertation 2.3.3).
    !> `holding`: the status of a node that holds.
    elemental integer function status_after(event, status, friction, direction, holding)
       integer, intent(in) :: event, status, direction, holding

@@ -1,18 +1,18 @@
 !> The Method of First Violation (dissertation section 2.3).
 !>
-!> With all statuses fixed everything is linear in the load. One solve gives the state and its rates per unit of load;
-!> the load advances exactly to the first inequality that would break, that node changes its status, and so on. Every
-!> state on the way, not only at the events, satisfies every equality and inequality.
+!> At fixed statuses everything is linear in the load. One solve gives the state and its rates per unit of load. The load advances
+!> exactly to the first inequality that would be violated, that node changes its status, and so on. Every state between events
+!> satisfies every equality and inequality as well.
 !>
-!> At one load several changes can follow each other (a corner of the load path, a node that has just changed): they are
-!> increments of zero length in the same loop. All violations of one moment change together, so that what is symmetric
-!> stays symmetric. The status sets tried at one load are remembered; a repeated one means a cycle: then only the fastest
-!> violation changes at a time, and when that repeats too the rates of all are solved for at once (mfv_rate_problem). Where
-!> even that fails there is no admissible continuation (Klarbring 1990).
+!> Several changes can occur at one load (at a corner of the load history, or after a change of status): they are increments of
+!> zero length in the same loop. All simultaneous violations change together, so that symmetry is preserved. The status sets tried
+!> at one load are stored to detect cycling: then only the fastest violation changes at a time. If the statuses still cycle, the
+!> rates of all nodes are solved for at once (mfv_rate_problem). If that fails too, there is no admissible continuation (Klarbring
+!> 1990).
 !>
-!> Under static and kinetic friction a node that begins to slip has more shear traction than it may keep. The load then
-!> waits while the excess is let go, an internal load with the same search for events: so every state on the way is
-!> admissible, and cascades come out in their order.
+!> Under static and kinetic friction a node that begins to slip has more shear traction than kinetic friction allows. The
+!> over-stress relaxes at a fixed load, as an internal load with the same search for events. Every state of a stress drop is
+!> therefore admissible, and the events of a cascade occur in their order.
 module mfv_first_violation
    use mfv_accumulation, only: pass_accumulation
    use mfv_contact_path
@@ -24,53 +24,53 @@ module mfv_first_violation
    use mfv_motions, only: motion_approach, control_force
    use mfv_node_status
    use mfv_observer, only: observer_type
-   use mfv_rate_problem, only: settle_by_rates
+   use mfv_rate_problem, only: find_statuses_by_rates
    use mfv_status
    use mfv_strings, only: to_text
    implicit none
    private
-   public :: lead_by_violations, failed_certificate, noises
+   public :: apply_by_violations, failed_certificate, tolerance_factor
 
-   !> So many steps in a row below the tie are no progress.
+   !> Most consecutive steps below the tie tolerance.
    integer, parameter :: most_tiny_steps = 200
-   !> So many increments for this part of a segment, and ten a node, are no progress either (stick-slip without end).
+   !> Most increments within `milestone_spacing`, a fraction of a segment, plus ten for each node (endless stick-slip).
    integer, parameter :: most_events = 5000
-   real(wp), parameter :: worth_telling = 1.0e-5_wp
-   !> After so many increments within that part their events may accumulate at a finite load.
+   real(wp), parameter :: milestone_spacing = 1.0e-5_wp
+   !> Increments within that fraction after which events may accumulate at a finite load.
    integer, parameter :: many_events = 100
-   !> So many changes at one load, and one a node, before the rates of all are solved for at once.
-   integer, parameter :: patience = 30
-   !> The rates' round-off where a cycle of statuses suggests that some of them are noise.
-   real(wp), parameter :: larger_round_off = 1.0e-9_wp
-   !> The shortest increment worth trying, in parts of a segment.
+   !> Changes at one load, plus one for each node, before the rates of all nodes are solved for at once.
+   integer, parameter :: many_changes = 30
+   !> Tolerance of rates after cycling, which suggests that some of them are round-off.
+   real(wp), parameter :: larger_rate_tolerance = 1.0e-9_wp
+   !> The shortest trial increment, as a fraction of a segment.
    real(wp), parameter :: shortest_trial = 1.0e-8_wp
-   !> A certificate beyond this is no result.
+   !> A state with a larger certificate is rejected.
    real(wp), parameter :: failed_certificate = 1.0e-6_wp
-   !> A jump of the tractions beyond this, in parts of the largest, is no continuation.
+   !> The largest admissible jump of the tractions, relative to the largest traction.
    real(wp), parameter :: largest_jump = 1.0e-6_wp
-   !> Neither is less than so many times the linear solver's noise.
-   real(wp), parameter :: noises = 1.0e3_wp
+   !> Both are at least this factor times the tolerance of the linear solver.
+   real(wp), parameter :: tolerance_factor = 1.0e3_wp
 
-   !> Where on a segment the load is.
+   !> Progress in a segment.
    type :: progress_type
-      !> The part of the segment that is done; whether the last increment had a length, and whether it has reached the end.
+      !> Fraction of the segment that is done; whether the last increment had a length, and whether it has reached the end.
       real(wp) :: done = 0.0_wp
       logical :: moved = .false., at_end = .false.
-      !> The load now, and the increment from there.
-      type(moment_type) :: moment
+      !> The iteration at the present load, and the increment from there.
+      type(iteration_type) :: iteration
       type(increment_type) :: increment
-      !> Whether the load advances: increments without a length in a row, tiny ones in a row, increments since the last milestone.
+      !> Consecutive increments of zero length, consecutive tiny ones, and increments since the last milestone.
       integer :: standing = 0, tiny = 0, since = 0
       real(wp) :: milestone = 0.0_wp
    end type progress_type
 
 contains
 
-   !> Apply the loads of one segment. `observer` is notified of every increment; and where one load takes long, because the mesh
-   !> grows (under an absurd force, far) or statuses change often.
-   !> Errors, each leaving the last admissible state in place: MFV_GROSS_SLIDING, MFV_SEPARATED, MFV_NO_CONTINUATION,
+   !> Apply the loads of a segment. `observer` is notified of every increment, and also while the mesh grows or statuses change at
+   !> one load.
+   !> Errors, each with the last admissible state left in place: MFV_GROSS_SLIDING, MFV_SEPARATED, MFV_NO_CONTINUATION,
    !> MFV_MESH_EXCEEDED, MFV_INADMISSIBLE_STEP, MFV_INTERRUPTED.
-   subroutine lead_by_violations(path, segment, observer, error)
+   subroutine apply_by_violations(path, segment, observer, error)
       class(contact_path_type), intent(inout) :: path
       type(segment_type), intent(in) :: segment
       class(observer_type), intent(inout), optional :: observer
@@ -85,7 +85,7 @@ contains
       do
          call make_increment(path, segment, progress, constraints, error)
          if (allocated(error)) return
-         if (progress%moved .or. progress%standing > patience .or. size(path%state%status) > nodes) &
+         if (progress%moved .or. progress%standing > many_changes .or. size(path%state%status) > nodes) &
             call path%notify(segment, progress%done, observer, error)
          if (allocated(error)) return
          nodes = size(path%state%status)
@@ -95,21 +95,21 @@ contains
             return
          end if
          if (.not. progress%increment%ends_in_event) cycle
-         call change_statuses(path, segment, progress%done, progress%increment, progress%moment, error)
+         call change_statuses(path, segment, progress%done, progress%increment, progress%iteration, error)
          if (allocated(error)) return
       end do
-   end subroutine lead_by_violations
+   end subroutine apply_by_violations
 
-   !> With the statuses as they are, the next increment, and the way to its end. Where it has no length (not `progress%moved`) only
-   !> statuses are to change. Errors as lead_by_violations.
+   !> Find the next increment at fixed statuses and take it. If its length is zero (`progress%moved` is false), only statuses
+   !> change. Errors as apply_by_violations.
    subroutine make_increment(path, segment, progress, constraints, error)
       class(contact_path_type), intent(inout) :: path
       type(segment_type), intent(in) :: segment
       type(progress_type), intent(inout) :: progress
       type(constraints_type), intent(inout) :: constraints
       type(error_type), allocatable, intent(out) :: error
-      logical :: drop, ready, passed
-      logical, allocatable :: dropping(:)
+      logical :: relaxing, ready, passed
+      logical, allocatable :: relaxing_nodes(:)
 
       progress%moved = .false.
       do
@@ -118,73 +118,73 @@ contains
             call path%no_continuation('the load does not advance', error)
             return
          end if
-         if (progress%standing == patience + size(path%state%status) .and. .not. progress%moment%solved) then
-            call settle_at_once(path, segment, progress%done, ready)
-            progress%moment%solved = .true.
-            if (ready) progress%moment%tries = 0
+         if (progress%standing == many_changes + size(path%state%status) .and. .not. progress%iteration%solved) then
+            call find_statuses_at_once(path, segment, progress%done, ready)
+            progress%iteration%solved = .true.
+            if (ready) progress%iteration%tries = 0
          end if
-         drop = path%dropping()
-         call path%settle_loads(segment, progress%done, progress%moment, constraints, ready, error)
+         relaxing = path%has_over_stress()
+         call path%find_constraints(segment, progress%done, progress%iteration, constraints, ready, error)
          if (allocated(error)) return
          if (.not. ready) cycle
          passed = .false.
-         if (progress%since > many_events) call pass_accumulation(path, constraints, 1.0_wp - progress%done, worth_telling, &
-                                                                  progress%moment%round_off, progress%increment, passed)
-         if (.not. passed) call find_increment(path, constraints, merge(1.0_wp, 1.0_wp - progress%done, drop), drop, &
-                                               progress%moment%round_off, progress%increment)
+         if (progress%since > many_events) call pass_accumulation(path, constraints, 1.0_wp - progress%done, milestone_spacing, &
+                                                                  progress%iteration%rate_tolerance, progress%increment, passed)
+         if (.not. passed) call find_increment(path, constraints, merge(1.0_wp, 1.0_wp - progress%done, relaxing), relaxing, &
+                                               progress%iteration%rate_tolerance, progress%increment)
          call look_for_solution(path, progress, ready, error)
          if (allocated(error)) return
          if (ready) exit
       end do
-      if (.not. progress%increment%step > no_step_of(path)) return
-      call path%keep_settled(segment, progress%moment)
+      if (.not. progress%increment%step > shortest_step(path)) return
+      call path%record_changes(segment, progress%iteration)
       associate (step => progress%increment%step)
-         progress%at_end = .not. drop .and. step*(1.0_wp + tie_of(path)) + last_step(path, segment) >= 1.0_wp - progress%done
+     progress%at_end = .not. relaxing .and. step*(1.0_wp + tie_tolerance(path)) + last_step(path, segment) >= 1.0_wp - progress%done
          if (progress%at_end) step = 1.0_wp - progress%done
-         if (drop .and. step*(1.0_wp + tie_of(path)) + no_step_of(path) >= 1.0_wp) step = 1.0_wp
-         dropping = path%is_releasing()
-         call advance(path, progress%increment, drop, error)
+         if (relaxing .and. step*(1.0_wp + tie_tolerance(path)) + shortest_step(path) >= 1.0_wp) step = 1.0_wp
+         relaxing_nodes = path%is_releasing()
+         call advance(path, progress%increment, relaxing, error)
          if (allocated(error)) return
-         if (drop .and. .not. path%dropping() .and. path%record_events) &
-            call path%record(event_dropped, first_true(dropping), count(dropping), segment%step)
+         if (relaxing .and. .not. path%has_over_stress() .and. path%record_events) &
+            call path%record(event_dropped, first_true(relaxing_nodes), count(relaxing_nodes), segment%step)
          progress%moved = .true.
-         if (.not. drop) progress%done = progress%done + step
+         if (.not. relaxing) progress%done = progress%done + step
          if (progress%at_end) return
-         call renew(progress%moment)
+         call renew(progress%iteration)
          progress%standing = 0
-         if (.not. drop) progress%tiny = merge(progress%tiny + 1, 0, step < tie_of(path))
+         if (.not. relaxing) progress%tiny = merge(progress%tiny + 1, 0, step < tie_tolerance(path))
       end associate
       progress%since = progress%since + 1
-      if (progress%done > progress%milestone + worth_telling) then
+      if (progress%done > progress%milestone + milestone_spacing) then
          progress%milestone = progress%done
          progress%since = 0
       end if
    end subroutine make_increment
 
-   !> The shortest step at the end of a segment. Where the normal force falls to zero, what is left of it can be round-off of
-   !> the largest so far: no contact is told from another by that, and the load goes to the end.
+   !> The shortest step at the end of a segment. Where the normal force decreases to zero, its rest can be round-off of the largest
+   !> force so far; the load then advances to the end.
    pure real(wp) function last_step(path, segment)
       class(contact_path_type), intent(in) :: path
       type(segment_type), intent(in) :: segment
       real(wp), parameter :: round_off = 1.0e-14_wp, largest = 1.0e-6_wp
       real(wp) :: negligible
 
-      last_step = no_step_of(path)
-      negligible = max(round_off, path%system%noise)*path%certificate%force_scale()
+      last_step = shortest_step(path)
+      negligible = max(round_off, path%system%tolerance)*path%certificate%force_scale()
       associate (normal => segment%load(motion_approach))
          if (normal%control /= control_force .or. .not. normal%rate < 0.0_wp) return
          if (abs(normal%value + normal%rate) <= negligible) last_step = max(last_step, min(negligible/(-normal%rate), largest))
       end associate
    end function last_step
 
-   !> Whether the increment could be found. `found`: it was; else nodes have been let snap, and it is to be found again.
+   !> Check that the increment was found. If `found` is false, stress drops have begun and the increment is to be found again.
    !> Error MFV_NO_CONTINUATION.
    subroutine look_for_solution(path, progress, found, error)
       class(contact_path_type), intent(inout) :: path
       type(progress_type), intent(inout) :: progress
       logical, intent(out) :: found
       type(error_type), allocatable, intent(out) :: error
-      logical :: snapped
+      logical :: dropped
 
       found = .not. (progress%increment%singular .or. progress%increment%diverges)
       if (found) return
@@ -192,19 +192,20 @@ contains
          call path%no_continuation('the linear system is singular', error)
          return
       end if
-      snapped = .false.
-      if (.not. progress%moment%snapped) call path%snap(progress%moment, snapped)
-      progress%moment%snapped = snapped
-      if (.not. snapped) call path%no_continuation('the equations of friction have no solution nearby', error)
+      dropped = .false.
+      if (.not. progress%iteration%dropped) call path%begin_stress_drop(progress%iteration, dropped)
+      progress%iteration%dropped = dropped
+      if (.not. dropped) call path%no_continuation('the equations of friction have no solution nearby', error)
    end subroutine look_for_solution
 
-   !> Take a step of the load (of the drop) with the rates of the increment, and check it; the increment's state goes along.
-   !> Errors MFV_NO_CONTINUATION: the statuses would make the tractions jump, or the certificate fails by far (loads out of
-   !> all proportion, for example).
-   subroutine advance(path, increment, drop, error)
+   !> Take a step of the load (of the stress drop) with the rates of the increment, and check it; the state of the increment is
+   !> updated.
+   !> Errors MFV_NO_CONTINUATION: the statuses would make the tractions jump, or the certificate is far too large (for example
+   !> under extreme loads).
+   subroutine advance(path, increment, relaxing, error)
       class(contact_path_type), intent(inout) :: path
       type(increment_type), intent(inout) :: increment
-      logical, intent(in) :: drop
+      logical, intent(in) :: relaxing
       type(error_type), allocatable, intent(out) :: error
       real(wp) :: jump, scale
       integer :: i
@@ -217,84 +218,84 @@ contains
             jump = max(jump, abs(response%state%pressure(i) - before%pressure(i)), &
                        abs(response%state%shear(i) - before%shear(i)))
          end do
-         if (jump > max(largest_jump, noises*path%system%noise)*scale) then
+         if (jump > max(largest_jump, tolerance_factor*path%system%tolerance)*scale) then
             call path%no_continuation('the tractions would have to jump', error)
             return
          end if
          call path%certificate%note_jump(before, response%state)
          call response%state%move(increment%step, response%rate)
       end associate
-      call path%take_increment(increment%response%state, increment%response%rate%slip(), merge(increment%step, 0.0_wp, drop))
-      if (path%certificate%largest() > max(failed_certificate, noises*path%system%noise)) &
+      call path%take_increment(increment%response%state, increment%response%rate%slip(), merge(increment%step, 0.0_wp, relaxing))
+      if (path%certificate%largest() > max(failed_certificate, tolerance_factor*path%system%tolerance)) &
          call path%no_continuation('the equations are no longer satisfied (certificate '// &
                                    to_text(path%certificate%largest())//')', error)
    end subroutine advance
 
-   !> Change the statuses of the nodes whose inequalities break first, together.
-   !> Errors MFV_NO_CONTINUATION: every way out has been tried at this load; MFV_MESH_EXCEEDED.
-   subroutine change_statuses(path, segment, done, increment, moment, error)
+   !> Change the statuses of the nodes whose inequalities are violated first, together.
+   !> Errors MFV_NO_CONTINUATION: all alternatives have been tried at this load; MFV_MESH_EXCEEDED.
+   subroutine change_statuses(path, segment, done, increment, iteration, error)
       class(contact_path_type), intent(inout) :: path
       type(segment_type), intent(in) :: segment
       real(wp), intent(in) :: done
       type(increment_type), intent(in) :: increment
-      type(moment_type), intent(inout) :: moment
+      type(iteration_type), intent(inout) :: iteration
       type(error_type), allocatable, intent(out) :: error
-      logical :: changing(size(path%state%status)), snapped, passed
+      logical :: changing(size(path%state%status)), dropped, found, passed
       integer :: fastest
 
-      call snap_if_unstable(path, increment, moment, snapped)
-      if (snapped) return
-      if (was_tried(moment, path%state%status)) then
+      call drop_if_unstable(path, increment, iteration, dropped)
+      if (dropped) return
+      if (was_tried(iteration, path%state%status)) then
          if (path%trial > shortest_trial) then
-            ! Over a shorter increment friction that is not linear may have rates that agree.
+            ! Nonlinear friction may have consistent rates over a shorter increment.
             path%trial = 0.1_wp*path%trial
-            moment%tries = 0
+            iteration%tries = 0
             return
          end if
-         if (moment%one_at_a_time .and. moment%round_off >= larger_round_off) then
-            if (.not. moment%solved) then
-               call settle_at_once(path, segment, done, snapped)
-               if (snapped) then
-                  call renew(moment, moment%event, moment%node, moment%count)
-                  moment%solved = .true.
+         if (iteration%one_at_a_time .and. iteration%rate_tolerance >= larger_rate_tolerance) then
+            if (.not. iteration%solved) then
+               call find_statuses_at_once(path, segment, done, found)
+               if (found) then
+                  call renew(iteration, iteration%event, iteration%node, iteration%count)
+                  iteration%solved = .true.
                   return
                end if
             end if
-            if (.not. moment%snapped) call path%snap(moment, snapped)
-            if (snapped) then
-               call renew(moment, moment%event, moment%node, moment%count)
-               moment%snapped = .true.
+            if (.not. iteration%dropped) call path%begin_stress_drop(iteration, dropped)
+            if (dropped) then
+               call renew(iteration, iteration%event, iteration%node, iteration%count)
+               iteration%dropped = .true.
                return
             end if
-            call path%no_continuation('no set of statuses has consistent rates; node '// &
-                                      to_text(maxloc(increment%violations%speed, dim=1))//' cannot decide', error)
+            call path%no_continuation('no consistent status for node '// &
+                                      to_text(maxloc(increment%violations%speed, dim=1)), error)
             return
          end if
-         moment%one_at_a_time = moment%round_off >= larger_round_off
-         moment%round_off = larger_round_off
-         moment%tries = 0
+         iteration%one_at_a_time = iteration%rate_tolerance >= larger_rate_tolerance
+         iteration%rate_tolerance = larger_rate_tolerance
+         iteration%tries = 0
       end if
-      call remember(moment, path%state%status)
+      call remember(iteration, path%state%status)
 
       associate (violations => increment%violations)
          changing = violations%step <= increment%reach
-         if (moment%one_at_a_time) then
+         if (iteration%one_at_a_time) then
             fastest = maxloc(violations%speed, dim=1, mask=changing)
             changing = .false.
             changing(fastest) = .true.
          end if
-         call note_change(moment, violations%kind(first_true(changing)), changing)
+         call note_change(iteration, violations%kind(first_true(changing)), changing)
          call path%set_status(changing, status_after(violations%kind, path%state%status, segment%friction .and. &
                                                      path%model%tangential, path%state%slip_direction, &
                                                      path%holding(increment%response%rate%slip())))
          call pass_law_events(path, violations%kind, changing, passed)
-         ! Friction remembers something else, statuses are as they were: what was tried says nothing any more.
-         if (passed) moment%tries = 0
+         ! The memory of friction has changed: statuses tried before may be consistent now.
+         if (passed) iteration%tries = 0
       end associate
-      call path%keep_on_mesh(moment, error)
+      call path%extend_mesh_if_reached(iteration, error)
    end subroutine change_statuses
 
-   !> Events of the friction law's own at the nodes of `changing`. `passed`: whether there are any that change no status.
+   !> Pass events of the friction law to the nodes of `changing`. `passed`: whether there are any that change no status.
    subroutine pass_law_events(path, kind, changing, passed)
       class(contact_path_type), intent(inout) :: path
       integer, intent(in) :: kind(:)
@@ -311,87 +312,86 @@ contains
       end do
    end subroutine pass_law_events
 
-   !> Statuses of all undecided nodes at once. `settled`: whether they were found.
-   subroutine settle_at_once(path, segment, done, settled)
+   !> Statuses of all undecided nodes at once. `found`: whether there are any.
+   subroutine find_statuses_at_once(path, segment, done, found)
       class(contact_path_type), intent(inout) :: path
       type(segment_type), intent(in) :: segment
       real(wp), intent(in) :: done
-      logical, intent(out) :: settled
+      logical, intent(out) :: found
       type(constraints_type) :: constraints
 
       call path%loads_at(segment, done, constraints)
       call path%set_rows(constraints, .false.)
-      call settle_by_rates(path, constraints, settled)
-   end subroutine settle_at_once
+      call find_statuses_by_rates(path, constraints, found)
+   end subroutine find_statuses_at_once
 
-   !> Where a slipping node that may become unstable would turn back, it either comes to rest or the bodies can no longer unload as
-   !> fast
-   !> as its friction falls. Let it snap, once at each load: one that need not is caught again at once, and comes to rest.
-   subroutine snap_if_unstable(path, increment, moment, snapped)
+   !> Begin a stress drop, once at each load, at nodes that may be unstable and would slip back: they either stick, or the bodies
+   !> cannot unload as fast as friction decreases. A stress drop that is not needed ends at once, and the node sticks.
+   subroutine drop_if_unstable(path, increment, iteration, dropped)
       class(contact_path_type), intent(inout) :: path
       type(increment_type), intent(in) :: increment
-      type(moment_type), intent(inout) :: moment
-      logical, intent(out) :: snapped
+      type(iteration_type), intent(inout) :: iteration
+      logical, intent(out) :: dropped
 
-      snapped = .false.
-      if (moment%snapped .or. .not. any(increment%violations%kind == event_stick)) return
-      if (.not. any(increment%violations%kind == event_stick .and. increment%violations%step <= no_step_of(path) .and. &
+      dropped = .false.
+      if (iteration%dropped .or. .not. any(increment%violations%kind == event_stick)) return
+      if (.not. any(increment%violations%kind == event_stick .and. increment%violations%step <= shortest_step(path) .and. &
                     path%can_become_unstable())) return
-      call path%snap(moment, snapped)
-      if (.not. snapped) return
-      call renew(moment, moment%event, moment%node, moment%count)
-      moment%snapped = .true.
-   end subroutine snap_if_unstable
+      call path%begin_stress_drop(iteration, dropped)
+      if (.not. dropped) return
+      call renew(iteration, iteration%event, iteration%node, iteration%count)
+      iteration%dropped = .true.
+   end subroutine drop_if_unstable
 
-   !> Begin a new moment, in the storage there is; what changed first, where told.
-   pure subroutine renew(moment, event, node, number)
-      type(moment_type), intent(inout) :: moment
+   !> Begin the iteration at a new load, in the same storage; optionally with the first change.
+   pure subroutine renew(iteration, event, node, number)
+      type(iteration_type), intent(inout) :: iteration
       integer, intent(in), optional :: event, node, number
-      type(moment_type) :: fresh
+      type(iteration_type) :: fresh
 
       if (present(event)) fresh%event = event
       if (present(node)) fresh%node = node
       if (present(number)) fresh%count = number
-      call move_alloc(moment%tried, fresh%tried)
-      moment%tries = fresh%tries
-      moment%round_off = fresh%round_off
-      moment%one_at_a_time = fresh%one_at_a_time
-      moment%snapped = fresh%snapped
-      moment%solved = fresh%solved
-      moment%event = fresh%event
-      moment%node = fresh%node
-      moment%count = fresh%count
-      call move_alloc(fresh%tried, moment%tried)
+      call move_alloc(iteration%tried, fresh%tried)
+      iteration%tries = fresh%tries
+      iteration%rate_tolerance = fresh%rate_tolerance
+      iteration%one_at_a_time = fresh%one_at_a_time
+      iteration%dropped = fresh%dropped
+      iteration%solved = fresh%solved
+      iteration%event = fresh%event
+      iteration%node = fresh%node
+      iteration%count = fresh%count
+      call move_alloc(fresh%tried, iteration%tried)
    end subroutine renew
 
-   pure logical function was_tried(moment, status)
-      type(moment_type), intent(in) :: moment
+   pure logical function was_tried(iteration, status)
+      type(iteration_type), intent(in) :: iteration
       integer, intent(in) :: status(:)
 
-      was_tried = moment%tries > 0
-      if (was_tried) was_tried = is_among(status, moment%tried(:, :moment%tries))
+      was_tried = iteration%tries > 0
+      if (was_tried) was_tried = is_among(status, iteration%tried(:, :iteration%tries))
    end function was_tried
 
-   !> Note that `status` has been tried; with a new number of nodes what was noted is of no use.
-   pure subroutine remember(moment, status)
-      type(moment_type), intent(inout) :: moment
+   !> Note that `status` has been tried; earlier notes with another number of nodes are discarded.
+   pure subroutine remember(iteration, status)
+      type(iteration_type), intent(inout) :: iteration
       integer, intent(in) :: status(:)
       integer, parameter :: some = 8
       integer, allocatable :: wider(:, :)
 
-      if (allocated(moment%tried)) then
-         if (size(moment%tried, 1) /= size(status)) deallocate (moment%tried)
+      if (allocated(iteration%tried)) then
+         if (size(iteration%tried, 1) /= size(status)) deallocate (iteration%tried)
       end if
-      if (.not. allocated(moment%tried)) then
-         allocate (moment%tried(size(status), some))
-         moment%tries = 0
-      else if (moment%tries == size(moment%tried, 2)) then
-         allocate (wider(size(status), 2*moment%tries))
-         wider(:, :moment%tries) = moment%tried
-         call move_alloc(wider, moment%tried)
+      if (.not. allocated(iteration%tried)) then
+         allocate (iteration%tried(size(status), some))
+         iteration%tries = 0
+      else if (iteration%tries == size(iteration%tried, 2)) then
+         allocate (wider(size(status), 2*iteration%tries))
+         wider(:, :iteration%tries) = iteration%tried
+         call move_alloc(wider, iteration%tried)
       end if
-      moment%tries = moment%tries + 1
-      moment%tried(:, moment%tries) = status
+      iteration%tries = iteration%tries + 1
+      iteration%tried(:, iteration%tries) = status
    end subroutine remember
 
 end module mfv_first_violation

@@ -1,14 +1,14 @@
-!> One increment of the Method of First Violation: with the statuses as they are, the rates, how far they lead, and which
-!> inequalities break there.
+!> One increment of the Method of First Violation at fixed statuses: the rates, the length of the increment, and the inequalities
+!> that are violated at its end.
 !>
-!> `event` stepping has the rates from the linear solve itself. `nominal` stepping is the dissertation's (section 2.3): a
-!> trial load step dL0 is solved, the first violation found by interpolation (2.3 to 2.5) and solved for again, and a wrong
-!> slip direction by bisection. Both lead to the same states; the count of linear solves differs.
+!> `event` stepping obtains the rates from the linear solve itself. `nominal` stepping is that of the dissertation (section 2.3):
+!> it solves a trial load step dL0, finds the first violation by interpolation (2.3 to 2.5), solves again there, and finds a wrong
+!> slip direction by bisection. Both give the same states with different numbers of linear solves.
 !>
-!> Where friction is not linear (Dahl, weakening), a predictor with tangents is followed by a corrector (Newton) until the
-!> lines of friction agree with where they lead: for Dahl's law the implicit midpoint rule, of second order. The difference
-!> of the two over the increment is what a method of first order would err by; the increment is shortened until that is
-!> within `friction_tolerance`, so that the error of the result falls with the tolerance itself.
+!> If friction is not linear (Dahl, weakening), a predictor with tangents is followed by a corrector (Newton) until the friction
+!> lines agree with the end of the increment; for Dahl's law this is the implicit midpoint rule, of second order. The difference of
+!> predictor and corrector estimates a first-order error. The increment is shortened until it is within `friction_tolerance`, so
+!> that the error of the result decreases with the tolerance.
 module mfv_increment
    use mfv_contact_fields, only: contact_fields_type
    use mfv_contact_path, only: contact_path_type
@@ -20,48 +20,49 @@ module mfv_increment
    use mfv_scene, only: integration_explicit, stepping_nominal
    implicit none
    private
-   public :: increment_type, find_increment, no_step_of, tie_of
+   public :: increment_type, find_increment, shortest_step, tie_tolerance
 
-   !> Steps below this part of the segment are none; steps this much longer than the first, in parts of it, are equal.
-   real(wp), parameter :: no_step = 1.0e-13_wp, tie = 1.0e-10_wp
+   !> Steps below `zero_step`, a fraction of the segment, count as zero; steps that differ by less than the fraction `least_tie`
+   !> are tied.
+   real(wp), parameter :: zero_step = 1.0e-13_wp, least_tie = 1.0e-10_wp
 
    type :: increment_type
       type(response_type) :: response
       type(violations_type) :: violations
-      !> Length in parts of the segment (of the drop); and whether a violation ends it.
+      !> Length as a fraction of the segment (of the stress drop); and whether a violation ends the increment.
       real(wp) :: step = 0.0_wp
-      !> Violations up to this step happen together at its end.
+      !> Violations up to this step occur together at its end.
       real(wp) :: reach = 0.0_wp
       logical :: ends_in_event = .false.
-      !> The linear system has no solution, or the corrector does not converge; the increment is then of no use.
+      !> Whether the linear system is singular, or the corrector diverges; the increment is then invalid.
       logical :: singular = .false., diverges = .false.
    end type increment_type
 
 contains
 
-   !> Steps longer than the first by less than this part of it are equal to it.
-   pure real(wp) function tie_of(path)
+   !> Relative difference of steps below which they are tied.
+   pure real(wp) function tie_tolerance(path)
       class(contact_path_type), intent(in) :: path
 
-      tie_of = max(tie, path%system%noise)
-   end function tie_of
+      tie_tolerance = max(least_tie, path%system%tolerance)
+   end function tie_tolerance
 
-   !> Steps below this part of the segment are none: noise of the state that makes small steps, but no more than the tie, for the
-   !> first events of a fine mesh are close to each other.
-   pure real(wp) function no_step_of(path)
+   !> Steps below this fraction of the segment count as zero: the tolerance of the linear solver, but at most `least_tie`, since
+   !> the first events of a fine mesh are close to each other.
+   pure real(wp) function shortest_step(path)
       class(contact_path_type), intent(in) :: path
 
-      no_step_of = max(no_step, min(path%system%noise, tie))
-   end function no_step_of
+      shortest_step = max(zero_step, min(path%system%tolerance, least_tie))
+   end function shortest_step
 
-   !> `constraints`: as contact_path_type%settle_loads leaves them. `left`: what is left of the segment (of the drop: 1).
-   !> `drop`: whether excess tractions are let go at a fixed load. `round_off`: rates below this part of the largest are none.
-   !> `increment`: its storage is used again.
-   subroutine find_increment(path, constraints, left, drop, round_off, increment)
+   !> Find an increment. `constraints`: from contact_path_type%find_constraints. `left`: the rest of the segment (1 in a stress
+   !> drop). `relaxing`: whether over-stress relaxes at a fixed load. `rate_tolerance`: rates below this fraction of the largest
+   !> count as zero. `increment`: its storage is reused.
+   subroutine find_increment(path, constraints, left, relaxing, rate_tolerance, increment)
       class(contact_path_type), intent(inout) :: path
       type(constraints_type), intent(in) :: constraints
-      real(wp), intent(in) :: left, round_off
-      logical, intent(in) :: drop
+      real(wp), intent(in) :: left, rate_tolerance
+      logical, intent(in) :: relaxing
       type(increment_type), intent(inout) :: increment
 
       increment%step = 0.0_wp
@@ -70,57 +71,58 @@ contains
       increment%singular = .false.
       increment%diverges = .false.
       if (path%model%scene%method%stepping == stepping_nominal) then
-         call nominal_increment(path, constraints, min(left, path%model%scene%method%load_step), drop, round_off, increment)
+         call nominal_increment(path, constraints, min(left, path%model%scene%method%load_step), relaxing, rate_tolerance, &
+                                increment)
       else
          call path%system%solve(path%model, constraints, path%state%fields, increment%response, &
                                 increment%singular)
          if (increment%singular) return
-         call search(path, round_off, left, increment)
-         if (bends(path)) call follow_friction(path, constraints, left, drop, round_off, increment)
+         call search(path, rate_tolerance, left, increment)
+         if (depends_on_end(path)) call integrate_friction(path, constraints, left, relaxing, rate_tolerance, increment)
       end if
    end subroutine find_increment
 
-   !> Whether the line of some node's friction depends on where it leads.
-   logical function bends(path)
+   !> Whether the friction line of some node depends on the end of the increment.
+   logical function depends_on_end(path)
       class(contact_path_type), intent(in) :: path
       integer :: i
 
-      bends = .false.
+      depends_on_end = .false.
       if (.not. path%model%tangential) return
       associate (law => path%model%scene%friction%law)
          if (law%is_linear()) return
          do i = 1, size(path%state%status)
-            bends = law%bends(path%state%status(i), path%point(i, path%state%fields))
-            if (bends) return
+            depends_on_end = law%depends_on_end(path%state%status(i), path%point(i, path%state%fields))
+            if (depends_on_end) return
          end do
       end associate
-   end function bends
+   end function depends_on_end
 
-   !> Violations by the rates, and the step to the first of them but no further than `longest`.
-   subroutine search(path, round_off, longest, increment)
+   !> Violations from the rates, and the step to the first of them, at most `longest`.
+   subroutine search(path, rate_tolerance, longest, increment)
       class(contact_path_type), intent(in) :: path
-      real(wp), intent(in) :: round_off, longest
+      real(wp), intent(in) :: rate_tolerance, longest
       type(increment_type), intent(inout) :: increment
-      ! What nothing leads to is this far away, in units of the load parameter: twice as far is a number still.
+      ! A step that is never reached; twice its value does not overflow.
       real(wp), parameter :: never = 0.25_wp*huge(1.0_wp)
       type(friction_event_type), allocatable :: events(:, :)
       real(wp) :: first
 
       call path%find_events(path%state%fields%plus(longest, increment%response%rate), events)
       call find_violations(path%model, path%state%status, path%friction_limits(), events, path%state%fields, &
-                           increment%response%rate, max(round_off, path%system%noise), increment%violations)
+                           increment%response%rate, max(rate_tolerance, path%system%tolerance), increment%violations)
       first = min(minval(increment%violations%step), never)
       increment%step = min(first, longest)
-      increment%reach = first*(1.0_wp + tie_of(path)) + no_step_of(path)
-      increment%ends_in_event = first*(1.0_wp - tie_of(path)) - no_step_of(path) <= longest
+      increment%reach = first*(1.0_wp + tie_tolerance(path)) + shortest_step(path)
+      increment%ends_in_event = first*(1.0_wp - tie_tolerance(path)) - shortest_step(path) <= longest
    end subroutine search
 
-   !> Lead friction that is not linear over an increment with a controlled error, or explicitly.
-   subroutine follow_friction(path, constraints, left, drop, round_off, increment)
+   !> Integrate friction that is not linear over an increment, with a controlled error or explicitly.
+   subroutine integrate_friction(path, constraints, left, relaxing, rate_tolerance, increment)
       class(contact_path_type), intent(inout) :: path
       type(constraints_type), intent(in) :: constraints
-      real(wp), intent(in) :: left, round_off
-      logical, intent(in) :: drop
+      real(wp), intent(in) :: left, rate_tolerance
+      logical, intent(in) :: relaxing
       type(increment_type), intent(inout) :: increment
       integer, parameter :: most_attempts = 40
       real(wp), parameter :: safety = 0.9_wp, most_growth = 4.0_wp, least_shrink = 0.1_wp, first_trial = 1.0e-3_wp, &
@@ -133,19 +135,19 @@ contains
 
       if (path%model%scene%method%integration == integration_explicit .and. &
           .not. path%model%scene%friction%law%sticks()) then
-         call search(path, round_off, min(left, path%model%scene%method%load_step), increment)
+         call search(path, rate_tolerance, min(left, path%model%scene%method%load_step), increment)
          return
       end if
-      ! Of a node that has just touched, tangents know nothing: its part of the limit comes out of the increment itself.
+      ! The tangent is undefined at first contact; the traction follows from the increment itself.
       touched = any(creeps(path%state%status) .and. .not. path%state%fields%pressure > 0.0_wp)
-      if (increment%step <= no_step_of(path) .and. .not. touched) return
+      if (increment%step <= shortest_step(path) .and. .not. touched) return
       if (.not. path%trial > 0.0_wp) path%trial = first_trial
       tolerance = path%model%scene%method%friction_tolerance
       predicted = increment
       length = min(left, path%trial)
       do attempt = 1, most_attempts
          increment = predicted
-         call correct(path, constraints, length, drop, round_off, increment, agrees)
+         call correct(path, constraints, length, relaxing, rate_tolerance, increment, agrees)
          if (increment%singular) return
          guess = path%state%fields%plus(increment%step, predicted%response%rate)
          call guess_touching(path, guess)
@@ -159,23 +161,23 @@ contains
          length = length*max(change, least_shrink)
       end do
       increment%diverges = .not. accepted
-      if (increment%step <= no_step_of(path)) return
-      ! An increment that an event cut short says nothing against longer ones.
+      if (increment%step <= shortest_step(path)) return
+      ! An increment cut short by an event is no reason for a shorter next one.
       length = max(length, increment%step)*max(change, least_shrink)
       path%trial = max(length, merge(path%trial, 10*shortest, attempt == 1))
-   end subroutine follow_friction
+   end subroutine integrate_friction
 
-   !> Lines of friction that are right at the end of the increment; a violation on the way shortens it. `agrees`: whether they
-   !> could be found. The rates are those of the straight way to the end.
-   subroutine correct(path, constraints, length, drop, round_off, increment, agrees)
+   !> Friction lines that are right at the end of the increment; a violation shortens it. `agrees`: whether they were found. The
+   !> rates are those of the straight line from start to end.
+   subroutine correct(path, constraints, length, relaxing, rate_tolerance, increment, agrees)
       class(contact_path_type), intent(inout) :: path
       type(constraints_type), intent(in) :: constraints
-      real(wp), intent(in) :: length, round_off
-      logical, intent(in) :: drop
+      real(wp), intent(in) :: length, rate_tolerance
+      logical, intent(in) :: relaxing
       type(increment_type), intent(inout) :: increment
       logical, intent(out) :: agrees
       integer, parameter :: most_passes = 12
-      real(wp), parameter :: same_step = 1.0e-9_wp, noises = 10.0_wp
+      real(wp), parameter :: same_step = 1.0e-9_wp, tolerance_factor = 10.0_wp
       real(wp) :: same
       type(constraints_type) :: secants
       type(contact_fields_type) :: after
@@ -183,30 +185,30 @@ contains
       integer :: pass
 
       step = length
-      same = max(same_step, noises*path%system%noise)
+      same = max(same_step, tolerance_factor*path%system%tolerance)
       secants = constraints
       after = path%state%fields%plus(step, increment%response%rate)
       call guess_touching(path, after)
       do pass = 1, most_passes
-         call find_end(path, constraints, step, drop, after, agrees)
+         call find_end(path, constraints, step, relaxing, after, agrees)
          if (.not. agrees) return
-         call path%set_rows(secants, drop, after, straight=.true.)
+         call path%set_rows(secants, relaxing, after, secants=.true.)
          call path%system%solve(path%model, secants, path%state%fields, increment%response, increment%singular)
          if (increment%singular) return
-         call search(path, round_off, step, increment)
-         if (abs(increment%step - step) <= same*step + no_step_of(path) .or. increment%step <= no_step_of(path)) return
+         call search(path, rate_tolerance, step, increment)
+         if (abs(increment%step - step) <= same*step + shortest_step(path) .or. increment%step <= shortest_step(path)) return
          step = increment%step
          after = path%state%fields%plus(step, increment%response%rate)
       end do
       agrees = .false.
    end subroutine correct
 
-   !> Newton's iteration for the fields `after` a step; they come with a guess. `converges`: whether they were found.
-   subroutine find_end(path, constraints, step, drop, after, converges)
+   !> Newton's iteration for the fields `after` a step, which contain a first guess. `converges`: whether it converged.
+   subroutine find_end(path, constraints, step, relaxing, after, converges)
       class(contact_path_type), intent(inout) :: path
       type(constraints_type), intent(in) :: constraints
       real(wp), intent(in) :: step
-      logical, intent(in) :: drop
+      logical, intent(in) :: relaxing
       type(contact_fields_type), intent(inout) :: after
       logical, intent(out) :: converges
       integer, parameter :: most_iterations = 50
@@ -221,16 +223,16 @@ contains
       lines = constraints
       do iteration = 1, most_iterations
          before = after
-         call path%set_rows(lines, drop, after)
+         call path%set_rows(lines, relaxing, after)
          call path%system%solve(path%model, lines, path%state%fields, response, singular)
          if (singular) return
          after = response%state%plus(step, response%rate)
-         converges = difference(path, before, after, 0.0_wp) <= max(close_enough, path%system%noise)
+         converges = difference(path, before, after, 0.0_wp) <= max(close_enough, path%system%tolerance)
          if (converges) return
       end do
    end subroutine find_end
 
-   !> A guess for nodes that creep since they have just touched: half way to the friction limit at the most.
+   !> A guess for creeping nodes that have just touched: at most half the friction limit.
    subroutine guess_touching(path, fields)
       class(contact_path_type), intent(in) :: path
       type(contact_fields_type), intent(inout) :: fields
@@ -240,7 +242,7 @@ contains
          fields%shear = sign(min(abs(fields%shear), half*path%model%static_friction*max(fields%pressure, 0.0_wp)), fields%shear)
    end subroutine guess_touching
 
-   !> How much the tractions of two fields differ, in parts of the largest traction so far, there, or `elsewhere`.
+   !> Difference of the tractions of two fields, relative to the largest traction so far, of the second one, or `elsewhere`.
    pure real(wp) function difference(path, one, other, elsewhere)
       class(contact_path_type), intent(in) :: path
       type(contact_fields_type), intent(in) :: one, other
@@ -252,33 +254,33 @@ contains
       if (scale > 0.0_wp) difference = difference/scale
    end function difference
 
-   !> A nominal load step: a trial state, and the first violation on the way to it.
-   subroutine nominal_increment(path, constraints, length, drop, round_off, increment)
+   !> A nominal load step: a trial state, and the first violation on the line to it.
+   subroutine nominal_increment(path, constraints, length, relaxing, rate_tolerance, increment)
       class(contact_path_type), intent(inout) :: path
       type(constraints_type), intent(in) :: constraints
-      real(wp), intent(in) :: length, round_off
-      logical, intent(in) :: drop
+      real(wp), intent(in) :: length, rate_tolerance
+      logical, intent(in) :: relaxing
       type(increment_type), intent(inout) :: increment
       real(wp), parameter :: shortest = 1.0e-6_wp
       real(wp) :: trial
 
-      trial = merge(1.0_wp, length, drop)
+      trial = merge(1.0_wp, length, relaxing)
       call solve_trial(path, constraints, trial, increment)
       if (increment%singular) return
-      call search(path, round_off, trial, increment)
-      ! A slip rate is constant between events: bisection finds that a wrong direction is wrong from the start.
-      do while (increment%step <= no_step_of(path) .and. any(increment%violations%kind == event_stick) .and. &
+      call search(path, rate_tolerance, trial, increment)
+      ! Slip rates are constant between events: bisection shows whether a wrong direction is wrong from the start.
+      do while (increment%step <= shortest_step(path) .and. any(increment%violations%kind == event_stick) .and. &
                 trial > shortest*length)
          trial = 0.5_wp*trial
          call solve_trial(path, constraints, trial, increment)
          if (increment%singular) return
-         call search(path, round_off, trial, increment)
+         call search(path, rate_tolerance, trial, increment)
       end do
-      if (increment%step <= no_step_of(path) .or. .not. increment%ends_in_event) return
+      if (increment%step <= shortest_step(path) .or. .not. increment%ends_in_event) return
       if (increment%step < trial) call solve_trial(path, constraints, increment%step, increment)
    end subroutine nominal_increment
 
-   !> The state after a step with the statuses as they are; the rates are differences.
+   !> The state after a step at fixed statuses; the rates are differences.
    subroutine solve_trial(path, constraints, step, increment)
       class(contact_path_type), intent(inout) :: path
       type(constraints_type), intent(in) :: constraints
@@ -293,11 +295,11 @@ contains
          target%row(i)%offset = target%row(i)%offset + step*target%offset_rate(i)
       end do
       call path%system%solve(path%model, target, path%state%fields, increment%response, increment%singular)
-      if (.not. increment%singular) call lead_straight(path, increment%response%state, step, increment%response)
+      if (.not. increment%singular) call set_secant_rates(path, increment%response%state, step, increment%response)
    end subroutine solve_trial
 
-   !> The response that leads from the fields now straight to the fields `after` a step.
-   subroutine lead_straight(path, after, step, response)
+   !> Rates of the straight line from the present fields to the fields `after` a step.
+   subroutine set_secant_rates(path, after, step, response)
       class(contact_path_type), intent(in) :: path
       type(contact_fields_type), intent(in) :: after
       real(wp), intent(in) :: step
@@ -307,7 +309,7 @@ contains
       change = after%plus(-1.0_wp, path%state%fields)
       response%rate = scaled(change, 1.0_wp/step)
       response%state = path%state%fields
-   end subroutine lead_straight
+   end subroutine set_secant_rates
 
    !> The fields times a factor.
    pure function scaled(fields, factor) result(product)

@@ -1,11 +1,11 @@
-!> A state of a simulation, kept in memory to come back to: a host program tries a step and takes it back.
+!> A state of a simulation saved in memory: a host program tries a step and restores the state.
 !>
-!> What only grows along the way (history records, snapshots, cycles) is not copied: coming back drops what has come since. So a
-!> simulation that keeps any of these can come back only to states on the way that led to where it is now, which is told from a
-!> checksum of that way; one that keeps none of them can go to any state that was kept of its scene.
+!> History records, snapshots and cycles are not copied; those after the saved state are dropped when it is restored. A simulation
+!> with history or states can therefore only be restored to states of its own load history, identified by a checksum. A simulation
+!> without them can be restored to any saved state of its scene.
 module mfv_kept_state
    use, intrinsic :: iso_fortran_env, only: int64
-   use mfv_contact_path, only: kept_path_type
+   use mfv_contact_path, only: saved_path_type
    use mfv_cycle, only: cycle_type
    use mfv_error, only: error_type, set_error
    use mfv_simulation, only: history_none, position_type, simulation_type
@@ -16,12 +16,12 @@ module mfv_kept_state
 
    type :: kept_state_type
       private
-      type(kept_path_type) :: contact
+      type(saved_path_type) :: contact
       type(position_type) :: position
-      !> The last cycle, where there is no load history, and so only this one.
+      !> The last cycle, if there is no load history.
       type(cycle_type), allocatable :: last_cycle
-      integer(int64) :: scene = 0, trail = 0
-      logical :: is_kept = .false.
+      integer(int64) :: scene = 0, history_checksum = 0
+      logical :: is_saved = .false.
    contains
       procedure :: keep
       procedure :: come_back
@@ -29,40 +29,39 @@ module mfv_kept_state
 
 contains
 
-   !> Keep the present state of a simulation. `scene`: a checksum by which the scene is known.
+   !> Save the present state of a simulation. `scene`: checksum of its scene.
    subroutine keep(self, simulation, scene)
       class(kept_state_type), intent(inout) :: self
       type(simulation_type), intent(in) :: simulation
       integer(int64), intent(in) :: scene
 
-      call simulation%contact%keep(self%contact)
+      call simulation%contact%save_to(self%contact)
       self%position = simulation%position_type
       if (allocated(self%last_cycle)) deallocate (self%last_cycle)
       if (simulation%cycle_count > 0 .and. simulation%keep_history == history_none) self%last_cycle = simulation%cycles(1)
-      self%is_kept = .true.
+      self%is_saved = .true.
       self%scene = scene
-      self%trail = simulation%trail()
+      self%history_checksum = simulation%history_checksum()
    end subroutine keep
 
-   !> Bring a simulation back to the state. Error MFV_BAD_ARGUMENT: nothing was kept, the state is of another scene (see keep), or
-   !> it
-   !> is not on the way that led to the present one; the simulation is then as it was.
+   !> Restore the state of a simulation. Error MFV_BAD_ARGUMENT: nothing was saved, the state is of another scene, or it is not of
+   !> the load history so far; the simulation is then unchanged.
    subroutine come_back(self, simulation, scene, error)
       class(kept_state_type), intent(in) :: self
       type(simulation_type), intent(inout) :: simulation
       integer(int64), intent(in) :: scene
       type(error_type), allocatable, intent(out) :: error
 
-      if (.not. self%is_kept) then
-         call set_error(error, MFV_BAD_ARGUMENT, 'nothing has been kept in this state')
+      if (.not. self%is_saved) then
+         call set_error(error, MFV_BAD_ARGUMENT, 'no state has been saved; save one first')
       else if (scene /= self%scene) then
          call set_error(error, MFV_BAD_ARGUMENT, 'the state is of another scene')
-      else if (.not. simulation%came_through(self%position%way%steps, self%trail)) then
-         call set_error(error, MFV_BAD_ARGUMENT, 'the state is not on the way that led to the present one, of which history '// &
-                        "or states are kept; with &output history='none', states='none' any state can be gone to")
+      else if (.not. simulation%passed_through(self%position%load_summary%steps, self%history_checksum)) then
+         call set_error(error, MFV_BAD_ARGUMENT, 'the state is not part of the load history so far; set &output '// &
+                        "history='none', states='none' to restore any saved state")
       end if
       if (allocated(error)) return
-      call simulation%contact%come_back(self%contact)
+      call simulation%contact%restore(self%contact)
       simulation%position_type = self%position
       if (allocated(self%last_cycle) .and. simulation%keep_history == history_none) simulation%cycles = [self%last_cycle]
       if (allocated(simulation%estimate)) deallocate (simulation%estimate)

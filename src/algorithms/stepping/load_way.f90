@@ -1,34 +1,33 @@
-!> What closed forms need to know of the steps that were taken, folded up step by step: of one size however many there are.
+!> Summary of the steps taken, for closed forms; its size does not depend on their number.
 module mfv_load_way
    use mfv_kinds, only: wp
    use mfv_motions, only: motion_count, motion_approach, motion_shift, control_keep, control_force, control_displacement
    use mfv_scene, only: step_type
    implicit none
    private
-   public :: load_way_type
+   public :: load_summary_type
 
-   type :: load_way_type
+   type :: load_summary_type
       !> Steps taken, the last one perhaps not to its end.
       integer :: steps = 0
-      !> Which motions a step controlled, and whether one had cycles.
+      !> Which motions any step controlled, and whether any had cycles.
       logical :: controlled(motion_count) = .false., cycled = .false.
-      !> Pressed by forces only, ever harder, with friction from the start.
+      !> Whether only increasing normal forces were applied, with friction from the start.
       logical :: pressed_harder = .true.
-      !> Pressed without a tangential force, then sheared by forces alone with friction; whether shear has begun, and whether
-      !> friction
-      !> acted while it had not.
+      !> Whether the bodies were pressed without a tangential force, then sheared under force control with friction; whether shear
+      !> has begun; whether friction acted before.
       logical :: pressed_then_sheared = .true., sheared = .false., friction_in_press = .false.
       !> Last target of the normal force, force/length.
       real(wp), private :: normal_target = 0.0_wp
    contains
       procedure :: add
-   end type load_way_type
+   end type load_summary_type
 
 contains
 
-   !> One step more; its targets of what it keeps are zero.
+   !> Add a step.
    pure subroutine add(self, step)
-      class(load_way_type), intent(inout) :: self
+      class(load_summary_type), intent(inout) :: self
       type(step_type), intent(in) :: step
 
       self%steps = self%steps + 1

@@ -1,10 +1,10 @@
-!> The last resort where statuses cannot be settled one by one: the rates of all undecided nodes at once, as a linear
-!> complementarity problem, by Lemke's algorithm (Klarbring 1990; Cottle, Pang and Stone, The Linear Complementarity Problem,
-!> section 4.4). For Coulomb friction, and none.
+!> The rates of all undecided nodes at once, where changing statuses one by one fails: a linear complementarity problem, solved by
+!> Lemke's algorithm (Klarbring 1990; Cottle, Pang and Stone, The Linear Complementarity Problem, section 4.4). For Coulomb
+!> friction and without friction.
 !>
-!> Undecided are nodes that touch without pressure (they may part, stick or slip either way) and nodes at their friction
-!> limit (they may stick or go on slipping). With all of them stuck and in contact the system gives the rates of pressure and
-!> shear by given rates z of gap and slip; then w = q + M z, z >= 0, w >= 0, w z = 0 with
+!> Undecided are nodes that touch without pressure (they can open, stick or slip either way) and nodes at their friction limit
+!> (they can stick or continue to slip). With all of them stuck the system gives the rates of pressure and shear for given rates z
+!> of gap and slip; then w = q + M z, z >= 0, w >= 0, w z = 0 with
 !>
 !>     z = gap', v+, v- (slip to the right, to the left),    w = p', mu p' + tau', mu p' - tau'.
 module mfv_rate_problem
@@ -15,27 +15,27 @@ module mfv_rate_problem
    use mfv_node_status
    implicit none
    private
-   public :: settle_by_rates
+   public :: find_statuses_by_rates
 
-   !> What an unknown z is of which node: a gap, or slip to the right (1) or left (-1).
+   !> Type of an unknown z of a node: a gap, or slip to the right (1) or left (-1).
    integer, parameter :: opens = 0
 
 contains
 
-   !> Statuses with consistent rates for the loads of `constraints`, whose statuses do not count. `settled`: whether there are
-   !> any; the path's statuses are then these, and as they were otherwise.
-   subroutine settle_by_rates(path, constraints, settled)
+   !> Statuses with consistent rates for the loads of `constraints`; the statuses of these are ignored. `found`: whether there are
+   !> any; otherwise the statuses of `path` are unchanged.
+   subroutine find_statuses_by_rates(path, constraints, found)
       class(contact_path_type), intent(inout) :: path
       type(constraints_type), intent(in) :: constraints
-      logical, intent(out) :: settled
+      logical, intent(out) :: found
       type(constraints_type) :: base
       integer, allocatable :: node(:), sort(:)
       real(wp), allocatable :: matrix(:, :), constant(:), z(:)
       integer :: status(size(path%state%status)), i
       logical :: singular, mask(size(path%state%status))
 
-      settled = .false.
-      if (path%dropping()) return
+      found = .false.
+      if (path%has_over_stress()) return
       if (path%model%scene%friction%acts()) then
          if (.not. path%model%scene%friction%law%is_linear() .or. path%model%scene%friction%law%drops()) return
       end if
@@ -47,8 +47,8 @@ contains
       base%status(node) = merge(node_stick, node_frictionless, path%model%tangential)
       call influence(path, base, node, sort, matrix, constant, singular)
       if (singular) return
-      call lemke(matrix, constant, z, settled)
-      if (.not. settled) return
+      call lemke(matrix, constant, z, found)
+      if (.not. found) return
       status = base%status
       do i = 1, size(node)
          if (.not. z(i) > 0.0_wp) cycle
@@ -58,9 +58,9 @@ contains
       end do
       mask = status /= path%state%status
       call path%set_status(mask, status)
-   end subroutine settle_by_rates
+   end subroutine find_statuses_by_rates
 
-   !> The unknowns: node and sort of each.
+   !> The unknowns: node and type of each.
    subroutine find_undecided(path, node, sort)
       class(contact_path_type), intent(in) :: path
       integer, allocatable, intent(out) :: node(:), sort(:)
@@ -92,7 +92,7 @@ contains
       end do
    end subroutine find_undecided
 
-   !> M and q in units of the largest entries of their rows.
+   !> M and q, each scaled by its largest entry.
    subroutine influence(path, base, node, sort, matrix, constant, singular)
       class(contact_path_type), intent(inout) :: path
       type(constraints_type), intent(in) :: base
@@ -122,7 +122,7 @@ contains
 
    contains
 
-      !> w of the rates that the constraints determine.
+      !> w for the rates that the constraints determine.
       subroutine respond(constraints, w)
          type(constraints_type), intent(in) :: constraints
          real(wp), intent(out) :: w(:)
@@ -136,7 +136,8 @@ contains
       end subroutine respond
    end subroutine influence
 
-   !> z >= 0 with w = constant + matrix z >= 0 and w z = 0. `solved`: false where the algorithm ends on a ray or takes too long.
+   !> z >= 0 with w = constant + matrix z >= 0 and w z = 0. `solved`: false if the algorithm ends on a ray or takes too many
+   !> pivots.
    pure subroutine lemke(matrix, constant, z, solved)
       real(wp), intent(in) :: matrix(:, :), constant(:)
       real(wp), allocatable, intent(out) :: z(:)
@@ -149,7 +150,7 @@ contains
       allocate (z(m), source=0.0_wp)
       solved = all(constant >= -small)
       if (solved) return
-      ! Columns: w, z, the artificial variable, the right side; a little to every right side, so that no two rows are equal.
+      ! Columns: w, z, the artificial variable, the right side; small distinct perturbations of the right side avoid ties.
       tableau = 0.0_wp
       tableau(:, m + 1:2*m) = -matrix
       tableau(:, 2*m + 1) = -1.0_wp

@@ -1,4 +1,4 @@
-!> A scene led through its load history: steps, their reversals, the state at the end of each, and how it all ended.
+!> A scene and its run through the load history: steps, reversals, the state at the end of each, and the outcome.
 module mfv_simulation
    use, intrinsic :: ieee_arithmetic, only: ieee_quiet_nan, ieee_value
    use, intrinsic :: iso_fortran_env, only: int64, int8
@@ -9,18 +9,18 @@ module mfv_simulation
    use mfv_cycle, only: append_cycle, cycle_type, new_turning_point
    use mfv_error, only: error_type
    use mfv_contact_path, only: contact_path_type, new_contact_path, path_position_type, segment_type
-   use mfv_conventional, only: lead_conventionally
+   use mfv_conventional, only: apply_conventionally
    use mfv_error_bar, only: error_estimate_type
    use mfv_kinds, only: wp
-   use mfv_leap, only: lead_by_leaps
-   use mfv_load_way, only: load_way_type
+   use mfv_leap, only: apply_by_large_increments
+   use mfv_load_way, only: load_summary_type
    use mfv_motions, only: motion_count, control_keep, control_force, arm_unit
    use mfv_node_status, only: event_none, event_step_end, event_stopped
    use mfv_observer, only: observer_type
    use mfv_scene
    use mfv_slip_zones, only: leg_start_type, slip_record_type
    use mfv_status, only: MFV_COMPLETE
-   use mfv_straight, only: lead_straight
+   use mfv_straight, only: apply_directly
    use mfv_strings, only: to_text
    implicit none
    private
@@ -29,15 +29,15 @@ module mfv_simulation
    public :: states_reversals, states_steps, states_none
    public :: mark_loading, mark_reversal, mark_return, mark_cycle_start, mark_count
 
-   !> What the load history keeps: a record an event, a record a step end, nothing.
+   !> Records of the load history: one for every event, one for every step end, none.
    integer, parameter :: history_events = 1, history_steps = 2, history_none = 3
-   !> Of which states a snapshot is kept: at the ends of steps and of every reversal of a step with cycles, of steps alone, none.
+   !> Snapshots: at the ends of steps and of every reversal of a step with cycles, of steps alone, none.
    integer, parameter :: states_reversals = 1, states_steps = 2, states_none = 3
 
-   !> States that the last step with cycles leaves: where the step began, the far end of its last whole cycle, the end of that
-   !> (with `reversal` 0 while there is none: where the step began), and its start.
+   !> States stored for the last step with cycles: the start of the step, the reversal of its last complete cycle, the end of that
+   !> cycle (with `reversal` 0 before the first: the start of the step), and its start.
    integer, parameter :: mark_loading = 1, mark_reversal = 2, mark_return = 3, mark_cycle_start = 4
-   !> The far end of the cycle that is not whole yet; and how many marks there are.
+   !> The reversal of the incomplete cycle; and the number of marks.
    integer, parameter :: mark_pending = 5, mark_count = 5
 
    !> The state at the end of a step, or of one reversal of a step with cycles.
@@ -45,47 +45,45 @@ module mfv_simulation
       type(contact_state_type) :: state
       !> Number of the step, and of the reversal in it (1 for a step without cycles).
       integer :: step = 0, reversal = 0
-      !> Nodes added to the mesh at either end when it was taken.
+      !> Nodes added to the mesh at either end at that time.
       integer :: added = 0
    end type snapshot_type
 
-   !> Where a simulation stands, but for its contact and what only grows on the way.
+   !> State of a simulation, except for its contact and for what grows with the number of records.
    type :: position_type
-      !> Snapshots and cycles so far, see simulation_type; and whole cycles of all steps.
+      !> Numbers of snapshots and cycles so far, see simulation_type; and of complete cycles of all steps.
       integer :: snapshot_count = 0, cycle_count = 0, cycles_done = 0
-      !> See mark_loading and so on; `step` is 0 where there is none.
+      !> See mark_loading and so on; `step` is 0 if not set.
       type(snapshot_type) :: marks(mark_count)
-      !> How it ended (see mfv_status): MFV_COMPLETE while nothing has gone wrong, and why in words.
+      !> Outcome (see mfv_status): MFV_COMPLETE as long as no error has occurred; and its explanation.
       integer :: outcome = MFV_COMPLETE
       character(:), allocatable :: message
-      !> Step that could not be reached, 0 for none; and steps done.
+      !> Step that was not reached, 0 for none; and number of completed steps.
       integer :: failed_step = 0, steps_done = 0
-      !> The same of the steps of the scene alone, which other steps may come between.
+      !> The same for the steps of the scene only; other steps may come between them.
       integer :: failed_scene_step = 0, scene_steps_done = 0
-      !> What is known of the slip zones of all straight segments so far.
+      !> Slip zones of all segments so far.
       type(slip_record_type) :: slip
-      !> What is known of the steps that were taken, the last one perhaps not to its end.
-      type(load_way_type) :: way
-      !> What the loads control now.
+      !> Summary of the steps taken, the last one possibly incomplete.
+      type(load_summary_type) :: load_summary
+      !> The present controls and loads.
       type(load_type) :: load(motion_count) = initial_loads
    end type position_type
 
-   !> By how much the final state changes with all coefficients of friction times 1 + `perturbation` (see mfv_sensitivity).
+   !> Change of the final state if all coefficients of friction are multiplied by 1 + `perturbation` (see mfv_sensitivity).
    type :: sensitivity_type
-      !> How the perturbed run went (see mfv_status); and in words why there is nothing to compare, else empty.
+      !> Outcome of the perturbed run (see mfv_status); and why there is no comparison, else empty.
       integer :: status = 0
       character(:), allocatable :: message
       real(wp) :: perturbation = 1.0e-12_wp
-      !> The largest change of a pressure and of a shear traction, in parts of the largest traction; relative change of the
-      !> dissipation;
-      !> change of the stick ratio between nodes.
+      !> The largest change of a pressure and of a shear traction, relative to the largest traction; relative change of the
+      !> dissipation; change of the stick ratio between nodes.
       real(wp) :: pressure = 0.0_wp, shear = 0.0_wp, dissipation = 0.0_wp, stick_ratio = 0.0_wp
    end type sensitivity_type
 
-   !> The step that is being taken: where its loads lead and come from, its cycle, and the straight
-   !> part of it that is next or under way.
+   !> The current step: the loads at both of its ends, its cycle, and the next or current load segment.
    type :: leg_type
-      !> 0: no step is under way.
+      !> 0: no current step.
       integer :: number = 0
       type(load_type) :: there(motion_count), back(motion_count)
       type(cycle_type) :: cycle
@@ -93,9 +91,8 @@ module mfv_simulation
       type(leg_start_type) :: start
    end type leg_type
 
-   !> The start of a segment, from which an interrupted run continues: the contact, the records of the load history so far, the work
-   !> of the linear solver so far, the segment's number in its step, the nodes added to the mesh, and what is known of the slip
-   !> zones.
+   !> Complete restart state, taken at the start of a segment: the contact, the number of history records, the work of the linear
+   !> solver, the number of the segment in its step, the nodes added to the mesh, the slip zones and the loads.
    type :: restart_type
       type(path_position_type) :: path
       integer :: records = 0, solves = 0, leg = 1, added = 0
@@ -106,22 +103,23 @@ module mfv_simulation
 
    type, extends(position_type) :: simulation_type
       type(contact_path_type) :: contact
-      !> States at the end of every step and reversal so far: the first `snapshot_count` entries are in use.
+      !> States at the end of every step and reversal so far; the first `snapshot_count` entries are in use.
       type(snapshot_type), allocatable :: snapshots(:)
-      !> Whole cycles so far, the first `cycle_count` entries in use; without a load history the last one only.
+      !> Complete cycles so far, the first `cycle_count` entries are in use; without a load history only the last cycle.
       type(cycle_type), allocatable :: cycles(:)
       integer :: keep_history = history_events
       !> See states_reversals and so on.
       integer :: keep_states = states_reversals
-      !> Checksums of the way up to the end of every step taken, where something is kept of it; the first `way%steps` are in use.
-      integer(int64), allocatable, private :: trails(:)
-      !> The discretisation error of the present state, where it has been estimated (see mfv_discretisation_error).
+      !> Checksums of the load history up to the end of every step, if history or states are kept; the first `load_summary%steps`
+      !> are in use.
+      integer(int64), allocatable, private :: history_checksums(:)
+      !> The discretisation error of the present state, if estimated (see mfv_discretisation_error).
       type(error_estimate_type), allocatable :: estimate
-      !> How much the present state depends on round-off, where that has been found out (see mfv_sensitivity).
+      !> The sensitivity of the present state to round-off, if computed (see mfv_sensitivity).
       type(sensitivity_type), allocatable :: sensitivity
-      !> The step under way.
+      !> The current step.
       type(leg_type) :: leg
-      !> Whether the start of each segment is kept in `restart`.
+      !> Whether the start of each segment is stored in `restart`.
       logical :: keep_restart = .false.
       type(restart_type) :: restart
    contains
@@ -131,27 +129,27 @@ module mfv_simulation
       procedure :: run_segment
       procedure :: note_restart
       procedure :: resume
-      procedure :: trail
-      procedure :: came_through
+      procedure :: history_checksum
+      procedure :: passed_through
       procedure :: padded_state
       procedure :: padded
       procedure, private :: advance_segment
-      procedure, private :: lead_to
+      procedure, private :: apply_leg
       procedure, private :: begin_segment
       procedure, private :: take_snapshot
       procedure, private :: begin_cycles
-      procedure, private :: end_of_leg
+      procedure, private :: complete_leg
       procedure, private :: set_mark
       procedure, private :: change_since
-      procedure, private :: note_trail
+      procedure, private :: note_history_checksum
       procedure, private :: begin_step
       procedure, private :: end_step_early
    end type simulation_type
 
 contains
 
-   !> A simulation of a valid scene, at its start. `keep_history`: history_events, history_steps or history_none.
-   !> `keep_states`: states_reversals (unless told), states_steps or states_none.
+   !> A simulation of a valid scene, at its start. `keep_history`: history_events, history_steps or history_none. `keep_states`:
+   !> states_reversals (default), states_steps or states_none.
    function new_simulation(scene, keep_history, keep_states) result(self)
       type(scene_type), intent(in) :: scene
       integer, intent(in) :: keep_history
@@ -166,7 +164,7 @@ contains
       if (keep_history /= history_none) call self%contact%record(event_none, 0, 0, 0)
    end function new_simulation
 
-   !> Run the steps of the scene that have not been run yet. The outcome is in the object; `observer` watches.
+   !> Run the remaining steps of the scene; the outcome is stored in the object.
    subroutine run(self, observer)
       class(simulation_type), intent(inout) :: self
       class(observer_type), intent(inout), optional :: observer
@@ -176,14 +174,14 @@ contains
       end do
    end subroutine run
 
-   !> Whether steps of the scene are left, and nothing has gone wrong.
+   !> Whether steps of the scene are left and no error has occurred.
    pure logical function has_segments_left(self)
       class(simulation_type), intent(in) :: self
 
       has_segments_left = self%outcome == MFV_COMPLETE .and. self%scene_steps_done < size(self%contact%model%scene%steps)
    end function has_segments_left
 
-   !> Run the next segment of the scene's steps: a step, or one way of a cycle.
+   !> Run the next segment of the steps of the scene: a step, or half a cycle.
    subroutine run_segment(self, observer)
       class(simulation_type), intent(inout) :: self
       class(observer_type), intent(inout), optional :: observer
@@ -200,14 +198,14 @@ contains
       end if
    end subroutine run_segment
 
-   !> Straight parts of the load history in a step: one, or there and back for every cycle.
+   !> Load segments of a step: one, or two for every cycle.
    elemental integer function reversals(step)
       type(step_type), intent(in) :: step
 
       reversals = max(1, 2*step%cycles)
    end function reversals
 
-   !> Apply the loads of one more step, from the present state.
+   !> Apply the loads of another step, from the present state.
    subroutine advance(self, step, observer)
       class(simulation_type), intent(inout) :: self
       type(step_type), intent(in) :: step
@@ -219,8 +217,8 @@ contains
       end do
    end subroutine advance
 
-   !> Apply the loads of the next segment of a step; it is done when leg%number is 0. `before`, `segments`: for progress, how many
-   !> segments there are before this step, and how many in all.
+   !> Apply the loads of the next segment of a step; the step is complete when leg%number is 0. `before`, `segments`: number of
+   !> segments before this step and of all segments, for progress.
    subroutine advance_segment(self, step, before, segments, observer)
       class(simulation_type), intent(inout) :: self
       type(step_type), intent(in) :: step
@@ -233,14 +231,14 @@ contains
       if (allocated(self%sensitivity)) deallocate (self%sensitivity)
       if (self%keep_restart) call self%note_restart()
       if (self%leg%number == 0) call self%begin_step(step)
-      call self%lead_to(step, before, segments, observer, error)
+      call self%apply_leg(step, before, segments, observer, error)
       if (allocated(error)) then
          call self%end_step_early(step, error)
          return
       end if
       associate (i => self%leg%number)
          is_last = i == reversals(step)
-         if (step%cycles > 0) call self%end_of_leg(i, self%leg%cycle)
+         if (step%cycles > 0) call self%complete_leg(i, self%leg%cycle)
          if (mod(i, 2) == 0 .and. i > 2 .and. step%steady_tolerance > 0.0_wp) &
             is_last = is_last .or. self%leg%cycle%change <= step%steady_tolerance
          if (is_last .and. self%keep_states /= states_none .or. self%keep_states == states_reversals) &
@@ -250,7 +248,7 @@ contains
       if (is_last) call end_step(self, step)
    end subroutine advance_segment
 
-   !> A step has reached its end.
+   !> Complete a step.
    subroutine end_step(self, step)
       class(simulation_type), intent(inout) :: self
       type(step_type), intent(in) :: step
@@ -262,10 +260,10 @@ contains
       self%message = 'step '//to_text(self%steps_done)//' was reached'
       if (step%cycles > cycles) self%message = self%message//', steady after '//to_text(cycles)//' of '// &
                                                to_text(step%cycles)//' cycles'
-      call self%note_trail(step)
+      call self%note_history_checksum(step)
    end subroutine end_step
 
-   !> Keep what it takes to continue from here, the start of a segment.
+   !> Store the restart state at the start of a segment.
    subroutine note_restart(self)
       class(simulation_type), intent(inout) :: self
 
@@ -282,9 +280,8 @@ contains
       end associate
    end subroutine note_restart
 
-   !> Continue from `restart`, which another run of the scene has kept; snapshots, cycles, marks, history and the numbers of
-   !> position_type
-   !> are those of that run already. The linear solver starts anew.
+   !> Continue from `restart`, which another run of the scene has stored. Snapshots, cycles, marks, history and the components of
+   !> position_type are those of that run already. The linear solver starts without history.
    subroutine resume(self)
       class(simulation_type), intent(inout) :: self
       integer :: i
@@ -298,32 +295,32 @@ contains
          self%load = r%load
          self%steps_done = self%scene_steps_done
          do i = 1, self%scene_steps_done
-            call self%way%add(steps(i))
-            call self%note_trail(steps(i))
+            call self%load_summary%add(steps(i))
+            call self%note_history_checksum(steps(i))
          end do
          if (self%scene_steps_done > 0) self%message = 'step '//to_text(self%scene_steps_done)//' was reached'
          if (r%leg > 1) call continue_step(self, steps(self%scene_steps_done + 1), r%leg)
       end associate
    end subroutine resume
 
-   !> The step in which a run was interrupted goes on with segment `leg`; its cycles began at mark_loading.
+   !> Continue an interrupted step with segment `leg`; its cycles began at mark_loading.
    subroutine continue_step(self, step, leg)
       class(simulation_type), intent(inout) :: self
       type(step_type), intent(in) :: step
       integer, intent(in) :: leg
 
-      call self%way%add(step)
+      call self%load_summary%add(step)
       self%leg%number = leg
       call set_ends(self, step, self%marks(mark_loading)%state)
    end subroutine continue_step
 
-   !> A step begins at the present state.
+   !> Begin a step at the present state.
    subroutine begin_step(self, step)
       class(simulation_type), intent(inout) :: self
       type(step_type), intent(in) :: step
       integer :: i
 
-      call self%way%add(step)
+      call self%load_summary%add(step)
       self%leg%number = 1
       do i = 1, motion_count
          if (step%control(i) /= control_keep) call self%contact%begin_motion(i)
@@ -332,7 +329,7 @@ contains
       if (step%cycles > 0) call self%begin_cycles(self%leg%cycle)
    end subroutine begin_step
 
-   !> The loads at both ends of a step that begins at a state: its targets, and where its cycles return to.
+   !> The loads at both ends of a step that begins at the state `start`: its targets, and the loads to which its cycles return.
    subroutine set_ends(self, step, start)
       class(simulation_type), intent(inout) :: self
       type(step_type), intent(in) :: step
@@ -342,7 +339,7 @@ contains
       self%leg%back = start_of(start%fields%force, start%fields%motion, self%leg%there)
    end subroutine set_ends
 
-   !> The step cannot be led to its end, and why.
+   !> End a step early with an error.
    subroutine end_step_early(self, step, error)
       class(simulation_type), intent(inout) :: self
       type(step_type), intent(in) :: step
@@ -352,11 +349,11 @@ contains
       self%outcome = error%status
       self%message = error%message
       self%failed_step = self%steps_done + 1
-      call self%note_trail(step)
+      call self%note_history_checksum(step)
    end subroutine end_step_early
 
-   !> Add the step that has just been taken to the checksum of the way: what it was to do, and where it led.
-   subroutine note_trail(self, step)
+   !> Add a completed step to the checksum of the load history: its controls and targets, and its final state.
+   subroutine note_history_checksum(self, step)
       class(simulation_type), intent(inout) :: self
       type(step_type), intent(in) :: step
       integer, parameter :: first_capacity = 16
@@ -365,44 +362,46 @@ contains
       integer(int8) :: mold(1)
 
       if (self%keep_history == history_none .and. self%keep_states == states_none) return
-      if (.not. allocated(self%trails)) allocate (self%trails(first_capacity), source=0_int64)
-      if (self%way%steps > size(self%trails)) then
-         allocate (longer(2*self%way%steps), source=0_int64)
-         longer(:size(self%trails)) = self%trails
-         call move_alloc(longer, self%trails)
+      if (.not. allocated(self%history_checksums)) allocate (self%history_checksums(first_capacity), source=0_int64)
+      if (self%load_summary%steps > size(self%history_checksums)) then
+         allocate (longer(2*self%load_summary%steps), source=0_int64)
+         longer(:size(self%history_checksums)) = self%history_checksums
+         call move_alloc(longer, self%history_checksums)
       end if
       checksum = 0
-      if (self%way%steps > 1) checksum = self%trails(self%way%steps - 1)
+      if (self%load_summary%steps > 1) checksum = self%history_checksums(self%load_summary%steps - 1)
       call add_to_checksum(transfer([step%control, step%cycles, &
                                      merge(1, 0, step%friction), self%contact%events], mold), checksum)
       associate (f => self%contact%state%fields)
          call add_to_checksum(transfer([step%target, step%steady_tolerance, f%force, f%motion, self%contact%state%dissipation], &
                                        mold), checksum)
       end associate
-      self%trails(self%way%steps) = checksum
-   end subroutine note_trail
+      self%history_checksums(self%load_summary%steps) = checksum
+   end subroutine note_history_checksum
 
-   !> The checksum of the way up to now; 0 at its start, and where nothing is kept of it.
-   pure integer(int64) function trail(self)
+   !> The checksum of the load history so far; 0 at the start, and if neither history nor states are kept.
+   pure integer(int64) function history_checksum(self)
       class(simulation_type), intent(in) :: self
 
-      trail = 0
-      if (allocated(self%trails) .and. self%way%steps > 0) trail = self%trails(self%way%steps)
-   end function trail
+      history_checksum = 0
+      if (allocated(self%history_checksums) .and. self%load_summary%steps > 0) &
+         history_checksum = self%history_checksums(self%load_summary%steps)
+   end function history_checksum
 
-   !> Whether the way up to now led through a state after so many steps with this trail; where nothing is kept of it, through any.
-   pure logical function came_through(self, steps, trail)
+   !> Whether the load history passed through a state after `steps` steps with this checksum; true if neither history nor states
+   !> are kept.
+   pure logical function passed_through(self, steps, history_checksum)
       class(simulation_type), intent(in) :: self
       integer, intent(in) :: steps
-      integer(int64), intent(in) :: trail
+      integer(int64), intent(in) :: history_checksum
 
-      came_through = self%keep_history == history_none .and. self%keep_states == states_none
-      if (came_through) return
-      came_through = steps <= self%way%steps
-      if (came_through .and. steps > 0) came_through = self%trails(steps) == trail
-   end function came_through
+      passed_through = self%keep_history == history_none .and. self%keep_states == states_none
+      if (passed_through) return
+      passed_through = steps <= self%load_summary%steps
+      if (passed_through .and. steps > 0) passed_through = self%history_checksums(steps) == history_checksum
+   end function passed_through
 
-   !> The cycles of a step begin from the present state.
+   !> Begin the cycles of a step at the present state.
    subroutine begin_cycles(self, cycle)
       class(simulation_type), intent(inout) :: self
       type(cycle_type), intent(out) :: cycle
@@ -419,9 +418,8 @@ contains
       call self%set_mark(mark_return, 0)
    end subroutine begin_cycles
 
-   !> Leg `leg` of the cycles is done: there where it is odd, back where it is even. Keep the states and, after a whole cycle,
-   !> the cycle.
-   subroutine end_of_leg(self, leg, cycle)
+   !> Complete leg `leg` of the cycles: loading if odd, return if even. Store the states and, after a complete cycle, the cycle.
+   subroutine complete_leg(self, leg, cycle)
       class(simulation_type), intent(inout) :: self
       integer, intent(in) :: leg
       type(cycle_type), intent(inout) :: cycle
@@ -445,9 +443,9 @@ contains
       if (cycle%number == 1) cycle%first_dissipation = cycle%dissipation()
       if (cycle%number == 1) cycle%first_slip = cycle%slip()
       call append_cycle(self%cycles, self%cycle_count, cycle, self%keep_history == history_none)
-   end subroutine end_of_leg
+   end subroutine complete_leg
 
-   !> Largest change of a traction since the state `before`, on the same mesh, in parts of the largest traction so far.
+   !> Largest change of a traction since the state `before` on the same mesh, relative to the largest traction so far.
    pure real(wp) function change_since(self, before)
       class(simulation_type), intent(in) :: self
       type(contact_state_type), intent(in) :: before
@@ -461,7 +459,7 @@ contains
       end associate
    end function change_since
 
-   !> Keep the present state as mark `mark`.
+   !> Store the present state as mark `mark`.
    subroutine set_mark(self, mark, reversal)
       class(simulation_type), intent(inout) :: self
       integer, intent(in) :: mark, reversal
@@ -472,7 +470,7 @@ contains
       self%marks(mark)%added = self%contact%model%added
    end subroutine set_mark
 
-   !> The load that a step leads to: `value` is its target; an absent one stays as it is.
+   !> The load at the end of a step: `value` is its target; a load that the step does not control is unchanged.
    elemental type(load_type) function target_of(load, control, value)
       type(load_type), intent(in) :: load
       integer, intent(in) :: control
@@ -482,7 +480,7 @@ contains
       if (control /= control_keep) target_of = load_type(control, value)
    end function target_of
 
-   !> The same load with the value that it has where the force and the motion are these.
+   !> The same control with the present value of its force or motion.
    elemental type(load_type) function start_of(force, motion, load)
       real(wp), intent(in) :: force, motion
       type(load_type), intent(in) :: load
@@ -490,8 +488,8 @@ contains
       start_of = load_type(load%control, merge(force, motion, load%control == control_force))
    end function start_of
 
-   !> Apply the loads of the leg, straight to where it goes.
-   subroutine lead_to(self, step, before, segments, observer, error)
+   !> Apply the loads of the current leg.
+   subroutine apply_leg(self, step, before, segments, observer, error)
       class(simulation_type), intent(inout) :: self
       type(step_type), intent(in) :: step
       integer, intent(in) :: before, segments
@@ -503,22 +501,22 @@ contains
       call self%begin_segment(targets, step, before, segments)
       associate (method => self%contact%model%scene%method)
          if (method%algorithm == algorithm_conventional) then
-            call lead_conventionally(self%contact, self%leg%segment, observer, error)
+            call apply_conventionally(self%contact, self%leg%segment, observer, error)
          else if (method%stepping == stepping_leap) then
-            call lead_by_leaps(self%contact, self%leg%segment, observer, error)
+            call apply_by_large_increments(self%contact, self%leg%segment, observer, error)
          else
-            call lead_straight(self%contact, self%leg%segment, observer, error)
+            call apply_directly(self%contact, self%leg%segment, observer, error)
          end if
       end associate
       call self%slip%add_leg(self%contact%model, self%leg%start, self%contact%state, self%contact%slip_zone_nodes, &
-                             self%contact%system%noise)
+                             self%contact%system%tolerance)
       self%load%control = targets%control
       self%load%value = targets%value
       if (self%keep_history /= history_none) &
          call self%contact%record(merge(event_stopped, event_step_end, allocated(error)), 0, 0, self%leg%segment%step)
-   end subroutine lead_to
+   end subroutine apply_leg
 
-   !> The segment from the present state to `targets`.
+   !> The load segment from the present state to `targets`.
    subroutine begin_segment(self, targets, step, before, segments)
       class(simulation_type), intent(inout) :: self
       type(load_type), intent(in) :: targets(motion_count)
@@ -538,11 +536,11 @@ contains
       associate (state => self%contact%state)
          self%leg%start = leg_start_type(state%dissipation, state%fields%force, state%fields%shear)
       end associate
-      call self%contact%await_increment()
+      call self%contact%reset_first_stiffness()
    end subroutine begin_segment
 
-   !> From the load `start` to `goal`, at a rate per segment. A change of a force that is round-off of the largest one so far,
-   !> `scale`, is none: what it would do to bodies just apart is noise.
+   !> The load from `start` to `goal`, with its rate per segment. A change of force within round-off of the largest force so far,
+   !> `scale`, counts as zero.
    elemental type(load_type) function load_towards(start, goal, scale)
       type(load_type), intent(in) :: start, goal
       real(wp), intent(in) :: scale
@@ -574,7 +572,7 @@ contains
       state = self%padded(self%snapshots(number))
    end function padded_state
 
-   !> The state of a snapshot on the mesh as it is now: when the mesh has grown since, with its new nodes.
+   !> The state of a snapshot on the present mesh, with the nodes added since.
    function padded(self, snapshot) result(state)
       class(simulation_type), intent(in) :: self
       type(snapshot_type), intent(in) :: snapshot

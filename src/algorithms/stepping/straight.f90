@@ -1,14 +1,14 @@
-!> Segments in which no friction can act need no history: their end depends on the loads alone. They are led there at once, by
-!> the active set (mfv_active_set), and to where the bodies part, or wherever that does not succeed, by events. All others go by
-!> events.
+!> Load segments without friction depend on the final loads alone. They are applied in one large increment with the active set
+!> method (mfv_active_set). The method of events takes over where the bodies separate, and where no solution is found. Segments
+!> with friction are applied by events.
 module mfv_straight
-   use mfv_active_set, only: first_guess, settle_at
+   use mfv_active_set, only: first_guess, find_statuses
    use mfv_contact_fields, only: contact_fields_type
    use mfv_contact_path
    use mfv_contact_state, only: contact_state_type
    use mfv_contact_system, only: load_type
    use mfv_error, only: error_type
-   use mfv_first_violation, only: failed_certificate, lead_by_violations, noises
+   use mfv_first_violation, only: failed_certificate, apply_by_violations, tolerance_factor
    use mfv_kinds, only: wp
    use mfv_motions, only: motion_approach, control_force
    use mfv_node_status
@@ -17,146 +17,145 @@ module mfv_straight
    use mfv_strings, only: to_text
    implicit none
    private
-   public :: lead_straight, settle_on_mesh, grow_mesh, before_separation, carries_nothing_yet, &
-             close_leap, part_of
+   public :: apply_directly, find_statuses_on_mesh, grow_mesh, before_separation, lacks_support, &
+             finish_large_increment, subsegment
 
 contains
 
-   !> Apply the loads of one segment, straight to its end where no friction can act, else by violations. `observer` is notified of
-   !> the end, or of every increment. Errors: those of mfv_first_violation.
-   subroutine lead_straight(path, segment, observer, error)
+   !> Apply the loads of a segment: at once if friction does not act, else by violations. `observer` is notified of the end or of
+   !> every increment. Errors: those of mfv_first_violation.
+   subroutine apply_directly(path, segment, observer, error)
       class(contact_path_type), intent(inout) :: path
       type(segment_type), intent(in) :: segment
       class(observer_type), intent(inout), optional :: observer
       type(error_type), allocatable, intent(out) :: error
       type(contact_fields_type) :: fields
-      real(wp) :: part
-      logical :: settled, friction
+      real(wp) :: fraction
+      logical :: found, friction
 
       friction = segment%friction .and. path%model%scene%friction%acts()
       if (friction .or. path%model%scene%method%stepping == stepping_nominal) then
-         call lead_by_violations(path, segment, observer, error)
+         call apply_by_violations(path, segment, observer, error)
          return
       end if
       call path%start_segment(segment, error)
       if (allocated(error)) return
-      part = before_separation(segment)
-      if (carries_nothing_yet(path, segment)) part = 0.0_wp
-      settled = .false.
-      if (part > 0.0_wp) call settle_and_grow(path, segment, part, fields, settled)
-      if (.not. settled) part = 0.0_wp
-      if (settled) then
+      fraction = before_separation(segment)
+      if (lacks_support(path, segment)) fraction = 0.0_wp
+      found = .false.
+      if (fraction > 0.0_wp) call find_statuses_and_grow(path, segment, fraction, fields, found)
+      if (.not. found) fraction = 0.0_wp
+      if (found) then
          call path%take_increment(fields, fields%slip() - path%state%fields%slip(), 0.0_wp, &
                                   friction_work=0.0_wp*fields%shear)
-         call close_leap(path, segment, part, observer, error)
-         if (allocated(error) .or. .not. part < 1.0_wp) return
+         call finish_large_increment(path, segment, fraction, observer, error)
+         if (allocated(error) .or. .not. fraction < 1.0_wp) return
       end if
-      call lead_by_violations(path, part_of(segment, part, 1.0_wp), observer, error)
-   end subroutine lead_straight
+      call apply_by_violations(path, subsegment(segment, fraction, 1.0_wp), observer, error)
+   end subroutine apply_directly
 
-   !> After large increments to the part `part` of the segment: check the certificate, and notify the observer.
-   !> Errors MFV_NO_CONTINUATION: the certificate fails by far; MFV_INTERRUPTED.
-   subroutine close_leap(path, segment, part, observer, error)
+   !> After large increments to the fraction `fraction` of the segment: check the certificate and notify the observer.
+   !> Errors MFV_NO_CONTINUATION: the certificate is far too large; MFV_INTERRUPTED.
+   subroutine finish_large_increment(path, segment, fraction, observer, error)
       class(contact_path_type), intent(in) :: path
       type(segment_type), intent(in) :: segment
-      real(wp), intent(in) :: part
+      real(wp), intent(in) :: fraction
       class(observer_type), intent(inout), optional :: observer
       type(error_type), allocatable, intent(out) :: error
 
-      if (path%certificate%largest() > max(failed_certificate, noises*path%system%noise)) &
+      if (path%certificate%largest() > max(failed_certificate, tolerance_factor*path%system%tolerance)) &
          call path%no_continuation('the equations are no longer satisfied (certificate '// &
                                    to_text(path%certificate%largest())//')', error)
-      if (.not. allocated(error)) call path%notify(segment, part, observer, error)
-   end subroutine close_leap
+      if (.not. allocated(error)) call path%notify(segment, fraction, observer, error)
+   end subroutine finish_large_increment
 
-   !> Statuses and fields at a part of the segment, on a mesh that grows with the contact where it may. `settled`: whether they
-   !> were found; the statuses are as they were otherwise. The fields of `path` stay those of the start.
-   subroutine settle_and_grow(path, segment, part, fields, settled)
+   !> Statuses and fields at a fraction of the segment, on a mesh that may grow with the contact. `found`: whether there are any;
+   !> otherwise the statuses are unchanged. The fields of `path` remain those of the start.
+   subroutine find_statuses_and_grow(path, segment, fraction, fields, found)
       class(contact_path_type), intent(inout) :: path
       type(segment_type), intent(in) :: segment
-      real(wp), intent(in) :: part
+      real(wp), intent(in) :: fraction
       type(contact_fields_type), intent(out) :: fields
-      logical, intent(out) :: settled
+      logical, intent(out) :: found
       type(contact_state_type) :: start
       logical :: exceeded, grown
 
       do
          start = path%state
-         call settle_on_mesh(path, segment, part, fields, settled, exceeded)
-         if (settled) return
+         call find_statuses_on_mesh(path, segment, fraction, fields, found, exceeded)
+         if (found) return
          path%state = start
          if (.not. exceeded) return
          call grow_mesh(path, grown)
          if (.not. grown) return
       end do
-   end subroutine settle_and_grow
+   end subroutine find_statuses_and_grow
 
-   !> Statuses and fields at a part of the segment. The statuses of `path` are the first guess; where nothing is in contact
-   !> there is another. `settled`: whether they were found, on this mesh; if not, the statuses are of no use, and `exceeded`
-   !> tells whether only the mesh is too short. The fields of `path` stay those of the start.
-   subroutine settle_on_mesh(path, segment, part, fields, settled, exceeded)
+   !> Statuses and fields at a fraction of the segment, on the present mesh. The first guess is the statuses of `path`, or an
+   !> estimate if nothing is in contact. `found`: whether there are any; if not, the statuses are invalid. `exceeded`: whether only
+   !> the mesh is too short. The fields of `path` remain those of the start.
+   subroutine find_statuses_on_mesh(path, segment, fraction, fields, found, exceeded)
       class(contact_path_type), intent(inout) :: path
       type(segment_type), intent(in) :: segment
-      real(wp), intent(in) :: part
+      real(wp), intent(in) :: fraction
       type(contact_fields_type), intent(out) :: fields
-      logical, intent(out) :: settled, exceeded
+      logical, intent(out) :: found, exceeded
 
-      call guess_contact(path, segment, part)
-      call settle_at(path, segment, part, fields, settled)
-      exceeded = settled
-      if (settled) exceeded = path%model%reaches_end(in_contact(path%state%status))
-      settled = settled .and. .not. exceeded
-   end subroutine settle_on_mesh
+      call guess_contact(path, segment, fraction)
+      call find_statuses(path, segment, fraction, fields, found)
+      exceeded = found
+      if (found) exceeded = path%model%reaches_end(in_contact(path%state%status))
+      found = found .and. .not. exceeded
+   end subroutine find_statuses_on_mesh
 
-   !> Lengthen the mesh, if it may grow. `grown`: whether it did.
+   !> Lengthen the mesh if it may grow. `grown`: whether it did.
    subroutine grow_mesh(path, grown)
       class(contact_path_type), intent(inout) :: path
       logical, intent(out) :: grown
-      type(moment_type) :: moment
+      type(iteration_type) :: iteration
 
       grown = path%model%growing .and. path%model%spare_nodes() > 0
-      if (grown) call path%widen(moment)
+      if (grown) call path%widen(iteration)
    end subroutine grow_mesh
 
-   !> A first guess of the contact where there is none.
-   subroutine guess_contact(path, segment, part)
+   !> A first guess of the contact if there is none.
+   subroutine guess_contact(path, segment, fraction)
       class(contact_path_type), intent(inout) :: path
       type(segment_type), intent(in) :: segment
-      real(wp), intent(in) :: part
+      real(wp), intent(in) :: fraction
       logical :: contact(size(path%state%status))
       integer :: status(size(path%state%status))
 
       if (any(in_contact(path%state%status))) return
-      call first_guess(path, segment, part, contact)
+      call first_guess(path, segment, fraction, contact)
       status = node_frictionless
       if (segment%friction .and. path%model%tangential) status = node_stick
       call path%set_status(contact, status)
    end subroutine guess_contact
 
-   !> How far along the segment the bodies are certainly pressed together: the whole of it unless the normal force falls to
-   !> zero, then up to where little of it is left. (At zero the pressures of any contact are zero.)
-   pure real(wp) function before_separation(segment) result(part)
+   !> The fraction of the segment up to which the bodies are certainly in contact: all of it unless the normal force decreases to
+   !> zero, then up to a small rest. (At zero force the pressures of any contact are zero.)
+   pure real(wp) function before_separation(segment) result(fraction)
       type(segment_type), intent(in) :: segment
       real(wp), parameter :: nothing = 1.0e-9_wp, little = 1.0e-4_wp
 
-      part = 1.0_wp
+      fraction = 1.0_wp
       if (segment%load(motion_approach)%control /= control_force) return
       associate (start => segment%load(motion_approach)%value, change => segment%load(motion_approach)%rate)
          if (start + change > nothing*abs(start) .and. start + change > 0.0_wp) return
-         part = 0.0_wp
-         if (start > 0.0_wp) part = (1.0_wp - little)*start/(-change)
+         fraction = 0.0_wp
+         if (start > 0.0_wp) fraction = (1.0_wp - little)*start/(-change)
       end associate
    end function before_separation
 
-   !> Whether a force other than the normal one begins to act while the bodies are apart and only draw near: it has nothing to
-   !> carry it until they touch.
-   pure logical function carries_nothing_yet(path, segment)
+   !> Whether a force other than the normal one acts while the bodies approach without contact, so that nothing balances it yet.
+   pure logical function lacks_support(path, segment)
       class(contact_path_type), intent(in) :: path
       type(segment_type), intent(in) :: segment
 
-      carries_nothing_yet = .false.
+      lacks_support = .false.
       if (segment%load(motion_approach)%control == control_force .or. any(in_contact(path%state%status))) return
-      carries_nothing_yet = any(path%model%moves .and. acts(segment%load))
+      lacks_support = any(path%model%moves .and. acts(segment%load))
 
    contains
 
@@ -165,25 +164,25 @@ contains
 
          acts = load%control == control_force .and. max(abs(load%value), abs(load%rate)) > 0.0_wp
       end function acts
-   end function carries_nothing_yet
+   end function lacks_support
 
-   !> The segment from a part `begin` of it to a part `end`.
-   pure type(segment_type) function part_of(segment, begin, end) result(part)
+   !> The part of a segment from the fraction `begin` to the fraction `end`.
+   pure type(segment_type) function subsegment(segment, begin, end) result(fraction)
       type(segment_type), intent(in) :: segment
       real(wp), intent(in) :: begin, end
 
-      part = segment
+      fraction = segment
       if (.not. begin > 0.0_wp .and. .not. end < 1.0_wp) return
-      part%load = part_of_load(segment%load, begin, end)
-      part%from = segment%from + (segment%to - segment%from)*begin
-      part%to = segment%from + (segment%to - segment%from)*end
-   end function part_of
+      fraction%load = load_between(segment%load, begin, end)
+      fraction%from = segment%from + (segment%to - segment%from)*begin
+      fraction%to = segment%from + (segment%to - segment%from)*end
+   end function subsegment
 
-   elemental type(load_type) function part_of_load(load, begin, end) result(part)
+   elemental type(load_type) function load_between(load, begin, end) result(fraction)
       type(load_type), intent(in) :: load
       real(wp), intent(in) :: begin, end
 
-      part = load_type(load%control, load%value + begin*load%rate, (end - begin)*load%rate)
-   end function part_of_load
+      fraction = load_type(load%control, load%value + begin*load%rate, (end - begin)*load%rate)
+   end function load_between
 
 end module mfv_straight
