@@ -156,7 +156,7 @@ contains
       class(contact_type), intent(in) :: self
       type(error_type), allocatable, intent(out) :: error
 
-      if (.not. self%is_made) call set_error(error, MFV_BAD_HANDLE, 'the contact has not been made: see new_contact, read_contact')
+      if (.not. self%is_made) call set_error(error, MFV_BAD_HANDLE, 'the contact is empty: call new_contact or read_contact')
    end subroutine expect_made
 
    !> Have error bars and the sensitivity to round-off found out by run, even where the case does not ask for them. Error
@@ -259,12 +259,12 @@ contains
       message = self%simulation%message
       call self%simulation%note_restart()
       self%simulation%outcome = MFV_INTERRUPTED
-      self%simulation%message = 'a checkpoint: the run had not finished; '//message
+      self%simulation%message = 'checkpoint of an unfinished run; '//message
       call self%save(error)
       self%simulation%outcome = MFV_COMPLETE
       self%simulation%message = message
       call self%forget()
-      if (allocated(error) .and. present(observer)) call observer%warn('no checkpoint: '//error%message)
+      if (allocated(error) .and. present(observer)) call observer%warn('checkpoint not written: '//error%message)
       self%next_checkpoint = seconds_now() + self%checkpoint_seconds
    end subroutine write_checkpoint
 
@@ -390,7 +390,7 @@ contains
 
       wrong = findloc(motions%pushes .and. step%control == control_force .and. step%target < 0.0_wp, .true., dim=1)
       if (any(step%control == control_both)) then
-         call set_error(error, MFV_BAD_ARGUMENT, 'a step leads the force or the displacement of a direction, not both')
+         call set_error(error, MFV_BAD_ARGUMENT, 'prescribe either the force or the displacement of a direction, not both')
       else if (any(step%control < control_keep .or. step%control > control_displacement)) then
          call set_error(error, MFV_BAD_ARGUMENT, 'a control must be MFV_KEEP, MFV_FORCE or MFV_DISPLACEMENT')
       else if (.not. all(ieee_is_finite(step%target))) then
@@ -417,7 +417,7 @@ contains
       class(contact_type), intent(in) :: self
       character(:), allocatable, intent(out) :: message
 
-      message = 'the contact has not been made'
+      message = 'the contact is empty'
       if (self%is_made) message = self%simulation%message
    end subroutine get_message
 
@@ -448,7 +448,7 @@ contains
       call self%expect_made(error)
       if (allocated(error)) return
       if (size(tangent, 1) /= size(tangent, 2) .or. size(tangent, 1) < 2 .or. size(tangent, 1) > motion_count) then
-         call set_error(error, MFV_BAD_ARGUMENT, 'the tangent is of 2 motions, or of 3 with rotation')
+         call set_error(error, MFV_BAD_ARGUMENT, 'the tangent must have 2 motions, or 3 with rotation')
          return
       end if
       if (present(direction)) then
@@ -639,7 +639,7 @@ contains
       number = 0
       if (present(step)) number = step
       if (number < 0 .or. number > self%simulation%snapshot_count) then
-         call set_error(error, MFV_BAD_ARGUMENT, 'there is no step '//to_text(number)//'; there are '// &
+         call set_error(error, MFV_BAD_ARGUMENT, 'there is no step '//to_text(number)//'; the result has '// &
                         to_text(self%simulation%snapshot_count))
          return
       end if
@@ -674,7 +674,7 @@ contains
          call set_error(error, MFV_BAD_ARGUMENT, 'the body must be MFV_LOWER or MFV_UPPER')
       else if (.not. available) then
          call set_error(error, MFV_BAD_ARGUMENT, 'the '//merge('upper', 'lower', body == body_upper)// &
-                        ' body is rigid or a matrix: there are no stresses inside it')
+                        ' body is rigid or given by a matrix: its stresses cannot be computed')
       end if
    end subroutine expect_inside
 
@@ -690,7 +690,7 @@ contains
       where_to = path
       if (path == '') where_to = self%case%result_path
       if (where_to == '') then
-         call set_error(error, MFV_BAD_ARGUMENT, 'no path, and the case has no &output file')
+         call set_error(error, MFV_BAD_ARGUMENT, 'no path is given, and the case has no &output file')
          return
       end if
       call find_warnings(self)

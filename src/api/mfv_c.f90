@@ -373,7 +373,7 @@ contains
       character(:), allocatable :: why
 
       status = MFV_BAD_ARGUMENT
-      call say('the place for the handle is null', message, message_size)
+      call say('the pointer to the handle is null', message, message_size)
       if (.not. present(handle)) return
       handle = c_null_ptr
       status = mfv_handle_enter(scene, kind_scene, use_reading, object)
@@ -672,7 +672,7 @@ contains
       integer(c_int), intent(in) :: status
       character(:), allocatable, intent(out) :: message
 
-      message = 'the '//what//' is null, was freed, or is none'
+      message = 'the '//what//' is null, freed or invalid'
       if (status == MFV_IN_USE) message = 'the '//what//' is in use by another call'
    end subroutine explain_handle
 
@@ -858,7 +858,7 @@ contains
       if (.not. has_places) then
          status = refused(self, text_in(path)//': values is null')
       else if (count /= values_of(field)) then
-         status = refused(self, text_in(path)//' has '//to_text(int(values_of(field)))//' values, count is another number')
+         status = refused(self, text_in(path)//' has '//to_text(int(values_of(field)))//' values; count must be that number')
       end if
    end subroutine find_field_to_copy
 

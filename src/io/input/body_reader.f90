@@ -25,7 +25,7 @@ contains
       integer :: body
 
       if (count_groups(reader, 'body') /= 2) then
-         call fail(reader, 0, '&body: two bodies are needed, the first below and the second above; there are '// &
+         call fail(reader, 0, '&body: exactly two are needed, first the lower body, then the upper one; found '// &
                    to_text(count_groups(reader, 'body')), error)
          return
       end if
@@ -34,12 +34,12 @@ contains
          if (allocated(error)) return
       end do
       if (reader%logical_value('body', 1, 'rigid') .and. reader%logical_value('body', 2, 'rigid')) then
-         call reader%complain('body', 2, 'rigid', 'both bodies are rigid; one at least must be elastic', error)
+         call reader%complain('body', 2, 'rigid', 'both bodies are rigid; at least one must be elastic', error)
       else if (reader%text_value('body', 2, 'shape') == 'matrix') then
-         call reader%complain('body', 2, 'shape', 'a matrix must be the first body, below', error)
+         call reader%complain('body', 2, 'shape', 'a matrix must be the first body, the lower one', error)
       else if (reader%text_value('body', 1, 'shape') == 'matrix' .and. .not. reader%logical_value('body', 2, 'rigid')) then
-         call reader%complain('body', 2, 'rigid', 'must be .true. above a matrix; put the compliance of both bodies '// &
-                              'into the matrix instead', error)
+         call reader%complain('body', 2, 'rigid', 'must be .true. if the lower body is a matrix; put the '// &
+                              'compliance of both bodies into the matrix', error)
       end if
       do body = 1, 2
          if (.not. allocated(error)) call check_body_keys(reader, body, error)
@@ -71,7 +71,7 @@ contains
       keys = reader%catalogue%names('body')
       do i = 1, size(keys)
          if (.not. reader%has('body', body, keys(i)%text) .or. has_word(allowed, keys(i)%text)) cycle
-         call reader%complain('body', body, keys(i)%text, 'means nothing for a'//trim(merge(' rigid', '      ', rigid))// &
+         call reader%complain('body', body, keys(i)%text, 'has no effect for a'//trim(merge(' rigid', '      ', rigid))// &
                               ' '//shape//'; its keys are '//allowed, error)
          return
       end do
@@ -117,7 +117,7 @@ contains
       body%kernel = reader%constant('body', number, 'kernel', [kernel_exact, kernel_fourier])
       body%harmonics = reader%integer_value('body', number, 'harmonics')
       if (body%harmonics > 0 .and. body%kernel /= kernel_fourier) &
-         call reader%complain('body', number, 'harmonics', "means nothing without kernel='fourier'", error)
+         call reader%complain('body', number, 'harmonics', "has no effect without kernel='fourier'; remove it", error)
    end subroutine read_body
 
    subroutine read_shape(reader, number, body, error)
@@ -222,7 +222,7 @@ contains
       ratio = reader%real_value('body', number, 'poisson_ratio')
       if (reader%has('body', number, 'youngs_modulus')) then
          if (reader%has('body', number, 'shear_modulus')) then
-            call reader%complain('body', number, 'youngs_modulus', 'shear_modulus is there too; give one of them', error)
+            call reader%complain('body', number, 'youngs_modulus', 'shear_modulus is also given; give only one of them', error)
             return
          end if
          modulus = shear_modulus_of(reader%real_value('body', number, 'youngs_modulus'), ratio)
@@ -245,7 +245,7 @@ contains
       if (any(shapes == shape_profile .or. shapes == shape_matrix)) return
       if (any(shapes == shape_hole)) then
          if (.not. scene%curvature() > 0.0_wp) call reader%complain('body', findloc(shapes, shape_hole, dim=1), 'radius', &
-                                                                    'a hole needs a disk of a smaller radius in it', error)
+                                                                    'a hole needs a disk of smaller radius inside it', error)
       else if (touches_everywhere(scene)) then
          call reader%complain('body', 2, 'shape', 'two half-planes touch everywhere; one body must have another shape', error)
       end if
@@ -277,8 +277,8 @@ contains
          if (.not. datum(number) > 0.0_wp) datum(number) = reader%real_value('mesh', 1, 'half_width')
          if (reader%has('body', number, 'datum')) datum(number) = reader%real_value('body', number, 'datum')
          if (datum(number) > 0.0_wp .or. reader%logical_value('body', number, 'rigid')) cycle
-         call reader%complain('body', number, 'datum', 'is needed: the shapes have no length, and there is neither a '// &
-                              'normal_force nor the half_width of a &mesh to take it from', error)
+         call reader%complain('body', number, 'datum', 'is needed: the shapes have no length to derive it from, and neither a '// &
+                              'normal_force nor half_width in &mesh is given', error)
          return
       end do
       scene%lower%datum = datum(1)

@@ -90,7 +90,7 @@ contains
 
       place = self%place_of(file, name)
       if (place == 0) then
-         call set_error(error, MFV_INPUT_ERROR, "there is no dataset '"//name//"'")
+         call set_error(error, MFV_INPUT_ERROR, 'dataset '//name//' is missing')
          return
       end if
       associate (found => self%datasets(place)%values)
@@ -166,7 +166,7 @@ contains
       place = self%place_of(file, 'compliance')
       if (place > 0) data%name = 'compliance'
       if ((place > 0) .eqv. (self%place_of(file, 'stiffness') > 0)) then
-         call set_error(error, MFV_INPUT_ERROR, 'either compliance or stiffness must be there')
+         call set_error(error, MFV_INPUT_ERROR, 'give either compliance or stiffness, not both')
          return
       end if
       if (place == 0) place = self%place_of(file, 'stiffness')

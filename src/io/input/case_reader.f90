@@ -141,12 +141,12 @@ contains
       call new_friction_law(law, friction%law)
       is_mfv = method%algorithm == algorithm_mfv
       if (method%integration == integration_explicit .and. friction%sticks()) then
-         call reader%complain('solver', 1, 'integration', "means nothing without law='dahl'", error)
+         call reader%complain('solver', 1, 'integration', "has no effect without law='dahl'; remove it", error)
       else if (method%stepping == stepping_nominal .and. .not. friction%is_linear()) then
          call reader%complain('solver', 1, 'stepping', "must be 'event' with law='"//law//"', which is not linear "// &
                               'between events', error)
       else if (method%stepping /= stepping_event .and. .not. is_mfv) then
-         call reader%complain('solver', 1, 'stepping', "means nothing with algorithm='conventional'", error)
+         call reader%complain('solver', 1, 'stepping', "has no effect with algorithm='conventional'; remove it", error)
       else if (method%stepping == stepping_leap .and. allocated(friction%law) .and. .not. friction%is_proportional()) then
          call reader%complain('solver', 1, 'stepping', "'leap' needs law='coulomb' or 'none', not '"//law//"'", error)
       end if
@@ -192,8 +192,8 @@ contains
             step%cycles = reader%integer_value('step', i, 'cycles')
             if (reader%has('step', i, 'steady_tolerance')) then
                step%steady_tolerance = reader%real_value('step', i, 'steady_tolerance')
-               if (step%cycles < 2) call reader%complain('step', i, 'steady_tolerance', 'means nothing without cycles of 2 or '// &
-                                                         'more', error)
+               if (step%cycles < 2) call reader%complain('step', i, 'steady_tolerance', 'has no effect without cycles of 2 '// &
+                                                         'or more; remove it', error)
                if (allocated(error)) return
             end if
             if (all(step%control == control_keep)) then
@@ -218,18 +218,18 @@ contains
       last = findloc(scene%steps(:number)%control(motion_approach) /= control_keep .and. scene%steps(:number)%cycles == 0, .true., &
                      dim=1, back=.true.)
       if (scene%steps(number)%control(motion_shift) /= control_keep) then
-         call reader%complain('step', number, 'force_ratio', 'tangential_force or shift is there too; a step controls one of '// &
-                              'them', error)
+         call reader%complain('step', number, 'force_ratio', 'tangential_force or shift is also given; prescribe only one '// &
+                              'of them', error)
       else if (.not. scene%friction%acts()) then
          call reader%complain('step', number, 'force_ratio', "needs a &friction law with a coefficient above 0", error)
       else if (.not. reader%logical_value('step', number, 'friction')) then
-         call reader%complain('step', number, 'force_ratio', 'means nothing in a step without friction', error)
+         call reader%complain('step', number, 'force_ratio', 'has no effect in a step without friction; remove it', error)
       else if (last == 0) then
-         call reader%complain('step', number, 'force_ratio', 'needs a normal_force, in this step or in one before it '// &
+         call reader%complain('step', number, 'force_ratio', 'needs a normal_force, in this step or in an earlier one '// &
                               'without cycles', error)
       else if (scene%steps(last)%control(motion_approach) /= control_force) then
          call reader%complain('step', number, 'force_ratio', 'needs a normal_force, but step '//to_text(last)// &
-                              ' names an approach', error)
+                              ' prescribes an approach', error)
       else
          scene%steps(number)%control(motion_shift) = control_force
          scene%steps(number)%target(motion_shift) = reader%real_value('step', number, 'force_ratio') &
@@ -251,8 +251,9 @@ contains
       do i = control_force, control_displacement
          if (.not. reader%has('step', number, trim(controlled_key(motion, i)))) cycle
          if (control /= control_keep) then
-            call reader%complain('step', number, trim(motions(motion)%key), trim(motions(motion)%force_key)//' is there too; '// &
-                                 'a step controls one of them', error)
+            call reader%complain('step', number, trim(motions(motion)%key), trim(motions(motion)%force_key)// &
+                                 ' is also given; prescribe only one of '//trim(motions(motion)%force_key)//' and '// &
+                                 trim(motions(motion)%key), error)
             return
          end if
          control = i

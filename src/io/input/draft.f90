@@ -303,7 +303,7 @@ contains
 
       allocate (texts(size(values)))
       why = ''
-      if (size(values) == 0) why = 'there are no values'
+      if (size(values) == 0) why = 'no values are given'
       do i = 1, size(values)
          if (ieee_is_finite(values(i))) then
             call write_real(values(i), texts(i)%text)
@@ -344,7 +344,7 @@ contains
       integer :: line
 
       call find_fault_of_text(value, line, why)
-      if (scan(value, line_ends) > 0) why = 'a text must be of one line'
+      if (scan(value, line_ends) > 0) why = 'a text must not contain a line break'
       call self%set_value(name, value, .true., why, error)
    end subroutine set_text
 
@@ -366,7 +366,7 @@ contains
       character(*), parameter :: known = 'x height mu mu_static mu_kinetic gap width compliance stiffness'
 
       if (scan(file, line_ends) > 0) then
-         call set_error(fault, MFV_INPUT_ERROR, 'the name of data must be of one line')
+         call set_error(fault, MFV_INPUT_ERROR, 'the name of data must not contain a line break')
       else if (.not. has_word(known, name)) then
          call set_error(fault, MFV_INPUT_ERROR, "the data '"//file//"': unknown dataset '"//name//"'; datasets are "//known)
       else
@@ -441,8 +441,8 @@ contains
             end do
          end do
          if (is_named) cycle
-         call set_error(error, MFV_INPUT_ERROR, source//": no key names the data '"//data%datasets(i)%file//"'; a body has "// &
-                        'file, &friction has mu_file')
+         call set_error(error, MFV_INPUT_ERROR, source//": no key refers to the data '"//data%datasets(i)%file//"'; set file "// &
+                        'of a body or mu_file of &friction to this name')
          return
       end do
    end subroutine check_data

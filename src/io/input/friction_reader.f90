@@ -51,9 +51,10 @@ contains
          if (.not. reader%has('friction', 1, keys(i)%text)) cycle
          if (.not. has_word('law '//coefficients//' '//known, keys(i)%text)) then
             call reader%complain('friction', 1, keys(i)%text, &
-                                 "means nothing with law='"//reader%text_value('friction', 1, 'law')//"'", error)
+                                 "has no effect with law='"//reader%text_value('friction', 1, 'law')// &
+                                 "'; remove it or choose another law", error)
          else if (has_word(coefficients, keys(i)%text) .and. reader%has('friction', 1, 'mu_file')) then
-            call reader%complain('friction', 1, keys(i)%text, 'mu_file is there too; give one of them', error)
+            call reader%complain('friction', 1, keys(i)%text, 'mu_file is also given; give only one of them', error)
          end if
          if (allocated(error)) return
       end do
@@ -107,7 +108,7 @@ contains
          call spread_single(friction%kinetic%value, size(friction%static%value))
          call spread_single(friction%static%value, size(friction%kinetic%value))
          if (size(friction%static%value) /= size(friction%kinetic%value)) then
-            call reader%complain('friction', 1, 'mu_kinetic', 'must have one value or as many as mu_static', error)
+            call reader%complain('friction', 1, 'mu_kinetic', 'must have one value, or as many as mu_static', error)
          else if (any(friction%kinetic%value > friction%static%value)) then
             call reader%complain('friction', 1, 'mu_kinetic', 'must not be above mu_static', error)
          end if
@@ -177,9 +178,9 @@ contains
       nodes = scene%mesh%nodes
       if (scene%lower%shape == shape_matrix) nodes = size(scene%lower%position)
       if (scene%lower%shape /= shape_matrix .and. .not. scene%mesh%half_width > 0.0_wp) then
-         call reader%complain('friction', 1, key, 'one value a node needs a mesh with half_width or half_angle', error)
+         call reader%complain('friction', 1, key, 'one value per node needs a mesh with half_width or half_angle', error)
       else if (size(scene%friction%static%value) /= nodes) then
-         call reader%complain('friction', 1, key, 'must have one value or one a node, '//to_text(nodes)//', not '// &
+         call reader%complain('friction', 1, key, 'must have one value, or one per node ('//to_text(nodes)//'), not '// &
                               to_text(size(scene%friction%static%value)), error)
       end if
    end subroutine check_coefficients_a_node

@@ -49,7 +49,7 @@ contains
          call h5fis_hdf5_f(path, is_hdf5, code)
       end if
       if (.not. is_hdf5) then
-         call set_error(error, MFV_INPUT_ERROR, path//trim(merge(' is no HDF5 file       ', ': there is no such file', is_there)))
+         call set_error(error, MFV_INPUT_ERROR, path//trim(merge(' is not an HDF5 file', ': no such file      ', is_there)))
          return
       end if
       call h5fopen_f(path, H5F_ACC_RDONLY_F, file, code)
@@ -79,7 +79,7 @@ contains
 
       call open_attribute(file, name, attribute, error)
       if (allocated(error)) then
-         error%message = error%message//': no result of MFV'
+         error%message = error%message//': not a result of MFV'
          return
       end if
       is_variable = .false.
@@ -99,7 +99,7 @@ contains
          end if
          call h5tclose_f(text_type, ignored)
       end if
-      if (.not. allocated(text)) call set_error(error, MFV_INPUT_ERROR, 'attribute '//name//' is no text of MFV')
+      if (.not. allocated(text)) call set_error(error, MFV_INPUT_ERROR, 'attribute '//name//' is not a text')
       call h5aclose_f(attribute, ignored)
    end subroutine read_text_attribute
 
@@ -131,7 +131,7 @@ contains
          call h5sclose_f(space, ignored)
       end if
       if (values == 1) return
-      call set_error(error, MFV_INPUT_ERROR, 'attribute '//name//' has not one value')
+      call set_error(error, MFV_INPUT_ERROR, 'attribute '//name//' must have one value')
       call h5aclose_f(attribute, ignored)
    end subroutine open_attribute
 
@@ -223,7 +223,7 @@ contains
       end if
       call open_in_file(file, name, dataset, code)
       if (code /= 0) then
-         call set_error(error, MFV_INPUT_ERROR, name//' is no dataset of this file')
+         call set_error(error, MFV_INPUT_ERROR, name//' is not a dataset of this file')
          return
       end if
       class = -1
@@ -289,7 +289,7 @@ contains
       if (dimensions >= 0 .and. dimensions /= size(extent)) then
          call set_error(error, MFV_INPUT_ERROR, name//' has '//to_text(dimensions)//' dimensions, not '//to_text(size(extent)))
       else if (code < 0 .or. dimensions < 0) then
-         call set_error(error, MFV_INPUT_ERROR, name//' has no readable size')
+         call set_error(error, MFV_INPUT_ERROR, 'the size of '//name//' cannot be read')
       end if
    end subroutine find_extent
 
@@ -320,9 +320,9 @@ contains
       if (code /= 0) then
          call set_error(error, MFV_INPUT_ERROR, name//' cannot be read')
       else if (files > 0 .or. layout == H5D_VIRTUAL_F) then
-         call set_error(error, MFV_INPUT_ERROR, name//' has its values in another file; these are not read')
+         call set_error(error, MFV_INPUT_ERROR, name//' has its values in another file; copy them into this one')
       else if (product(real(extent, wp)) > most_values_a_byte*real(bytes, wp)) then
-         call set_error(error, MFV_INPUT_ERROR, name//' has fewer values in the file than its size says')
+         call set_error(error, MFV_INPUT_ERROR, name//' is truncated: the file has fewer values than its size says')
       end if
    end subroutine check_storage
 

@@ -62,7 +62,7 @@ contains
             if (j == 0) cycle
             reader%number(i) = reader%number(j) + 1
             if (has_word(reader%catalogue%repeated_groups, group%name)) cycle
-            call fail(reader, group%line, '&'//group%name//': may come only once, and is already in line '// &
+            call fail(reader, group%line, '&'//group%name//': may be given only once; it is already in line '// &
                       to_text(reader%groups(j)%line), error)
             return
          end associate
@@ -100,7 +100,7 @@ contains
                   end do
                   why = 'unknown key'//why
                else if (any([(reader%groups(i)%entries(k)%key == entry%key, k=1, j - 1)])) then
-                  why = 'the key is there twice'
+                  why = 'the key is given twice'
                else
                   call find_fault(reader%catalogue%keys(place), entry, why)
                end if

@@ -153,7 +153,7 @@ contains
       text = ''
       do i = 1, size(groups)
          text = text//'### &'//groups(i)%text
-         if (has_word(catalogue%repeated_groups, groups(i)%text)) text = text//' (may come more than once)'
+         if (has_word(catalogue%repeated_groups, groups(i)%text)) text = text//' (may be repeated)'
          text = text//line_feed//line_feed//'| key | value | default | unit | meaning |'//line_feed// &
                 '| --- | --- | --- | --- | --- |'//line_feed
          do j = 1, size(catalogue%keys)
@@ -199,7 +199,7 @@ contains
       if (percent == 0) then
          why = "must be 'group%key', 'group(number)%key'"
       else if (number < 0) then
-         why = quoted(text(bracket:percent - 1))//' is no number of a group, such as (2)'
+         why = quoted(text(bracket:percent - 1))//' is not a group number, such as (2)'
       else if (.not. has_word(catalogue%group_list, group)) then
          call suggest(group, catalogue%groups(), '', why)
          why = 'unknown group'//why//'; groups are '//catalogue%group_list
@@ -209,7 +209,7 @@ contains
       else if (repeats .and. bracket == percent) then
          why = 'which &'//group//'? write '//group//'(1)%'//key
       else if (.not. repeats .and. number /= 1) then
-         why = 'there is one &'//group//' only'
+         why = 'there is only one &'//group
       end if
       if (why /= '') why = quoted(written)//': '//why
    end subroutine read_key_name

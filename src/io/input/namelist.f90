@@ -77,7 +77,7 @@ contains
             return
          end if
          if (n == most_groups) then
-            call complain(cursor, 'there are more than '//to_text(most_groups)//' groups', error)
+            call complain(cursor, 'more than '//to_text(most_groups)//' groups', error)
             return
          end if
          if (n == size(groups)) call resize_groups(groups, 2*n + 1)
@@ -166,16 +166,16 @@ contains
       entry%line = cursor%line
       call read_name(cursor, entry%key)
       if (entry%key == '') then
-         call complain(cursor, '&'//group//": a key=value is wanted, not '"//rest_of_line(cursor)//"'", error)
+         call complain(cursor, '&'//group//": expected key=value, not '"//rest_of_line(cursor)//"'", error)
          return
       end if
       call skip_blanks(cursor)
       if (next(cursor) == '(' .or. next(cursor) == '%') then
-         call complain(cursor, '&'//group//' '//shortened(entry%key)//rest_of_line(cursor)//': a key has no index and no '// &
-                       'component; all values of a list stand after the key, as in mu=0.3, 0.4', error)
+         call complain(cursor, '&'//group//' '//shortened(entry%key)//rest_of_line(cursor)//': a key takes no index or '// &
+                       'component; list all values after the key, as in mu=0.3, 0.4', error)
          return
       else if (next(cursor) /= '=') then
-         call complain(cursor, '&'//group//' '//shortened(entry%key)//": '=' is wanted after the key", error)
+         call complain(cursor, '&'//group//' '//shortened(entry%key)//": expected '=' after the key", error)
          return
       end if
       cursor%at = cursor%at + 1
@@ -230,7 +230,7 @@ contains
          n = n + repeats
       end do
       if (cursor%commas > merge(1, min(n, 1), at_end)) &
-         call complain(cursor, place//': a value is missing beside a comma', error)
+         call complain(cursor, place//': a value is missing next to a comma', error)
       call resize_values(entry, n)
    end subroutine read_values
 

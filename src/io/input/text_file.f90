@@ -48,11 +48,11 @@ contains
          inquire (unit, size=length)
          length = max(length, 0_int64)
          if (length > most_bytes) then
-            call set_error(error, MFV_INPUT_ERROR, path//': is too long for a text: it has more than '// &
+            call set_error(error, MFV_INPUT_ERROR, path//': too long; a text file may have at most '// &
                            to_text(int(most_bytes))//' bytes')
          else
             allocate (character(len=length) :: text, stat=code)
-            why = 'there is no memory for it'
+            why = 'out of memory'
             if (code == 0) read (unit, iostat=code, iomsg=why) text
          end if
          close (unit)
@@ -74,8 +74,8 @@ contains
       case (1)
          call set_error(error, MFV_INPUT_ERROR, path//': cannot be read: it is a directory')
       case (2)
-         call set_error(error, MFV_INPUT_ERROR, path//': cannot be read: it is no regular file, but a pipe or a device; '// &
-                        'put what it gives into a file')
+         call set_error(error, MFV_INPUT_ERROR, path//': cannot be read: it is a pipe or a device; save its content to '// &
+                        'a regular file')
       end select
    end subroutine check_is_file
 
@@ -100,10 +100,10 @@ contains
          else if (code == line_feed) then
             line = line + 1
          else if ((code < blank .and. code /= tab) .or. code == delete) then
-            why = 'the control character '//to_text(code)//': this is no text'
+            why = 'control character '//to_text(code)//': not a text file'
          else if (code > delete) then
             length = length_of_character(text(i:min(i + 3, len(text))))
-            if (length == 0) why = 'the byte '//to_text(code)//' is not UTF-8: save the text as UTF-8'
+            if (length == 0) why = 'byte '//to_text(code)//' is not UTF-8; save the file as UTF-8'
          end if
          if (why /= '') return
          i = i + length

@@ -118,15 +118,15 @@ contains
          call self%exchange('added_nodes', r%added, 'nodes added to the mesh at either end', 0, most/10)
          nodes = nodes + 2*(r%added - simulation%contact%model%added)
          call self%exchange('steps_done', simulation%scene_steps_done, 'steps reached', 0, size(steps))
-         call self%exchange('segment', r%leg, 'segment of the next step, 1 where it has not begun', 1, most)
+         call self%exchange('segment', r%leg, 'segment of the next step, 1 if it has not begun', 1, most)
          call self%exchange('states', simulation%snapshot_count, 'states in steps before that segment', 0, most)
-         call self%exchange('cycles_done', simulation%cycles_done, 'whole cycles of all steps', 0, most)
+         call self%exchange('cycles_done', simulation%cycles_done, 'complete cycles of all steps', 0, most)
          call self%exchange('linear_solves', r%solves, 'linear solves before that segment', 0, most)
          call exchange_counter(self, 'iterations', r%iterations, 'iterations of the linear solver')
          call exchange_counter(self, 'products', r%products, 'products with the compliance')
          if (simulation%scene_steps_done == size(steps) .and. r%leg > 1) call self%complain('segment')
          do i = 1, size(r%load)
-            call self%exchange('control_'//to_text(i), r%load(i)%control, 'what controls motion '//to_text(i), control_keep, &
+            call self%exchange('control_'//to_text(i), r%load(i)%control, 'control of motion '//to_text(i), control_keep, &
                                control_displacement)
             call self%exchange('load_'//to_text(i), r%load(i)%value, 'load of motion '//to_text(i))
          end do
@@ -146,7 +146,7 @@ contains
       if (allocated(self%error) .or. .not. simulation%contact%model%tangential) return
       do i = 1, simulation%snapshot_count
          call self%exchange('stuck_slip_'//to_text(i), simulation%snapshots(i)%state%stuck_slip, &
-                            'slip at which stuck nodes hold in '//step_group(i))
+                            'slip at which the nodes are stuck in '//step_group(i))
       end do
    end subroutine exchange_restart
 
@@ -168,12 +168,12 @@ contains
       ours = reshape([model%x(first:last), model%initial_gap(first:last), model%static_friction(first:last), &
                       model%kinetic_friction(first:last), normal(first:last), tangential(first:last)], [last - first + 1, 6])
       numbers = reshape(ours, [size(ours)])
-      call self%exchange('scene', numbers, 'positions, gaps, coefficients of friction and displacements, to recognise the scene')
+      call self%exchange('scene', numbers, 'positions, gaps, coefficients of friction and displacements, to identify the scene')
       if (.not. self%reading .or. allocated(self%error)) return
       associate (theirs => reshape(numbers, shape(ours)))
          do i = 1, size(ours, 2)
             if (maxval(abs(theirs(:, i) - ours(:, i))) > same*maxval(abs(ours(:, i)))) then
-               call set_error(self%error, MFV_INPUT_ERROR, 'another case: a file that the case reads has changed')
+               call set_error(self%error, MFV_INPUT_ERROR, 'the result of another case: a file that the case reads has changed')
                return
             end if
          end do
@@ -189,7 +189,7 @@ contains
 
       associate (r => simulation%restart)
          call self%exchange('events', r%path%events, 'loads at which nodes changed their status', 0, huge(1))
-         call self%exchange('trial', r%path%trial, 'length of the next increment, in parts of a segment')
+         call self%exchange('trial', r%path%trial, 'length of the next increment, as a fraction of a segment')
          list = transfer(r%path%certificate, [0])
          call self%exchange('certificate', list, internal)
          r%path%certificate = transfer(list, r%path%certificate)
@@ -249,12 +249,13 @@ contains
       call exchange_visible(self, state)
       call exchange_motions(self, state, motions%optional)
       call self%exchange('friction_work', state%friction_work, 'energy dissipated per unit of surface')
-      call self%exchange('normal', state%fields%normal, 'how far the surfaces draw apart by deformation and rotation')
-      call self%exchange('tangential', state%fields%tangential, 'how far the lower surface moves to the right of the upper one')
-      call self%exchange('stuck_slip', state%stuck_slip, 'slip at which a stuck node holds')
+      call self%exchange('normal', state%fields%normal, 'separation of the surfaces by deformation and rotation')
+      call self%exchange('tangential', state%fields%tangential, 'displacement of the lower surface to the right relative to '// &
+                         'the upper one')
+      call self%exchange('stuck_slip', state%stuck_slip, 'slip at which the node is stuck')
       call self%exchange('slip_direction', state%slip_direction, 'sign of the last slip rate')
       do i = 1, memory_size
-         call self%exchange('memory_'//to_text(i), state%memory(i, :), 'what the friction law remembers')
+         call self%exchange('memory_'//to_text(i), state%memory(i, :), 'internal variable of the friction law')
       end do
       self%prefix = ''
    end subroutine exchange_state

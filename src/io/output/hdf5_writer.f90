@@ -50,7 +50,7 @@ contains
    subroutine check_is_result(path, error)
       character(*), intent(in) :: path
       type(error_type), allocatable, intent(out) :: error
-      character(*), parameter :: so = '; it is not replaced: name another file, or move this one away'
+      character(*), parameter :: so = '; not overwritten: choose another name, or move this file away'
       integer(hid_t) :: file
       logical :: is_hdf5, is_result
       integer :: code
@@ -58,17 +58,17 @@ contains
       call start_hdf5()
       call h5fis_hdf5_f(path, is_hdf5, code)
       if (code /= 0 .or. .not. is_hdf5) then
-         call set_error(error, MFV_FILE_ERROR, path//' is there and is no HDF5 file'//so)
+         call set_error(error, MFV_FILE_ERROR, path//' exists and is not an HDF5 file'//so)
          return
       end if
       call h5fopen_f(path, H5F_ACC_RDONLY_F, file, code)
       if (code /= 0) then
-         call set_error(error, MFV_FILE_ERROR, path//' is there and cannot be read: it is broken, or another program has it '// &
-                        'open to write'//so)
+         call set_error(error, MFV_FILE_ERROR, path//' exists and cannot be read: it is damaged, or another program has it '// &
+                        'open for writing'//so)
          return
       end if
       call h5aexists_f(file, mark_of_result, is_result, code)
-      if (code /= 0 .or. .not. is_result) call set_error(error, MFV_FILE_ERROR, path//' is there and is no result of MFV '// &
+      if (code /= 0 .or. .not. is_result) call set_error(error, MFV_FILE_ERROR, path//' exists and is not a result of MFV '// &
                                                          '(no attribute '//mark_of_result//')'//so)
       call h5fclose_f(file, code)
    end subroutine check_is_result
@@ -159,10 +159,10 @@ contains
          call note(writer, code)
       end if
       if (writer%code /= 0) then
-         call set_error(error, MFV_FILE_ERROR, path//': '//what//' could not be written: HDF5 failed, perhaps for want of memory')
+         call set_error(error, MFV_FILE_ERROR, path//': HDF5 could not write '//what//' (out of memory?)')
       else if (has_changed(path, writer)) then
          call set_error(error, MFV_FILE_ERROR, path//' cannot be written: another process has replaced it in the meantime; '// &
-                        'start again')
+                        'run again')
       else
          call replace_file(path, bytes, error)
       end if

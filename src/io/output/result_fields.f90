@@ -275,10 +275,10 @@ contains
          if (scene%modulus() > 0.0_wp) then
             call list%add('contact_modulus', scene%modulus(), 'force/length^2', 'modulus m of both bodies, 1/m = sum of '// &
                           '(kappa + 1)/(4 G)')
-            call list%add('dundurs_beta', scene%dundurs_beta(), '1', "Dundurs' parameter beta, positive where the lower body "// &
-                          "couples more")
+            call list%add('dundurs_beta', scene%dundurs_beta(), '1', "Dundurs' parameter beta, positive if the lower body "// &
+                          "couples more strongly")
          end if
-         call list%add('curvature', scene%curvature(), '1/length', 'relative curvature of disks and holes at the pole')
+         call list%add('curvature', scene%curvature(), '1/length', 'relative curvature of disks and holes at the origin')
          call list%add('friction_coefficient', scene%friction%static%largest(), '1', 'largest (static) coefficient of '// &
                        'friction, 0 without friction')
       end associate
@@ -329,11 +329,11 @@ contains
          if (model%scene%arc_radius() > 0.0_wp) call list%add('arc', model%arc, along_nodes, 'length', 'distance of the nodes '// &
                                                               'from the origin along the surface')
          call list%add('interval', model%interval(), 'length', 'width of an interval')
-         call list%add('width', model%width, along_nodes, 'length', 'surface that belongs to each node')
+         call list%add('width', model%width, along_nodes, 'length', 'length of the surface interval of each node')
          if (model%scene%friction%acts()) then
-            call list%add('static_friction', model%static_friction, along_nodes, '1', 'coefficient of friction of nodes that hold')
-            call list%add('kinetic_friction', model%kinetic_friction, along_nodes, '1', 'coefficient of friction of nodes '// &
-                          'that slip, in the end')
+            call list%add('static_friction', model%static_friction, along_nodes, '1', 'coefficient of friction of stuck nodes')
+            call list%add('kinetic_friction', model%kinetic_friction, along_nodes, '1', 'coefficient of friction of '// &
+                          'slipping nodes, after weakening')
          end if
       end associate
    end subroutine add_mesh
@@ -354,7 +354,7 @@ contains
          call list%add('gap', visible_gap(simulation, model%gap(state%fields)), along_nodes, 'length', 'gap between the '// &
                        'bodies, infinite where one of them has no surface')
          call list%add('slip', modelled(simulation, state%fields%slip()), along_nodes, 'length', 'slip s = u - U of the lower '// &
-                       'surface against the upper body (not modelled without friction)')
+                       'surface relative to the upper one (not modelled without friction)')
          call list%add('status', state%status, along_nodes, 'contact status of the nodes', node_status_names)
          if (model%tangential) call list%add('friction_work', state%friction_work, along_nodes, 'force/length', 'energy '// &
                                              'dissipated so far per unit of surface')
@@ -573,8 +573,8 @@ contains
       call list%add('tangential_force', tangential_force, along, 'force/length', 'tangential force of the patch on the lower '// &
                     'body per unit thickness')
       call list%add('peak_pressure', peak_pressure, along, 'force/length^2', 'largest pressure in the patch')
-      if (simulation%contact%model%tangential) call list%add('peak_shear', peak_shear, along, 'force/length^2', 'largest size '// &
-                                                             'of the shear traction in the patch')
+      if (simulation%contact%model%tangential) call list%add('peak_shear', peak_shear, along, 'force/length^2', 'largest '// &
+                                                             'magnitude of the shear traction in the patch')
    end subroutine add_patch_loads
 
    !> The cycles, one by one; and where the last one dissipated.
@@ -589,26 +589,26 @@ contains
       call list%add('cycle', c%overall, along, 'number of the cycle, over all steps')
       call list%add('step', c%step, along, 'number of its step')
       call list%add('dissipation', c%dissipation(), along, 'force', 'energy dissipated in the cycle per unit thickness')
-      call list%add('change', c%change, along, '1', 'largest change of a traction over the cycle, in parts of the largest traction')
-      call list%add('force_amplitude', c%force_amplitude(), along, 'force/length', 'half of what the tangential force changes by')
-      call list%add('shift_amplitude', c%shift_amplitude(), along, 'length', 'half of what the shift changes by')
+      call list%add('change', c%change, along, '1', 'largest change of a traction over the cycle, relative to the largest traction')
+      call list%add('force_amplitude', c%force_amplitude(), along, 'force/length', 'half the range of the tangential force')
+      call list%add('shift_amplitude', c%shift_amplitude(), along, 'length', 'half the range of the shift')
       call list%add('tangential_stiffness', c%return%stiffness_on_leaving, along, 'force/length^2', 'tangential force over '// &
-                    'shift right after the reversal, where all sticks')
+                    'shift right after the reversal, where all nodes stick')
       call list%add('secant_stiffness', c%secant_stiffness(), along, 'force/length^2', 'tangential force over shift from end '// &
                     'to end')
       call list%add('loss_factor', c%loss_factor(), along, '1', 'dissipation over 2 pi times the elastic energy of the secant '// &
                     'stiffness, at constant normal force and rotation')
-      call list%add('stick_ratio_reversal', c%reversal%edges%stick_ratio(), along, '1', 'stick ratio at the far end')
-      call list%add('stick_ratio_return', c%return%edges%stick_ratio(), along, '1', 'stick ratio at the end')
-      call list%add('contact_centre_reversal', c%reversal%edges%centre(), along, 'length', 'middle of the contact at the far '// &
-                    'end, along the surface from the origin')
-      call list%add('contact_centre_return', c%return%edges%centre(), along, 'length', 'middle of the contact at the end, '// &
-                    'along the surface from the origin')
+      call list%add('stick_ratio_reversal', c%reversal%edges%stick_ratio(), along, '1', 'stick ratio at the reversal')
+      call list%add('stick_ratio_return', c%return%edges%stick_ratio(), along, '1', 'stick ratio at the end of the cycle')
+      call list%add('contact_centre_reversal', c%reversal%edges%centre(), along, 'length', 'middle of the contact at the '// &
+                    'reversal, along the surface from the origin')
+      call list%add('contact_centre_return', c%return%edges%centre(), along, 'length', 'middle of the contact at the end of '// &
+                    'the cycle, along the surface from the origin')
       if (simulation%marks(mark_cycle_start)%step == 0 .or. simulation%marks(mark_return)%reversal == 0) return
       before = simulation%padded(simulation%marks(mark_cycle_start))
       after = simulation%padded(simulation%marks(mark_return))
-      call list%add('friction_work', after%friction_work - before%friction_work, along_nodes, 'force/length', 'energy that '// &
-                    'the last cycle dissipated per unit of surface')
+      call list%add('friction_work', after%friction_work - before%friction_work, along_nodes, 'force/length', 'energy '// &
+                    'dissipated in the last cycle per unit of surface')
    end subroutine add_cycles
 
    subroutine add_summary(list, simulation, state)
@@ -619,15 +619,15 @@ contains
       call add_loads(list, simulation, state)
       call list%add('steps_done', simulation%steps_done, 'steps reached')
       call list%add('events', simulation%contact%events, 'loads at which nodes changed their status')
-      call list%add('leaps', simulation%contact%certificate%leaps, 'large increments of the load history, without looking for '// &
-                    'events')
+      call list%add('leaps', simulation%contact%certificate%leaps, "stepping='leap': large increments, in which events are not "// &
+                    'located')
       if (simulation%contact%model%scene%method%stepping == stepping_leap) then
          call list%add('increment_traction_error', simulation%contact%certificate%increment_traction_error, '1', &
-                       "stepping='leap': largest estimated error of the tractions by large increments, in parts of the "// &
+                       "stepping='leap': largest estimated error of the tractions by large increments, relative to the "// &
                        "largest traction")
          call list%add('increment_dissipation_error', simulation%contact%certificate%increment_dissipation_error, '1', &
-                       "stepping='leap': largest estimated error of the dissipation of a load segment by large increments, in "// &
-                       "parts of that dissipation")
+                       "stepping='leap': largest estimated error of the dissipation of a load segment by large increments, "// &
+                       "relative to that dissipation")
       end if
       call list%add('linear_solves', simulation%contact%system%solves, linear_solves_meaning)
       call list%add('largest_residual', simulation%contact%certificate%largest(), '1', 'largest relative residual of the '// &
@@ -690,7 +690,7 @@ contains
          end if
          call add_bar(list, bar(quantity_stick_ratio), 'stick_ratio', '1', 'stuck nodes over nodes in contact')
          call add_bar(list, bar(quantity_peak_pressure), 'peak_pressure', 'force/length^2', 'largest pressure')
-         call add_bar(list, bar(quantity_peak_shear), 'peak_shear', 'force/length^2', 'largest size of the shear traction')
+         call add_bar(list, bar(quantity_peak_shear), 'peak_shear', 'force/length^2', 'largest magnitude of the shear traction')
          call add_bar(list, bar(quantity_dissipation), 'dissipation', 'force', dissipation_meaning)
       end associate
    end subroutine add_estimate
@@ -719,10 +719,10 @@ contains
 
       if (.not. bar%known) return
       call list%add(name, bar%value, unit, meaning)
-      call list%add(name//'_error', bar%error, unit, 'estimated discretisation error: '//meaning//'; infinite where there is '// &
-                    'no limit, NaN where slip zones with too few nodes do not resolve it')
-      call list%add(name//'_order', bar%order, '1', 'observed order of convergence, from 1 to 2 (negative: there is no limit; '// &
-                    'NaN: not resolved): '//meaning)
+      call list%add(name//'_error', bar%error, unit, 'estimated discretisation error: '//meaning//'; infinite if '// &
+                    'there is no limit, NaN if slip zones have too few nodes to resolve it')
+      call list%add(name//'_order', bar%order, '1', 'observed order of convergence, from 1 to 2 (negative: no limit; NaN: not '// &
+                    'resolved): '//meaning)
       call list%add(name//'_companions', bar%companions, along_companions, unit, 'on the coarser meshes: '//meaning)
    end subroutine add_bar
 
@@ -766,9 +766,9 @@ contains
          call list%add('dissipation', r%dissipation, along, 'force', dissipation_meaning)
          call list%add('contact_nodes', r%contact_nodes, along, contact_nodes_meaning)
          call list%add('stick_nodes', r%stick_nodes, along, stick_nodes_meaning)
-         call list%add('event_kind', r%event_kind, along, 'what happened', event_names)
-         call list%add('event_node', r%event_node, along, 'number, from 1, of the first node it happened to; 0 for none')
-         call list%add('event_count', r%event_count, along, 'number of nodes it happened to together')
+         call list%add('event_kind', r%event_kind, along, 'kind of the event', event_names)
+         call list%add('event_node', r%event_node, along, 'number, from 1, of the first node of the event; 0 for none')
+         call list%add('event_count', r%event_count, along, 'number of nodes of the event')
          call list%add('step', r%step, along, 'number of the step, 0 before the first')
          call list%add('linear_solves', r%linear_solves, along, linear_solves_meaning)
       end associate
@@ -781,10 +781,10 @@ contains
 
       associate (model => simulation%contact%model, r => simulation%contact%history%record(:simulation%contact%history%records))
          if (.not. model%rolls()) return
-         call list%add('rolled', -r%motion(motion_rotation)/model%scene%curvature(), along_records, 'length', 'how far the '// &
-                       'contact has rolled to the right along the surfaces')
+         call list%add('rolled', -r%motion(motion_rotation)/model%scene%curvature(), along_records, 'length', 'distance that '// &
+                       'the contact has rolled to the right along the surfaces')
          call list%add('slid', r%motion(motion_shift) + model%centre_height()*r%motion(motion_rotation), along_records, 'length', &
-                       'how far the upper surface has slid to the right over the lower one, as rigid bodies')
+                       'rigid-body sliding of the upper surface to the right over the lower one')
       end associate
    end subroutine add_rolling
 
@@ -801,7 +801,7 @@ contains
       if (.not. abs(stiffness) > 0.0_wp) return
       associate (r => simulation%contact%history%record(:simulation%contact%history%records))
          call list%add('nonlinear_shift', r%motion(motion_shift) - r%force(motion_shift)/stiffness, along_records, 'length', &
-                       'shift less tangential_force over the tangential stiffness right after the last reversal')
+                       'shift minus tangential_force over the tangential stiffness right after the last reversal')
       end associate
    end subroutine add_nonlinear_shift
 

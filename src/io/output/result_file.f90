@@ -58,7 +58,7 @@ contains
          call close_read(file)
          if (allocated(error)) error%message = path//': '//error%message
       end if
-      if (allocated(error)) error%message = error%message//'; without --resume the case starts again from step 1'
+      if (allocated(error)) error%message = error%message//'; run without --resume to start again from step 1'
    end subroutine resume_result
 
    !> The same for an open file.
@@ -76,7 +76,7 @@ contains
       if (.not. allocated(error)) call read_text_attribute(file, 'outcome', outcome, error)
       if (allocated(error)) return
       if (input /= case%text) then
-         call set_error(error, MFV_INPUT_ERROR, 'the result of another case: the text of the case has changed')
+         call set_error(error, MFV_INPUT_ERROR, 'the result of another case: the text of the case file has changed')
       else if (.not. has(file, restart_group)) then
          is_finished = outcome == status_outcome(MFV_COMPLETE)
          if (.not. is_finished) call set_error(error, MFV_INPUT_ERROR, 'the run ended ('//outcome//'); nothing to resume')

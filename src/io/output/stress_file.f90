@@ -69,7 +69,7 @@ contains
       result%length_unit = case%length_unit
       result%stress_unit = case%force_unit//'/'//case%length_unit//'^2'
       if (.not. result%half_width > 0.0_wp) then
-         call set_error(error, MFV_INPUT_ERROR, path//': there is no load in this state')
+         call set_error(error, MFV_INPUT_ERROR, path//': no load acts in this state')
          return
       end if
       call compute(request, interior, result)
@@ -99,7 +99,7 @@ contains
       if (.not. allocated(error)) call read_text_attribute(file, 'input_file', source, error)
       if (.not. allocated(error)) call read_text_attribute(file, 'working_directory', directory, error)
       if (.not. allocated(error)) then
-         if (.not. has(file, state)) call set_error(error, MFV_INPUT_ERROR, 'there is no state '//state)
+         if (.not. has(file, state)) call set_error(error, MFV_INPUT_ERROR, 'the result has no state '//state)
       end if
       position = 'mesh/x'
       if (has(file, 'mesh/arc')) position = 'mesh/arc'
@@ -120,8 +120,8 @@ contains
       if (allocated(error)) return
       result%yield_strength = merge(case%scene%upper%yield_strength, case%scene%lower%yield_strength, request%upper)
       call case%scene%interior(request%upper, arc, width, pressure, shear, contact_edge, stick_edge, interior, available)
-      if (.not. available) call set_error(error, MFV_INPUT_ERROR, 'the '//body_name(request)//' body is rigid or a matrix: '// &
-                                          'there are no stresses inside it')
+      if (.not. available) call set_error(error, MFV_INPUT_ERROR, 'the '//body_name(request)//' body is rigid or given by a '// &
+                                          'matrix: its stresses cannot be computed')
    end subroutine read_interior
 
    !> Edges between nodes; no edges where the file has none.
@@ -236,7 +236,7 @@ contains
       integer :: code, i, j
 
       allocate (scales(0))
-      call add_real(scales, 'x', result%x, along_nodes, case%length_unit, 'position to the right of the pole')
+      call add_real(scales, 'x', result%x, along_nodes, case%length_unit, 'position to the right of the origin')
       if (allocated(result%depth)) &
          call add_real(scales, 'depth', result%depth, along_nodes, case%length_unit, 'depth below the surface')
       do i = 1, size(scales)
@@ -273,18 +273,18 @@ contains
 
       allocate (fields(0))
       names = list_of_words(stress_names)
-      call add_real(fields, 'y', result%y, along_nodes, case%length_unit, 'height above the pole')
+      call add_real(fields, 'y', result%y, along_nodes, case%length_unit, 'height above the origin')
       do i = 1, stress_count
          call add_real(fields, names(i)%text, result%stress(i, :), along_nodes, result%stress_unit, trim(meaning(names(i)%text)))
          if (names(i)%text == 'principal_angle') fields(size(fields))%unit = '1'
       end do
       call add('largest_von_mises', result%largest%value, result%stress_unit, 'largest von Mises stress in the body, by refinement')
-      call add('largest_x', result%largest%x, case%length_unit, 'where it is: x')
-      call add('largest_y', result%largest%y, case%length_unit, 'where it is: y')
-      call add('largest_tension', result%tension%value, result%stress_unit, 'largest tension along the surface; not a number '// &
+      call add('largest_x', result%largest%x, case%length_unit, 'its position: x')
+      call add('largest_y', result%largest%y, case%length_unit, 'its position: y')
+      call add('largest_tension', result%tension%value, result%stress_unit, 'largest tension along the surface; NaN '// &
                'where it is singular')
-      call add('tension_x', result%tension%x, case%length_unit, 'where it is: x; not a number where there is no tension')
-      call add('tension_y', result%tension%y, case%length_unit, 'where it is: y')
+      call add('tension_x', result%tension%x, case%length_unit, 'its position: x; NaN where there is no tension')
+      call add('tension_y', result%tension%y, case%length_unit, 'its position: y')
       call add('half_width', result%half_width, case%length_unit, 'half the length of the loaded surface, from edges between nodes')
       call add('largest_pressure', result%largest_pressure, result%stress_unit, 'largest pressure')
 

@@ -40,7 +40,7 @@ contains
       call describe(result, result%largest%value, result%largest%x, result%largest%y, largest)
       text = 'largest von Mises   '//largest//line_feed
       if (.not. ieee_is_finite(result%tension%value)) then
-         text = text//'largest tension     singular: the surface of a body ends where it carries shear'//line_feed
+         text = text//'largest tension     singular: shear acts at a sharp corner of the body'//line_feed
       else if (result%tension%value > 0.0_wp) then
          call describe(result, result%tension%value, result%tension%x, result%tension%y, largest)
          text = text//'largest tension     '//largest//', along the surface'//line_feed
@@ -52,7 +52,7 @@ contains
       warning = ''
       if (result%yield_strength > 0.0_wp .and. result%largest%value > result%yield_strength) &
          warning = 'warning: the largest von Mises stress, '//to_text(result%largest%value, 4)//unit// &
-                   ', is beyond the yield_strength '//to_text(result%yield_strength)//unit//' of the '// &
+                   ', exceeds the yield_strength '//to_text(result%yield_strength)//unit//' of the '// &
                    trim(merge('upper', 'lower', request%upper))//' body: elasticity no longer holds'
    end subroutine summarize_stresses
 

@@ -39,7 +39,7 @@ contains
                        ', stuck '//amount(fields, 'stick_nodes')//', slipping '//amount(fields, 'slip_nodes'))
          words = ''
          if (field_named(fields, 'edge_stick_ratio') > 0) words = amount(fields, 'edge_stick_ratio')//' between nodes, '
-         if (model%tangential) call add_line(text, 'stick ratio', words//amount(fields, 'stick_ratio')//' as nodes count it')
+         if (model%tangential) call add_line(text, 'stick ratio', words//amount(fields, 'stick_ratio')//' in whole intervals')
          call add_line(text, 'normal force', amount(fields, 'normal_force')//', approach '//amount(fields, 'approach'))
          if (model%tangential) then
             call add_line(text, 'tangential force', amount(fields, 'tangential_force')//', shift '//amount(fields, 'shift'))
@@ -89,9 +89,9 @@ contains
                           ' patches from '//amount(fields, 'contact_left')//' to '//amount(fields, 'contact_right'))
          else if (patches == 1) then
             call add_line(text, 'contact half-width', amount(fields, 'edge_half_width')//' between nodes, '// &
-                          amount(fields, 'contact_half_width')//' as nodes count it')
+                          amount(fields, 'contact_half_width')//' in whole intervals')
          else
-            call add_line(text, 'contact half-width', amount(fields, 'contact_half_width')//' as nodes count it')
+            call add_line(text, 'contact half-width', amount(fields, 'contact_half_width')//' in whole intervals')
          end if
       end associate
    end subroutine add_contact
@@ -192,8 +192,8 @@ contains
                call add_line(text, 'error estimate', value//' +- '//to_text(bar%error, 2)//percent//', order '// &
                              to_text(bar%order, 2))
             else
-               call add_line(text, 'error estimate', value//' grows with every finer mesh, as nodes^'// &
-                             to_text(-bar%order, 2)//': it has no limit')
+               call add_line(text, 'error estimate', value//' grows as nodes^'//to_text(-bar%order, 2)// &
+                             ' with every finer mesh: it has no limit')
             end if
          end associate
       end do
@@ -204,8 +204,8 @@ contains
       call add_line(text, 'error estimate', 'from meshes with '//meshes//' nodes in place of '// &
                     to_text(simulation%estimate%nodes))
       if (.not. case%scene%friction%converges()) &
-         call add_line(text, 'error estimate', 'static and kinetic friction depends on every mesh: '// &
-                       'there is no limit that the bars could be from')
+         call add_line(text, 'error estimate', 'static and kinetic friction does not converge with the '// &
+                       'mesh: these bars are not bounds')
    end subroutine add_estimate
 
    !> A number of things: 1 event, 2 events; padded with blanks.
@@ -234,7 +234,8 @@ contains
          call add_line(text, 'sensitivity', 'dissipation by '//to_text(s%dissipation, 1)//' (relative), the stick ratio by '// &
                        to_text(s%stick_ratio, 1))
          if (max(s%pressure, s%shear, s%dissipation, s%stick_ratio) > chaotic) &
-            call add_line(text, 'sensitivity', 'round-off decides this result: do not quote it more precisely than these changes')
+            call add_line(text, 'sensitivity', 'this result depends on round-off: do not quote it more precisely than these '// &
+                          'changes')
       end associate
    end subroutine add_sensitivity
 
