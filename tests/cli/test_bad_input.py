@@ -23,7 +23,7 @@ RUN = os.environ.get("MFV_RUN", str(ROOT / "build/release/bin/mfv_run"))
 INPUT_ERROR = 2
 ROWS = [(*key, row) for key, row in CASE.items()]
 
-#: Written values that are no number, whatever the range.
+#: Written values that are not numbers.
 NO_NUMBERS = [
     "x",
     "'1'",
@@ -71,7 +71,7 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Path]:
 
 
 def written(groups: Groups, row: Row | None = None, key: str = "", entry: str | None = None) -> str:
-    """A text with one group a line; `entry` in place of the key of the row, in a line of its own; None: the key is left out."""
+    """A text with one group a line; `entry` in place of the key of the row, in a line of its own; None: the key is omitted."""
     lines: list[str] = []
     seen: dict[str, int] = {}
     for group, keys in groups:

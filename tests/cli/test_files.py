@@ -59,7 +59,7 @@ def folder(begun, tmp_path):
 
 
 def numbers(path):
-    """What is in a file, to the bit; without what is the same in no two runs."""
+    """The content of a file, without what differs between runs."""
     if path.suffix != ".h5":
         return {"bytes": path.read_bytes()}
     found = {}

@@ -46,7 +46,7 @@ contains
       end do
    end subroutine check_bodies
 
-   !> Keys that mean nothing for the shape of their body are mistakes.
+   !> Error for keys that have no effect for the shape of their body.
    subroutine check_body_keys(reader, body, error)
       type(reader_type), intent(in) :: reader
       integer, intent(in) :: body
@@ -77,7 +77,7 @@ contains
       end do
    end subroutine check_body_keys
 
-   !> The keys that a shape cannot do without, separated by blanks and padded with them.
+   !> The keys that a shape needs, separated by blanks; padded with blanks.
    pure function needed_keys(shape) result(keys)
       character(*), intent(in) :: shape
       character(len=40) :: keys
@@ -100,7 +100,7 @@ contains
       end select
    end function needed_keys
 
-   !> One body: shape, then what it is made of.
+   !> One body: shape, then material.
    subroutine read_body(reader, number, plane, body, error)
       type(reader_type), intent(in) :: reader
       integer, intent(in) :: number, plane
@@ -192,7 +192,7 @@ contains
       if (allocated(fault)) call reader%complain('body', number, 'file', fault%message, error)
    end subroutine read_body_file
 
-   !> How the points of a profile are to be taken.
+   !> Options of a profile.
    subroutine read_trace(reader, number, trace, error)
       type(reader_type), intent(in) :: reader
       integer, intent(in) :: number
@@ -234,7 +234,7 @@ contains
       body%material = new_material(modulus, ratio, plane)
    end subroutine read_material
 
-   !> Two bodies that touch at their poles and part from there.
+   !> Error for bodies that do not separate away from the origin.
    subroutine check_pair(reader, scene, error)
       type(reader_type), intent(in) :: reader
       type(scene_type), intent(in) :: scene
@@ -263,8 +263,7 @@ contains
                            error)
    end subroutine check_matrix
 
-   !> Where the displacements of the elastic bodies are measured: at the user's datum, by default at that of mfv_scene_indenter or,
-   !> where there is none, at the half-width of the mesh.
+   !> The datum of each elastic body: that of the user; by default that of mfv_scene_indenter, else the half-width of the mesh.
    subroutine read_datums(reader, scene, error)
       type(reader_type), intent(in) :: reader
       type(scene_type), intent(inout) :: scene

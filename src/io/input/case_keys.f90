@@ -1,5 +1,5 @@
-!> The one list of groups and keys of a case: kinds, defaults, ranges and meanings. The reader checks against it, the
-!> reference in docs/namelist.md and `mfv_run --keys` are printed from it.
+!> All groups and keys of a case: kinds, defaults, ranges and meanings. The reader checks against this list; docs/namelist.md and
+!> `mfv_run --keys` are made from it.
 module mfv_case_keys
    use mfv_body, only: shape_names
    use mfv_friction, only: friction_law_names
@@ -11,7 +11,7 @@ module mfv_case_keys
    private
    public :: case_catalogue
 
-   !> Groups in the order of the reference, with what they are for; and those that may come more than once.
+   !> Groups in the order of the reference, and those that may be repeated.
    character(*), parameter :: group_list = 'scene body mesh friction step solver output'
    character(*), parameter :: repeated_groups = 'body step'
 
@@ -131,7 +131,7 @@ contains
       call keys%add('friction', 'exponent', kind_real, 'dahl: exponent gamma; if omitted: 1', lower=0.0_wp, upper=100.0_wp)
    end subroutine add_friction_keys
 
-   !> A coefficient of friction: one value, or one a node.
+   !> A coefficient of friction: one value, or one per node.
    subroutine add_coefficient_key(keys, name, meaning)
       type(catalogue_type), intent(inout) :: keys
       character(*), intent(in) :: name, meaning

@@ -37,7 +37,7 @@ contains
       if (.not. allocated(error)) call scene%friction%simplify()
    end subroutine read_friction
 
-   !> Keys that the law needs, and none that mean nothing to it.
+   !> Error for missing keys of the law, and for keys that have no effect with it.
    subroutine check_friction_keys(reader, error)
       type(reader_type), intent(in) :: reader
       type(error_type), allocatable, intent(out) :: error
@@ -66,7 +66,7 @@ contains
       end do
    end subroutine check_friction_keys
 
-   !> Keys of a law's coefficients, what else it needs, and all besides its coefficients that it knows; separated by blanks.
+   !> Keys of a law, separated by blanks: its coefficients, other needed keys, and all keys except its coefficients.
    subroutine find_keys_of_law(name, coefficients, needed, known)
       character(*), intent(in) :: name
       character(:), allocatable, intent(out) :: coefficients, needed, known
@@ -91,7 +91,7 @@ contains
       end do
    end subroutine find_keys_of_law
 
-   !> Coefficients of friction: numbers, one number a node, or a file.
+   !> Coefficients of friction: numbers, one number per node, or a file.
    subroutine read_coefficients(reader, friction, error)
       type(reader_type), intent(in) :: reader
       type(friction_type), intent(inout) :: friction
@@ -115,7 +115,7 @@ contains
       end if
    end subroutine read_coefficients
 
-   !> Make `number` values of a single one.
+   !> Repeat a single value `number` times.
    subroutine spread_single(values, number)
       real(wp), allocatable, intent(inout) :: values(:)
       integer, intent(in) :: number
@@ -153,14 +153,14 @@ contains
          call reader%complain('friction', 1, 'mu_file', path//': mu_kinetic must not be above mu_static', error)
       end if
       if (allocated(error)) return
-      ! Component by component: gfortran 12 makes garbage of a constructor with sections of an array.
+      ! Component by component: gfortran 12 miscompiles a constructor with array sections.
       friction%static%value = table(2, :)
       friction%static%position = table(1, :)
       friction%kinetic%value = table(size(table, 1), :)
       friction%kinetic%position = table(1, :)
    end subroutine read_mu_file
 
-   !> Coefficients given one a node need a mesh that is fixed, and as many nodes.
+   !> Error unless coefficients per node have a fixed mesh with that number of nodes.
    subroutine check_coefficients_a_node(reader, scene, error)
       type(reader_type), intent(in) :: reader
       type(scene_type), intent(in) :: scene
@@ -185,7 +185,7 @@ contains
       end if
    end subroutine check_coefficients_a_node
 
-   !> Without friction no tangential force can be carried.
+   !> Error for a tangential force in a step without friction.
    subroutine check_friction_of_steps(reader, error)
       type(reader_type), intent(in) :: reader
       type(error_type), allocatable, intent(out) :: error

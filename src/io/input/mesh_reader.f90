@@ -14,7 +14,7 @@ module mfv_mesh_reader
 
 contains
 
-   !> The mesh, which must see both bodies, and fit the circle of a Fourier series.
+   !> The mesh. It must lie under the indenter and fit the circle of a Fourier series.
    subroutine read_mesh(reader, scene, error)
       type(reader_type), intent(in) :: reader
       type(scene_type), intent(inout) :: scene
@@ -80,7 +80,7 @@ contains
       end if
    end subroutine read_half_angle
 
-   !> The key of the mesh to complain about; padded with blanks.
+   !> The key of the mesh for error messages; padded with blanks.
    pure function mesh_key(reader) result(key)
       type(reader_type), intent(in) :: reader
       character(len=10) :: key
@@ -90,8 +90,8 @@ contains
       if (reader%has('mesh', 1, 'half_angle')) key = 'half_angle'
    end function mesh_key
 
-   !> A Fourier series needs a circle of a whole number of intervals, no more of it than there is, and a harmonic for every
-   !> two of them: with fewer, tractions that alternate from node to node would displace nothing.
+   !> Error for a mesh longer than the circle. A Fourier series also needs a whole number of intervals on the circle, and at least
+   !> half as many harmonics: with fewer, tractions that alternate from node to node would cause no displacement.
    subroutine check_circle(reader, number, scene, body, error)
       type(reader_type), intent(in) :: reader
       integer, intent(in) :: number

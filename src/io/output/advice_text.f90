@@ -1,4 +1,4 @@
-!> Advice as text: why, as comments, and the groups to put into the case in place of its own.
+!> Advice as text: reasons as comments, and groups that replace those of the case.
 module mfv_advice_text
    use mfv_advice
    use mfv_case, only: case_type
@@ -16,7 +16,7 @@ module mfv_advice_text
 
 contains
 
-   !> The error that a text wants, a number above 0 and below 1; `why` says what is wrong with it, empty where nothing is.
+   !> The wanted error in a text, a number above 0 and below 1. `why`: what is wrong with it; empty if it is valid.
    subroutine read_wanted_error(text, wanted_error, why)
       character(*), intent(in) :: text
       real(wp), intent(out) :: wanted_error
@@ -111,7 +111,7 @@ contains
       call add_line(text, 'Replace &mesh and &solver of the case by:')
    end subroutine add_reasons
 
-   !> The group &solver: the solver, its tolerance where it has one, and that of friction laws that are not linear.
+   !> The group &solver: the solver and its tolerance, and the tolerance of non-linear friction laws.
    subroutine add_solver(case, advice, groups, text)
       type(case_type), intent(in) :: case
       type(advice_type), intent(in) :: advice
@@ -137,7 +137,7 @@ contains
       call add_group(text, groups, 'solver', keys, values)
    end subroutine add_solver
 
-   !> Append a group: what it has in the case, but for some `keys`, separated by blanks, and `values` in place of them.
+   !> Append a group of the case with `values` instead of some `keys`, which are separated by blanks.
    subroutine add_group(text, groups, name, keys, values)
       character(:), allocatable, intent(inout) :: text
       type(group_type), intent(in) :: groups(:)

@@ -1,7 +1,7 @@
-!> The restart data of a result file: what an interrupted run needs to continue from the start of the segment in which it was
-!> stopped, besides the history and the states that every result has. They are in its group `restart`.
+!> The restart data of a result file, in its group `restart`: what an interrupted run needs, besides the history and the states of
+!> every result, to continue from the start of the segment in which it was stopped.
 !>
-!> Every quantity is named once: `exchange` adds it to the fields that are written, or takes it from the file that is read.
+!> `exchange` writes or reads a quantity, so that each is named once.
 module mfv_hdf5_restart
    use hdf5, only: hid_t
    use, intrinsic :: iso_fortran_env, only: int64
@@ -23,21 +23,21 @@ module mfv_hdf5_restart
    public :: restart_group, restart_fields, read_restart
 
    character(*), parameter :: restart_group = 'restart'
-   !> Scenes are the same to this part of the largest number of a sort.
+   !> Relative tolerance for scenes to be the same.
    real(wp), parameter :: same = 1.0e-9_wp
-   !> No run counts further.
+   !> Upper limit of counts.
    integer, parameter :: most = 1000000000
    character(*), parameter :: internal = 'internal values of this version of MFV, for --resume'
 
-   !> One group of a file, that is written or read.
+   !> One group of a file that is written or read.
    type :: exchange_type
       logical :: reading = .false.
       integer(hid_t) :: file = -1
-      !> The group and, for several states in one group, what their names begin with.
+      !> The group, and a prefix of names for several states in one group.
       character(:), allocatable :: group, prefix
       !> Fields to be written.
       type(field_type), allocatable :: fields(:)
-      !> The first thing that was wrong with what was read.
+      !> The first error of reading.
       type(error_type), allocatable :: error
    contains
       generic :: exchange => exchange_reals, exchange_real, exchange_integers, exchange_integer
@@ -47,7 +47,7 @@ module mfv_hdf5_restart
 
 contains
 
-   !> The fields of the group `restart` of a run that has been interrupted, all on the mesh as it is now.
+   !> The fields of the group `restart` of an interrupted run, all on the present mesh.
    subroutine restart_fields(simulation, fields)
       type(simulation_type), intent(in) :: simulation
       type(field_type), allocatable, intent(out) :: fields(:)
@@ -68,7 +68,7 @@ contains
       do i = 1, mark_count
          if (copy%marks(i)%step > 0) copy%marks(i)%state = copy%padded(copy%marks(i))
       end do
-      ! Of the snapshots only what `steps` does not have is written, on the nodes of the present mesh.
+      ! Snapshots are in `steps`; only their other values are written, on the nodes of the present mesh.
       allocate (copy%snapshots(simulation%snapshot_count))
       do i = 1, simulation%snapshot_count
          copy%snapshots(i)%state = simulation%snapshots(i)%state
@@ -80,9 +80,8 @@ contains
       call move_alloc(to_file%fields, fields)
    end subroutine restart_fields
 
-   !> Bring a new simulation to where the run of its scene was whose result is open as `file`. Error MFV_INPUT_ERROR: the file has
-   !> no
-   !> restart data, those of another scene, or damaged ones; the simulation is then of no use.
+   !> Restore a new simulation from the restart data in `file`. Error MFV_INPUT_ERROR if they are missing, damaged or of another
+   !> scene; the simulation is then undefined.
    subroutine read_restart(file, simulation, error)
       integer(hid_t), intent(in) :: file
       type(simulation_type), intent(inout) :: simulation
@@ -150,9 +149,8 @@ contains
       end do
    end subroutine exchange_restart
 
-   !> By what another scene is recognised: positions, gaps, coefficients of friction, and what uneven tractions make of the
-   !> compliance;
-   !> of the nodes that the mesh had at first.
+   !> Identify the scene by positions, gaps, coefficients of friction, and displacements under uneven tractions, at the initial
+   !> nodes of the mesh.
    subroutine exchange_scene(self, model)
       type(exchange_type), intent(inout) :: self
       type(contact_model_type), intent(in) :: model
@@ -180,7 +178,7 @@ contains
       end associate
    end subroutine exchange_scene
 
-   !> Records without names of their own in a result: those of the certificate, of rolling, of slip zones and of cycles.
+   !> Internal records: of the certificate, of rolling, of slip zones and of cycles.
    subroutine exchange_internals(self, simulation)
       type(exchange_type), intent(inout) :: self
       type(simulation_type), intent(inout) :: simulation
@@ -260,7 +258,7 @@ contains
       self%prefix = ''
    end subroutine exchange_state
 
-   !> What every state of a result has.
+   !> The fields of every state of a result.
    subroutine exchange_visible(self, state)
       type(exchange_type), intent(inout) :: self
       type(contact_state_type), intent(inout) :: state
@@ -340,7 +338,7 @@ contains
       value = values(1)
    end subroutine exchange_real
 
-   !> Whole numbers, from `least` to `most` where given.
+   !> Integers, from `least` to `most` if given.
    subroutine exchange_integers(self, name, values, meaning, least, most)
       class(exchange_type), intent(inout) :: self
       character(*), intent(in) :: name, meaning
@@ -390,7 +388,7 @@ contains
       counter = nint(max(min(value, most), 0.0_wp), int64)
    end subroutine exchange_counter
 
-   !> A value that no run writes.
+   !> Error for an impossible value.
    subroutine complain(self, name)
       class(exchange_type), intent(inout) :: self
       character(*), intent(in) :: name

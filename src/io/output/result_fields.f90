@@ -1,5 +1,5 @@
-!> The one catalogue of what a result consists of: names, meanings, units and values, by group. The result file, the C
-!> API and through it Python all take their names from here.
+!> All fields of a result: names, meanings, units and values, by group. The result file, the C API and, through it, Python take
+!> their names from here.
 module mfv_result_fields
    use, intrinsic :: ieee_arithmetic, only: ieee_is_nan, ieee_positive_inf, ieee_quiet_nan, ieee_value
    use mfv_body, only: body_type, shape_names
@@ -29,10 +29,10 @@ module mfv_result_fields
              along_companions, along_cycles, along_patches, along_nothing, scale_count, scale_group, scale_name
    public :: result_attributes, add_real, add_whole
 
-   !> What the values of a field run along.
+   !> Dimension along which the values of a field are listed.
    integer, parameter :: along_nothing = 0, along_nodes = 1, along_records = 2, along_companions = 3, along_cycles = 4, &
                          along_patches = 5, scale_count = 5
-   !> Group and name of the field that numbers them.
+   !> Group and name of the scale of each dimension.
    character(*), parameter :: scale_group(scale_count) = [character(14) :: 'mesh', 'history', 'error_estimate', 'cycles', 'patches']
    character(*), parameter :: scale_name(scale_count) = [character(15) :: 'x', 'record', 'companion_nodes', 'cycle', 'patch']
 
@@ -46,9 +46,8 @@ module mfv_result_fields
       character(:), allocatable :: flags
    end type field_type
 
-   !> Fields that are being gathered. Units are given in terms of length and force, such as force/length^2; the fields have the
-   !> user's
-   !> names for those two.
+   !> A list of fields. Units are given in terms of length and force, such as force/length^2; the fields have the user's names of
+   !> these two.
    type :: list_type
       type(field_type), allocatable :: fields(:)
       character(:), allocatable :: length_unit, force_unit
@@ -57,10 +56,10 @@ module mfv_result_fields
       procedure, private :: add_number, add_count, add_numbers, add_counts
    end type list_type
 
-   !> Moments whose tractions can be asked for: where the cycles begin; the far end of the last cycle; its end.
+   !> Instants whose tractions are available: start of the cycles; reversal of the last cycle; its end.
    character(*), parameter :: moment_names(3) = [character(8) :: 'loading', 'reversal', 'return']
    integer, parameter :: moment_marks(3) = [mark_loading, mark_reversal, mark_return]
-   !> Meanings that several groups share.
+   !> Meanings of fields in several groups.
    character(*), parameter :: pressure_meaning = 'compressive normal traction p'
    character(*), parameter :: shear_meaning = 'shear traction tau on the lower body, positive to the right'
    character(*), parameter :: dissipation_meaning = 'energy dissipated so far per unit thickness'
@@ -107,8 +106,8 @@ contains
       if (number > 9999) path = 'steps/'//to_text(number)
    end function padded_step_group
 
-   !> The fields of one group; none for a group that does not exist. Not in result files, and so not in result_groups: the
-   !> tractions at the moments of a cycle, moments/loading and so on.
+   !> The fields of one group; none for an unknown group. The tractions at instants of a cycle (moments/loading and so on) are not
+   !> in result files and result_groups.
    subroutine group_fields(case, simulation, group, fields)
       type(case_type), intent(in) :: case
       type(simulation_type), intent(in) :: simulation
@@ -186,8 +185,8 @@ contains
       end do
    end function field_named
 
-   !> Names and texts of the attributes of a result. `warnings`: see mfv_validity; finding them takes a search for the largest
-   !> stress, so that the caller, who may need them elsewhere too, does it once.
+   !> Names and texts of the attributes of a result. `warnings`: see mfv_validity; the caller finds them once, because they take a
+   !> search for the largest stress.
    subroutine result_attributes(case, simulation, warnings, names, texts)
       type(case_type), intent(in) :: case
       type(simulation_type), intent(in) :: simulation
@@ -237,7 +236,7 @@ contains
       end subroutine add
    end subroutine result_attributes
 
-   !> A text after a colon; nothing where there is none.
+   !> A text after a colon; empty if there is none.
    pure function separated(text) result(tail)
       character(*), intent(in) :: text
       character(len=merge(len(text) + 2, 0, text /= '')) :: tail
@@ -299,7 +298,7 @@ contains
                     ' body are measured')
    end subroutine add_body
 
-   !> Which compliance blocks the scene needed, and the memory of what they are made from.
+   !> Compliance blocks of the scene, and memory of the kernels or matrices.
    subroutine add_compliance(list, simulation)
       type(list_type), intent(inout) :: list
       type(simulation_type), intent(in) :: simulation
@@ -338,7 +337,7 @@ contains
       end associate
    end subroutine add_mesh
 
-   !> The fields of a state, with the edges of all zones, of which the tractions between nodes are made.
+   !> The fields of a state, with the edges of all zones.
    subroutine add_state(list, simulation, state)
       type(list_type), intent(inout) :: list
       type(simulation_type), intent(in) :: simulation
@@ -386,7 +385,7 @@ contains
       end do
    end subroutine add_displacements
 
-   !> A tangential quantity: NaN in scenes that leave the tangential problem out.
+   !> A tangential quantity: NaN in scenes without the tangential problem.
    function modelled(simulation, values)
       type(simulation_type), intent(in) :: simulation
       real(wp), intent(in) :: values(:)
@@ -421,7 +420,7 @@ contains
                     'without cycles')
    end subroutine add_step
 
-   !> The tractions at a moment of the last cycle; nothing where there is no such moment.
+   !> The tractions at an instant of the last cycle, if there is one.
    subroutine add_moment(list, simulation, mark)
       type(list_type), intent(inout) :: list
       type(simulation_type), intent(in) :: simulation
@@ -488,7 +487,7 @@ contains
       call list%add('edge_stick_ratio', edges%stick_ratio(), '1', 'stick zones over contact length, from edges between nodes')
    end subroutine add_edges
 
-   !> What an engineer reads off the load history, where it can be told.
+   !> Observables of the load history, where defined.
    subroutine add_observables(list, simulation)
       type(list_type), intent(inout) :: list
       type(simulation_type), intent(in) :: simulation
@@ -533,7 +532,7 @@ contains
 
    contains
 
-      !> The left or right edge of what sticks in a patch.
+      !> The left or right edge of the stick zones of a patch.
       pure real(wp) function outermost(patch, right) result(edge)
          type(patch_type), intent(in) :: patch
          logical, intent(in) :: right
@@ -545,7 +544,7 @@ contains
       end function outermost
    end subroutine add_patches
 
-   !> What every patch bears; the forces of all add up to those of the contact.
+   !> Forces and peak tractions of the patches; the forces add up to those of the contact.
    subroutine add_patch_loads(list, simulation, patches)
       type(list_type), intent(inout) :: list
       type(simulation_type), intent(in) :: simulation
@@ -577,7 +576,7 @@ contains
                                                              'magnitude of the shear traction in the patch')
    end subroutine add_patch_loads
 
-   !> The cycles, one by one; and where the last one dissipated.
+   !> The cycles, and the distribution of dissipation in the last one.
    subroutine add_cycles(list, simulation)
       type(list_type), intent(inout) :: list
       type(simulation_type), intent(in) :: simulation
@@ -682,7 +681,7 @@ contains
             length = bar(quantity_half_width)
             length%value = 2.0_wp*length%value
             length%error = 2.0_wp*length%error
-            length%companions = 2.0_wp*length%companions
+            length%companions = 2.0_wp*length%companions  ! wording: ok
             call add_bar(list, length, 'contact_length', 'length', 'length of all intervals in contact')
          else
             call add_bar(list, bar(quantity_half_width), 'contact_half_width', 'length', 'half the length of all intervals in '// &
@@ -695,7 +694,7 @@ contains
       end associate
    end subroutine add_estimate
 
-   !> What a perturbation of friction changes.
+   !> Changes caused by perturbed friction.
    subroutine add_sensitivity(list, sensitivity)
       type(list_type), intent(inout) :: list
       type(sensitivity_type), intent(in) :: sensitivity
@@ -723,7 +722,7 @@ contains
                     'there is no limit, NaN if slip zones have too few nodes to resolve it')
       call list%add(name//'_order', bar%order, '1', 'observed order of convergence, from 1 to 2 (negative: no limit; NaN: not '// &
                     'resolved): '//meaning)
-      call list%add(name//'_companions', bar%companions, along_companions, unit, 'on the coarser meshes: '//meaning)
+      call list%add(name//'_companions', bar%companions, along_companions, unit, 'on the coarser meshes: '//meaning)  ! wording: ok
    end subroutine add_bar
 
    !> Some of the motions and their forces (shape (values, motion_count)), first the forces.
@@ -774,7 +773,7 @@ contains
       end associate
    end subroutine add_history
 
-   !> How far the bodies have rolled, and slid while they did; where they can roll.
+   !> Distances of rolling and sliding, if the bodies can roll.
    subroutine add_rolling(list, simulation)
       type(list_type), intent(inout) :: list
       type(simulation_type), intent(in) :: simulation
@@ -788,8 +787,8 @@ contains
       end associate
    end subroutine add_rolling
 
-   !> The non-linear part of the hysteresis loop, as in dissertation Fig. 6.2b: the linear part, that of a contact where all
-   !> sticks, is taken out. Where there are cycles whose stiffness is known.
+   !> The non-linear part of the hysteresis loop (dissertation Fig. 6.2b): the shift minus that of full stick, for cycles of known
+   !> stiffness.
    subroutine add_nonlinear_shift(list, simulation)
       type(list_type), intent(inout) :: list
       type(simulation_type), intent(in) :: simulation
@@ -885,7 +884,7 @@ contains
       if (present(flags)) fields(size(fields))%flags = flags
    end subroutine add_whole
 
-   !> Append a field without values. By move_alloc: gfortran leaks the components of arrays that a constructor joins.
+   !> Append a field without values; by move_alloc, because gfortran leaks components in array constructors.
    subroutine append_field(fields, name, along, unit, description)
       type(field_type), allocatable, intent(inout) :: fields(:)
       character(*), intent(in) :: name, unit, description

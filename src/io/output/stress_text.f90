@@ -14,7 +14,7 @@ module mfv_stress_text
 
 contains
 
-   !> The stresses at every point, a line each.
+   !> The stresses at every point, one per line.
    subroutine list_stresses(result, text)
       type(stress_result_type), intent(in) :: result
       character(:), allocatable, intent(out) :: text
@@ -28,7 +28,8 @@ contains
       end do
    end subroutine list_stresses
 
-   !> The largest stresses, and where all of them are: in the file `path`. `warning`: beyond the yield strength; empty otherwise.
+   !> The largest stresses, and the group of all stresses in the file `path`. `warning`: if the yield strength is exceeded, else
+   !> empty.
    subroutine summarize_stresses(path, request, result, text, warning)
       character(*), intent(in) :: path
       type(stress_request_type), intent(in) :: request
@@ -56,7 +57,7 @@ contains
                    trim(merge('upper', 'lower', request%upper))//' body: elasticity no longer holds'
    end subroutine summarize_stresses
 
-   !> A stress and its place, in the user's units and over those of the contact.
+   !> A stress and its position, in the user's units and relative to the contact.
    subroutine describe(result, value, x, y, text)
       type(stress_result_type), intent(in) :: result
       real(wp), intent(in) :: value, x, y
