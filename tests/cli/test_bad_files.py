@@ -339,7 +339,7 @@ PUNCH = b"&body shape='flat_punch', half_width=0.1, rigid=.true. /\n"
         ),
         (
             ELASTIC + DISK + b"&friction law='static_kinetic', mu_static=0.5, 0.6, 0.7, mu_kinetic=0.3, 0.4 /\n" + MESH + PRESS,
-            "case.nml:3: &friction mu_kinetic=0.3, 0.4: must have one value or as many as mu_static",
+            "case.nml:3: &friction mu_kinetic=0.3, 0.4: must have one value, or as many as mu_static",
         ),
         (
             ELASTIC + DISK + b"&friction law='coulomb', mu_file='short.txt' /\n" + PRESS,
