@@ -156,7 +156,7 @@ def test_a_run_that_failed_is_not_called_complete(tmp_path):
 @pytest.mark.parametrize(
     "damage, why",
     [
-        ("text", "the text of the case has changed"),
+        ("text", "the text of the case file has changed"),
         ("version", "written by version 0.0.0"),
         ("numbers", "restart/segment is damaged"),
         ("missing", "dataset restart/certificate is missing"),

@@ -380,7 +380,7 @@ def test_a_reader_keeps_what_it_has_opened(folder):
         assert "mu=0.5" in new.attrs["input"] and not np.array_equal(new["state/shear"][:], before)
     with h5py.File(folder / "case.h5", "r+"):  # somebody writes: HDF5's own lock is minded
         done = run([RUN, "case.nml"], folder)
-        assert done.returncode == INPUT and "another program has it open to write" in done.stderr
+        assert done.returncode == INPUT and "another program has it open for writing" in done.stderr
 
 
 def test_stresses_do_not_go_into_another_result(shim, folder):

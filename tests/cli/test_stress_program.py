@@ -38,7 +38,7 @@ def test_a_grid_is_put_into_the_file(folder):
     run = stress("case.h5", "--points", 41, 21, "--width", 1.5, "--depth", 1, cwd=folder)
     assert run.returncode == 0, run.stderr
     assert "largest von Mises" in run.stdout and "/stress/last/lower" in run.stdout
-    assert "beyond the yield_strength" in run.stderr
+    assert "exceeds the yield_strength" in run.stderr
     with h5py.File(folder / "case.h5") as result:
         group = result["stress/last/lower"]
         assert group["von_mises"].shape == (21, 41)
@@ -87,7 +87,7 @@ def test_points_are_printed(folder):
         (("case.h5", "--points", "1", "5"), "--points needs a whole number from 2 to 100000, not '1'"),
         (("case.h5", "--what"), "unknown option '--what'"),
         (("case.h5", "--step", "9"), "case.h5: the result has no state steps/0009"),
-        (("case.h5", "--body", "upper"), "the upper body is rigid or a matrix"),
+        (("case.h5", "--body", "upper"), "the upper body is rigid or given by a matrix"),
         (("nowhere.h5",), "nowhere.h5: no such file"),
         (("case.nml",), "case.nml is not an HDF5 file"),
         (("case.h5", "--at", "nowhere.txt"), "nowhere.txt"),
