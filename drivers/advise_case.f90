@@ -1,4 +1,4 @@
-!> What mfv_run --advise does.
+!> The option --advise of mfv_run.
 module mfv_advise_case
    use mfv_advice, only: advice_count, advice_type, advise
    use mfv_advice_text, only: read_wanted_error, read_wanted_quantities, write_advice
@@ -19,8 +19,8 @@ module mfv_advise_case
 
 contains
 
-   !> Read the arguments after --advise, the wanted error and the case among them, and print what the case needs. The program
-   !> ends with an exit code where that cannot be told. `usage`: how the program is used, for messages, one line an element.
+   !> Read the arguments and the case, and print the mesh and the solver that the wanted error needs. The program ends with an exit
+   !> code on failure. `usage`: lines of text.
    subroutine advise_case(usage)
       character(*), intent(in) :: usage(:)
       type(case_type) :: case
@@ -48,7 +48,7 @@ contains
       call print_text(text)
    end subroutine advise_case
 
-   !> error=..., of=... and the case, in any order.
+   !> --advise, error=..., of=... and the case, in any order.
    subroutine read_arguments(usage, path, wanted_error, wanted)
       character(*), intent(in) :: usage(:)
       character(:), allocatable, intent(out) :: path
@@ -62,12 +62,15 @@ contains
       wanted_error = 0.0_wp
       wanted = .true.
       has_error = .false.
-      do i = 2, command_argument_count()
+      do i = 1, command_argument_count()
          call get_argument(i, argument)
          why = ''
-         if (index(argument, 'error=') == 1) then
+         if (argument == '--advise') cycle
+         if (index(argument, '-') == 1) then
+            why = "does not take the option '"//shortened(argument)//"'"
+         else if (index(argument, 'error=') == 1) then
             call read_wanted_error(argument(len('error=') + 1:), wanted_error, why)
-            if (has_error) why = shortened(argument)//': error is there twice'
+            if (has_error) why = shortened(argument)//': error is given twice'
             has_error = .true.
          else if (index(argument, 'of=') == 1) then
             call read_wanted_quantities(argument(len('of=') + 1:), wanted, why)

@@ -1,4 +1,4 @@
-!> Command-line arguments, refusals of wrong ones, and the end of a program.
+!> Command-line arguments, error messages about them, and program exit.
 module mfv_command_line
    use, intrinsic :: iso_c_binding, only: c_int
    use, intrinsic :: iso_fortran_env, only: error_unit
@@ -7,7 +7,7 @@ module mfv_command_line
    use mfv_strings, only: add_text, list_of_words, find_nearest_name, shortened, string_type
    implicit none
    private
-   public :: get_argument, refuse, refuse_option, fail, end_program
+   public :: get_argument, has_argument, refuse, refuse_option, fail, end_program
 
    interface
       subroutine c_exit(code) bind(C, name='exit')
@@ -29,6 +29,19 @@ contains
       if (length > 0) call get_command_argument(number, text)
    end subroutine get_argument
 
+   !> Whether one of the command-line arguments is `text`.
+   logical function has_argument(text)
+      character(*), intent(in) :: text
+      character(:), allocatable :: argument
+      integer :: i
+
+      has_argument = .false.
+      do i = 1, command_argument_count()
+         call get_argument(i, argument)
+         has_argument = has_argument .or. argument == text
+      end do
+   end function has_argument
+
    !> End the program with the message and the exit code of an error.
    subroutine fail(error)
       type(error_type), intent(in) :: error
@@ -37,7 +50,7 @@ contains
       call end_program(status_exit_code(error%status))
    end subroutine fail
 
-   !> End the program with an exit code, without the words that a stop statement may print.
+   !> End the program with an exit code, without the output of a stop statement.
    subroutine end_program(code)
       integer, intent(in) :: code
 
@@ -45,17 +58,18 @@ contains
       call c_exit(int(code, c_int))
    end subroutine end_program
 
-   !> End `program` because of its arguments: say why, and how it is used. `usage`: lines of text.
+   !> End `program` because of wrong arguments: print why, and its `usage` (lines of text).
    subroutine refuse(program, usage, why)
       character(*), intent(in) :: program, usage(:), why
       integer :: i
 
-      write (error_unit, '(a)') program//': '//why, (trim(usage(i)), i=1, size(usage)), program//' --help explains.'
+      write (error_unit, '(a)') program//': '//why, (trim(usage(i)), i=1, size(usage)), &
+         "Try '"//program//" --help' for more information."
       call end_program(status_exit_code(MFV_INPUT_ERROR))
    end subroutine refuse
 
-   !> End `program` because it has no option of this name, and name the nearest that it has. `help`: lines of text, with one
-   !> option a line, as in '  --check   read the case'. An option that it has is in the wrong place.
+   !> End `program` because it has no option of this name, and suggest the nearest. `help`: lines of text with one option each,
+   !> such as '  --check   read the case'.
    subroutine refuse_option(program, usage, help, option)
       character(*), intent(in) :: program, usage(:), help(:), option
       type(string_type), allocatable :: names(:)
@@ -63,12 +77,11 @@ contains
 
       call find_options(help, names)
       call find_nearest_name(option(max(verify(option, '-'), 1):), names, nearest)
-      if ('--'//nearest == option) call refuse(program, usage, option//' does not go with the arguments before it')
       if (nearest /= '') nearest = '; did you mean --'//nearest//'?'
       call refuse(program, usage, "unknown option '"//shortened(option)//"'"//nearest)
    end subroutine refuse_option
 
-   !> The options that a help text explains, without their dashes: the first --name of lines that begin with an option.
+   !> The options in a help text, without their dashes: the first --name of lines that begin with an option.
    subroutine find_options(help, names)
       character(*), intent(in) :: help(:)
       type(string_type), allocatable, intent(out) :: names(:)

@@ -1,11 +1,11 @@
-!> Ctrl-C and requests to terminate: they are noted, for the run to end at its next increment.
+!> Ctrl-C and termination requests: a flag that ends the run at its next increment.
 module mfv_interrupts
    use, intrinsic :: iso_c_binding, only: c_funloc, c_funptr, c_int
    implicit none
    private
    public :: catch_interrupts, is_interrupted
 
-   !> Set by the signal handler; a program's state, not the library's.
+   !> Set by the signal handler.
    logical, volatile :: interrupted = .false.
 
    integer(c_int), parameter :: signal_interrupt = 2, signal_terminate = 15
@@ -21,7 +21,7 @@ module mfv_interrupts
 
 contains
 
-   !> From now on Ctrl-C and a termination request end the run at its next increment, with its result kept.
+   !> Have Ctrl-C and termination requests end the run at its next increment, with its result written.
    subroutine catch_interrupts()
       type(c_funptr) :: previous
 

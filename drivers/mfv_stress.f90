@@ -1,4 +1,4 @@
-!> mfv_stress: stresses inside the bodies of a result, into its file.
+!> mfv_stress RESULT.h5: compute stresses inside a body of a result and add them to its file.
 program mfv_stress
    use, intrinsic :: iso_fortran_env, only: error_unit
    use mfv_error, only: error_type
@@ -12,7 +12,7 @@ program mfv_stress
    use mfv_stress_text, only: list_stresses, summarize_stresses
    use mfv_stress_help, only: help, usage
    implicit none
-   save  ! the standard says so of a program; gfortran's -frecursive loses what they hold, which the leak sanitizer tells
+   save  ! implied by the standard; without it gfortran's -frecursive leaks the variables of a program
 
    type(stress_request_type) :: request
    type(stress_result_type) :: result
@@ -63,7 +63,7 @@ contains
             call get_argument(i, argument)
             call read_table(argument, 'x and y', 2, .false., points, error)
             if (allocated(error)) call refuse('mfv_stress', usage, error%message)
-            if (size(points, 2) == 0) call refuse('mfv_stress', usage, argument//': has no points')
+            if (size(points, 2) == 0) call refuse('mfv_stress', usage, argument//' has no points')
             request%x = points(1, :)
             request%y = points(2, :)
          case default

@@ -1,10 +1,10 @@
-!> What mfv_stress says about itself.
+!> Usage and help of mfv_stress.
 module mfv_stress_help
    implicit none
    private
    public :: usage, help
 
-   !> How it is used, and what --help adds: one line per element. The manual page is made from both (docs/man).
+   !> Printed by --help: the usage, then the help, one line per element. The manual page is made from both (docs/man).
    character(*), parameter :: usage(*) = [character(len=100) :: &
       'usage: mfv_stress RESULT.h5 [--body lower|upper] [--step N] [--width W] [--depth D] [--points NX NY]', &
       '       mfv_stress RESULT.h5 --at POINTS.txt [--body lower|upper] [--step N]', &
@@ -13,39 +13,38 @@ module mfv_stress_help
    character(*), parameter :: help(*) = [character(len=100) :: &
       '', &
       'Compute the stresses inside a body from the surface tractions of a result, by closed forms for', &
-      'half-planes, disks and holes, and put them into the result file, under /stress/last/lower and so', &
-      'on, with the largest von Mises stress, the largest tension along the surface and their places.', &
+      'half-planes, disks and holes, and add them to the result file, under /stress/last/lower and so', &
+      'on, with the positions of the largest von Mises stress and the largest tension along the surface.', &
       '', &
-      'A result is what mfv_run has written:', &
+      'A result is a file written by mfv_run:', &
       '', &
       '  mfv_run examples/disk_on_plane.nml', &
       '  mfv_stress disk_on_plane.h5', &
       '  python -m mfv plot disk_on_plane.h5 --stress von_mises', &
       '', &
       'Options:', &
-      '  --body lower|upper   which body; lower by default', &
-      '  --step N             in the state kept in /steps/000N; by default the last one', &
-      '  --width W            on a grid that goes W contact half-widths to either side of the contact; 2', &
-      '                       by default', &
-      '  --depth D            and D contact half-widths deep, along the surface; 2 by default', &
-      '  --points NX NY       of NX by NY points; 161 81 by default', &
-      '  --at POINTS.txt      at the points of a text file instead, x and y a line, y up from the contact;', &
-      '                       the stresses there are printed too', &
+      '  --body lower|upper   the body; lower by default', &
+      '  --step N             the state saved in /steps/000N; the last one by default', &
+      '  --width W            half-width of the grid, in contact half-widths; 2 by default', &
+      '  --depth D            depth of the grid below the surface, in contact half-widths; 2 by default', &
+      '  --points NX NY       number of points of the grid; 161 81 by default', &
+      '  --at POINTS.txt      points of a text file instead of a grid, x and y on each line, y upwards from', &
+      '                       the contact; their stresses are also printed', &
       '  --version            print the version', &
       '  -h, --help           print this text', &
       '', &
       'Quantities:', &
       '  sigma_xx, sigma_yy, sigma_xy               Cartesian components, positive in tension', &
-      '  sigma_zz                                   across the plane', &
+      '  sigma_zz                                   out-of-plane stress', &
       '  principal_1, principal_2                   principal stresses in the plane', &
       '  principal_angle                            direction of principal_1 from the x axis, radians', &
-      '  von_mises, tresca                          equivalent stresses; sigma_zz counts in both', &
+      '  von_mises, tresca                          equivalent stresses, with sigma_zz', &
       '  sigma_rr, sigma_thetatheta, sigma_rtheta   polar components, of disks and holes', &
       '', &
       'Exit codes:', &
       '  0     done', &
-      '  2     the arguments or the result cannot be used: a rigid body, a state that is not there', &
-      '  4     the file could not be written; it then stays as it was', &
+      '  2     the arguments or the result cannot be used: a rigid body, a missing state', &
+      '  4     the file could not be written; it is unchanged', &
       '', &
       'Examples:', &
       '  mfv_stress two_cylinders.h5 --body upper --step 1', &
@@ -53,7 +52,7 @@ module mfv_stress_help
       '  mfv_stress two_cylinders.h5 --at points.txt', &
       '', &
       'See also:', &
-      '  docs/guide.md, section Stresses inside; docs/theory.md for how they are computed. mfv_run(1).' &
+      '  docs/guide.md, section Stresses inside; docs/theory.md: how they are computed. mfv_run(1).' &
       ]
 
 end module mfv_stress_help

@@ -1,6 +1,5 @@
-!> One thread for the BLAS. The systems of a contact are small: a second thread costs more than it does, on a busy machine
-!> hundreds of times more, and what is added up in two threads has other last digits. With one the digits are the same
-!> whatever OPENBLAS_NUM_THREADS says. A library must not decide this for its host; a program may.
+!> One thread for OpenBLAS: a second one slows small systems down and changes the last digits of sums. The programs set this
+!> whatever OPENBLAS_NUM_THREADS says; the library leaves it to its host.
 module mfv_one_thread
    use, intrinsic :: iso_c_binding
    implicit none
@@ -25,7 +24,7 @@ module mfv_one_thread
 
 contains
 
-   !> Tell OpenBLAS, where that is the BLAS (another one is left as it is).
+   !> Set OpenBLAS to one thread; no effect with another BLAS.
    subroutine use_one_thread()
       type(c_funptr) :: address
       procedure(set_threads), pointer :: set

@@ -1,4 +1,4 @@
-!> What the programs that solve a case have in common.
+!> Solve a case: common to mfv_run and mfv_conventional.
 module mfv_run_case
    use, intrinsic :: iso_fortran_env, only: error_unit
    use mfv_clock, only: seconds_now
@@ -19,9 +19,9 @@ module mfv_run_case
 contains
 
    !> Read the case in the file `path`, solve it, write its result (if the library has HDF5) and print the summary; the program then
-   !> ends with the exit code of the outcome. `algorithm`: in place of the case's own; `suffix` is then inserted in the name of the
-   !> result file. `estimate`, `sensitivity`: whether error bars and the sensitivity to round-off are computed even if the case does
-   !> not ask for them; `resume`: whether to continue from a checkpoint.
+   !> ends with the exit code of the outcome. `algorithm`: replaces that of the case; `suffix`: inserted in the name of the result
+   !> file. `estimate`, `sensitivity`: compute error bars and the sensitivity to round-off even if the case does not request them;
+   !> `resume`: continue from a checkpoint.
    subroutine run_case(path, resume, estimate, sensitivity, algorithm, suffix)
       character(*), intent(in) :: path
       logical, intent(in) :: resume, estimate, sensitivity
@@ -49,7 +49,7 @@ contains
       call contact%summarize(seconds_now() - started, text)
       call print_text(text)
       if (.not. has_hdf5) then
-         call print_line('result              no file: '//hdf5_is_left_out)
+         call print_line('result              not written: '//hdf5_is_left_out)
       else if (contact%is_unfinished()) then
          call print_line('result              '//contact%checkpoint_path//' (unfinished; --resume continues)')
       else
@@ -62,9 +62,8 @@ contains
       call end_program(status_exit_code(merge(MFV_INTERRUPTED, contact%status(), contact%is_unfinished())))
    end subroutine run_case
 
-   !> Continue from the checkpoint of the case, if there is one, and say so. The program ends where there is nothing left to do, or
-   !> the
-   !> checkpoint cannot be used.
+   !> Continue from the checkpoint of the case, if there is one, and print a message. The program ends if the result is complete or
+   !> the checkpoint cannot be used.
    subroutine continue_run(contact)
       type(contact_type), intent(inout) :: contact
       type(error_type), allocatable :: error

@@ -1,13 +1,13 @@
-/* The standard streams of a program, and a signal. In C because open flags and the numbers of signals are the system's own. */
+/* The standard streams of a program, and a signal. In C because open flags and signal numbers depend on the system. */
 #define _XOPEN_SOURCE 700
 #include <errno.h>
 #include <fcntl.h>
 #include <signal.h>
 #include <unistd.h>
 
-/* To be called first. A standard stream that the caller has closed is opened on /dev/null: else the next file, a result for
-   one, would get its number, and the summary would go into it. It is opened so that printing fails and messages vanish. And
-   a file that may not grow further is an error of the call that writes, not the end of the program by a signal. */
+/* Call this first. A standard stream that the caller has closed is opened on /dev/null; otherwise the next file, such as a result,
+   would get its number and receive the summary. Printing then fails, and messages are lost. A file-size limit becomes an error of
+   the writing call instead of a signal. */
 void mfv_begin_streams(void) {
   int descriptor;
   for (descriptor = STDIN_FILENO; descriptor <= STDERR_FILENO; descriptor++)

@@ -1,4 +1,4 @@
-!> The terminal: progress that stays quiet in a pipe, and the end of a run after Ctrl-C.
+!> Progress on a terminal (not in a pipe), and the end of a run after Ctrl-C.
 module mfv_terminal
    use, intrinsic :: iso_c_binding, only: c_int
    use, intrinsic :: iso_fortran_env, only: error_unit
@@ -17,7 +17,7 @@ module mfv_terminal
       private
       logical :: visible = .false., shown = .false.
       real(wp) :: next_time = 0.0_wp
-      !> What is being done, before the rest; empty for the case itself.
+      !> Label before the progress; empty for the case itself.
       character(len=20) :: work = ''
    contains
       procedure :: notify
@@ -40,7 +40,7 @@ module mfv_terminal
 
 contains
 
-   !> Find out whether there is a terminal to show progress on.
+   !> Show progress if standard error is a terminal.
    subroutine start(self)
       class(terminal_observer_type), intent(inout) :: self
       integer(c_int), parameter :: standard_error = 2
@@ -65,7 +65,7 @@ contains
       self%next_time = now + pause
       self%shown = .true.
       write (error_unit, '(a)', advance='no') achar(13)//'  '//self%work(:len_trim(self%work) + min(1, len_trim(self%work)))// &
-         to_text(floor(100*(segment - 1 + fraction)/segments))//' %, part '//to_text(segment)//' of '// &
+         to_text(floor(100*(segment - 1 + fraction)/segments))//' %, load segment '//to_text(segment)//' of '// &
          to_text(segments)//', '//to_text(state%contact_nodes())//' nodes in contact, '// &
          to_text(state%stick_nodes())//' stuck     '
       flush (error_unit)
@@ -88,7 +88,7 @@ contains
       write (error_unit, '(a)') text
    end subroutine warn
 
-   !> Wipe the progress off the terminal.
+   !> Clear the progress from the terminal.
    subroutine clear(self)
       class(terminal_observer_type), intent(inout) :: self
       integer, parameter :: width = 90

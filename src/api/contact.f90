@@ -1,5 +1,4 @@
-!> A contact to be led and asked: a case with its simulation, behind one object. The Fortran face of the library (module mfv) and
-!> the C interface (mfv_c) are both this.
+!> A case with its simulation in one object, the basis of the Fortran interface (module mfv) and the C interface (mfv_c).
 module mfv_contact
    use, intrinsic :: ieee_arithmetic, only: ieee_is_finite
    use, intrinsic :: iso_fortran_env, only: int64
@@ -36,7 +35,7 @@ module mfv_contact
    public :: contact_type, loads_type, read_contact, read_contact_text, new_contact, step_to, body_lower, body_upper
 
    integer, parameter :: body_lower = 0, body_upper = 1
-   !> What step_to makes of a force and a displacement for one direction.
+   !> Invalid control: a force and a displacement for one direction.
    integer, parameter :: control_both = -huge(1)
 
    !> Loads and motions of a state, of motion_approach, motion_shift and motion_rotation: forces [force/length], moment [force];
@@ -49,13 +48,13 @@ module mfv_contact
    type :: contact_type
       type(case_type) :: case
       type(simulation_type) :: simulation
-      !> A checksum by which states that are kept know their scene.
+      !> Checksum by which saved states identify their scene.
       integer(int64), private :: scene = 0
       logical, private :: is_made = .false.
-      !> Of a run that keeps checkpoints: the file, seconds between them (0: none), and when the next one is due.
+      !> Checkpoints: the file, seconds between them (0: none), and when the next one is due.
       character(:), allocatable :: checkpoint_path
       real(wp), private :: checkpoint_seconds = 0.0_wp, next_checkpoint = 0.0_wp
-      !> What was asked for last: paths of all fields, one group of them, warnings, attributes; dropped when the state changes.
+      !> Cache until the state changes: paths of all fields, one group of them, warnings, attributes.
       type(string_type), allocatable, private :: paths(:)
       character(:), allocatable, private :: group
       type(field_type), allocatable, private :: fields(:)
@@ -90,9 +89,8 @@ module mfv_contact
 
 contains
 
-   !> The contact of the case in a namelist file. Error MFV_INPUT_ERROR. `needs_steps`: whether a case without steps is an error
-   !> too.
-   !> `algorithm`: in place of the case's own; `suffix` is then inserted in the name of its result file.
+   !> The contact of the case in a namelist file. `needs_steps`: whether a case without steps is an error. `algorithm`: replaces
+   !> that of the case; `suffix`: inserted in the name of the result file. Error MFV_INPUT_ERROR.
    subroutine read_contact(path, contact, error, needs_steps, algorithm, suffix)
       character(*), intent(in) :: path
       type(contact_type), intent(out) :: contact
@@ -122,7 +120,7 @@ contains
       name = path(:dot - 1)//suffix//path(dot:)
    end function with_suffix
 
-   !> The same of a text. `source`: what messages call it; files that it names are looked for beside it.
+   !> The same of a text. `source`: its name for messages, and the path to which file names are relative.
    subroutine read_contact_text(text, source, contact, error)
       character(*), intent(in) :: text, source
       type(contact_type), intent(out) :: contact
@@ -151,16 +149,16 @@ contains
       self%is_made = .true.
    end subroutine begin
 
-   !> Error MFV_BAD_HANDLE for a contact that no procedure has made, or could make.
+   !> Error MFV_BAD_HANDLE for an empty contact.
    subroutine expect_made(self, error)
       class(contact_type), intent(in) :: self
       type(error_type), allocatable, intent(out) :: error
 
-      if (.not. self%is_made) call set_error(error, MFV_BAD_HANDLE, 'the contact has not been made: see new_contact, read_contact')
+      if (.not. self%is_made) call set_error(error, MFV_BAD_HANDLE, 'the contact is empty: call new_contact or read_contact')
    end subroutine expect_made
 
-   !> Have error bars and the sensitivity to round-off found out by run, even where the case does not ask for them. Error
-   !> MFV_INPUT_ERROR: a case that cannot have them.
+   !> Have run compute error bars and the sensitivity to round-off, even if the case does not request them. Error MFV_INPUT_ERROR
+   !> for a case that cannot have them.
    subroutine ask_for(self, estimate, sensitivity, error)
       class(contact_type), intent(inout) :: self
       logical, intent(in) :: estimate, sensitivity
@@ -175,9 +173,8 @@ contains
       self%case%sensitivity = self%case%sensitivity .or. sensitivity
    end subroutine ask_for
 
-   !> Have run write its result from time to time, at ends of segments, so that another process can continue (see resume): where
-   !> &output says; or beside that, with .partial in its name, where the result of a finished run is. Error MFV_INPUT_ERROR: the
-   !> result could not be written.
+   !> Have run write checkpoints at ends of segments, from which another process can continue (see resume): to the file of &output,
+   !> or next to it, with .partial in its name, if it is the result of a finished run. Error MFV_INPUT_ERROR: not writable.
    subroutine keep_checkpoints(self, error)
       class(contact_type), intent(inout) :: self
       type(error_type), allocatable, intent(out) :: error
@@ -196,8 +193,8 @@ contains
       self%simulation%keep_restart = .true.
    end subroutine keep_checkpoints
 
-   !> Continue from the checkpoint of an interrupted run of the case, the last segment that it finished. `message`: what is done.
-   !> `is_finished`: there is nothing left to do. Error MFV_INPUT_ERROR: the checkpoint cannot be used.
+   !> Continue from the checkpoint of an interrupted run of the case, after its last finished segment. `message`: what is done.
+   !> `is_finished`: the result is complete. Error MFV_INPUT_ERROR: the checkpoint cannot be used.
    subroutine resume(self, message, is_finished, error)
       class(contact_type), intent(inout) :: self
       character(:), allocatable, intent(out) :: message
@@ -224,7 +221,7 @@ contains
       end if
    end subroutine resume
 
-   !> Run the steps of the case that have not been run. How it went: see status.
+   !> Run the steps of the case that have not been run; see status for the outcome.
    subroutine run(self, observer)
       class(contact_type), intent(inout) :: self
       class(observer_type), intent(inout), optional :: observer
@@ -247,7 +244,7 @@ contains
       if (self%simulation%outcome /= MFV_COMPLETE) call self%case%explain(self%simulation)
    end subroutine run
 
-   !> Write a checkpoint, where one is due. Where that fails the run goes on, and the observer is warned.
+   !> Write a checkpoint if one is due. If that fails the observer is warned and the run continues.
    subroutine write_checkpoint(self, observer)
       class(contact_type), intent(inout) :: self
       class(observer_type), intent(inout), optional :: observer
@@ -259,16 +256,16 @@ contains
       message = self%simulation%message
       call self%simulation%note_restart()
       self%simulation%outcome = MFV_INTERRUPTED
-      self%simulation%message = 'a checkpoint: the run had not finished; '//message
+      self%simulation%message = 'checkpoint of an unfinished run; '//message
       call self%save(error)
       self%simulation%outcome = MFV_COMPLETE
       self%simulation%message = message
       call self%forget()
-      if (allocated(error) .and. present(observer)) call observer%warn('no checkpoint: '//error%message)
+      if (allocated(error) .and. present(observer)) call observer%warn('checkpoint not written: '//error%message)
       self%next_checkpoint = seconds_now() + self%checkpoint_seconds
    end subroutine write_checkpoint
 
-   !> Whether the run was interrupted, even if only while its error bars or its sensitivity were found out.
+   !> Whether the run, its error bars or its sensitivity were interrupted.
    pure logical function is_unfinished(self)
       class(contact_type), intent(in) :: self
 
@@ -278,7 +275,7 @@ contains
          is_unfinished = is_unfinished .or. self%simulation%sensitivity%status == MFV_INTERRUPTED
    end function is_unfinished
 
-   !> Write the result of a run that keeps checkpoints: where &output says when it is finished, else as its checkpoint. Error
+   !> Write the result of a run with checkpoints: to the file of &output if it is finished, else as its checkpoint. Error
    !> MFV_FILE_ERROR.
    subroutine save(self, error)
       class(contact_type), intent(inout) :: self
@@ -300,7 +297,7 @@ contains
       if (exists .and. .not. allocated(not_ours)) call delete_path(partial)
    end subroutine save
 
-   !> The summary of the result, for a terminal. `seconds`: what the run took.
+   !> The summary of the result, for a terminal. `seconds`: wall-clock time of the run.
    subroutine summarize_contact(self, seconds, text)
       class(contact_type), intent(inout) :: self
       real(wp), intent(in) :: seconds
@@ -310,10 +307,9 @@ contains
       call summarize(self%case, self%simulation, self%warnings, seconds, text)
    end subroutine summarize_contact
 
-   !> Lead the loads through one more step, straight from where they are: a force or a displacement in every direction that is to
-   !> change, units as in step_type. `relative`: targets are increments on the loads now. How it went: see status.
-   !> A contact that an observer has interrupted goes on from where it is.
-   !> Errors MFV_BAD_ARGUMENT: the step is none, nothing is done; MFV_BAD_HANDLE.
+   !> Apply one more step, linearly from the present loads: a force or a displacement in every direction that changes, units as in
+   !> step_type. `relative`: targets are increments of the present loads. After an interruption by an observer the contact continues
+   !> from its present state. See status for the outcome. Errors MFV_BAD_ARGUMENT (invalid step, nothing is done), MFV_BAD_HANDLE.
    subroutine advance(self, step, error, relative, observer)
       class(contact_type), intent(inout) :: self
       type(step_type), intent(in) :: step
@@ -341,8 +337,8 @@ contains
       call self%simulation%advance(absolute, observer=observer)
    end subroutine advance
 
-   !> A step to the targets that are there: normal_force or approach, tangential_force or shift, moment or rotation; units and
-   !> the rest as in step_type.
+   !> A step to the given targets: normal_force or approach, tangential_force or shift, moment or rotation; units and the rest as in
+   !> step_type.
    pure function step_to(normal_force, approach, tangential_force, shift, moment, rotation, friction, cycles, steady_tolerance) &
       result(step)
       real(wp), intent(in), optional :: normal_force, approach, tangential_force, shift, moment, rotation, steady_tolerance
@@ -358,7 +354,7 @@ contains
       if (present(steady_tolerance)) step%steady_tolerance = steady_tolerance
    end function step_to
 
-   !> What a step does with one motion.
+   !> Control and target of one motion.
    pure subroutine choose(force, displacement, control, target)
       real(wp), intent(in), optional :: force, displacement
       integer, intent(inout) :: control
@@ -382,7 +378,7 @@ contains
       where (step%control == control_displacement) step%target = step%target + fields%motion
    end subroutine add_present
 
-   !> What is wrong with a step: error MFV_BAD_ARGUMENT.
+   !> Error MFV_BAD_ARGUMENT for an invalid step.
    subroutine check_step(step, error)
       type(step_type), intent(in) :: step
       type(error_type), allocatable, intent(out) :: error
@@ -390,7 +386,7 @@ contains
 
       wrong = findloc(motions%pushes .and. step%control == control_force .and. step%target < 0.0_wp, .true., dim=1)
       if (any(step%control == control_both)) then
-         call set_error(error, MFV_BAD_ARGUMENT, 'a step leads the force or the displacement of a direction, not both')
+         call set_error(error, MFV_BAD_ARGUMENT, 'prescribe either the force or the displacement of a direction, not both')
       else if (any(step%control < control_keep .or. step%control > control_displacement)) then
          call set_error(error, MFV_BAD_ARGUMENT, 'a control must be MFV_KEEP, MFV_FORCE or MFV_DISPLACEMENT')
       else if (.not. all(ieee_is_finite(step%target))) then
@@ -404,7 +400,7 @@ contains
       end if
    end subroutine check_step
 
-   !> How it has gone so far, see mfv_status: MFV_COMPLETE while nothing has gone wrong; MFV_BAD_HANDLE before it was made.
+   !> Outcome so far, see mfv_status: MFV_COMPLETE without failure; MFV_BAD_HANDLE for an empty contact.
    pure integer function status(self)
       class(contact_type), intent(in) :: self
 
@@ -412,16 +408,16 @@ contains
       if (self%is_made) status = self%simulation%outcome
    end function status
 
-   !> What was reached, or why not.
+   !> Message of the outcome.
    pure subroutine get_message(self, message)
       class(contact_type), intent(in) :: self
       character(:), allocatable, intent(out) :: message
 
-      message = 'the contact has not been made'
+      message = 'the contact is empty'
       if (self%is_made) message = self%simulation%message
    end subroutine get_message
 
-   !> Loads and motions now.
+   !> Present loads and motions.
    pure type(loads_type) function loads(self)
       class(contact_type), intent(in) :: self
 
@@ -436,8 +432,8 @@ contains
       loads%linear_solves = self%simulation%contact%system%solves
    end function loads
 
-   !> The consistent tangent at the present state, see mfv_tangent; `tangent`: shape (2, 2), or (3, 3) with rotation, which is held
-   !> otherwise; `direction`: shape (2) or (3), towards which friction acts, if the scene has any. Error MFV_BAD_ARGUMENT.
+   !> The consistent tangent at the present state, see mfv_tangent. `tangent`: shape (2, 2) with fixed rotation, or (3, 3);
+   !> `direction` of further motion: shape (2) or (3). Error MFV_BAD_ARGUMENT.
    subroutine get_tangent(self, tangent, error, direction)
       class(contact_type), intent(in) :: self
       real(wp), intent(out) :: tangent(:, :)
@@ -448,7 +444,7 @@ contains
       call self%expect_made(error)
       if (allocated(error)) return
       if (size(tangent, 1) /= size(tangent, 2) .or. size(tangent, 1) < 2 .or. size(tangent, 1) > motion_count) then
-         call set_error(error, MFV_BAD_ARGUMENT, 'the tangent is of 2 motions, or of 3 with rotation')
+         call set_error(error, MFV_BAD_ARGUMENT, 'the tangent must have 2 motions, or 3 with rotation')
          return
       end if
       if (present(direction)) then
@@ -462,7 +458,7 @@ contains
       call find_tangent(self%simulation%contact, tangent, error, direction)
    end subroutine get_tangent
 
-   !> Keep the present state.
+   !> Save the present state.
    subroutine keep(self, kept)
       class(contact_type), intent(in) :: self
       type(kept_state_type), intent(inout) :: kept
@@ -470,7 +466,7 @@ contains
       if (self%is_made) call kept%keep(self%simulation, self%scene)
    end subroutine keep
 
-   !> Come back to a state that was kept, see mfv_kept_state. Error MFV_BAD_ARGUMENT.
+   !> Restore a saved state, see mfv_kept_state. Error MFV_BAD_ARGUMENT.
    subroutine come_back(self, kept, error)
       class(contact_type), intent(inout) :: self
       type(kept_state_type), intent(in) :: kept
@@ -481,7 +477,7 @@ contains
       if (.not. allocated(error)) call self%forget()
    end subroutine come_back
 
-   !> Paths of all fields there are now, such as state/pressure: those of the result file. They hold until the state changes.
+   !> Paths of all present fields, such as state/pressure, as in the result file; valid until the state changes.
    subroutine field_paths(self, paths)
       class(contact_type), intent(inout), target :: self
       type(string_type), pointer, intent(out) :: paths(:)
@@ -501,8 +497,8 @@ contains
       paths => self%paths
    end subroutine field_paths
 
-   !> The field at a path; `whole`: it must have whole numbers, or reals. The group it is in is kept, for the next field of it; the
-   !> pointer holds until another group is asked for or the state changes. Error MFV_BAD_ARGUMENT.
+   !> The field at a path; `whole`: whether it must have integers or reals. Its group is cached: the pointer is valid until another
+   !> group is requested or the state changes. Error MFV_BAD_ARGUMENT.
    subroutine find_field(self, path, field, error, whole)
       class(contact_type), intent(inout), target :: self
       character(*), intent(in) :: path
@@ -533,7 +529,7 @@ contains
          call set_error(error, MFV_BAD_ARGUMENT, path//' has '//trim(merge('reals        ', 'whole numbers', whole)))
    end subroutine find_field
 
-   !> Whether the group that was looked at last is this one.
+   !> Whether the cached group is this one.
    pure logical function is_at_hand(group, wanted)
       character(:), allocatable, intent(in) :: group
       character(*), intent(in) :: wanted
@@ -591,7 +587,7 @@ contains
       if (.not. allocated(error)) value = values(1)
    end subroutine get_integer
 
-   !> Error MFV_BAD_ARGUMENT for a field that has not one value but `count`.
+   !> Error MFV_BAD_ARGUMENT unless `count` is 1.
    subroutine expect_one(path, count, error)
       character(*), intent(in) :: path
       integer, intent(in) :: count
@@ -600,7 +596,7 @@ contains
       if (count /= 1) call set_error(error, MFV_BAD_ARGUMENT, path//' has '//to_text(count)//' values, not one')
    end subroutine expect_one
 
-   !> Names and texts of the attributes of the result: title, outcome, input and so on. They hold until the state changes.
+   !> Names and texts of the attributes of the result: title, outcome, input and so on; valid until the state changes.
    subroutine attributes(self, names, texts)
       class(contact_type), intent(inout), target :: self
       type(string_type), pointer, intent(out) :: names(:), texts(:)
@@ -613,17 +609,16 @@ contains
       texts => self%attribute_texts
    end subroutine attributes
 
-   !> Have the warnings at hand: they may take a search for the largest stress.
+   !> Find the warnings, if they are not cached; this may take a search for the largest stress.
    subroutine find_warnings(self)
       class(contact_type), intent(inout) :: self
 
       if (.not. allocated(self%warnings)) call validity_warnings(self%simulation, self%warnings)
    end subroutine find_warnings
 
-   !> A body (body_lower, body_upper) under the tractions of the state that steps/000N has, N = `step`, or of the present one (0,
-   !> and
-   !> by default): for interior%all_stresses(x, y), largest_von_mises, largest_tension; see mfv_interior. Error MFV_BAD_ARGUMENT: a
-   !> rigid body or a matrix, or no such step.
+   !> A body (body_lower, body_upper) under the tractions of the state steps/000N, N = `step`, or of the present state (0, the
+   !> default): for interior%all_stresses(x, y), largest_von_mises, largest_tension; see mfv_interior. Error MFV_BAD_ARGUMENT: a
+   !> rigid body, a matrix or an unknown step.
    subroutine find_interior(self, body, interior, error, step)
       class(contact_type), intent(in) :: self
       integer, intent(in) :: body
@@ -639,7 +634,7 @@ contains
       number = 0
       if (present(step)) number = step
       if (number < 0 .or. number > self%simulation%snapshot_count) then
-         call set_error(error, MFV_BAD_ARGUMENT, 'there is no step '//to_text(number)//'; there are '// &
+         call set_error(error, MFV_BAD_ARGUMENT, 'there is no step '//to_text(number)//'; the result has '// &
                         to_text(self%simulation%snapshot_count))
          return
       end if
@@ -650,8 +645,8 @@ contains
    end subroutine find_interior
 
    !> A body under tractions (on the lower body, to the right; force/length^2) at nodes with the intervals `width` around `arc`
-   !> along the surface; `contact_edge`, `stick_edge`: edges between them, as in the state of a result, not a number where there
-   !> is none; shapes (nodes). Error MFV_BAD_ARGUMENT: no such body, a rigid one or a matrix.
+   !> along the surface; `contact_edge`, `stick_edge`: edges between them, as in the state of a result, NaN if there is
+   !> none; shapes (nodes). Error MFV_BAD_ARGUMENT: no such body, a rigid one or a matrix.
    subroutine make_interior(self, body, arc, width, pressure, shear, contact_edge, stick_edge, interior, error)
       class(contact_type), intent(in) :: self
       integer, intent(in) :: body
@@ -664,7 +659,7 @@ contains
       call expect_inside(body, available, error)
    end subroutine make_interior
 
-   !> Error MFV_BAD_ARGUMENT for what is not the number of a body, and for a body whose inside is not available.
+   !> Error MFV_BAD_ARGUMENT for an invalid body number or a body without interior stresses.
    subroutine expect_inside(body, available, error)
       integer, intent(in) :: body
       logical, intent(in) :: available
@@ -674,11 +669,11 @@ contains
          call set_error(error, MFV_BAD_ARGUMENT, 'the body must be MFV_LOWER or MFV_UPPER')
       else if (.not. available) then
          call set_error(error, MFV_BAD_ARGUMENT, 'the '//merge('upper', 'lower', body == body_upper)// &
-                        ' body is rigid or a matrix: there are no stresses inside it')
+                        ' body is rigid or given by a matrix: its stresses cannot be computed')
       end if
    end subroutine expect_inside
 
-   !> Write the result file to `path`, or where &output says when that is empty. Errors MFV_FILE_ERROR, MFV_BAD_ARGUMENT.
+   !> Write the result file to `path`, or to the file of &output if that is empty. Errors MFV_FILE_ERROR, MFV_BAD_ARGUMENT.
    subroutine write (self, path, error)
       class(contact_type), intent(inout) :: self
       character(*), intent(in) :: path
@@ -690,14 +685,14 @@ contains
       where_to = path
       if (path == '') where_to = self%case%result_path
       if (where_to == '') then
-         call set_error(error, MFV_BAD_ARGUMENT, 'no path, and the case has no &output file')
+         call set_error(error, MFV_BAD_ARGUMENT, 'no path is given, and the case has no &output file')
          return
       end if
       call find_warnings(self)
       call write_result(where_to, self%case, self%simulation, self%warnings, error)
    end subroutine write
 
-   !> The state is about to change: drop what was made from it.
+   !> Clear the cache, before the state changes.
    subroutine forget(self)
       class(contact_type), intent(inout) :: self
 

@@ -1,6 +1,6 @@
-/* The calls of include/mfv.h on a handle: each looks the handle up, keeps other calls off its object, and goes on in mfv_c.f90,
- * where the same call has the object in place of the handle and `_unguarded` after its name. Calls that make or free
- * handles, or write to the place of one, do so in mfv_c.f90. */
+/* The calls of include/mfv.h on a handle: each looks the handle up, blocks other calls on its object, and calls the procedure of
+ * the same name with the suffix `_unguarded` in mfv_c.f90, with the object instead of the handle. Calls that create or free handles
+ * are in mfv_c.f90. */
 #include "handles.h"
 #include <mfv.h>
 
@@ -15,7 +15,7 @@
     return status;                                                 \
   }
 
-/* Calls that only ask are alone, too: they may change the message and what is kept for the next question. */
+/* Queries also need exclusive use: they may change the message and the cache. */
 #define SCENE(name, parameters, arguments) GUARD(name, MFV_KIND_SCENE, MFV_ALONE, parameters, arguments)
 #define CASE(name, parameters, arguments) GUARD(name, MFV_KIND_CASE, MFV_ALONE, parameters, arguments)
 

@@ -5,8 +5,8 @@
 #include <stdint.h>
 #include <stdlib.h>
 
-/* Entry i has the numbers i + MOST, i + 2 MOST, ... in turn, one for each handle that it serves. A handle is twice the number,
- * plus 1: odd, unlike addresses of objects. */
+/* Entry i uses the numbers i + MOST, i + 2 MOST, ... for successive handles. A handle is twice the number, plus 1: odd, unlike
+ * addresses of objects. */
 #define MOST ((uintptr_t)1 << (sizeof(uintptr_t) > 4 ? 22 : 14))
 #define LAST_NUMBER (UINTPTR_MAX / 2 - MOST)
 

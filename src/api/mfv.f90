@@ -1,11 +1,11 @@
-!> The library as a Fortran program uses it: `use mfv` is all. docs/fortran-api.md has the guide, examples/hosts/ whole programs.
+!> The Fortran interface of the library. Guide: docs/fortran-api.md; complete programs: examples/hosts/.
 !>
-!> - draft_type: a scene that is being built, `call draft%set('body(2)%radius', 0.25_wp)`; read_draft: from a text
-!> - contact_type: a contact to be led and asked, from new_contact (of a draft), read_contact (of a file), read_contact_text
+!> - draft_type: scene builder, `call draft%set('body(2)%radius', 0.25_wp)`; read_draft: from a text
+!> - contact_type: a case with its state, from new_contact (scene builder), read_contact (file) or read_contact_text
 !> - contact%run, contact%advance with step_to(...); contact%loads(), contact%get('state/pressure', values, error)
 !> - contact%get_tangent; contact%keep and contact%come_back with a kept_state_type
 !> - contact%find_interior: interior%all_stresses, largest_von_mises, largest_tension; contact%write
-!> - observer_type: to be extended by who wants to be told of every increment
+!> - observer_type: extend it to follow every increment
 !> - error_type: what went wrong; the MFV_... statuses with status_outcome and status_explanation
 !>
 !> Units: any consistent set; forces and energies per unit thickness. Objects are independent of each other: one thread an object at

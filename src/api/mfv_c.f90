@@ -1,6 +1,6 @@
-!> The C interface of include/mfv.h: thin walls around the library. Unpack, call, return the status. guards.c calls procedures
-!> `..._unguarded`, with the address of an object in place of its handle, and sees to it that no other call uses the object. A null
-!> pointer to a number or an array is an absent argument.
+!> The C interface of include/mfv.h: unpack, call, return the status. guards.c calls the procedures `..._unguarded` with the address
+!> of an object instead of its handle, and excludes other calls on the object. A null pointer to a number or an array is an absent
+!> argument.
 module mfv_c
    use, intrinsic :: ieee_arithmetic, only: ieee_is_finite, ieee_quiet_nan, ieee_value
    use, intrinsic :: iso_c_binding
@@ -28,7 +28,7 @@ module mfv_c
    implicit none
    private
 
-   !> Tells a function of the caller.
+   !> Calls a function of the caller.
    type, extends(observer_type) :: c_observer_type
       procedure(c_observe), nopass, pointer :: observe => null()
       type(c_ptr) :: user = c_null_ptr
@@ -36,17 +36,17 @@ module mfv_c
       procedure :: notify
    end type c_observer_type
 
-   !> The object of a case's handle. Those of a scene's and a state's are of draft_type and kept_state_type.
+   !> The object of a case's handle; those of scenes and states are of draft_type and kept_state_type.
    type :: handle_type
       type(contact_type) :: contact
       type(c_observer_type) :: observer
       character(:), allocatable :: message
    end type handle_type
 
-   !> What messages call a text that has no name.
+   !> Name in messages of a text without a name.
    character(*), parameter :: unnamed = 'text'
 
-   !> Sizes of arrays beyond this are a mistake: (size_t)-1, say.
+   !> Larger array sizes, such as (size_t)-1, are errors.
    integer(c_size_t), parameter :: most = 2_c_size_t**31 - 1
 
    !> mfv_step of the header.
@@ -209,7 +209,7 @@ contains
       if (status /= MFV_COMPLETE) deallocate (draft)
    end function mfv_scene_from_text
 
-   !> The handle of a new object, if `status` says that it could be made.
+   !> The handle of a new object, if `status` is MFV_COMPLETE.
    subroutine issue(kind, object, handle, status)
       integer(c_int), intent(in) :: kind
       type(c_ptr), intent(in) :: object
@@ -311,7 +311,7 @@ contains
       if (allocated(error)) status = MFV_BAD_ARGUMENT
    end function mfv_scene_set_data_unguarded
 
-   !> The object of a scene. MFV_BAD_ARGUMENT without a key or usable values for it; of the values mfv_create tells, too.
+   !> The object of a scene. MFV_BAD_ARGUMENT without a key or usable values; mfv_create then fails as well.
    subroutine find_scene(scene, key, has_values, draft, status)
       type(c_ptr), intent(in) :: scene, key
       logical, intent(in) :: has_values
@@ -373,7 +373,7 @@ contains
       character(:), allocatable :: why
 
       status = MFV_BAD_ARGUMENT
-      call say('the place for the handle is null', message, message_size)
+      call say('the pointer to the handle is null', message, message_size)
       if (.not. present(handle)) return
       handle = c_null_ptr
       status = mfv_handle_enter(scene, kind_scene, use_reading, object)
@@ -426,7 +426,7 @@ contains
       call hand_out(self, handle, status)
    end function mfv_create_from_text
 
-   !> The status of an error, MFV_COMPLETE where there is none; its message goes to a buffer, which may be null.
+   !> The status of an error, MFV_COMPLETE if there is none; its message is copied to a buffer, which may be null.
    integer(c_int) function told(error, message, message_size) result(status)
       type(error_type), allocatable, intent(in) :: error
       type(c_ptr), intent(in) :: message
@@ -439,7 +439,7 @@ contains
       call say(error%message, message, message_size)
    end function told
 
-   !> A text to a buffer, which may be null.
+   !> Copy a text to a buffer, which may be null.
    subroutine say(text, message, message_size)
       character(*), intent(in) :: text
       type(c_ptr), intent(in) :: message
@@ -449,7 +449,7 @@ contains
       copied = text_out(text, message, message_size)
    end subroutine say
 
-   !> The handle of a new case. It is freed if `status` says that it could not be made, or if there is no handle for it.
+   !> The handle of a new case, which is freed if `status` is not MFV_COMPLETE or no handle is available.
    subroutine hand_out(self, handle, status)
       type(handle_type), pointer, intent(inout) :: self
       type(c_ptr), intent(out) :: handle
@@ -512,7 +512,7 @@ contains
       stop_wanted = flag
    end function mfv_stop_when_set
 
-   !> See mfv_observer. Nobody may be there to be told.
+   !> See mfv_observer; the caller's function may be absent.
    subroutine notify(self, state, segment, segments, fraction, stop_wanted)
       class(c_observer_type), intent(inout) :: self
       type(contact_state_type), intent(in) :: state
@@ -666,13 +666,13 @@ contains
       deallocate (kept)
    end function mfv_state_free
 
-   !> What is wrong with the handle of a scene or a state that was looked up.
+   !> The message for a bad handle of a scene or a state.
    subroutine explain_handle(what, status, message)
       character(*), intent(in) :: what
       integer(c_int), intent(in) :: status
       character(:), allocatable, intent(out) :: message
 
-      message = 'the '//what//' is null, was freed, or is none'
+      message = 'the '//what//' is null, freed or invalid'
       if (status == MFV_IN_USE) message = 'the '//what//' is in use by another call'
    end subroutine explain_handle
 
@@ -694,7 +694,7 @@ contains
       status = MFV_BAD_ARGUMENT
    end function refused
 
-   !> MFV_COMPLETE where an argument is good, else refused.
+   !> MFV_COMPLETE if an argument is valid, else refused.
    integer(c_int) function expected(self, is_good, why) result(status)
       type(handle_type), intent(inout) :: self
       logical, intent(in) :: is_good
@@ -704,7 +704,7 @@ contains
       if (.not. is_good) status = refused(self, why)
    end function expected
 
-   !> The status of an error, with its message as the case's; MFV_COMPLETE where there is none.
+   !> The status of an error, with its message as that of the case; MFV_COMPLETE if there is none.
    integer(c_int) function failed(self, error) result(status)
       type(handle_type), intent(inout) :: self
       type(error_type), allocatable, intent(in) :: error
@@ -749,7 +749,8 @@ contains
       status = listed_text_out(self, 'mfv_attribute_name', 'attributes', names, index, buffer, size)
    end function mfv_attribute_name_unguarded
 
-   !> Text `index` (from 0) of a list into a caller's buffer. `caller`, `items`: the function that is called and what the list has.
+   !> Copy text `index` (from 0) of a list to a buffer. `caller`, `items`: names of the called function and of the texts, for
+   !> messages.
    integer(c_int) function listed_text_out(self, caller, items, list, index, buffer, size) result(status)
       type(handle_type), intent(inout) :: self
       character(*), intent(in) :: caller, items
@@ -826,7 +827,7 @@ contains
       if (status == MFV_COMPLETE) values = field%whole
    end function mfv_copy_integer_unguarded
 
-   !> The field at a path of a case, of reals or (`whole`) whole numbers if that matters. MFV_BAD_ARGUMENT.
+   !> The field at a path of a case, of integers or reals if `whole` is given. MFV_BAD_ARGUMENT.
    subroutine find_field(handle, path, field, status, whole)
       type(c_ptr), intent(in) :: handle, path
       type(field_type), pointer, intent(out) :: field
@@ -843,7 +844,7 @@ contains
       status = failed(self, error)
    end subroutine find_field
 
-   !> The same, to be copied to where there are `count` places (`has_places`: the pointer to them is not null).
+   !> The same, to be copied to an array of `count` values (`has_places`: the array is not null).
    subroutine find_field_to_copy(handle, path, whole, has_places, count, field, status)
       type(c_ptr), intent(in) :: handle, path
       logical, intent(in) :: whole, has_places
@@ -858,11 +859,11 @@ contains
       if (.not. has_places) then
          status = refused(self, text_in(path)//': values is null')
       else if (count /= values_of(field)) then
-         status = refused(self, text_in(path)//' has '//to_text(int(values_of(field)))//' values, count is another number')
+         status = refused(self, text_in(path)//' has '//to_text(int(values_of(field)))//' values; count must be that number')
       end if
    end subroutine find_field_to_copy
 
-   !> How many values a field has.
+   !> Number of values of a field.
    pure integer(c_size_t) function values_of(field)
       type(field_type), intent(in) :: field
 
@@ -890,8 +891,7 @@ contains
       if (status == MFV_COMPLETE) status = answered(self, interior, count, x, y, stresses, place, tension)
    end function mfv_stress_unguarded
 
-   !> Stresses at points, the largest von Mises stress and the largest tension of a body, as far as they are asked for.
-   !> MFV_BAD_ARGUMENT.
+   !> The requested stresses of a body: at points, the largest von Mises stress and the largest tension. MFV_BAD_ARGUMENT.
    integer(c_int) function answered(self, interior, count, x, y, stresses, place, tension) result(status)
       type(handle_type), intent(inout) :: self
       type(interior_type), intent(in) :: interior
@@ -914,7 +914,7 @@ contains
       if (present(tension)) tension = place_of(largest_tension(interior))
    end function answered
 
-   !> A largest stress and where it is.
+   !> A largest stress and its position.
    pure function place_of(largest) result(place)
       type(largest_type), intent(in) :: largest
       real(c_double) :: place(3)
@@ -951,7 +951,7 @@ contains
       if (status == MFV_COMPLETE) status = answered(self, interior, count, x, y, stresses, place, tension)
    end function mfv_stress_under_unguarded
 
-   !> Edges of the caller's, or NaN for each node if there are none.
+   !> The given edges, or NaN for each node.
    pure function edges_or_nan(nodes, given) result(edges)
       integer(c_size_t), intent(in) :: nodes
       real(c_double), intent(in), optional :: given(nodes)
@@ -1006,7 +1006,7 @@ contains
       if (c_associated(pointer_to_text)) length = int(c_strlen(pointer_to_text))
    end function length_or
 
-   !> Text into a caller's buffer; MFV_BAD_ARGUMENT where there is none.
+   !> Copy a text to a buffer; MFV_BAD_ARGUMENT if it is null or empty.
    integer(c_int) function text_out(text, buffer, size) result(status)
       character(*), intent(in) :: text
       type(c_ptr), intent(in) :: buffer

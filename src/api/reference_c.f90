@@ -17,8 +17,8 @@ module mfv_reference_c
 
 contains
 
-   !> The closed form `name` of the arguments `a`, in the order of the header; NaN outside its domain. `is_known`: whether there is
-   !> one of that name with so many arguments.
+   !> The closed form `name` of the arguments `a`, in the order of the header; NaN outside its domain. `is_known`: whether there
+   !> is one of that name with this number of arguments.
    subroutine evaluate_closed_form(name, a, value, is_known)
       character(*), intent(in) :: name
       real(wp), intent(in) :: a(:)
@@ -105,7 +105,7 @@ contains
 
    contains
 
-      !> Whether every argument is in its domain, one letter each; there must be so many.
+      !> Whether the number of arguments is that of `domains`, and every argument is in its domain.
       logical function fits(domains)
          character(*), intent(in) :: domains
          integer :: i

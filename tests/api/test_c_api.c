@@ -211,7 +211,7 @@ static void closed_forms(void) {
   CHECK(isnan(form("spence_stick_ratio", 2, -0.1, 0.2, 0, 0, 0)));
 }
 
-/* Stresses on the surface are the tractions; the largest is no smaller than anything below it; misuse is told. */
+/* Stresses on the surface are the tractions; the largest is no smaller than any inside the body; misuse is reported. */
 static void stresses_inside(void) {
   mfv_case *handle = NULL;
   size_t nodes = 0;

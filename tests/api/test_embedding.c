@@ -319,7 +319,7 @@ static void misuse_is_told(void) {
   CHECK(mfv_scene_free(&scene) == MFV_COMPLETE);
   scene = cylinder();
   CHECK(mfv_scene_set_data(scene, "f", "x", 1, 1, tangent) == MFV_COMPLETE);
-  CHECK(mfv_create(scene, &handle, message, sizeof message) == MFV_INPUT_ERROR && strstr(message, "no key names the data 'f'") != NULL);
+  CHECK(mfv_create(scene, &handle, message, sizeof message) == MFV_INPUT_ERROR && strstr(message, "no key refers to the data 'f'") != NULL);
   CHECK(mfv_scene_set_data(scene, "f", "gaps", 1, 1, tangent) == MFV_BAD_ARGUMENT);
   CHECK(mfv_scene_free(&scene) == MFV_COMPLETE);
   CHECK(mfv_create(NULL, &handle, message, sizeof message) == MFV_BAD_HANDLE && strstr(message, "null") != NULL);

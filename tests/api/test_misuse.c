@@ -263,7 +263,7 @@ static const row rows[] = {
 };
 enum { ROWS = sizeof rows / sizeof rows[0] };
 
-/* The closed forms, of so many numbers. */
+/* The closed forms and their numbers of arguments. */
 static const struct {
   const char *name;
   size_t count;

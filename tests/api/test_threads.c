@@ -199,7 +199,7 @@ static int go_on(mfv_case *handle, track *seen, int increment) {
 
 static track one_track;
 
-/* Lead so many handles at once, increment by increment; returns the number of those that gave something else than one alone. */
+/* Advance several handles in turn, increment by increment; returns the number whose result differs from that of a single one. */
 static void *lead_many(void *argument) {
   static const size_t everything_failed = HANDLES;
   size_t different = 0;

@@ -48,7 +48,7 @@ def go_on_with(process, number):
 
 
 def wait_for_work(process, seconds):
-    """Wait until a process has used so many seconds of a processor, however busy the machine is, or has ended."""
+    """Wait until a process has used `seconds` of processor time, however busy the machine is, or has ended."""
     ticks = os.sysconf("SC_CLK_TCK")
     while process.poll() is None:
         words = Path(f"/proc/{process.pid}/stat").read_text().rpartition(")")[2].split()

@@ -78,13 +78,13 @@ def test_good_texts(tmp_path: Path, name: str) -> None:
 
 
 BROKEN = {
-    "empty": (b"", "case.nml: &body: two bodies are needed"),
-    "blanks": (b" \n\t\r\n  ", "case.nml: &body: two bodies are needed"),
-    "a comment": (b"! nothing", "case.nml: &body: two bodies are needed"),
+    "empty": (b"", "case.nml: &body: exactly two are needed"),
+    "blanks": (b" \n\t\r\n  ", "case.nml: &body: exactly two are needed"),
+    "a comment": (b"! nothing", "case.nml: &body: exactly two are needed"),
     "no step": (BODIES, "case.nml: &step: at least one step is needed"),
-    "one body": (ELASTIC + PRESS, "two bodies are needed, the first below and the second above; there are 1"),
-    "three bodies": (CASE + DISK, "two bodies are needed, the first below and the second above; there are 3"),
-    "a group twice": (CASE + MESH, "case.nml:5: &mesh: may come only once, and is already in line 3"),
+    "one body": (ELASTIC + PRESS, "exactly two are needed, first the lower body, then the upper one; found 1"),
+    "three bodies": (CASE + DISK, "exactly two are needed, first the lower body, then the upper one; found 3"),
+    "a group twice": (CASE + MESH, "case.nml:5: &mesh: may be given only once; it is already in line 3"),
     "an unknown group": (CASE + b"&sovler /", "case.nml:5: &sovler: unknown group; did you mean &solver?"),
     "a group of a sweep": (CASE + b"&vary key='mesh%nodes' /", "case.nml:5: &vary: unknown group"),
     "a key of another group": (CASE + b"&scene mu=0.3 /", "case.nml:5: &scene mu=0.3: unknown key; it is one of &friction"),
@@ -99,34 +99,34 @@ BROKEN = {
     "no quote": (CASE + b"&scene title='x /\n&output /", "case.nml:5: &scene title: the text has no closing '"),
     "no double quote": (CASE + b'&scene title="x /', 'case.nml:5: &scene title: the text has no closing "'),
     "a text of two lines": (CASE + b"&scene title='x\ny' /", "case.nml:5: &scene title: the text has no closing '"),
-    "commas": (CASE + b"&scene title='x',, plane='stress' /", "case.nml:5: &scene title: a value is missing beside a comma"),
-    "commas at the end": (CASE + b"&scene title='x',, /", "case.nml:5: &scene title: a value is missing beside a comma"),
-    "no key": (CASE + b"&scene ='x' /", "case.nml:5: &scene: a key=value is wanted, not '='x' /'"),
-    "Latin-1": (CASE + b"&scene title='Gr\xf6\xdfe' /", "case.nml:5: the byte 246 is not UTF-8: save the text as UTF-8"),
-    "Latin-1 in a comment": (CASE + b"! gro\xdf", "case.nml:5: the byte 223 is not UTF-8"),
-    "UTF-16": ("\ufeff".encode("utf-16-le") + CASE.decode().encode("utf-16-le"), "case.nml:1: the byte 255 is not UTF-8"),
-    "a character cut short": (CASE + b"! \xe2\x82", "case.nml:5: the byte 226 is not UTF-8"),
-    "an overlong character": (CASE + b"! \xc0\xaf", "case.nml:5: the byte 192 is not UTF-8"),
-    "half a pair": (CASE + b"! \xed\xa0\x80", "case.nml:5: the byte 237 is not UTF-8"),
-    "beyond Unicode": (CASE + b"! \xf4\x90\x80\x80", "case.nml:5: the byte 244 is not UTF-8"),
-    "a null": (CASE + b"&scene title='a\0b' /", "case.nml:5: the control character 0: this is no text"),
-    "an escape": (CASE + b"\n\x1b[31m", "case.nml:6: the control character 27: this is no text"),
+    "commas": (CASE + b"&scene title='x',, plane='stress' /", "case.nml:5: &scene title: a value is missing next to a comma"),
+    "commas at the end": (CASE + b"&scene title='x',, /", "case.nml:5: &scene title: a value is missing next to a comma"),
+    "no key": (CASE + b"&scene ='x' /", "case.nml:5: &scene: expected key=value, not '='x' /'"),
+    "Latin-1": (CASE + b"&scene title='Gr\xf6\xdfe' /", "case.nml:5: byte 246 is not UTF-8; save the file as UTF-8"),
+    "Latin-1 in a comment": (CASE + b"! gro\xdf", "case.nml:5: byte 223 is not UTF-8"),
+    "UTF-16": ("\ufeff".encode("utf-16-le") + CASE.decode().encode("utf-16-le"), "case.nml:1: byte 255 is not UTF-8"),
+    "a character cut short": (CASE + b"! \xe2\x82", "case.nml:5: byte 226 is not UTF-8"),
+    "an overlong character": (CASE + b"! \xc0\xaf", "case.nml:5: byte 192 is not UTF-8"),
+    "half a pair": (CASE + b"! \xed\xa0\x80", "case.nml:5: byte 237 is not UTF-8"),
+    "beyond Unicode": (CASE + b"! \xf4\x90\x80\x80", "case.nml:5: byte 244 is not UTF-8"),
+    "a null": (CASE + b"&scene title='a\0b' /", "case.nml:5: control character 0: not a text file"),
+    "an escape": (CASE + b"\n\x1b[31m", "case.nml:6: control character 27: not a text file"),
     "old Macintosh": (CASE.replace(b"\n", b"\r"), "case.nml:1: a carriage return without a line feed"),
-    "binary": (bytes(range(256)) * 10, "case.nml:1: the control character 0: this is no text"),
-    "HDF5": (b"\x89HDF\r\n\x1a\n", "case.nml:1: the byte 137 is not UTF-8"),
+    "binary": (bytes(range(256)) * 10, "case.nml:1: control character 0: not a text file"),
+    "HDF5": (b"\x89HDF\r\n\x1a\n", "case.nml:1: byte 137 is not UTF-8"),
     "a long key": (CASE + b"&scene " + b"x" * LONG + b"=1 /", "x...=1: unknown key"),
     "a long group": (CASE + b"&" + b"x" * LONG + b" /", "x...: unknown group; groups are scene body"),
     "a long value": (CASE + b"&scene plane='" + b"\xc3\xa4" * LONG + b"' /", "...': must be 'strain' or 'stress'"),
     "a long number": (CASE.replace(b"0.25", b"9" * LONG), "...: must be a number above 0 (length)"),
     "a long list": (
         CASE + b"&friction law='coulomb', mu=100000*0.5 /",
-        "mu=0.5, 0.5, 0.5, 0.5, 0.5, ... (100000 values): must have one value or one a node, 11, not 100000",
+        "mu=0.5, 0.5, 0.5, 0.5, 0.5, ... (100000 values): must have one value, or one per node (11), not 100000",
     ),
     "too long a list": (
         CASE + b"&friction law='coulomb', mu=100*0.5, 9999999*0.5 /",
         "the number before * must be a whole number from 1 to 9999900",
     ),
-    "a million groups of one kind": (b"&scene /\n" * 1_000_000, "case.nml:2: &scene: may come only once"),
+    "a million groups of one kind": (b"&scene /\n" * 1_000_000, "case.nml:2: &scene: may be given only once"),
     "a long line of nothing": (b"x" * 10_000_000, "case.nml:1: 'xxxxx"),
 }
 
@@ -152,10 +152,10 @@ def test_repeats_are_what_they_stand_for(tmp_path: Path) -> None:
 #: What a path may lead to in place of a file, with what is said.
 NO_FILES = {
     ".": "it is a directory",
-    "/dev/zero": "it is no regular file, but a pipe or a device; put what it gives into a file",
-    "/dev/null": "it is no regular file, but a pipe or a device",
-    "/dev/stdin": "it is no regular file, but a pipe or a device",
-    "pipe": "it is no regular file, but a pipe or a device",
+    "/dev/zero": "it is a pipe or a device; save its content to a regular file",
+    "/dev/null": "it is a pipe or a device",
+    "/dev/stdin": "it is a pipe or a device",
+    "pipe": "it is a pipe or a device",
     "": "the name of a file is empty",
     "nowhere": "nowhere",
     "file.txt/nowhere": "file.txt/nowhere",
@@ -220,7 +220,7 @@ def test_files_without_permission() -> None:
 def test_a_file_of_gigabytes(tmp_path: Path) -> None:
     with open(tmp_path / "case.nml", "wb") as file:
         file.truncate(5_000_000_000)
-    refused(run(RUN, "--check", "case.nml", cwd=tmp_path), "case.nml: is too long for a text: it has more than 100000000 bytes")
+    refused(run(RUN, "--check", "case.nml", cwd=tmp_path), "case.nml: too long; a text file may have at most 100000000 bytes")
 
 
 PROFILES = {
@@ -281,7 +281,7 @@ MATRICES = {
     "x with NaN": ({"x": np.where(X > 0.9, np.nan, X), "compliance": GOOD_MATRIX}, "x is not finite at node 5"),
     "x not increasing": ({"x": -X, "compliance": GOOD_MATRIX}, "x is not increasing at node 2"),
     "no nodes": ({"x": X[:0], "compliance": GOOD_MATRIX}, "x has 0 nodes; 1 to 20000 can be"),
-    "no matrix": ({"x": X}, "either compliance or stiffness must be there"),
+    "no matrix": ({"x": X}, "give either compliance or stiffness, not both"),
     "two matrices": ({"x": X, "compliance": GOOD_MATRIX, "stiffness": GOOD_MATRIX}, "either compliance or stiffness"),
     "another shape": (
         {"x": X, "compliance": np.eye(3)},
@@ -321,8 +321,8 @@ PUNCH = b"&body shape='flat_punch', half_width=0.1, rigid=.true. /\n"
             b"&body shape='matrix', file='matrix.h5', rigid=.true. /\n" + DISK + PRESS,
             "case.nml:2: &body 2 rigid=.true.: both bodies are rigid",
         ),
-        (DISK + ELASTIC_MATRIX + PRESS, "case.nml:2: &body 2 shape='matrix': a matrix must be the first body, below"),
-        (ELASTIC_MATRIX + DISK + b"&mesh nodes=5 /\n" + PRESS, "case.nml:3: &mesh nodes=5: means nothing for a matrix"),
+        (DISK + ELASTIC_MATRIX + PRESS, "case.nml:2: &body 2 shape='matrix': a matrix must be the first body, the lower one"),
+        (ELASTIC_MATRIX + DISK + b"&mesh nodes=5 /\n" + PRESS, "case.nml:3: &mesh nodes=5: has no effect for a matrix"),
         (ELASTIC_MATRIX + DISK + b"&friction law='coulomb', mu=0.5 /\n" + PRESS, "friction needs the tangential ones too"),
         (ELASTIC_MATRIX + b"&body shape='profile', file='profile.txt', rigid=.true. /\n" + PRESS, "no node of this body is under"),
         (
@@ -335,11 +335,11 @@ PUNCH = b"&body shape='flat_punch', half_width=0.1, rigid=.true. /\n"
         (PUNCH + PUNCH + PRESS, "case.nml:2: &body 2 rigid=.true.: both bodies are rigid"),
         (
             ELASTIC + DISK + b"&friction law='static_kinetic', mu_static=0.5, mu_kinetic=0.3, 0.4 /\n" + MESH + PRESS,
-            "case.nml:3: &friction mu_kinetic=0.3, 0.4: must have one value or one a node, 11, not 2",
+            "case.nml:3: &friction mu_kinetic=0.3, 0.4: must have one value, or one per node (11), not 2",
         ),
         (
             ELASTIC + DISK + b"&friction law='static_kinetic', mu_static=0.5, 0.6, 0.7, mu_kinetic=0.3, 0.4 /\n" + MESH + PRESS,
-            "case.nml:3: &friction mu_kinetic=0.3, 0.4: must have one value or as many as mu_static",
+            "case.nml:3: &friction mu_kinetic=0.3, 0.4: must have one value, or as many as mu_static",
         ),
         (
             ELASTIC + DISK + b"&friction law='coulomb', mu_file='short.txt' /\n" + PRESS,
@@ -401,8 +401,9 @@ def test_results_that_are_none(tmp_path: Path) -> None:
 ARGUMENTS = [
     (RUN, ("", "case.nml"), "too many arguments: 'case.nml'"),
     (RUN, ("case.nml", "case.nml"), "too many arguments: 'case.nml'"),
+    (RUN, (), "a case file is missing"),
     (RUN, ("--check",), "a case file is missing"),
-    (RUN, ("--check", "case.nml", "--check"), "too many arguments: '--check'"),
+    (RUN, ("case.nml", "--check", "--resume"), "--check only reads the case; remove --estimate, --sensitivity and --resume"),
     (RUN, ("--chekc", "case.nml"), "unknown option '--chekc'; did you mean --check?"),
     (RUN, ("-",), "unknown option '-'"),
     (RUN, ("--" + "x" * LONG,), "unknown option '--xxx"),
@@ -412,11 +413,12 @@ ARGUMENTS = [
         for wrong in ("", "0", "1", "-1e-2", "NaN", "Inf", "1e400", "1e-400", "x", "1e", "1.5+3", "1e-2,")
     ),
     (RUN, ("--advise", "case.nml"), "--advise needs the wanted error"),
-    (RUN, ("--advise", "error=1e-2", "error=1e-3", "case.nml"), "--advise error=1e-3: error is there twice"),
+    (RUN, ("--advise", "error=1e-2", "error=1e-3", "case.nml"), "--advise error=1e-3: error is given twice"),
     (RUN, ("--advise", "error=1e-2", "of=", "case.nml"), "must be one or more of"),
-    (RUN, ("--advise", "error=1e-2", "of=x", "case.nml"), "'x' is none of"),
-    (CONVENTIONAL, (), "one case file is wanted"),
-    (CONVENTIONAL, ("case.nml", "case.nml"), "one case file is wanted"),
+    (RUN, ("--advise", "error=1e-2", "of=x", "case.nml"), "'x' is not one of"),
+    (RUN, ("--advise", "error=1e-2", "--check", "case.nml"), "--advise does not take the option '--check'"),
+    (CONVENTIONAL, (), "a case file is missing"),
+    (CONVENTIONAL, ("case.nml", "case.nml"), "too many arguments: 'case.nml'"),
     (CONVENTIONAL, ("--check",), "unknown option '--check'"),
     (STRESS, ("",), "a result file is missing"),
     (STRESS, ("result.h5", "result.h5"), "too many arguments: 'result.h5'"),
@@ -431,7 +433,7 @@ ARGUMENTS = [
     ),
     (STRESS, ("result.h5", "--points", "2"), "--points needs a whole number from 2 to 100000, not ''"),
     (STRESS, ("result.h5", "--points", "100000", "100000"), "--points asks for more than 1e7 points"),
-    (STRESS, ("result.h5", "--at", "nothing.txt"), "nothing.txt: has no points"),
+    (STRESS, ("result.h5", "--at", "nothing.txt"), "nothing.txt has no points"),
     (STRESS, ("result.h5", "--body"), "--body must be lower or upper, not ''"),
 ]
 
@@ -448,5 +450,5 @@ def test_wrong_arguments(tmp_path: Path, program: Path, arguments: tuple[str, ..
     first, *rest = done.stderr.splitlines()
     assert done.returncode == INPUT_ERROR and done.stdout == "", done
     assert first.startswith(f"{program.name}: ") and message in first and len(first) < 500, done.stderr
-    assert rest[0].startswith("usage: ") and rest[-1] == f"{program.name} --help explains."
+    assert rest[0].startswith("usage: ") and rest[-1] == f"Try '{program.name} --help' for more information."
     assert sorted(path.name for path in tmp_path.iterdir()) == ["case.nml", "nothing.txt"]

@@ -23,7 +23,7 @@ RUN = os.environ.get("MFV_RUN", str(ROOT / "build/release/bin/mfv_run"))
 INPUT_ERROR = 2
 ROWS = [(*key, row) for key, row in CASE.items()]
 
-#: Written values that are no number, whatever the range.
+#: Written values that are not numbers.
 NO_NUMBERS = [
     "x",
     "'1'",
@@ -71,7 +71,7 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Path]:
 
 
 def written(groups: Groups, row: Row | None = None, key: str = "", entry: str | None = None) -> str:
-    """A text with one group a line; `entry` in place of the key of the row, in a line of its own; None: the key is left out."""
+    """A text with one group a line; `entry` in place of the key of the row, in a line of its own; None: the key is omitted."""
     lines: list[str] = []
     seen: dict[str, int] = {}
     for group, keys in groups:
@@ -180,19 +180,19 @@ def test_every_fault_of_a_key_is_told(folder: Path, group: str, key: str, row: R
     for value in wrong_values(row):
         unit = f" ({row.unit})" if row.unit else ""
         refused(f"{key}={value}", f"&{group} {key}={shown(value)}: must be {row.right}{unit}")
-    refused(f"{key}={row.value}, {key}={row.value}", "the key is there twice")
+    refused(f"{key}={row.value}, {key}={row.value}", "the key is given twice")
     refused(f"{key}{key[-1]}={row.value}", f"unknown key; did you mean {key}?")
     refused(f"x{key}={row.value}", "unknown key; did you mean ")
-    refused(f"{key}(1)={row.value}", "a key has no index and no component")
-    refused(f"{key}%x={row.value}", "a key has no index and no component")
+    refused(f"{key}(1)={row.value}", "a key takes no index or component")
+    refused(f"{key}%x={row.value}", "a key takes no index or component")
     # What has no = is one more value where the key before it has taken the place of a key.
     message = complaint(written(groups, row, key, f"{key} {row.value}"))
-    assert re.match(rf"case\.nml:{line + 1}: &{group} {key}: '=' is wanted after the key", message) or re.match(
+    assert re.match(rf"case\.nml:{line + 1}: &{group} {key}: expected '=' after the key", message) or re.match(
         rf"case\.nml:{line}: &{group} .*{key}.*: must be ", message
     ), message
     refused(f"{key}={row.value}, 0*{row.value}", "the number before * must be a whole number from 1 to")
     refused(f"{key}={row.value}, 3*", "a value is missing after *")
-    refused(f"{key}={row.value},,{row.value}", "a value is missing beside a comma")
+    refused(f"{key}={row.value},,{row.value}", "a value is missing next to a comma")
     if row.kind in ("text", "choice"):
         refused(f"{key}={row.value[:-1]}", f"&{group} {key}: the text has no closing '")
     if row.needed:

@@ -149,18 +149,18 @@ def test_a_run_that_failed_is_not_called_complete(tmp_path):
     code, output, errors = run(tmp_path, "--resume")
     assert code == INPUT and output == ""
     assert errors == (
-        "case.h5: the run ended (gross sliding); nothing to resume; without --resume the case starts again from step 1\n"
+        "case.h5: the run ended (gross sliding); nothing to resume; run without --resume to start again from step 1\n"
     )
 
 
 @pytest.mark.parametrize(
     "damage, why",
     [
-        ("text", "the text of the case has changed"),
+        ("text", "the text of the case file has changed"),
         ("version", "written by version 0.0.0"),
         ("numbers", "restart/segment is damaged"),
         ("missing", "dataset restart/certificate is missing"),
-        ("file", "case.h5 is no HDF5 file"),
+        ("file", "case.h5 is not an HDF5 file"),
     ],
 )
 def test_a_checkpoint_that_cannot_be_used_is_refused(tmp_path, damage, why):
@@ -182,7 +182,7 @@ def test_a_checkpoint_that_cannot_be_used_is_refused(tmp_path, damage, why):
     code, output, errors = run(tmp_path, "--resume")
     assert code == INPUT and output == ""
     if damage != "file":  # that is refused before
-        assert why in errors and errors.endswith("without --resume the case starts again from step 1\n")
+        assert why in errors and errors.endswith("run without --resume to start again from step 1\n")
     assert (tmp_path / "case.h5").read_bytes() == before
 
 
@@ -191,5 +191,5 @@ def test_a_checkpoint_that_cannot_be_written_does_not_end_the_run(tmp_path):
     assert run(tmp_path)[0] == COMPLETE
     (tmp_path / "case.partial.h5").write_text("notes")
     code, _, errors = run(tmp_path)
-    assert code == COMPLETE and "no checkpoint: case.partial.h5" in errors
+    assert code == COMPLETE and "checkpoint not written: case.partial.h5" in errors
     assert (tmp_path / "case.partial.h5").read_text() == "notes"

@@ -59,7 +59,7 @@ def folder(begun, tmp_path):
 
 
 def numbers(path):
-    """What is in a file, to the bit; without what is the same in no two runs."""
+    """The content of a file, without what differs between runs."""
     if path.suffix != ".h5":
         return {"bytes": path.read_bytes()}
     found = {}
@@ -210,9 +210,9 @@ def test_output_that_cannot_be_printed_is_an_error(command, folder):
     with open("/dev/full", "w") as full:
         done = subprocess.run(command, cwd=folder, stdout=full, stderr=subprocess.PIPE, text=True, timeout=300)
     assert done.returncode == FILE
-    assert done.stderr == "standard output cannot be written: No space left on device\n"
+    assert done.stderr == "cannot write to standard output: No space left on device\n"
     closed = subprocess.run(command, cwd=folder, preexec_fn=lambda: os.close(1), stderr=subprocess.PIPE, text=True, timeout=300)
-    assert closed.returncode == FILE and "standard output cannot be written: Bad file descriptor" in closed.stderr
+    assert closed.returncode == FILE and "cannot write to standard output: Bad file descriptor" in closed.stderr
     assert all(numbers(path) for path in folder.glob("*.h5"))  # the summary has not gone into a file
 
 
@@ -224,7 +224,7 @@ def test_closed_errors_and_pipes_closed_early_do_no_harm(folder):
         with h5py.File(folder / "case.h5") as result:
             assert new in result.attrs["input"] and result.attrs["outcome"] == "complete"
     ignored = run(["sh", "-c", f"trap '' PIPE; {{ sleep 0.5; {RUN} case.nml; echo $? >code; }} | true"], folder)
-    assert (folder / "code").read_text() == f"{FILE}\n" and "standard output cannot be written: Broken pipe" in ignored.stderr
+    assert (folder / "code").read_text() == f"{FILE}\n" and "cannot write to standard output: Broken pipe" in ignored.stderr
 
 
 @pytest.fixture
@@ -273,9 +273,9 @@ def test_places_that_may_not_be_written(open_folder):
         ("/dev/full", "cannot be written: it is no regular file"),
         ("/dev/null", "cannot be written: it is no regular file"),
         ("round.h5", "cannot be written: Too many levels of symbolic links"),
-        ("case.nml", "is there and is no HDF5 file; it is not replaced"),
-        ("other.h5", "is there and is no result of MFV (no attribute outcome); it is not replaced"),
-        ("broken.h5", "is there and cannot be read: it is broken, or another program has it open to write; it is not replaced"),
+        ("case.nml", "exists and is not an HDF5 file; not overwritten"),
+        ("other.h5", "exists and is not a result of MFV (no attribute outcome); not overwritten"),
+        ("broken.h5", "exists and cannot be read: it is damaged, or another program has it open for writing; not overwritten"),
     ],
 )
 def test_places_that_are_no_place_for_a_result(name, why, folder):
@@ -380,7 +380,7 @@ def test_a_reader_keeps_what_it_has_opened(folder):
         assert "mu=0.5" in new.attrs["input"] and not np.array_equal(new["state/shear"][:], before)
     with h5py.File(folder / "case.h5", "r+"):  # somebody writes: HDF5's own lock is minded
         done = run([RUN, "case.nml"], folder)
-        assert done.returncode == INPUT and "another program has it open to write" in done.stderr
+        assert done.returncode == INPUT and "another program has it open for writing" in done.stderr
 
 
 def test_stresses_do_not_go_into_another_result(shim, folder):
@@ -393,7 +393,7 @@ def test_stresses_do_not_go_into_another_result(shim, folder):
     new = numbers(folder / "case.h5")
     _, errors = go_on_with(process, signal.SIGCONT)
     assert process.returncode == FILE
-    assert "case.h5 cannot be written: another process has replaced it in the meantime; start again" in errors
+    assert "case.h5 cannot be written: another process has replaced it in the meantime; run again" in errors
     assert numbers(folder / "case.h5") == new and not any(name.startswith("stress") for name in new) and parts(folder) == []
 
 

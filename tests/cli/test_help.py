@@ -71,7 +71,29 @@ def test_unknown_options_propose_the_nearest(program, option, nearest):
     assert refused.returncode == INPUT and refused.stdout == ""
     first, *rest = refused.stderr.splitlines()
     assert first == f"{program}: unknown option '{option}'" + (f"; did you mean {nearest}?" if nearest else "")
-    assert rest[0].startswith("usage: ") and rest[-1] == f"{program} --help explains."
+    assert rest[0].startswith("usage: ") and rest[-1] == f"Try '{program} --help' for more information."
+
+
+@pytest.mark.parametrize("arguments", [("case.nml", "--check"), ("--check", "case.nml"), ("case.nml", "--estimate")])
+def test_options_may_follow_the_case(arguments, tmp_path):
+    (tmp_path / "case.nml").write_text("\n".join(re.findall(r"^  &.*", help_of("mfv_run"), re.MULTILINE)))
+    done = run("mfv_run", *arguments, cwd=tmp_path)
+    assert done.returncode == COMPLETE and done.stderr == ""
+    assert ("error estimate" in done.stdout) == ("--estimate" in arguments)
+    assert (tmp_path / "case.h5").exists() == ("--estimate" in arguments)
+
+
+@pytest.mark.parametrize("program", PROGRAMS)
+def test_help_may_follow_other_arguments(program):
+    assert run(program, "case", "--help").stdout == help_of(program)
+
+
+@pytest.mark.parametrize("program", PROGRAMS)
+def test_programs_without_arguments_print_their_usage(program):
+    done = run(program)
+    first, *rest = done.stderr.splitlines()
+    assert done.returncode == INPUT and done.stdout == "" and first.endswith(" file is missing")
+    assert rest == [*help_of(program).split("\n\n")[0].splitlines(), f"Try '{program} --help' for more information."]
 
 
 def test_the_case_in_the_help_is_one(tmp_path):
@@ -177,11 +199,11 @@ def test_fish_completes_every_option(folder):
 @pytest.mark.parametrize(
     "arguments, message",
     [
-        (["mfv_run", "--resume", "--check", "case.nml"], "mfv_run: --check does not go with the arguments before it\n"),
+        (["mfv_run", "case.nml", "--chekc"], "mfv_run: unknown option '--chekc'; did you mean --check?\n"),
         (["mfv_run", "--chekc", "case.nml"], "mfv_run: unknown option '--chekc'; did you mean --check?\n"),
         (["mfv_conventional", "--estimate", "case.nml"], "mfv_conventional: unknown option '--estimate'\n"),
     ],
 )
-def test_an_option_in_the_wrong_place_is_told_from_an_unknown_one(arguments, message, tmp_path):
+def test_unknown_options_before_and_after_the_case(arguments, message, tmp_path):
     answer = run(*arguments, cwd=tmp_path)
     assert answer.returncode == 2 and answer.stderr.startswith(message)

@@ -38,7 +38,7 @@ def test_a_grid_is_put_into_the_file(folder):
     run = stress("case.h5", "--points", 41, 21, "--width", 1.5, "--depth", 1, cwd=folder)
     assert run.returncode == 0, run.stderr
     assert "largest von Mises" in run.stdout and "/stress/last/lower" in run.stdout
-    assert "beyond the yield_strength" in run.stderr
+    assert "exceeds the yield_strength" in run.stderr
     with h5py.File(folder / "case.h5") as result:
         group = result["stress/last/lower"]
         assert group["von_mises"].shape == (21, 41)
@@ -86,12 +86,12 @@ def test_points_are_printed(folder):
         (("case.h5", "--depth", "-1"), "--depth needs a number above 0 and at most 100000, not '-1'"),
         (("case.h5", "--points", "1", "5"), "--points needs a whole number from 2 to 100000, not '1'"),
         (("case.h5", "--what"), "unknown option '--what'"),
-        (("case.h5", "--step", "9"), "case.h5: there is no state steps/0009"),
-        (("case.h5", "--body", "upper"), "the upper body is rigid or a matrix"),
-        (("nowhere.h5",), "nowhere.h5: there is no such file"),
-        (("case.nml",), "case.nml is no HDF5 file"),
+        (("case.h5", "--step", "9"), "case.h5: the result has no state steps/0009"),
+        (("case.h5", "--body", "upper"), "the upper body is rigid or given by a matrix"),
+        (("nowhere.h5",), "nowhere.h5: no such file"),
+        (("case.nml",), "case.nml is not an HDF5 file"),
         (("case.h5", "--at", "nowhere.txt"), "nowhere.txt"),
-        (("other.h5",), "attribute input is missing: no result of MFV"),
+        (("other.h5",), "attribute input is missing: not a result of MFV"),
     ],
 )
 def test_bad_requests_leave_the_file_as_it_was(folder, arguments, message):
@@ -109,7 +109,7 @@ def test_states_without_load_or_steps(folder):
     (folder / "light.nml").write_text(CASE[: CASE.index("&step")] + "&step approach=-1e-4 /\n&output states='none' /\n")
     subprocess.run([RUN, "light.nml"], cwd=folder, check=True, capture_output=True)
     before = (folder / "light.h5").read_bytes()
-    for arguments, message in (((), "light.h5: there is no load in this state"), (("--step", "1"), "there is no state steps/0001")):
+    for arguments, message in (((), "light.h5: no load acts in this state"), (("--step", "1"), "the result has no state steps/0001")):
         run = stress("light.h5", *arguments, cwd=folder)
         assert run.returncode == 2 and message in run.stderr and run.stdout == "", run
         assert (folder / "light.h5").read_bytes() == before

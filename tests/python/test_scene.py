@@ -133,10 +133,10 @@ def test_the_library_judges() -> None:
         (cylinder(mfv.Step(normal_force=float("nan"))), r"scene: 'step\(1\)%normal_force': the value is not finite"),
         (cylinder(mesh=mfv.Mesh(nodes=10**12)), "nodes=1e12: must be a whole number from 1 to 100000000"),
         (cylinder(mesh=mfv.Mesh(nodes=61.5)), "nodes=61.5: must be a whole number"),
-        (cylinder(friction=mfv.Friction.coulomb([])), r"'friction%mu': there are no values"),
+        (cylinder(friction=mfv.Friction.coulomb([])), r"'friction%mu': no values are given"),
         (cylinder(friction=mfv.Friction(law="koulomb")), "law='koulomb'"),
         (mfv.Scene(DISK, DISK), "rigid"),
-        (cylinder(title="two\nlines"), r"'scene%title': a text must be of one line"),
+        (cylinder(title="two\nlines"), r"'scene%title': a text must not contain a line break"),
     ):
         with pytest.raises(errors.InputError, match=message):
             scene.contact()

@@ -8,7 +8,7 @@
 #include <string.h>
 #include <unistd.h>
 
-/* Runs that chatter are stopped after so many increments, as in tests/support/random_scenes.f90. */
+/* Runs that chatter are stopped after this number of increments, as in tests/support/random_scenes.f90. */
 enum { PATIENCE = 400, LONGEST_MESSAGE = 2000 };
 
 typedef struct {

@@ -3,8 +3,9 @@
  *
  *   soak [--seconds S | --cases N] [--threads T] [--seed S] [--record FILE] [--folder DIR] | --seed S --case K
  *
- * --cases: these, and the same again, when nothing is new that a cache would keep. --record: a line for every round: seconds, cases, bytes in use, bytes resident. --folder: for result files and the texts of
- * cases that failed (soak-SEED-NUMBER.nml). --case: this one alone. Exit code 0 when all is well. */
+ * --cases: run these twice; the second time nothing new can enter a cache. --record: a line for every round: seconds, cases, bytes
+ * in use, bytes resident. --folder: for result files and the texts of cases that failed (soak-SEED-NUMBER.nml).
+ * --case: only this case. Exit code 0 without failures. */
 #define _GNU_SOURCE
 #include "life.h"
 #include <dlfcn.h>

@@ -385,7 +385,7 @@ def test_values_that_do_not_go_together_are_there(study):
     axes = {"solver%algorithm": ["mfv", "conventional"], "solver%stepping": ["event", "leap"]}
     table = mfv.study(study[0] / "base.nml", axes)
     assert list(flat(table, "outcome")[[0, 1, 3]]) == ["complete", "complete", "input error"]
-    assert "means nothing with algorithm='conventional'" in flat(table, "message")[3]
+    assert "has no effect with algorithm='conventional'" in flat(table, "message")[3]
     assert (
         np.isnan(flat(table, "normal_force")[3]) and np.isnan(flat(table, "largest_residual")[3]) and flat(table, "nodes")[3] == 0
     )

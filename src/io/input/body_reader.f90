@@ -25,7 +25,7 @@ contains
       integer :: body
 
       if (count_groups(reader, 'body') /= 2) then
-         call fail(reader, 0, '&body: two bodies are needed, the first below and the second above; there are '// &
+         call fail(reader, 0, '&body: exactly two are needed, first the lower body, then the upper one; found '// &
                    to_text(count_groups(reader, 'body')), error)
          return
       end if
@@ -34,19 +34,19 @@ contains
          if (allocated(error)) return
       end do
       if (reader%logical_value('body', 1, 'rigid') .and. reader%logical_value('body', 2, 'rigid')) then
-         call reader%complain('body', 2, 'rigid', 'both bodies are rigid; one at least must be elastic', error)
+         call reader%complain('body', 2, 'rigid', 'both bodies are rigid; at least one must be elastic', error)
       else if (reader%text_value('body', 2, 'shape') == 'matrix') then
-         call reader%complain('body', 2, 'shape', 'a matrix must be the first body, below', error)
+         call reader%complain('body', 2, 'shape', 'a matrix must be the first body, the lower one', error)
       else if (reader%text_value('body', 1, 'shape') == 'matrix' .and. .not. reader%logical_value('body', 2, 'rigid')) then
-         call reader%complain('body', 2, 'rigid', 'must be .true. above a matrix; put the compliance of both bodies '// &
-                              'into the matrix instead', error)
+         call reader%complain('body', 2, 'rigid', 'must be .true. if the lower body is a matrix; put the '// &
+                              'compliance of both bodies into the matrix', error)
       end if
       do body = 1, 2
          if (.not. allocated(error)) call check_body_keys(reader, body, error)
       end do
    end subroutine check_bodies
 
-   !> Keys that mean nothing for the shape of their body are mistakes.
+   !> Error for keys that have no effect for the shape of their body.
    subroutine check_body_keys(reader, body, error)
       type(reader_type), intent(in) :: reader
       integer, intent(in) :: body
@@ -71,13 +71,13 @@ contains
       keys = reader%catalogue%names('body')
       do i = 1, size(keys)
          if (.not. reader%has('body', body, keys(i)%text) .or. has_word(allowed, keys(i)%text)) cycle
-         call reader%complain('body', body, keys(i)%text, 'means nothing for a'//trim(merge(' rigid', '      ', rigid))// &
+         call reader%complain('body', body, keys(i)%text, 'has no effect for a'//trim(merge(' rigid', '      ', rigid))// &
                               ' '//shape//'; its keys are '//allowed, error)
          return
       end do
    end subroutine check_body_keys
 
-   !> The keys that a shape cannot do without, separated by blanks and padded with them.
+   !> The keys that a shape needs, separated by blanks; padded with blanks.
    pure function needed_keys(shape) result(keys)
       character(*), intent(in) :: shape
       character(len=40) :: keys
@@ -100,7 +100,7 @@ contains
       end select
    end function needed_keys
 
-   !> One body: shape, then what it is made of.
+   !> One body: shape, then material.
    subroutine read_body(reader, number, plane, body, error)
       type(reader_type), intent(in) :: reader
       integer, intent(in) :: number, plane
@@ -117,7 +117,7 @@ contains
       body%kernel = reader%constant('body', number, 'kernel', [kernel_exact, kernel_fourier])
       body%harmonics = reader%integer_value('body', number, 'harmonics')
       if (body%harmonics > 0 .and. body%kernel /= kernel_fourier) &
-         call reader%complain('body', number, 'harmonics', "means nothing without kernel='fourier'", error)
+         call reader%complain('body', number, 'harmonics', "has no effect without kernel='fourier'; remove it", error)
    end subroutine read_body
 
    subroutine read_shape(reader, number, body, error)
@@ -192,7 +192,7 @@ contains
       if (allocated(fault)) call reader%complain('body', number, 'file', fault%message, error)
    end subroutine read_body_file
 
-   !> How the points of a profile are to be taken.
+   !> Options of a profile.
    subroutine read_trace(reader, number, trace, error)
       type(reader_type), intent(in) :: reader
       integer, intent(in) :: number
@@ -222,7 +222,7 @@ contains
       ratio = reader%real_value('body', number, 'poisson_ratio')
       if (reader%has('body', number, 'youngs_modulus')) then
          if (reader%has('body', number, 'shear_modulus')) then
-            call reader%complain('body', number, 'youngs_modulus', 'shear_modulus is there too; give one of them', error)
+            call reader%complain('body', number, 'youngs_modulus', 'shear_modulus is also given; give only one of them', error)
             return
          end if
          modulus = shear_modulus_of(reader%real_value('body', number, 'youngs_modulus'), ratio)
@@ -234,7 +234,7 @@ contains
       body%material = new_material(modulus, ratio, plane)
    end subroutine read_material
 
-   !> Two bodies that touch at their poles and part from there.
+   !> Error for bodies that do not separate away from the origin.
    subroutine check_pair(reader, scene, error)
       type(reader_type), intent(in) :: reader
       type(scene_type), intent(in) :: scene
@@ -245,7 +245,7 @@ contains
       if (any(shapes == shape_profile .or. shapes == shape_matrix)) return
       if (any(shapes == shape_hole)) then
          if (.not. scene%curvature() > 0.0_wp) call reader%complain('body', findloc(shapes, shape_hole, dim=1), 'radius', &
-                                                                    'a hole needs a disk of a smaller radius in it', error)
+                                                                    'a hole needs a disk of smaller radius inside it', error)
       else if (touches_everywhere(scene)) then
          call reader%complain('body', 2, 'shape', 'two half-planes touch everywhere; one body must have another shape', error)
       end if
@@ -263,8 +263,7 @@ contains
                            error)
    end subroutine check_matrix
 
-   !> Where the displacements of the elastic bodies are measured: at the user's datum, by default at that of mfv_scene_indenter or,
-   !> where there is none, at the half-width of the mesh.
+   !> The datum of each elastic body: that of the user; by default that of mfv_scene_indenter, else the half-width of the mesh.
    subroutine read_datums(reader, scene, error)
       type(reader_type), intent(in) :: reader
       type(scene_type), intent(inout) :: scene
@@ -277,8 +276,8 @@ contains
          if (.not. datum(number) > 0.0_wp) datum(number) = reader%real_value('mesh', 1, 'half_width')
          if (reader%has('body', number, 'datum')) datum(number) = reader%real_value('body', number, 'datum')
          if (datum(number) > 0.0_wp .or. reader%logical_value('body', number, 'rigid')) cycle
-         call reader%complain('body', number, 'datum', 'is needed: the shapes have no length, and there is neither a '// &
-                              'normal_force nor the half_width of a &mesh to take it from', error)
+         call reader%complain('body', number, 'datum', 'is needed: the shapes have no length to derive it from, and neither a '// &
+                              'normal_force nor half_width in &mesh is given', error)
          return
       end do
       scene%lower%datum = datum(1)

@@ -1,4 +1,4 @@
-!> A case: a scene with what the user wants to see of its solution, and the text it came from.
+!> A case: a scene with the requested output, and its text.
 module mfv_case
    use mfv_kinds, only: wp
    use mfv_motions, only: motion_count, control_keep, controlled_key
@@ -13,16 +13,16 @@ module mfv_case
       type(scene_type) :: scene
       !> The input, verbatim, and the name of its file for messages.
       character(:), allocatable :: text, source
-      !> Where the result goes; empty: nowhere.
+      !> Path of the result file; empty: none.
       character(:), allocatable :: result_path
       !> See mfv_simulation.
       integer :: keep_history = history_events
       integer :: keep_states = states_reversals
-      !> Whether companions on coarser meshes are solved for an estimate of the discretisation error.
+      !> Whether the case is also solved on coarser meshes, for an estimate of the discretisation error.
       logical :: error_estimate = .false.
-      !> Whether the case is run once more with friction perturbed, to tell how much it depends on round-off.
+      !> Whether the case is run once more with perturbed friction, to measure its sensitivity to round-off.
       logical :: sensitivity = .false.
-      !> Minutes of wall clock from one checkpoint to the next; 0: none but where a run is interrupted.
+      !> Minutes of wall clock between checkpoints; 0: only when the run is interrupted.
       real(wp) :: checkpoint_minutes = 0.0_wp
       !> Names of the user's units, for labels.
       character(:), allocatable :: length_unit, force_unit
@@ -32,8 +32,7 @@ module mfv_case
 
 contains
 
-   !> Complete the message of a simulation of this case that ended early: the file, the step and the targets that were not
-   !> reached come before the reason.
+   !> Put the file, the step and the targets that were not reached before the message of a simulation that ended early.
    subroutine explain(self, simulation)
       class(case_type), intent(in) :: self
       type(simulation_type), intent(inout) :: simulation

@@ -1,4 +1,4 @@
-!> A checksum by which a case is known: its text, and what files or data in memory make of it.
+!> A checksum that identifies a case: of its text, and of the model with its files and data in memory.
 module mfv_case_checksum
    use, intrinsic :: iso_fortran_env, only: int64, int8
    use mfv_case, only: case_type
@@ -11,7 +11,7 @@ module mfv_case_checksum
 
 contains
 
-   !> The checksum of a case whose contact is modelled by `model`, where nothing has been computed yet.
+   !> The checksum of a case. `model`: its contact model before the first step.
    subroutine find_case_checksum(case, model, checksum)
       type(case_type), intent(in) :: case
       type(contact_model_type), intent(in) :: model
@@ -25,7 +25,7 @@ contains
       call add_to_checksum(transfer(model%initial_gap, mold), checksum)
       call add_to_checksum(transfer([model%compliance%modulus, model%width, model%static_friction, model%kinetic_friction], &
                                     mold), checksum)
-      ! Of a matrix products, in which every entry has a part.
+      ! A product in place of the matrix; every entry contributes.
       if (.not. allocated(model%scene%lower%matrix)) return
       associate (matrix => model%scene%lower%matrix)
          call add_to_checksum(transfer(matmul(matrix, sqrt([(real(i, wp), i=1, size(matrix, 2))])), mold), checksum)

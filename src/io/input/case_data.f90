@@ -1,4 +1,4 @@
-!> Data in memory in place of the files that a case names: under the name of each file its datasets.
+!> Data in memory instead of the files that a case names: datasets under the name of each file.
 module mfv_case_data
    use, intrinsic :: ieee_arithmetic, only: ieee_is_finite
    use mfv_body, only: body_type
@@ -31,7 +31,7 @@ module mfv_case_data
 
 contains
 
-   !> Put a dataset, in place of one that is there. `values`: shape (rows, columns).
+   !> Add or replace a dataset. `values`: shape (rows, columns).
    subroutine put(self, file, name, values)
       class(case_data_type), intent(inout) :: self
       character(*), intent(in) :: file, name
@@ -69,7 +69,7 @@ contains
       end do
    end function has_file
 
-   !> Where a dataset is, 0 for nowhere.
+   !> Index of a dataset, 0 for none.
    pure integer function place_of(self, file, name) result(place)
       class(case_data_type), intent(in) :: self
       character(*), intent(in) :: file, name
@@ -79,7 +79,7 @@ contains
       end do
    end function place_of
 
-   !> A dataset of one column and `count` rows (of any number where that is negative). Error MFV_INPUT_ERROR.
+   !> A dataset of one column and `count` rows (any number if negative). Error MFV_INPUT_ERROR.
    subroutine read_vector(self, file, name, count, values, error)
       class(case_data_type), intent(in) :: self
       character(*), intent(in) :: file, name
@@ -90,7 +90,7 @@ contains
 
       place = self%place_of(file, name)
       if (place == 0) then
-         call set_error(error, MFV_INPUT_ERROR, "there is no dataset '"//name//"'")
+         call set_error(error, MFV_INPUT_ERROR, 'dataset '//name//' is missing')
          return
       end if
       associate (found => self%datasets(place)%values)
@@ -166,7 +166,7 @@ contains
       place = self%place_of(file, 'compliance')
       if (place > 0) data%name = 'compliance'
       if ((place > 0) .eqv. (self%place_of(file, 'stiffness') > 0)) then
-         call set_error(error, MFV_INPUT_ERROR, 'either compliance or stiffness must be there')
+         call set_error(error, MFV_INPUT_ERROR, 'give either compliance or stiffness, not both')
          return
       end if
       if (place == 0) place = self%place_of(file, 'stiffness')

@@ -1,5 +1,5 @@
-!> The one list of groups and keys of a case: kinds, defaults, ranges and meanings. The reader checks against it, the
-!> reference in docs/namelist.md and `mfv_run --keys` are printed from it.
+!> All groups and keys of a case: kinds, defaults, ranges and meanings. The reader checks against this list; docs/namelist.md and
+!> `mfv_run --keys` are made from it.
 module mfv_case_keys
    use mfv_body, only: shape_names
    use mfv_friction, only: friction_law_names
@@ -11,7 +11,7 @@ module mfv_case_keys
    private
    public :: case_catalogue
 
-   !> Groups in the order of the reference, with what they are for; and those that may come more than once.
+   !> Groups in the order of the reference, and those that may be repeated.
    character(*), parameter :: group_list = 'scene body mesh friction step solver output'
    character(*), parameter :: repeated_groups = 'body step'
 
@@ -52,23 +52,24 @@ contains
       type(catalogue_type), intent(inout) :: keys
 
       call keys%add('body', 'shape', kind_choice, 'needed; first body below, second body above', choices=shape_names)
-      call keys%add('body', 'rigid', kind_logical, 'whether the body is rigid; at least one is not; a flat_punch must be', &
+      call keys%add('body', 'rigid', kind_logical, 'whether the body is rigid; at least one body must be elastic; a '// &
+                    'flat_punch must be rigid', &
                     default='.false.')
       call keys%add('body', 'shear_modulus', kind_real, 'shear modulus G of an elastic body', unit='force/length^2', above=0.0_wp)
-      call keys%add('body', 'youngs_modulus', kind_real, 'E = 2 G (1 + nu), in place of shear_modulus', unit='force/length^2', &
+      call keys%add('body', 'youngs_modulus', kind_real, 'E = 2 G (1 + nu), instead of shear_modulus', unit='force/length^2', &
                     above=0.0_wp)
       call keys%add('body', 'poisson_ratio', kind_real, "Poisson's ratio, needed for an elastic body", above=-1.0_wp, upper=0.5_wp)
       call keys%add('body', 'yield_strength', kind_real, 'elastic body: a warning is given when the largest von Mises stress '// &
-                    'is beyond it', unit='force/length^2', above=0.0_wp)
+                    'exceeds it', unit='force/length^2', above=0.0_wp)
       call keys%add('body', 'datum', kind_real, 'elastic body: distance from the contact at which displacements are measured; '// &
                     'if omitted: the radius of a disk or hole; else the radius, half-width or extent of the other body; else '// &
                     'the half-width of the contact, see below', unit='length', above=0.0_wp)
       call keys%add('body', 'radius', kind_real, 'disk, hole: radius, needed', unit='length', above=0.0_wp)
       call keys%add('body', 'half_width', kind_real, 'flat_punch: half its width; rounded_punch: half the width of its flat '// &
-                    'part; needed', unit='length', above=0.0_wp)
+                    'face; needed', unit='length', above=0.0_wp)
       call keys%add('body', 'edge_radius', kind_real, 'rounded_punch: radius of its edges, which are parabolas, needed', &
                     unit='length', above=0.0_wp)
-      call keys%add('body', 'angle', kind_real, 'wedge: angle of either flank to the common tangent, needed', unit='degrees', &
+      call keys%add('body', 'angle', kind_real, 'wedge: angle between each flank and the common tangent, needed', unit='degrees', &
                     above=0.0_wp, upper=80.0_wp)
       call keys%add('body', 'coefficient', kind_real, 'power: the surface recedes by coefficient*abs(x)^exponent, needed', &
                     unit='length^(1-exponent)', above=0.0_wp)
@@ -76,16 +77,17 @@ contains
                     lower=1.0_wp, upper=100.0_wp)
       call keys%add('body', 'kernel', kind_choice, 'elastic disk, hole: closed forms, or the Fourier series', default='exact', &
                     choices='exact fourier')
-      call keys%add('body', 'harmonics', kind_integer, "kernel='fourier': terms of the series; if omitted: 4 for each "// &
-                    "interval of the whole circle; at least half as many as these intervals", default='', lower=2.0_wp, &
+      call keys%add('body', 'harmonics', kind_integer, "kernel='fourier': terms of the series; if omitted: 4 per "// &
+                    "interval of the whole circle; at least half the number of these intervals", default='', lower=2.0_wp, &
                     upper=most_harmonics)
       call keys%add('body', 'file', kind_text, 'profile: text file with two columns, x and height; matrix: HDF5 file; see '// &
-                    'below; beside the case file; needed')
-      call keys%add('body', 'interpolation', kind_choice, 'profile: straight lines between its points, which keep corners, or '// &
-                    'a smooth curve without overshoot', default='linear', choices='linear monotone_cubic')
+                    'below; path relative to the case file; needed')
+      call keys%add('body', 'interpolation', kind_choice, 'profile: straight lines between its points, with corners, or a '// &
+                    'smooth curve without overshoot', default='linear', choices='linear monotone_cubic')
       call keys%add('body', 'position_scale', kind_real, 'profile: x of the file is multiplied by it', above=0.0_wp, default='1')
-      call keys%add('body', 'height_scale', kind_real, 'profile: heights of the file are multiplied by it; they are how far '// &
-                    'the surface recedes from the other body: negative where the file counts them outwards', default='1')
+      call keys%add('body', 'height_scale', kind_real, 'profile: heights of the file are multiplied by it; a height is the '// &
+                    'distance by which the surface recedes from the other body; negative if the file has heights towards '// &
+                    'it', default='1')
       call keys%add('body', 'level', kind_choice, 'profile: subtracted from its heights: nothing, their mean, or their '// &
                     'least-squares line', default='none', choices='none mean line')
       call keys%add('body', 'centred', kind_logical, 'profile: whether the middle of its positions is moved to x = 0', &
@@ -98,16 +100,17 @@ contains
       call keys%add('mesh', 'nodes', kind_integer, 'number of equal intervals; nodes are their centres', default='101', &
                     lower=1.0_wp, upper=most_nodes)
       call keys%add('mesh', 'half_width', kind_real, 'the intervals cover [-half_width, half_width] along the surface; if '// &
-                    'omitted: chosen from an estimate of the contact, and grown when the contact needs it', unit='length', &
+                    'omitted: chosen from an estimate of the contact, and extended when the contact reaches its '// &
+                    'ends', unit='length', &
                     above=0.0_wp)
-      call keys%add('mesh', 'half_angle', kind_real, 'in place of half_width where a body is an elastic disk or hole: the '// &
-                    'intervals cover this angle on either side; 180: the whole circle, of which only what is near the contact '// &
-                    'is carried', unit='degrees', above=0.0_wp, upper=180.0_wp)
+      call keys%add('mesh', 'half_angle', kind_real, 'instead of half_width if a body is an elastic disk or hole: the '// &
+                    'intervals cover this angle on either side; 180: the whole circle, of which only the nodes near the '// &
+                    'contact are computed', unit='degrees', above=0.0_wp, upper=180.0_wp)
       call keys%add('mesh', 'gap', kind_choice, 'gap of disks and holes: exact circles, or the parabolas x^2/(2R) of Hertz', &
                     default='exact', choices='exact parabolic')
       call keys%add('mesh', 'normals', kind_choice, 'vertical: pressure, gap and approach are vertical at every node; radial: '// &
-                    'along the radius, for a disk in a hole, whatever the angle; lengths along the surface and tractions are '// &
-                    'then those of the hole', default='vertical', choices='vertical radial')
+                    'along the radius, for a disk in a hole and contacts of any angle; positions along the surface and '// &
+                    'tractions are then those of the hole', default='vertical', choices='vertical radial')
    end subroutine add_mesh_keys
 
    subroutine add_friction_keys(keys)
@@ -116,23 +119,24 @@ contains
       call keys%add('friction', 'law', kind_choice, 'friction law', default='none', choices='none '//friction_law_names)
       call add_coefficient_key(keys, 'mu', 'coulomb, dahl: coefficient of friction')
       call add_coefficient_key(keys, 'mu_static', 'static_kinetic, weakening: coefficient up to which a node sticks')
-      call add_coefficient_key(keys, 'mu_kinetic', 'static_kinetic, weakening: coefficient with which it slips, at the end; '// &
-                               'not above mu_static')
-      call keys%add('friction', 'mu_file', kind_text, 'in place of the coefficients: text file with the columns x and mu, or '// &
-                    'x, mu_static and mu_kinetic; linear between its lines, constant beyond them; beside the case file')
-      call keys%add('friction', 'weakening_distance', kind_real, 'weakening: slip over which the coefficient falls from '// &
+      call add_coefficient_key(keys, 'mu_kinetic', 'static_kinetic, weakening: coefficient of a slipping node, after '// &
+                               'weakening; not above mu_static')
+      call keys%add('friction', 'mu_file', kind_text, 'instead of the coefficients: text file with the columns x and mu, or '// &
+                    'x, mu_static and mu_kinetic; linear between its lines, constant beyond them; path relative to the '// &
+                    'case file')
+      call keys%add('friction', 'weakening_distance', kind_real, 'weakening: slip over which the coefficient decreases from '// &
                     'mu_static to mu_kinetic, needed', unit='length', above=0.0_wp)
       call keys%add('friction', 'stiffness', kind_real, 'dahl: stiffness sigma of the bristles, traction over slip, needed', &
                     unit='force/length^3', above=0.0_wp)
       call keys%add('friction', 'exponent', kind_real, 'dahl: exponent gamma; if omitted: 1', lower=0.0_wp, upper=100.0_wp)
    end subroutine add_friction_keys
 
-   !> A coefficient of friction: one value, or one a node.
+   !> A coefficient of friction: one value, or one per node.
    subroutine add_coefficient_key(keys, name, meaning)
       type(catalogue_type), intent(inout) :: keys
       character(*), intent(in) :: name, meaning
 
-      call keys%add('friction', name, kind_real, meaning//'; one value, or one a node of a mesh with half_width or half_angle', &
+      call keys%add('friction', name, kind_real, meaning//'; one value, or one per node of a mesh with half_width or half_angle', &
                     lower=0.0_wp)
       keys%keys(keys%size)%is_list = .true.
    end subroutine add_coefficient_key
@@ -147,39 +151,40 @@ contains
             if (motion%pushes) keys%keys(keys%size)%lower = 0.0_wp
             call keys%add('step', trim(motion%key), kind_real, trim(motion%target), unit=trim(motion%unit))
          end associate
-         if (i == motion_shift) call keys%add('step', 'force_ratio', kind_real, 'target Q/(mu P) in place of '// &
+         if (i == motion_shift) call keys%add('step', 'force_ratio', kind_real, 'target Q/(mu P) instead of '// &
                                               'tangential_force: mu the largest coefficient of &friction, P the normal_force '// &
-                                              'that this step or the last one before it names', lower=-1.0e6_wp, upper=1.0e6_wp)
+                                         'of this step or of the last step before it that has one', lower=-1.0e6_wp, upper=1.0e6_wp)
       end do
       call keys%add('step', 'friction', kind_logical, 'whether friction acts during this step', default='.true.')
-      call keys%add('step', 'cycles', kind_integer, '0: go to the targets; n: go there and back to where the step began, n times', &
-                    default='0', lower=0.0_wp, upper=real(most_cycles, wp))
-      call keys%add('step', 'steady_tolerance', kind_real, 'cycles end early when the state after two in a row is the same to '// &
-                    'within this part of the largest traction; if omitted: never', above=0.0_wp)
+      call keys%add('step', 'cycles', kind_integer, '0: load to the targets; n: load to the targets and back to the loads at '// &
+                    'the start of the step, n times', default='0', lower=0.0_wp, upper=real(most_cycles, wp))
+      call keys%add('step', 'steady_tolerance', kind_real, 'cycles end early when the tractions after two successive cycles '// &
+                    'differ by less than this fraction of the largest traction; if omitted: never', above=0.0_wp)
    end subroutine add_step_keys
 
    subroutine add_solver_keys(keys)
       type(catalogue_type), intent(inout) :: keys
 
       call keys%add('solver', 'algorithm', kind_choice, 'mfv: Method of First Violation; conventional: load steps with '// &
-                    'repairs of statuses, for comparison', default='mfv', choices='mfv conventional')
-      call keys%add('solver', 'stepping', kind_choice, 'mfv: events from rates, or from trial load steps and interpolation; '// &
-                    'both lead to the same states (coulomb, static_kinetic); leap: large increments, events where these would '// &
-                    'cost more (coulomb)', default='event', choices='event nominal leap')
+                    'corrections of node statuses, for comparison', default='mfv', choices='mfv conventional')
+      call keys%add('solver', 'stepping', kind_choice, "algorithm='mfv': events found from rates (event), or from trial load "// &
+                    'steps and interpolation (nominal), with the same states (coulomb, static_kinetic); leap: large '// &
+                    'increments where they cost less than events (coulomb)', default='event', choices='event nominal leap')
       call add_part_key(keys, 'leap_tolerance', '1e-3', "stepping='leap': tolerance of the tractions, relative to the largest "// &
-                        "traction, and of the dissipation of each load segment, relative to that")
-      call add_part_key(keys, 'load_step', '0.05', "nominal load step, part of each load segment: for "// &
+                        "traction, and of the dissipation of each load segment, relative to that dissipation")
+      call add_part_key(keys, 'load_step', '0.05', "nominal load step, as a fraction of each load segment: for "// &
                         "algorithm='conventional', stepping='nominal', integration='explicit'")
       call keys%add('solver', 'integration', kind_choice, 'dahl: second order with controlled error, or explicit with '// &
                     'load_step (appendix B)', default='second_order', choices='second_order explicit')
-      call add_part_key(keys, 'friction_tolerance', '1e-4', 'dahl, weakening: error that an increment may make, part of the '// &
+      call add_part_key(keys, 'friction_tolerance', '1e-4', 'dahl, weakening: error allowed in an increment, relative to the '// &
                         'largest traction')
-      call keys%add('solver', 'iterations', kind_integer, 'conventional: repairs that may be made at one load', default='1000', &
+      call keys%add('solver', 'iterations', kind_integer, 'conventional: largest number of status corrections at one '// &
+                    'load', default='1000', &
                     lower=1.0_wp, upper=1.0e6_wp)
       call keys%add('solver', 'linear_solver', kind_choice, 'auto: chosen by size and structure; dgesv: augmented system with '// &
-                    'LAPACK, the reference; reduced: factorisation that is updated at every event; fft: products through FFTW '// &
-                    'and iteration, no matrix', default='auto', choices='auto dgesv reduced fft')
-      call add_part_key(keys, 'linear_tolerance', '1e-12', "linear_solver='fft': relative residual to which it iterates")
+                    'LAPACK, the reference; reduced: factorisation that is updated at every event; fft: iterative, with '// &
+                    'products by FFTW and no matrix', default='auto', choices='auto dgesv reduced fft')
+      call add_part_key(keys, 'linear_tolerance', '1e-12', "linear_solver='fft': relative residual at which iteration stops")
    end subroutine add_solver_keys
 
    !> A number of the solver from 1e-12 to 1, with a default.
@@ -195,12 +200,13 @@ contains
 
       call keys%add('output', 'file', kind_text, 'result file (HDF5); if omitted: the name of the case file with .h5, in the '// &
                     'working directory')
-      call keys%add('output', 'history', kind_choice, 'a history record an event, a step end, or none', default='events', &
+      call keys%add('output', 'history', kind_choice, 'history record at every event, at every step end, or '// &
+                    'none', default='events', &
                     choices='events steps none')
-      call keys%add('output', 'states', kind_choice, 'state kept at every reversal of a step with cycles, only at the end of '// &
-                    'every step, or none but the last', default='reversals', choices='reversals steps none')
-      call keys%add('output', 'error_estimate', kind_logical, 'whether the case is also solved on coarser meshes, to tell the '// &
-                    'discretisation error of half-width, stick ratio, peak tractions and dissipation', default='.false.')
+      call keys%add('output', 'states', kind_choice, 'states saved at every reversal of a step with cycles, only at the end '// &
+                    'of every step, or only the last one', default='reversals', choices='reversals steps none')
+      call keys%add('output', 'error_estimate', kind_logical, 'whether the case is also solved on coarser meshes, to estimate '// &
+                    'the discretisation error of half-width, stick ratio, peak tractions and dissipation', default='.false.')
       call keys%add('output', 'sensitivity', kind_logical, 'whether the case is run once more with all coefficients of '// &
                     'friction times 1 + 1e-12, to report how much that changes tractions, dissipation and stick ratio', &
                     default='.false.')

@@ -1,4 +1,4 @@
-!> From the text of a case to a valid scene, or to a message that names file, line, group, key, value and what is right.
+!> Read a valid scene from the text of a case. Messages name file, line, group, key, value and what would be right.
 module mfv_case_reader
    use mfv_body_reader
    use mfv_case, only: case_type
@@ -40,15 +40,15 @@ contains
       call read_case_text(text, path, case, error, without_steps)
       if (allocated(error)) return
       if (case%result_path /= '') return
-      ! The file's own name with .h5 in place of what follows its last dot, unless it begins with that.
+      ! The name of the file with the extension .h5; a leading dot does not begin an extension.
       first = index(path, '/', back=.true.) + 1
       dot = index(path(first:), '.', back=.true.)
       if (dot < 2) dot = len(path(first:)) + 1
       case%result_path = path(first:first + dot - 2)//'.h5'
    end subroutine read_case_file
 
-   !> The case in a text. `source`: its name for messages; files it names are looked for beside it. `without_steps`:
-   !> whether it may have no &step, for callers who take steps of their own. Error MFV_INPUT_ERROR.
+   !> The case in a text. `source`: its name for messages, and the path to which file names are relative. `without_steps`: whether
+   !> it may have no &step, for callers who apply their own steps. Error MFV_INPUT_ERROR.
    subroutine read_case_text(text, source, case, error, without_steps)
       character(*), intent(in) :: text, source
       type(case_type), intent(out) :: case
@@ -62,8 +62,8 @@ contains
       case%text = text
    end subroutine read_case_text
 
-   !> The case in a text that has been taken apart; `case%text` is left to the caller. `directory`: where the files are that it
-   !> names, with its final slash; `data`: what is in memory in place of such files. For the rest see read_case_text.
+   !> The case in a parsed text; the caller sets `case%text`. `directory`: of the files that it names, with its final slash; `data`:
+   !> data in memory instead of such files. For the rest see read_case_text.
    subroutine read_case_groups(groups, source, directory, case, error, without_steps, data)
       type(group_type), intent(in) :: groups(:)
       character(*), intent(in) :: source, directory
@@ -128,7 +128,7 @@ contains
       call check_method(reader, scene%method, error)
    end subroutine read_scene
 
-   !> Choices of the solver that do not go together, or with the friction law.
+   !> Error for choices of the solver that exclude each other or the friction law.
    subroutine check_method(reader, method, error)
       type(reader_type), intent(in) :: reader
       type(method_type), intent(in) :: method
@@ -141,12 +141,12 @@ contains
       call new_friction_law(law, friction%law)
       is_mfv = method%algorithm == algorithm_mfv
       if (method%integration == integration_explicit .and. friction%sticks()) then
-         call reader%complain('solver', 1, 'integration', "means nothing without law='dahl'", error)
+         call reader%complain('solver', 1, 'integration', "has no effect without law='dahl'; remove it", error)
       else if (method%stepping == stepping_nominal .and. .not. friction%is_linear()) then
          call reader%complain('solver', 1, 'stepping', "must be 'event' with law='"//law//"', which is not linear "// &
                               'between events', error)
       else if (method%stepping /= stepping_event .and. .not. is_mfv) then
-         call reader%complain('solver', 1, 'stepping', "means nothing with algorithm='conventional'", error)
+         call reader%complain('solver', 1, 'stepping', "has no effect with algorithm='conventional'; remove it", error)
       else if (method%stepping == stepping_leap .and. allocated(friction%law) .and. .not. friction%is_proportional()) then
          call reader%complain('solver', 1, 'stepping', "'leap' needs law='coulomb' or 'none', not '"//law//"'", error)
       end if
@@ -192,8 +192,8 @@ contains
             step%cycles = reader%integer_value('step', i, 'cycles')
             if (reader%has('step', i, 'steady_tolerance')) then
                step%steady_tolerance = reader%real_value('step', i, 'steady_tolerance')
-               if (step%cycles < 2) call reader%complain('step', i, 'steady_tolerance', 'means nothing without cycles of 2 or '// &
-                                                         'more', error)
+               if (step%cycles < 2) call reader%complain('step', i, 'steady_tolerance', 'has no effect without cycles of 2 '// &
+                                                         'or more; remove it', error)
                if (allocated(error)) return
             end if
             if (all(step%control == control_keep)) then
@@ -205,7 +205,7 @@ contains
       end do
    end subroutine read_steps
 
-   !> The target of step `number` as a part of what friction can carry; the steps up to this one have their normal targets.
+   !> The tangential target of step `number` as a fraction of the sliding limit mu P. The normal targets up to this step are known.
    subroutine read_force_ratio(reader, number, scene, error)
       type(reader_type), intent(in) :: reader
       integer, intent(in) :: number
@@ -214,22 +214,22 @@ contains
       integer :: last
 
       if (.not. reader%has('step', number, 'force_ratio')) return
-      ! A step with cycles ends where it began. (Of this step itself the cycles are read later, and do not count.)
+      ! A step with cycles ends at its initial loads. The cycles of this step are read later.
       last = findloc(scene%steps(:number)%control(motion_approach) /= control_keep .and. scene%steps(:number)%cycles == 0, .true., &
                      dim=1, back=.true.)
       if (scene%steps(number)%control(motion_shift) /= control_keep) then
-         call reader%complain('step', number, 'force_ratio', 'tangential_force or shift is there too; a step controls one of '// &
-                              'them', error)
+         call reader%complain('step', number, 'force_ratio', 'tangential_force or shift is also given; prescribe only one '// &
+                              'of them', error)
       else if (.not. scene%friction%acts()) then
          call reader%complain('step', number, 'force_ratio', "needs a &friction law with a coefficient above 0", error)
       else if (.not. reader%logical_value('step', number, 'friction')) then
-         call reader%complain('step', number, 'force_ratio', 'means nothing in a step without friction', error)
+         call reader%complain('step', number, 'force_ratio', 'has no effect in a step without friction; remove it', error)
       else if (last == 0) then
-         call reader%complain('step', number, 'force_ratio', 'needs a normal_force, in this step or in one before it '// &
+         call reader%complain('step', number, 'force_ratio', 'needs a normal_force, in this step or in an earlier one '// &
                               'without cycles', error)
       else if (scene%steps(last)%control(motion_approach) /= control_force) then
          call reader%complain('step', number, 'force_ratio', 'needs a normal_force, but step '//to_text(last)// &
-                              ' names an approach', error)
+                              ' prescribes an approach', error)
       else
          scene%steps(number)%control(motion_shift) = control_force
          scene%steps(number)%target(motion_shift) = reader%real_value('step', number, 'force_ratio') &
@@ -251,8 +251,9 @@ contains
       do i = control_force, control_displacement
          if (.not. reader%has('step', number, trim(controlled_key(motion, i)))) cycle
          if (control /= control_keep) then
-            call reader%complain('step', number, trim(motions(motion)%key), trim(motions(motion)%force_key)//' is there too; '// &
-                                 'a step controls one of them', error)
+            call reader%complain('step', number, trim(motions(motion)%key), trim(motions(motion)%force_key)// &
+                                 ' is also given; prescribe only one of '//trim(motions(motion)%force_key)//' and '// &
+                                 trim(motions(motion)%key), error)
             return
          end if
          control = i

@@ -1,5 +1,5 @@
-!> A scene that is being built, key by key: what a text of namelist groups says, said by calls. Nothing is judged here but what
-!> cannot be kept; the case reader judges the whole (mfv_case_reader), with the messages that it has for texts.
+!> Scene builder: sets the keys of a case by calls instead of a text. Only values that cannot be stored are refused here; the case
+!> reader (mfv_case_reader) checks the scene, with the same messages as for texts.
 module mfv_draft
    use, intrinsic :: ieee_arithmetic, only: ieee_is_finite
    use mfv_case, only: case_type
@@ -20,16 +20,16 @@ module mfv_draft
    private
    public :: draft_type, read_draft
 
-   !> Dundurs' parameter can be set as if it were a key; this is the size of the largest.
+   !> Dundurs' parameter can be set like a key; its largest magnitude.
    character(*), parameter :: dundurs_key = 'dundurs_beta', dundurs_values = 'must be a number from -0.5 to 0.5'
    real(wp), parameter :: largest_beta = 0.5_wp
    character(*), parameter :: line_ends = achar(10)//achar(13)
-   !> Keys of one group of which a case has one at most; the last row that has a key holds.
+   !> Keys of one group that exclude each other; the last row with a key applies.
    character(*), parameter :: alternatives_of(motion_count + 3) = &
                               [character(40) :: motions%force_key//' '//motions%key, 'tangential_force force_ratio shift', &
                                                  'shear_modulus youngs_modulus', 'half_width half_angle']
 
-   !> A fault, and the key that was named: a value for that mends it.
+   !> An error of a call, and the key that was named: setting that key again clears it.
    type :: fault_type
       character(:), allocatable :: name
       type(error_type) :: error
@@ -39,18 +39,18 @@ module mfv_draft
       private
       type(group_type), allocatable :: groups(:)
       type(case_data_type) :: data
-      !> What messages call it, and where the files are that it names.
+      !> Its name for messages, and the directory of the files that it names.
       character(:), allocatable :: source, directory
-      !> What was wrong with calls that could not be kept.
+      !> Errors of calls whose values could not be stored.
       type(fault_type), allocatable :: faults(:)
-      !> The keys that there are, once one has been named.
+      !> Catalogue of keys; allocated by the first call.
       type(catalogue_type), allocatable :: catalogue
    contains
-      !> Give a key a value: `call draft%set('body(2)%radius', 0.25_wp)`. Keys: docs/namelist.md. Faults are told by make_case, the
-      !> first of those that no later call for the same key has mended; and by `error` (MFV_INPUT_ERROR) where it is there.
+      !> Give a key a value: `call draft%set('body(2)%radius', 0.25_wp)`. Keys: docs/namelist.md. Errors (MFV_INPUT_ERROR) are
+      !> returned in `error`, if present, and by make_case, unless a later call sets the same key correctly.
       !> 'dundurs_beta', a number, replaces the materials of both bodies, see flexibilities of mfv_material.
       generic :: set => set_real, set_reals, set_integer, set_logical, set_text
-      !> Data in memory in place of a file that a key names, see mfv_case_data: values of shape (rows) or (rows, columns).
+      !> Data in memory instead of a file that a key names, see mfv_case_data: values of shape (rows) or (rows, columns).
       generic :: set_data => set_column, set_matrix
       procedure :: remove
       procedure :: keep_fault
@@ -62,7 +62,7 @@ module mfv_draft
 
 contains
 
-   !> A draft from a namelist text, to be changed. `source`: its name for messages; files it names are looked for beside it.
+   !> A scene builder from a namelist text. `source`: its name for messages, and the path to which file names are relative.
    !> Error MFV_INPUT_ERROR.
    subroutine read_draft(text, source, draft, error)
       character(*), intent(in) :: text, source
@@ -75,7 +75,7 @@ contains
       if (allocated(error)) deallocate (draft%groups)
    end subroutine read_draft
 
-   !> Place of the group that a name of a key has, which comes to be with those before it, and the key. Error MFV_INPUT_ERROR.
+   !> Index of the group in the name of a key, created if needed, and the key. Error MFV_INPUT_ERROR.
    subroutine find_group(self, name, place, key, error)
       class(draft_type), intent(inout) :: self
       character(*), intent(in) :: name
@@ -110,7 +110,7 @@ contains
       end do
    end subroutine find_group
 
-   !> Give a key values as they would be written, or keep the fault with them (`why`, where it is not empty).
+   !> Set a key to values as they would be written, or store an error (`why`, if not empty).
    subroutine set_values(self, name, values, is_quoted, why, error)
       class(draft_type), intent(inout) :: self
       character(*), intent(in) :: name, why
@@ -143,7 +143,7 @@ contains
       call self%set_values(name, values, is_quoted, why, error)
    end subroutine set_value
 
-   !> Put an entry in place of the one with its key, whose line it takes, or at the end.
+   !> Replace the entry with the same key, keeping its line, or append the entry.
    subroutine put_entry(group, entry)
       type(group_type), intent(inout) :: group
       type(entry_type), intent(inout) :: entry
@@ -161,9 +161,8 @@ contains
       group%entries(i) = entry
    end subroutine put_entry
 
-   !> Take a key out, as if it had never been given a value; no harm where it has none. `alternatives`: take out, too, those that it
-   !> is an alternative to, such as tangential_force and force_ratio for shift, so that it can be given a value. Fault and `error`
-   !> as of set.
+   !> Remove a key, if it is set. `alternatives`: also remove its alternatives, such as tangential_force and force_ratio for shift,
+   !> so that it can be set. Errors as for set.
    subroutine remove(self, name, error, alternatives)
       class(draft_type), intent(inout) :: self
       character(*), intent(in) :: name
@@ -186,7 +185,7 @@ contains
       call self%keep_fault(name, fault, error)
    end subroutine remove
 
-   !> Take keys, separated by blanks, out of a group.
+   !> Remove keys, separated by blanks, from a group.
    subroutine remove_keys(group, keys)
       type(group_type), intent(inout) :: group
       character(*), intent(in) :: keys
@@ -201,8 +200,8 @@ contains
       call resize_entries(group%entries, n)
    end subroutine remove_keys
 
-   !> Keep a fault with a key for make_case to report, in place of an earlier one with that key, and report it in `error`, too.
-   !> Without `fault`, a call for the key went well: the earlier fault is forgotten.
+   !> Store the error of a key for make_case, instead of an earlier one, and return it in `error`. Without `fault` the earlier error
+   !> is cleared.
    subroutine keep_fault(self, name, fault, error)
       class(draft_type), intent(inout) :: self
       character(*), intent(in) :: name
@@ -244,8 +243,8 @@ contains
       end if
    end subroutine set_real
 
-   !> Give both bodies materials with Dundurs' parameter `beta`; the mutual compliance stays as it is. Fault and `error` as of set;
-   !> also where the scene so far is not a valid one.
+   !> Give both bodies materials with Dundurs' parameter `beta`, without changing the mutual compliance. Errors as for set, and if
+   !> the scene so far is not valid.
    subroutine set_materials(self, beta, error)
       class(draft_type), intent(inout) :: self
       real(wp), intent(in) :: beta
@@ -303,7 +302,7 @@ contains
 
       allocate (texts(size(values)))
       why = ''
-      if (size(values) == 0) why = 'there are no values'
+      if (size(values) == 0) why = 'no values are given'
       do i = 1, size(values)
          if (ieee_is_finite(values(i))) then
             call write_real(values(i), texts(i)%text)
@@ -344,7 +343,7 @@ contains
       integer :: line
 
       call find_fault_of_text(value, line, why)
-      if (scan(value, line_ends) > 0) why = 'a text must be of one line'
+      if (scan(value, line_ends) > 0) why = 'a text must not contain a line break'
       call self%set_value(name, value, .true., why, error)
    end subroutine set_text
 
@@ -366,7 +365,7 @@ contains
       character(*), parameter :: known = 'x height mu mu_static mu_kinetic gap width compliance stiffness'
 
       if (scan(file, line_ends) > 0) then
-         call set_error(fault, MFV_INPUT_ERROR, 'the name of data must be of one line')
+         call set_error(fault, MFV_INPUT_ERROR, 'the name of data must not contain a line break')
       else if (.not. has_word(known, name)) then
          call set_error(fault, MFV_INPUT_ERROR, "the data '"//file//"': unknown dataset '"//name//"'; datasets are "//known)
       else
@@ -375,7 +374,7 @@ contains
       call self%keep_fault(file, fault, error)
    end subroutine set_matrix
 
-   !> The scene as a text of namelist groups; comments say which data were in memory.
+   !> The scene as a text of namelist groups; comments name the data in memory.
    subroutine write_text(self, text)
       class(draft_type), intent(in) :: self
       character(:), allocatable, intent(out) :: text
@@ -420,7 +419,7 @@ contains
       case%text = text
    end subroutine make_case
 
-   !> Data that no key names are a mistake: error MFV_INPUT_ERROR.
+   !> Error MFV_INPUT_ERROR for data that no key refers to.
    subroutine check_data(data, groups, source, error)
       type(case_data_type), intent(in) :: data
       type(group_type), intent(in) :: groups(:)
@@ -441,8 +440,8 @@ contains
             end do
          end do
          if (is_named) cycle
-         call set_error(error, MFV_INPUT_ERROR, source//": no key names the data '"//data%datasets(i)%file//"'; a body has "// &
-                        'file, &friction has mu_file')
+         call set_error(error, MFV_INPUT_ERROR, source//": no key refers to the data '"//data%datasets(i)%file//"'; set file "// &
+                        'of a body or mu_file of &friction to this name')
          return
       end do
    end subroutine check_data

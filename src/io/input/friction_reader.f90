@@ -37,7 +37,7 @@ contains
       if (.not. allocated(error)) call scene%friction%simplify()
    end subroutine read_friction
 
-   !> Keys that the law needs, and none that mean nothing to it.
+   !> Error for missing keys of the law, and for keys that have no effect with it.
    subroutine check_friction_keys(reader, error)
       type(reader_type), intent(in) :: reader
       type(error_type), allocatable, intent(out) :: error
@@ -51,9 +51,10 @@ contains
          if (.not. reader%has('friction', 1, keys(i)%text)) cycle
          if (.not. has_word('law '//coefficients//' '//known, keys(i)%text)) then
             call reader%complain('friction', 1, keys(i)%text, &
-                                 "means nothing with law='"//reader%text_value('friction', 1, 'law')//"'", error)
+                                 "has no effect with law='"//reader%text_value('friction', 1, 'law')// &
+                                 "'; remove it or choose another law", error)
          else if (has_word(coefficients, keys(i)%text) .and. reader%has('friction', 1, 'mu_file')) then
-            call reader%complain('friction', 1, keys(i)%text, 'mu_file is there too; give one of them', error)
+            call reader%complain('friction', 1, keys(i)%text, 'mu_file is also given; give only one of them', error)
          end if
          if (allocated(error)) return
       end do
@@ -65,7 +66,7 @@ contains
       end do
    end subroutine check_friction_keys
 
-   !> Keys of a law's coefficients, what else it needs, and all besides its coefficients that it knows; separated by blanks.
+   !> Keys of a law, separated by blanks: its coefficients, other needed keys, and all keys except its coefficients.
    subroutine find_keys_of_law(name, coefficients, needed, known)
       character(*), intent(in) :: name
       character(:), allocatable, intent(out) :: coefficients, needed, known
@@ -90,7 +91,7 @@ contains
       end do
    end subroutine find_keys_of_law
 
-   !> Coefficients of friction: numbers, one number a node, or a file.
+   !> Coefficients of friction: numbers, one number per node, or a file.
    subroutine read_coefficients(reader, friction, error)
       type(reader_type), intent(in) :: reader
       type(friction_type), intent(inout) :: friction
@@ -107,14 +108,14 @@ contains
          call spread_single(friction%kinetic%value, size(friction%static%value))
          call spread_single(friction%static%value, size(friction%kinetic%value))
          if (size(friction%static%value) /= size(friction%kinetic%value)) then
-            call reader%complain('friction', 1, 'mu_kinetic', 'must have one value or as many as mu_static', error)
+            call reader%complain('friction', 1, 'mu_kinetic', 'must have one value, or as many as mu_static', error)
          else if (any(friction%kinetic%value > friction%static%value)) then
             call reader%complain('friction', 1, 'mu_kinetic', 'must not be above mu_static', error)
          end if
       end if
    end subroutine read_coefficients
 
-   !> Make `number` values of a single one.
+   !> Repeat a single value `number` times.
    subroutine spread_single(values, number)
       real(wp), allocatable, intent(inout) :: values(:)
       integer, intent(in) :: number
@@ -152,14 +153,14 @@ contains
          call reader%complain('friction', 1, 'mu_file', path//': mu_kinetic must not be above mu_static', error)
       end if
       if (allocated(error)) return
-      ! Component by component: gfortran 12 makes garbage of a constructor with sections of an array.
+      ! Component by component: gfortran 12 miscompiles a constructor with array sections.
       friction%static%value = table(2, :)
       friction%static%position = table(1, :)
       friction%kinetic%value = table(size(table, 1), :)
       friction%kinetic%position = table(1, :)
    end subroutine read_mu_file
 
-   !> Coefficients given one a node need a mesh that is fixed, and as many nodes.
+   !> Error unless coefficients per node have a fixed mesh with that number of nodes.
    subroutine check_coefficients_a_node(reader, scene, error)
       type(reader_type), intent(in) :: reader
       type(scene_type), intent(in) :: scene
@@ -177,14 +178,14 @@ contains
       nodes = scene%mesh%nodes
       if (scene%lower%shape == shape_matrix) nodes = size(scene%lower%position)
       if (scene%lower%shape /= shape_matrix .and. .not. scene%mesh%half_width > 0.0_wp) then
-         call reader%complain('friction', 1, key, 'one value a node needs a mesh with half_width or half_angle', error)
+         call reader%complain('friction', 1, key, 'one value per node needs a mesh with half_width or half_angle', error)
       else if (size(scene%friction%static%value) /= nodes) then
-         call reader%complain('friction', 1, key, 'must have one value or one a node, '//to_text(nodes)//', not '// &
+         call reader%complain('friction', 1, key, 'must have one value, or one per node ('//to_text(nodes)//'), not '// &
                               to_text(size(scene%friction%static%value)), error)
       end if
    end subroutine check_coefficients_a_node
 
-   !> Without friction no tangential force can be carried.
+   !> Error for a tangential force in a step without friction.
    subroutine check_friction_of_steps(reader, error)
       type(reader_type), intent(in) :: reader
       type(error_type), allocatable, intent(out) :: error

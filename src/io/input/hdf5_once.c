@@ -5,5 +5,5 @@ void mfv_open_hdf5(void);
 
 static pthread_once_t opened = PTHREAD_ONCE_INIT;
 
-/* Call mfv_open_hdf5 if nobody has; other threads wait until it has returned. */
+/* Call mfv_open_hdf5 once; other threads wait until it has returned. */
 void mfv_open_hdf5_once(void) { pthread_once(&opened, mfv_open_hdf5); }

@@ -1,4 +1,4 @@
-!> Reading HDF5 files of others and of our own: every failure is an error with words.
+!> Reading HDF5 files; every failure is an error with a message.
 module mfv_hdf5_reader
    use, intrinsic :: ieee_arithmetic, only: ieee_is_finite
    use, intrinsic :: iso_c_binding, only: c_associated, c_char, c_f_pointer, c_funloc, c_funptr, c_int, c_loc, c_null_ptr, &
@@ -49,7 +49,7 @@ contains
          call h5fis_hdf5_f(path, is_hdf5, code)
       end if
       if (.not. is_hdf5) then
-         call set_error(error, MFV_INPUT_ERROR, path//trim(merge(' is no HDF5 file       ', ': there is no such file', is_there)))
+         call set_error(error, MFV_INPUT_ERROR, path//trim(merge(' is not an HDF5 file', ': no such file      ', is_there)))
          return
       end if
       call h5fopen_f(path, H5F_ACC_RDONLY_F, file, code)
@@ -63,7 +63,7 @@ contains
       call h5fclose_f(file, code)
    end subroutine close_read
 
-   !> A text attribute of the file, as the result file has them: one text of variable length. Error MFV_INPUT_ERROR.
+   !> A text attribute of a result file, of variable length. Error MFV_INPUT_ERROR.
    subroutine read_text_attribute(file, name, text, error)
       integer(hid_t), intent(in) :: file
       character(*), intent(in) :: name
@@ -79,7 +79,7 @@ contains
 
       call open_attribute(file, name, attribute, error)
       if (allocated(error)) then
-         error%message = error%message//': no result of MFV'
+         error%message = error%message//': not a result of MFV'
          return
       end if
       is_variable = .false.
@@ -99,11 +99,11 @@ contains
          end if
          call h5tclose_f(text_type, ignored)
       end if
-      if (.not. allocated(text)) call set_error(error, MFV_INPUT_ERROR, 'attribute '//name//' is no text of MFV')
+      if (.not. allocated(text)) call set_error(error, MFV_INPUT_ERROR, 'attribute '//name//' is not a text')
       call h5aclose_f(attribute, ignored)
    end subroutine read_text_attribute
 
-   !> Open an attribute of the file that has one value, as a caller with room for one needs it. Error MFV_INPUT_ERROR.
+   !> Open an attribute of the file that has one value. Error MFV_INPUT_ERROR.
    subroutine open_attribute(file, name, attribute, error)
       integer(hid_t), intent(in) :: file
       character(*), intent(in) :: name
@@ -131,11 +131,11 @@ contains
          call h5sclose_f(space, ignored)
       end if
       if (values == 1) return
-      call set_error(error, MFV_INPUT_ERROR, 'attribute '//name//' has not one value')
+      call set_error(error, MFV_INPUT_ERROR, 'attribute '//name//' must have one value')
       call h5aclose_f(attribute, ignored)
    end subroutine open_attribute
 
-   !> Whether a dataset or group is there.
+   !> Whether a dataset or group exists.
    logical function has(file, name)
       integer(hid_t), intent(in) :: file
       character(*), intent(in) :: name
@@ -145,7 +145,7 @@ contains
       has = has .and. code == 0
    end function has
 
-   !> A finite vector of `length` values, of any length where that is negative. `gaps`: values that are not numbers are let through.
+   !> A finite vector of `length` values (any number if negative). `gaps`: NaN is allowed.
    subroutine read_vector(file, name, length, values, error, gaps)
       integer(hid_t), intent(in) :: file
       character(*), intent(in) :: name
@@ -223,7 +223,7 @@ contains
       end if
       call open_in_file(file, name, dataset, code)
       if (code /= 0) then
-         call set_error(error, MFV_INPUT_ERROR, name//' is no dataset of this file')
+         call set_error(error, MFV_INPUT_ERROR, name//' is not a dataset of this file')
          return
       end if
       class = -1
@@ -239,7 +239,7 @@ contains
       if (allocated(error)) call h5dclose_f(dataset, code)
    end subroutine open_dataset
 
-   !> Open a dataset without following links to other files: HDF5 would open whatever these name. `code`: not 0 where it fails.
+   !> Open a dataset without following links to other files. `code`: not 0 on failure.
    subroutine open_in_file(file, name, dataset, code)
       integer(hid_t), intent(in) :: file
       character(*), intent(in) :: name
@@ -256,7 +256,7 @@ contains
       call h5pclose_f(access, ignored)
    end subroutine open_in_file
 
-   !> What HDF5 asks before it follows a link to another file (H5L_elink_traverse_t); a negative answer ends it.
+   !> Callback of HDF5 before it follows a link to another file (H5L_elink_traverse_t); negative: refuse.
    integer(c_int) function refuse_link(file, group, other_file, object, flags, access, user) bind(C)
       type(c_ptr), value :: file, group, other_file, object, flags, user
       integer(hid_t), value :: access
@@ -264,7 +264,7 @@ contains
       refuse_link = -1
    end function refuse_link
 
-   !> How large a dataset is; one value is a vector too. Error where it has not as many dimensions as `extent` has places.
+   !> Size of a dataset; a scalar counts as a vector. Error if the number of dimensions is not that of `extent`.
    subroutine find_extent(dataset, name, extent, error)
       integer(hid_t), intent(in) :: dataset
       character(*), intent(in) :: name
@@ -289,18 +289,18 @@ contains
       if (dimensions >= 0 .and. dimensions /= size(extent)) then
          call set_error(error, MFV_INPUT_ERROR, name//' has '//to_text(dimensions)//' dimensions, not '//to_text(size(extent)))
       else if (code < 0 .or. dimensions < 0) then
-         call set_error(error, MFV_INPUT_ERROR, name//' has no readable size')
+         call set_error(error, MFV_INPUT_ERROR, 'the size of '//name//' cannot be read')
       end if
    end subroutine find_extent
 
-   !> Error where the values of a dataset are not in the file, or fewer than it says there are: nothing is allocated for
-   !> what is not there. Values of other files, by virtual datasets or as external raw data, are not read.
+   !> Error if values of a dataset are missing in the file, before memory is allocated for them. Values in other files (virtual
+   !> datasets, external raw data) are not read.
    subroutine check_storage(dataset, name, extent, error)
       integer(hid_t), intent(in) :: dataset
       character(*), intent(in) :: name
       integer(hsize_t), intent(in) :: extent(:)
       type(error_type), allocatable, intent(out) :: error
-      !> Deflate makes at most so many bytes of one (the limit that its authors give); a value takes at least one.
+      !> Largest expansion by deflate (zlib's documented limit); a value takes at least one byte.
       real(wp), parameter :: most_values_a_byte = 1032.0_wp
       integer(hid_t) :: properties
       integer(hsize_t) :: bytes
@@ -314,15 +314,15 @@ contains
          if (code == 0 .and. layout /= H5D_VIRTUAL_F) call h5pget_external_count_f(properties, files, code)
          call h5pclose_f(properties, ignored)
       end if
-      ! No bytes at all count as an error there.
+      ! An empty dataset is an error for this call.
       bytes = 0
       if (code == 0) call h5dget_storage_size_f(dataset, bytes, ignored)
       if (code /= 0) then
          call set_error(error, MFV_INPUT_ERROR, name//' cannot be read')
       else if (files > 0 .or. layout == H5D_VIRTUAL_F) then
-         call set_error(error, MFV_INPUT_ERROR, name//' has its values in another file; these are not read')
+         call set_error(error, MFV_INPUT_ERROR, name//' has its values in another file; copy them into this one')
       else if (product(real(extent, wp)) > most_values_a_byte*real(bytes, wp)) then
-         call set_error(error, MFV_INPUT_ERROR, name//' has fewer values in the file than its size says')
+         call set_error(error, MFV_INPUT_ERROR, name//' is truncated: the file has fewer values than its size says')
       end if
    end subroutine check_storage
 

@@ -1,5 +1,5 @@
-!> Before the first call of HDF5. Its Fortran interface makes its types anew each time that it is opened, some 60 kB, and never
-!> gives them back: it is opened once in a process. (It is not closed: a host may use HDF5 too.)
+!> Open the Fortran interface of HDF5 once in a process: each opening leaks about 60 kB of types. It is not closed, because a host
+!> may also use HDF5.
 module mfv_hdf5_start
    use hdf5, only: h5eset_auto_f, h5open_f
    implicit none
@@ -13,7 +13,7 @@ module mfv_hdf5_start
 
 contains
 
-   !> Have the interface open, and HDF5 print nothing in this thread.
+   !> Open the interface and turn off error output of HDF5 in this thread.
    subroutine start_hdf5()
       integer :: code
 

@@ -1,5 +1,5 @@
-!> A text taken apart into groups and keys, checked against a list of keys (mfv_keys), and read value by value; every
-!> message names file, line, group, key, value and what is right.
+!> Check a parsed text against a catalogue of keys (mfv_keys) and read it value by value. Every message names file, line, group,
+!> key, value and what would be right.
 module mfv_key_reader
    use mfv_case_data, only: case_data_type
    use mfv_error, only: error_type, set_error
@@ -15,7 +15,7 @@ module mfv_key_reader
 
    character(*), parameter :: words_for_true = ' .true. t true .t. ', words_for_false = ' .false. f false .f. '
 
-   !> A text taken apart, with the list of keys to read it by.
+   !> A parsed text with its catalogue of keys.
    type :: reader_type
       !> Name of the text for messages, and the directory, with its final slash, in which the files that it names are.
       character(:), allocatable :: source, directory
@@ -24,7 +24,7 @@ module mfv_key_reader
       integer, allocatable :: number(:)
       type(catalogue_type) :: catalogue
       logical :: without_steps = .false.
-      !> Data in memory in place of files.
+      !> Data in memory instead of files.
       type(case_data_type) :: data
    contains
       procedure :: has
@@ -40,7 +40,7 @@ module mfv_key_reader
 
 contains
 
-   !> Every group known, and those that must be alone alone. The reader can then be asked for values.
+   !> Check that every group is known and repeated only where allowed. Call this before values are read.
    subroutine check_groups(reader, error)
       type(reader_type), intent(inout) :: reader
       type(error_type), allocatable, intent(out) :: error
@@ -62,7 +62,7 @@ contains
             if (j == 0) cycle
             reader%number(i) = reader%number(j) + 1
             if (has_word(reader%catalogue%repeated_groups, group%name)) cycle
-            call fail(reader, group%line, '&'//group%name//': may come only once, and is already in line '// &
+            call fail(reader, group%line, '&'//group%name//': may be given only once; it is already in line '// &
                       to_text(reader%groups(j)%line), error)
             return
          end associate
@@ -75,14 +75,14 @@ contains
       character(*), intent(in) :: name
       integer, intent(in) :: number
 
-      ! Not from the first group on: a load history may have many steps.
+      ! Group `number` of a name cannot come earlier; a load history may have many steps.
       do place = number, size(reader%groups)
          if (reader%number(place) == number .and. reader%groups(place)%name == name) return
       end do
       place = 0
    end function place_of
 
-   !> Every key known, there once, with one value of the right kind in the right range.
+   !> Check that every key is known and given once, with values of the right kind and in range.
    subroutine check_entries(reader, error)
       type(reader_type), intent(in) :: reader
       type(error_type), allocatable, intent(out) :: error
@@ -100,7 +100,7 @@ contains
                   end do
                   why = 'unknown key'//why
                else if (any([(reader%groups(i)%entries(k)%key == entry%key, k=1, j - 1)])) then
-                  why = 'the key is there twice'
+                  why = 'the key is given twice'
                else
                   call find_fault(reader%catalogue%keys(place), entry, why)
                end if
@@ -114,7 +114,7 @@ contains
       end do
    end subroutine check_entries
 
-   !> What is wrong with the value of an entry; empty when nothing is.
+   !> What is wrong with the value of an entry; empty if it is valid.
    subroutine find_fault(key, entry, why)
       type(key_type), intent(in) :: key
       type(entry_type), intent(in) :: entry
@@ -152,7 +152,7 @@ contains
       if (.not. reasonable) why = why//'; '//reasonable_sizes
    end subroutine find_fault
 
-   !> Path of the file that a key names: `in_memory` for the name of data that stand for it, else beside the case.
+   !> Path of the file that a key names, relative to the case; `in_memory`: the name of data in memory.
    subroutine find_file(reader, group, number, name, path, in_memory)
       type(reader_type), intent(in) :: reader
       character(*), intent(in) :: group, name
@@ -214,7 +214,7 @@ contains
       length = len(value)
    end function length_of_value
 
-   !> The value as written, or the default: text_value for a caller who has a variable for it.
+   !> The value as written, or the default, as an allocatable.
    pure subroutine find_value(reader, group, number, name, value)
       class(reader_type), intent(in) :: reader
       character(*), intent(in) :: group, name
@@ -279,7 +279,7 @@ contains
       logical_value = has_word(words_for_true, lower_case(self%text_value(group, number, name)))
    end function logical_value
 
-   !> The one of some constants that a choice stands for: they are in the order of the key's choices (mfv_case_keys).
+   !> The constant of a choice; `constants` are in the order of the key's choices (mfv_case_keys).
    pure integer function constant(self, group, number, name, constants)
       class(reader_type), intent(in) :: self
       character(*), intent(in) :: group, name
@@ -294,7 +294,7 @@ contains
       end do
    end function constant
 
-   !> Error where a key is not written.
+   !> Error if a key is not given.
    subroutine need(self, group, number, name, error)
       class(reader_type), intent(in) :: self
       character(*), intent(in) :: group, name
@@ -327,7 +327,7 @@ contains
       call fail(self, line, '&'//group//trim(numbered(self, group, number))//' '//written//': '//why, error)
    end subroutine complain
 
-   !> Number of a group that may come more than once, after a blank; padded with blanks.
+   !> Number of a group that may be repeated, after a blank; padded with blanks.
    pure function numbered(reader, group, number) result(text)
       class(reader_type), intent(in) :: reader
       character(*), intent(in) :: group

@@ -1,4 +1,4 @@
-!> What a list of keys is made of: kinds, defaults, ranges and meanings of keys, in groups. A reader checks against such a list
+!> Catalogues of keys: kinds, defaults, ranges and meanings of keys, in groups. A reader checks against a catalogue
 !> (mfv_key_reader), and the reference is printed from it. Names of keys with their groups: `friction%mu`, `body(2)%radius`.
 module mfv_keys
    use mfv_kinds, only: wp
@@ -14,7 +14,7 @@ module mfv_keys
    type :: key_type
       character(:), allocatable :: group, name
       integer :: kind = 0
-      !> Default as it would be written; empty: none, the key is left out or needed, as the meaning says.
+      !> Default as it would be written; empty: none, the key is optional or needed, as the meaning says.
       character(:), allocatable :: default
       !> Choices, separated by blanks.
       character(:), allocatable :: choices
@@ -26,8 +26,7 @@ module mfv_keys
       character(:), allocatable :: unit, meaning
    end type key_type
 
-   !> All keys of a text, with its groups in the order of the reference and those that may come more than once, separated by
-   !> blanks.
+   !> All keys of a text; groups in the order of the reference, and those that may be repeated, separated by blanks.
    type :: catalogue_type
       character(:), allocatable :: group_list, repeated_groups
       type(key_type), allocatable :: keys(:)
@@ -73,7 +72,7 @@ contains
       end associate
    end subroutine add_key
 
-   !> What values a key takes, in words, for messages and the reference.
+   !> The allowed values of a key, for messages and the reference.
    subroutine describe_allowed(key, text)
       type(key_type), intent(in) :: key
       character(:), allocatable, intent(out) :: text
@@ -153,7 +152,7 @@ contains
       text = ''
       do i = 1, size(groups)
          text = text//'### &'//groups(i)%text
-         if (has_word(catalogue%repeated_groups, groups(i)%text)) text = text//' (may come more than once)'
+         if (has_word(catalogue%repeated_groups, groups(i)%text)) text = text//' (may be repeated)'
          text = text//line_feed//line_feed//'| key | value | default | unit | meaning |'//line_feed// &
                 '| --- | --- | --- | --- | --- |'//line_feed
          do j = 1, size(catalogue%keys)
@@ -176,8 +175,8 @@ contains
       text = text//'| `'//key%name//'` | '//allowed//' | '//default//' | '//key%unit//' | '//key%meaning//' |'//line_feed
    end subroutine add_row
 
-   !> Group, number of the group (1 unless written) and key of a name, which must be in a catalogue; in lower case. `why`: what is
-   !> wrong with it, empty where nothing is; whether there is a group of this number is for the caller to tell.
+   !> Group, number of the group (1 by default) and key of a name, in lower case. `why`: what is wrong with it, such as an unknown
+   !> key; empty if it is valid. The caller checks whether a group of this number exists.
    subroutine read_key_name(written, catalogue, group, number, key, why)
       character(*), intent(in) :: written
       type(catalogue_type), intent(in) :: catalogue
@@ -199,7 +198,7 @@ contains
       if (percent == 0) then
          why = "must be 'group%key', 'group(number)%key'"
       else if (number < 0) then
-         why = quoted(text(bracket:percent - 1))//' is no number of a group, such as (2)'
+         why = quoted(text(bracket:percent - 1))//' is not a group number, such as (2)'
       else if (.not. has_word(catalogue%group_list, group)) then
          call suggest(group, catalogue%groups(), '', why)
          why = 'unknown group'//why//'; groups are '//catalogue%group_list
@@ -209,7 +208,7 @@ contains
       else if (repeats .and. bracket == percent) then
          why = 'which &'//group//'? write '//group//'(1)%'//key
       else if (.not. repeats .and. number /= 1) then
-         why = 'there is one &'//group//' only'
+         why = 'there is only one &'//group
       end if
       if (why /= '') why = quoted(written)//': '//why
    end subroutine read_key_name

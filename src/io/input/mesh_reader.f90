@@ -14,7 +14,7 @@ module mfv_mesh_reader
 
 contains
 
-   !> The mesh, which must see both bodies, and fit the circle of a Fourier series.
+   !> The mesh. It must lie under the indenter and fit the circle of a Fourier series.
    subroutine read_mesh(reader, scene, error)
       type(reader_type), intent(in) :: reader
       type(scene_type), intent(inout) :: scene
@@ -28,10 +28,10 @@ contains
       scene%mesh%parabolic = reader%text_value('mesh', 1, 'gap') == 'parabolic'
       scene%mesh%radial = reader%text_value('mesh', 1, 'normals') == 'radial'
       if (reader%has('mesh', 1, 'gap') .and. .not. (scene%lower%circular() .or. scene%upper%circular())) then
-         call reader%complain('mesh', 1, 'gap', 'means nothing without a disk', error)
+         call reader%complain('mesh', 1, 'gap', 'has no effect without a disk or hole; remove it', error)
       else if (scene%mesh%radial .and. .not. (scene%lower%circular() .and. scene%upper%circular() .and. &
                                               scene%lower%shape /= scene%upper%shape)) then
-         call reader%complain('mesh', 1, 'normals', 'means nothing without a disk in a hole', error)
+         call reader%complain('mesh', 1, 'normals', "must be 'vertical' unless a disk is in a hole", error)
       else if (scene%mesh%radial .and. scene%mesh%parabolic) then
          call reader%complain('mesh', 1, 'normals', "must be 'vertical' with gap='parabolic'", error)
       end if
@@ -39,7 +39,7 @@ contains
       keys = list_of_words('nodes half_width half_angle')
       do i = 1, size(keys)
          if (scene%lower%shape /= shape_matrix .or. .not. reader%has('mesh', 1, keys(i)%text)) cycle
-         call reader%complain('mesh', 1, keys(i)%text, 'means nothing for a matrix, which has its own nodes', error)
+         call reader%complain('mesh', 1, keys(i)%text, 'has no effect for a matrix, which has its own nodes; remove it', error)
          return
       end do
       if (reader%has('mesh', 1, 'half_angle')) call read_half_angle(reader, scene, error)
@@ -70,9 +70,9 @@ contains
 
       half_angle = reader%real_value('mesh', 1, 'half_angle')
       if (reader%has('mesh', 1, 'half_width')) then
-         call reader%complain('mesh', 1, 'half_angle', 'half_width is there too; give one of them', error)
+         call reader%complain('mesh', 1, 'half_angle', 'half_width is also given; give only one of them', error)
       else if (.not. scene%arc_radius() > 0.0_wp) then
-         call reader%complain('mesh', 1, 'half_angle', 'means nothing without an elastic disk or hole; use half_width', &
+         call reader%complain('mesh', 1, 'half_angle', 'needs an elastic disk or hole; use half_width', &
                               error)
       else
          scene%mesh%whole_circle = .not. half_angle < half_turn
@@ -80,7 +80,7 @@ contains
       end if
    end subroutine read_half_angle
 
-   !> The key of the mesh to complain about; padded with blanks.
+   !> The key of the mesh for error messages; padded with blanks.
    pure function mesh_key(reader) result(key)
       type(reader_type), intent(in) :: reader
       character(len=10) :: key
@@ -90,8 +90,8 @@ contains
       if (reader%has('mesh', 1, 'half_angle')) key = 'half_angle'
    end function mesh_key
 
-   !> A Fourier series needs a circle of a whole number of intervals, no more of it than there is, and a harmonic for every
-   !> two of them: with fewer, tractions that alternate from node to node would displace nothing.
+   !> Error for a mesh longer than the circle. A Fourier series also needs a whole number of intervals on the circle, and at least
+   !> half as many harmonics: with fewer, tractions that alternate from node to node would cause no displacement.
    subroutine check_circle(reader, number, scene, body, error)
       type(reader_type), intent(in) :: reader
       integer, intent(in) :: number
@@ -108,12 +108,12 @@ contains
       intervals = intervals_round(scene, body, interval)
       if (nodes > intervals*(1.0_wp + whole)) then
          call reader%complain('mesh', 1, trim(mesh_key(reader)), &
-                              'goes more than once round body '//to_text(number), error)
+                              'wraps around body '//to_text(number)//' more than once; reduce it', error)
       else if (body%kernel == kernel_fourier .and. intervals > most_intervals) then
          call reader%complain('body', number, 'kernel', 'the circle would have '//to_text(intervals, 3)// &
                               ' intervals, more than '//to_text(most_intervals)//"; use kernel='exact'", error)
       else if (body%kernel == kernel_fourier .and. abs(intervals - anint(intervals)) > whole*intervals) then
-         call reader%complain('body', number, 'kernel', 'needs a whole number of intervals on the circle, there are '// &
+         call reader%complain('body', number, 'kernel', 'needs a whole number of intervals around the circle, not '// &
                               to_text(intervals, 10)//"; make 180*nodes/half_angle whole, or use kernel='exact'", error)
       else if (body%kernel == kernel_fourier .and. body%harmonics > 0) then
          fewest = (nint(intervals) + 1)/2

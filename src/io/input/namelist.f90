@@ -1,7 +1,7 @@
-!> The text of a case, in Fortran's namelist form, taken apart: groups, keys, values and their lines.
+!> Parser of case files, which have the form of Fortran namelists: groups, keys, values and their lines.
 !>
-!> The compiler's own namelist reading stops at the first error and does not say which key it met with which value;
-!> here every message can name file, line, group, key and value. Form: `&group key=value, key=value /`, comments after
+!> Unlike the namelist input of the compiler, it can name file, line, group, key and value of an
+!> error. Form: `&group key=value, key=value /`, comments after
 !> `!`, texts between ' or ", several values after one key, `5*0.3` for five times 0.3, keys and groups in upper or lower
 !> case. The text is UTF-8, with or without a byte-order mark; lines end with LF or CR LF.
 module mfv_namelist
@@ -29,11 +29,11 @@ module mfv_namelist
       integer :: line = 0
    end type group_type
 
-   !> Where the reading of a text stands.
+   !> Position in a text.
    type :: cursor_type
       character(:), allocatable :: text, source
       integer :: at = 1, line = 1
-      !> Commas passed on the way to it.
+      !> Commas skipped before it.
       integer :: commas = 0
    end type cursor_type
 
@@ -44,7 +44,7 @@ module mfv_namelist
    character(*), parameter :: name_characters = 'abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_'
    character(*), parameter :: digits = '0123456789'
 
-   !> Groups that a text can have, and values that a key can have: more would take gigabytes.
+   !> Limits of groups in a text and of values of a key; more would take gigabytes.
    integer, parameter :: most_groups = 1000000, most_values = 10000000
 
 contains
@@ -77,7 +77,7 @@ contains
             return
          end if
          if (n == most_groups) then
-            call complain(cursor, 'there are more than '//to_text(most_groups)//' groups', error)
+            call complain(cursor, 'more than '//to_text(most_groups)//' groups', error)
             return
          end if
          if (n == size(groups)) call resize_groups(groups, 2*n + 1)
@@ -120,8 +120,7 @@ contains
       call resize_entries(group%entries, n)
    end subroutine read_group
 
-   !> Make a list of groups shorter or longer. By move_alloc, here and below: gfortran leaks the components of arrays that a
-   !> constructor joins.
+   !> Resize a list of groups; by move_alloc, here and below, because gfortran leaks components in array constructors.
    subroutine resize_groups(groups, length)
       type(group_type), allocatable, intent(inout) :: groups(:)
       integer, intent(in) :: length
@@ -138,7 +137,7 @@ contains
       call move_alloc(resized, groups)
    end subroutine resize_groups
 
-   !> Make a list of entries shorter or longer.
+   !> Resize a list of entries.
    subroutine resize_entries(entries, length)
       type(entry_type), allocatable, intent(inout) :: entries(:)
       integer, intent(in) :: length
@@ -166,16 +165,16 @@ contains
       entry%line = cursor%line
       call read_name(cursor, entry%key)
       if (entry%key == '') then
-         call complain(cursor, '&'//group//": a key=value is wanted, not '"//rest_of_line(cursor)//"'", error)
+         call complain(cursor, '&'//group//": expected key=value, not '"//rest_of_line(cursor)//"'", error)
          return
       end if
       call skip_blanks(cursor)
       if (next(cursor) == '(' .or. next(cursor) == '%') then
-         call complain(cursor, '&'//group//' '//shortened(entry%key)//rest_of_line(cursor)//': a key has no index and no '// &
-                       'component; all values of a list stand after the key, as in mu=0.3, 0.4', error)
+         call complain(cursor, '&'//group//' '//shortened(entry%key)//rest_of_line(cursor)//': a key takes no index or '// &
+                       'component; list all values after the key, as in mu=0.3, 0.4', error)
          return
       else if (next(cursor) /= '=') then
-         call complain(cursor, '&'//group//' '//shortened(entry%key)//": '=' is wanted after the key", error)
+         call complain(cursor, '&'//group//' '//shortened(entry%key)//": expected '=' after the key", error)
          return
       end if
       cursor%at = cursor%at + 1
@@ -230,7 +229,7 @@ contains
          n = n + repeats
       end do
       if (cursor%commas > merge(1, min(n, 1), at_end)) &
-         call complain(cursor, place//': a value is missing beside a comma', error)
+         call complain(cursor, place//': a value is missing next to a comma', error)
       call resize_values(entry, n)
    end subroutine read_values
 
@@ -241,7 +240,7 @@ contains
       values_end = cursor%at > len(cursor%text) .or. scan(next(cursor), '/&=') == 1 .or. key_follows(cursor)
    end function values_end
 
-   !> Make the list of values shorter or longer.
+   !> Resize the list of values.
    subroutine resize_values(entry, length)
       type(entry_type), intent(inout) :: entry
       integer, intent(in) :: length
@@ -261,8 +260,8 @@ contains
       call move_alloc(is_quoted, entry%is_quoted)
    end subroutine resize_values
 
-   !> How often the value that comes next is meant, as the 5 in 5*0.3; 1 where nothing is said, and 0 where the number cannot be
-   !> read. The cursor is then at the value; where the number cannot be read, it stays.
+   !> The repeat count before the next value, as the 5 in 5*0.3; 1 by default, and 0 if it cannot be read. The cursor moves to the
+   !> value, unless the count cannot be read.
    subroutine read_repeats(cursor, repeats)
       type(cursor_type), intent(inout) :: cursor
       integer, intent(out) :: repeats
@@ -312,7 +311,7 @@ contains
       cursor%at = cursor%at + length
    end subroutine read_bare
 
-   !> Whether a name and then '=' come next; an index or a component after the name, which read_entry refuses, is seen too.
+   !> Whether a name and '=' follow; the name may have an index or component, which read_entry refuses.
    pure logical function key_follows(cursor)
       type(cursor_type), intent(in) :: cursor
       integer :: after, length
@@ -324,7 +323,7 @@ contains
       if (after > 0) key_follows = cursor%text(cursor%at + length + after - 1:cursor%at + length + after - 1) == '='
    end function key_follows
 
-   !> A name of a group or a key, in lower case; empty where none comes.
+   !> A name of a group or a key, in lower case; empty if there is none.
    subroutine read_name(cursor, name)
       type(cursor_type), intent(inout) :: cursor
       character(:), allocatable, intent(out) :: name
@@ -376,7 +375,7 @@ contains
       end do
    end subroutine skip_separators
 
-   !> What is left of the line, for messages, cut to a readable length and to printable characters.
+   !> The rest of the line, for messages, shortened and with printable characters only.
    pure function rest_of_line(cursor) result(text)
       type(cursor_type), intent(in) :: cursor
       character(len=length_of_rest(cursor)) :: text
@@ -388,7 +387,7 @@ contains
       end do
    end function rest_of_line
 
-   !> Characters up to the end of the line, cut to a readable length.
+   !> Length of the rest of the line, shortened.
    pure integer function length_of_rest(cursor) result(length)
       type(cursor_type), intent(in) :: cursor
       integer, parameter :: longest = 40
@@ -432,7 +431,7 @@ contains
       text = text//words(first:)//"'"
    end subroutine add_quoted
 
-   !> The same for a message: a long text and a long list of values are cut.
+   !> The same for a message, with long texts and lists of values shortened.
    pure subroutine show_entry(entry, text)
       type(entry_type), intent(in) :: entry
       character(:), allocatable, intent(out) :: text
@@ -451,7 +450,7 @@ contains
       if (n < size(entry%values)) text = text//', ... ('//to_text(size(entry%values))//' values)'
    end subroutine show_entry
 
-   !> Groups as a text that parse_namelists takes apart into the same ones, one a line.
+   !> Groups as a text, one per line; parse_namelists reads the same groups from it.
    pure subroutine write_namelists(groups, text)
       type(group_type), intent(in) :: groups(:)
       character(:), allocatable, intent(out) :: text

@@ -1,4 +1,4 @@
-!> Reading columns of numbers from text files: the profile of a body, places, coefficients of friction.
+!> Reading columns of numbers from text files: profiles, points, coefficients of friction.
 module mfv_profile_file
    use mfv_body, only: body_type
    use mfv_case_data, only: case_data_type
@@ -18,8 +18,8 @@ module mfv_profile_file
 
 contains
 
-   !> The profile in the file `path`, see read_table: x and recess in every line, x increasing, to be treated as `trace` says.
-   !> `data`: where its datasets x and height are, if they are in memory. Error MFV_INPUT_ERROR with the line and what is right.
+   !> The profile in the file `path`, see read_table: x, increasing, and height in every line. `trace`: options; `data`: has the
+   !> datasets x and height if they are in memory. Error MFV_INPUT_ERROR with the line and what would be right.
    subroutine read_profile(path, trace, body, error, data)
       character(*), intent(in) :: path
       type(trace_type), intent(in) :: trace
@@ -38,9 +38,9 @@ contains
       if (allocated(error)) error%message = path//': '//error%message
    end subroutine read_profile
 
-   !> Columns of numbers from a text file; blank lines, comments and header lines do not count. `names`: what they are, for
-   !> messages; `columns`: how many; `increasing`: whether the first must increase. `table`: shape (columns, lines).
-   !> Error MFV_INPUT_ERROR with the line and what is right.
+   !> Columns of numbers from a text file, without blank lines, comments and headers. `names`: of the columns, for messages;
+   !> `columns`: their number; `increasing`: whether the first must increase. `table`: shape (columns, lines).
+   !> Error MFV_INPUT_ERROR with the line and what would be right.
    subroutine read_table(path, names, columns, increasing, table, error)
       character(*), intent(in) :: path, names
       integer, intent(in) :: columns
@@ -90,7 +90,7 @@ contains
       end do
    end function lines_of
 
-   !> The line that begins at `first`, without its end (LF or CR LF); `first` is then where the next one begins.
+   !> The line that begins at `first`, without its end (LF or CR LF); `first` moves to the next line.
    pure subroutine take_line(text, first, line)
       character(*), intent(in) :: text
       integer, intent(inout) :: first
@@ -104,7 +104,7 @@ contains
       if (index(line, carriage_return, back=.true.) == length) line = line(:length - 1)
    end subroutine take_line
 
-   !> Whether a line before the numbers is a heading of theirs: its first word is no attempt at a number.
+   !> Whether a line before the numbers is a header: its first word does not look like a number.
    pure logical function is_header(line)
       character(*), intent(in) :: line
       character(*), parameter :: letters = 'abcdefghijklmnopqrstuvwxyz'
@@ -154,7 +154,7 @@ contains
 
    contains
 
-      !> Go past characters.
+      !> Skip characters.
       subroutine skip(characters)
          character(*), intent(in) :: characters
 

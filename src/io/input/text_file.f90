@@ -1,4 +1,4 @@
-!> Text files: reading them whole, whether their bytes are a text, and the names of files.
+!> Text files: reading, checks of their encoding, and paths.
 module mfv_text_file
    use, intrinsic :: iso_c_binding, only: c_associated, c_char, c_int, c_null_char, c_ptr, c_size_t
    use, intrinsic :: iso_fortran_env, only: int64
@@ -23,10 +23,10 @@ module mfv_text_file
       end function c_file_kind
    end interface
 
-   !> Bytes that a text file can have; coefficients of a million nodes take a quarter of it.
+   !> Largest size of a text file, bytes; coefficients of a million nodes take a quarter of it.
    integer(int64), parameter :: most_bytes = 100000000_int64
 
-   !> What some editors put before a text.
+   !> UTF-8 byte-order mark.
    character(*), parameter :: byte_order_mark = char(239)//char(187)//char(191)
 
 contains
@@ -48,11 +48,11 @@ contains
          inquire (unit, size=length)
          length = max(length, 0_int64)
          if (length > most_bytes) then
-            call set_error(error, MFV_INPUT_ERROR, path//': is too long for a text: it has more than '// &
+            call set_error(error, MFV_INPUT_ERROR, path//': too long; a text file may have at most '// &
                            to_text(int(most_bytes))//' bytes')
          else
             allocate (character(len=length) :: text, stat=code)
-            why = 'there is no memory for it'
+            why = 'out of memory'
             if (code == 0) read (unit, iostat=code, iomsg=why) text
          end if
          close (unit)
@@ -60,8 +60,8 @@ contains
       if (code /= 0) call set_error(error, MFV_INPUT_ERROR, path//': cannot be read: '//trim(why))
    end subroutine read_text
 
-   !> Whether a path leads to a regular file, or to none, which opening it then tells: a pipe would keep the program waiting,
-   !> a device may have no end. Error MFV_INPUT_ERROR, naming the path.
+   !> Error MFV_INPUT_ERROR for directories, pipes (reading would wait) and devices (may have no end). A missing file is no error
+   !> here.
    subroutine check_is_file(path, error)
       character(*), intent(in) :: path
       type(error_type), allocatable, intent(out) :: error
@@ -74,13 +74,13 @@ contains
       case (1)
          call set_error(error, MFV_INPUT_ERROR, path//': cannot be read: it is a directory')
       case (2)
-         call set_error(error, MFV_INPUT_ERROR, path//': cannot be read: it is no regular file, but a pipe or a device; '// &
-                        'put what it gives into a file')
+         call set_error(error, MFV_INPUT_ERROR, path//': cannot be read: it is a pipe or a device; save its content to '// &
+                        'a regular file')
       end select
    end subroutine check_is_file
 
-   !> What keeps `text` from being a text: UTF-8 (RFC 3629) without control characters, in lines that end with LF or CR LF. Empty
-   !> where nothing does. `line`: the line that it is in.
+   !> Why `text` is not UTF-8 (RFC 3629) without control characters, in lines that end with LF or CR LF; empty if it is. `line`: the
+   !> line of the error.
    pure subroutine find_fault_of_text(text, line, why)
       character(*), intent(in) :: text
       integer, intent(out) :: line
@@ -100,22 +100,22 @@ contains
          else if (code == line_feed) then
             line = line + 1
          else if ((code < blank .and. code /= tab) .or. code == delete) then
-            why = 'the control character '//to_text(code)//': this is no text'
+            why = 'control character '//to_text(code)//': not a text file'
          else if (code > delete) then
             length = length_of_character(text(i:min(i + 3, len(text))))
-            if (length == 0) why = 'the byte '//to_text(code)//' is not UTF-8: save the text as UTF-8'
+            if (length == 0) why = 'byte '//to_text(code)//' is not UTF-8; save the file as UTF-8'
          end if
          if (why /= '') return
          i = i + length
       end do
    end subroutine find_fault_of_text
 
-   !> Bytes of the character of more than one byte at the start of `bytes`; 0 where that is none.
+   !> Length of the multi-byte character at the start of `bytes`; 0 if invalid.
    pure integer function length_of_character(bytes) result(length)
       character(*), intent(in) :: bytes
       integer :: lowest, highest, i
 
-      ! What may follow a first byte: no longer form than is needed, no surrogates, nothing above U+10FFFF.
+      ! Range of the second byte: no overlong forms, no surrogates, nothing above U+10FFFF.
       lowest = 128
       highest = 191
       select case (ichar(bytes(1:1)))
@@ -148,7 +148,7 @@ contains
       directory = path
    end function directory_of
 
-   !> The directory the process works in, empty where it cannot be told.
+   !> The working directory; empty if unknown.
    subroutine find_working_directory(path)
       character(:), allocatable, intent(out) :: path
       integer(c_size_t), parameter :: longest = 4096
@@ -159,7 +159,7 @@ contains
       if (c_associated(c_getcwd(buffer, longest))) path = from_c(buffer)
    end subroutine find_working_directory
 
-   !> A path that was given in another directory.
+   !> A path relative to another directory.
    pure function path_from(directory, path) result(whole)
       character(*), intent(in) :: directory, path
       character(len=len(path) + merge(len(directory) + 1, 0, directory /= '' .and. index(path, '/') /= 1)) :: whole

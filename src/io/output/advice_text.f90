@@ -1,4 +1,4 @@
-!> Advice as text: why, as comments, and the groups to put into the case in place of its own.
+!> Advice as text: reasons as comments, and groups that replace those of the case.
 module mfv_advice_text
    use mfv_advice
    use mfv_case, only: case_type
@@ -16,7 +16,7 @@ module mfv_advice_text
 
 contains
 
-   !> The error that a text wants, a number above 0 and below 1; `why` says what is wrong with it, empty where nothing is.
+   !> The wanted error in a text, a number above 0 and below 1. `why`: what is wrong with it; empty if it is valid.
    subroutine read_wanted_error(text, wanted_error, why)
       character(*), intent(in) :: text
       real(wp), intent(out) :: wanted_error
@@ -55,7 +55,7 @@ contains
             if (names(i)%text == advice_names(j)) wanted(j) = .true.
          end do
          if (.not. any(names(i)%text == advice_names)) &
-            why = 'of='//shortened(text)//': '//quoted(shortened(names(i)%text))//' is none of '//all_names
+            why = 'of='//shortened(text)//': '//quoted(shortened(names(i)%text))//' is not one of '//all_names
       end do
       if (size(names) == 0) why = 'of='//shortened(text)//': must be one or more of '//all_names
    end subroutine read_wanted_quantities
@@ -90,7 +90,7 @@ contains
       call add_line(text, 'from '//to_text(advice%pair_nodes(1))//' and '//to_text(3*advice%pair_nodes(1))//' to '// &
                     to_text(advice%pair_nodes(last))//' and '//to_text(3*advice%pair_nodes(last))// &
                     ' nodes: error = c/nodes, of the dissipation c/nodes^2')
-      call add_line(text, 'or, if larger, the bound from the width of its slip zones (at least 4 nodes); with safety.')
+      call add_line(text, 'or, if larger, the bound from the width of its slip zones (at least 4 nodes); with a safety factor.')
       present = 'error with '//to_text(advice%present_nodes)
       call add_line(text, '               '//present//'nodes needed')
       do i = 1, advice_count
@@ -101,17 +101,17 @@ contains
          call add_line(text, ' '//name//present//trim(needed))
       end do
       if (.not. case%scene%friction%converges()) &
-         call add_line(text, 'Static and kinetic friction depends on every mesh: there is no limit to be near to.')
+         call add_line(text, 'Static and kinetic friction does not converge with the mesh: no number of nodes is enough.')
       call add_line(text, 'Then about '//to_text(advice%contact_nodes)//' nodes in contact, '//to_text(advice%solves, 2)// &
-                    ' linear solves, '//to_text(advice%seconds, 1)//' s by laws of cost (mfv_advice).')
+                    ' linear solves, '//to_text(advice%seconds, 1)//' s (estimated).')
       if (2*advice%leap_solves < advice%event_solves) &
-         call add_line(text, "stepping='leap', leap_tolerance="//to_text(advice%leap_tolerance, 2)//' takes fewer solves: '// &
-                       to_text(advice%leap_solves)//' in place of '//to_text(advice%event_solves)//' with '// &
+         call add_line(text, "stepping='leap', leap_tolerance="//to_text(advice%leap_tolerance, 2)//' needs fewer solves: '// &
+                       to_text(advice%leap_solves)//' instead of '//to_text(advice%event_solves)//' with '// &
                        to_text(advice%tried_nodes)//' nodes.')
-      call add_line(text, 'In place of &mesh and &solver of the case:')
+      call add_line(text, 'Replace &mesh and &solver of the case by:')
    end subroutine add_reasons
 
-   !> The group &solver: the solver, its tolerance where it has one, and that of friction laws that are not linear.
+   !> The group &solver: the solver and its tolerance, and the tolerance of non-linear friction laws.
    subroutine add_solver(case, advice, groups, text)
       type(case_type), intent(in) :: case
       type(advice_type), intent(in) :: advice
@@ -137,7 +137,7 @@ contains
       call add_group(text, groups, 'solver', keys, values)
    end subroutine add_solver
 
-   !> Append a group: what it has in the case, but for some `keys`, separated by blanks, and `values` in place of them.
+   !> Append a group of the case with `values` instead of some `keys`, which are separated by blanks.
    subroutine add_group(text, groups, name, keys, values)
       character(:), allocatable, intent(inout) :: text
       type(group_type), intent(in) :: groups(:)

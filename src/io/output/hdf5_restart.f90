@@ -1,7 +1,7 @@
-!> The restart data of a result file: what an interrupted run needs to continue from the start of the segment in which it was
-!> stopped, besides the history and the states that every result has. They are in its group `restart`.
+!> The restart data of a result file, in its group `restart`: what an interrupted run needs, besides the history and the states of
+!> every result, to continue from the start of the segment in which it was stopped.
 !>
-!> Every quantity is named once: `exchange` adds it to the fields that are written, or takes it from the file that is read.
+!> `exchange` writes or reads a quantity, so that each is named once.
 module mfv_hdf5_restart
    use hdf5, only: hid_t
    use, intrinsic :: iso_fortran_env, only: int64
@@ -23,21 +23,21 @@ module mfv_hdf5_restart
    public :: restart_group, restart_fields, read_restart
 
    character(*), parameter :: restart_group = 'restart'
-   !> Scenes are the same to this part of the largest number of a sort.
+   !> Relative tolerance for scenes to be the same.
    real(wp), parameter :: same = 1.0e-9_wp
-   !> No run counts further.
+   !> Upper limit of counts.
    integer, parameter :: most = 1000000000
    character(*), parameter :: internal = 'internal values of this version of MFV, for --resume'
 
-   !> One group of a file, that is written or read.
+   !> One group of a file that is written or read.
    type :: exchange_type
       logical :: reading = .false.
       integer(hid_t) :: file = -1
-      !> The group and, for several states in one group, what their names begin with.
+      !> The group, and a prefix of names for several states in one group.
       character(:), allocatable :: group, prefix
       !> Fields to be written.
       type(field_type), allocatable :: fields(:)
-      !> The first thing that was wrong with what was read.
+      !> The first error of reading.
       type(error_type), allocatable :: error
    contains
       generic :: exchange => exchange_reals, exchange_real, exchange_integers, exchange_integer
@@ -47,7 +47,7 @@ module mfv_hdf5_restart
 
 contains
 
-   !> The fields of the group `restart` of a run that has been interrupted, all on the mesh as it is now.
+   !> The fields of the group `restart` of an interrupted run, all on the present mesh.
    subroutine restart_fields(simulation, fields)
       type(simulation_type), intent(in) :: simulation
       type(field_type), allocatable, intent(out) :: fields(:)
@@ -68,7 +68,7 @@ contains
       do i = 1, mark_count
          if (copy%marks(i)%step > 0) copy%marks(i)%state = copy%padded(copy%marks(i))
       end do
-      ! Of the snapshots only what `steps` does not have is written, on the nodes of the present mesh.
+      ! Snapshots are in `steps`; only their other values are written, on the nodes of the present mesh.
       allocate (copy%snapshots(simulation%snapshot_count))
       do i = 1, simulation%snapshot_count
          copy%snapshots(i)%state = simulation%snapshots(i)%state
@@ -80,9 +80,8 @@ contains
       call move_alloc(to_file%fields, fields)
    end subroutine restart_fields
 
-   !> Bring a new simulation to where the run of its scene was whose result is open as `file`. Error MFV_INPUT_ERROR: the file has
-   !> no
-   !> restart data, those of another scene, or damaged ones; the simulation is then of no use.
+   !> Restore a new simulation from the restart data in `file`. Error MFV_INPUT_ERROR if they are missing, damaged or of another
+   !> scene; the simulation is then undefined.
    subroutine read_restart(file, simulation, error)
       integer(hid_t), intent(in) :: file
       type(simulation_type), intent(inout) :: simulation
@@ -118,15 +117,15 @@ contains
          call self%exchange('added_nodes', r%added, 'nodes added to the mesh at either end', 0, most/10)
          nodes = nodes + 2*(r%added - simulation%contact%model%added)
          call self%exchange('steps_done', simulation%scene_steps_done, 'steps reached', 0, size(steps))
-         call self%exchange('segment', r%leg, 'segment of the next step, 1 where it has not begun', 1, most)
+         call self%exchange('segment', r%leg, 'segment of the next step, 1 if it has not begun', 1, most)
          call self%exchange('states', simulation%snapshot_count, 'states in steps before that segment', 0, most)
-         call self%exchange('cycles_done', simulation%cycles_done, 'whole cycles of all steps', 0, most)
+         call self%exchange('cycles_done', simulation%cycles_done, 'complete cycles of all steps', 0, most)
          call self%exchange('linear_solves', r%solves, 'linear solves before that segment', 0, most)
          call exchange_counter(self, 'iterations', r%iterations, 'iterations of the linear solver')
          call exchange_counter(self, 'products', r%products, 'products with the compliance')
          if (simulation%scene_steps_done == size(steps) .and. r%leg > 1) call self%complain('segment')
          do i = 1, size(r%load)
-            call self%exchange('control_'//to_text(i), r%load(i)%control, 'what controls motion '//to_text(i), control_keep, &
+            call self%exchange('control_'//to_text(i), r%load(i)%control, 'control of motion '//to_text(i), control_keep, &
                                control_displacement)
             call self%exchange('load_'//to_text(i), r%load(i)%value, 'load of motion '//to_text(i))
          end do
@@ -146,13 +145,12 @@ contains
       if (allocated(self%error) .or. .not. simulation%contact%model%tangential) return
       do i = 1, simulation%snapshot_count
          call self%exchange('stuck_slip_'//to_text(i), simulation%snapshots(i)%state%stuck_slip, &
-                            'slip at which stuck nodes hold in '//step_group(i))
+                            'slip at which the nodes are stuck in '//step_group(i))
       end do
    end subroutine exchange_restart
 
-   !> By what another scene is recognised: positions, gaps, coefficients of friction, and what uneven tractions make of the
-   !> compliance;
-   !> of the nodes that the mesh had at first.
+   !> Identify the scene by positions, gaps, coefficients of friction, and displacements under uneven tractions, at the initial
+   !> nodes of the mesh.
    subroutine exchange_scene(self, model)
       type(exchange_type), intent(inout) :: self
       type(contact_model_type), intent(in) :: model
@@ -168,19 +166,19 @@ contains
       ours = reshape([model%x(first:last), model%initial_gap(first:last), model%static_friction(first:last), &
                       model%kinetic_friction(first:last), normal(first:last), tangential(first:last)], [last - first + 1, 6])
       numbers = reshape(ours, [size(ours)])
-      call self%exchange('scene', numbers, 'positions, gaps, coefficients of friction and displacements, to recognise the scene')
+      call self%exchange('scene', numbers, 'positions, gaps, coefficients of friction and displacements, to identify the scene')
       if (.not. self%reading .or. allocated(self%error)) return
       associate (theirs => reshape(numbers, shape(ours)))
          do i = 1, size(ours, 2)
             if (maxval(abs(theirs(:, i) - ours(:, i))) > same*maxval(abs(ours(:, i)))) then
-               call set_error(self%error, MFV_INPUT_ERROR, 'another case: a file that the case reads has changed')
+               call set_error(self%error, MFV_INPUT_ERROR, 'the result of another case: a file that the case reads has changed')
                return
             end if
          end do
       end associate
    end subroutine exchange_scene
 
-   !> Records without names of their own in a result: those of the certificate, of rolling, of slip zones and of cycles.
+   !> Internal records: of the certificate, of rolling, of slip zones and of cycles.
    subroutine exchange_internals(self, simulation)
       type(exchange_type), intent(inout) :: self
       type(simulation_type), intent(inout) :: simulation
@@ -189,7 +187,7 @@ contains
 
       associate (r => simulation%restart)
          call self%exchange('events', r%path%events, 'loads at which nodes changed their status', 0, huge(1))
-         call self%exchange('trial', r%path%trial, 'length of the next increment, in parts of a segment')
+         call self%exchange('trial', r%path%trial, 'length of the next increment, as a fraction of a segment')
          list = transfer(r%path%certificate, [0])
          call self%exchange('certificate', list, internal)
          r%path%certificate = transfer(list, r%path%certificate)
@@ -249,17 +247,18 @@ contains
       call exchange_visible(self, state)
       call exchange_motions(self, state, motions%optional)
       call self%exchange('friction_work', state%friction_work, 'energy dissipated per unit of surface')
-      call self%exchange('normal', state%fields%normal, 'how far the surfaces draw apart by deformation and rotation')
-      call self%exchange('tangential', state%fields%tangential, 'how far the lower surface moves to the right of the upper one')
-      call self%exchange('stuck_slip', state%stuck_slip, 'slip at which a stuck node holds')
+      call self%exchange('normal', state%fields%normal, 'separation of the surfaces by deformation and rotation')
+      call self%exchange('tangential', state%fields%tangential, 'displacement of the lower surface to the right relative to '// &
+                         'the upper one')
+      call self%exchange('stuck_slip', state%stuck_slip, 'slip at which the node is stuck')
       call self%exchange('slip_direction', state%slip_direction, 'sign of the last slip rate')
       do i = 1, memory_size
-         call self%exchange('memory_'//to_text(i), state%memory(i, :), 'what the friction law remembers')
+         call self%exchange('memory_'//to_text(i), state%memory(i, :), 'internal variable of the friction law')
       end do
       self%prefix = ''
    end subroutine exchange_state
 
-   !> What every state of a result has.
+   !> The fields of every state of a result.
    subroutine exchange_visible(self, state)
       type(exchange_type), intent(inout) :: self
       type(contact_state_type), intent(inout) :: state
@@ -339,7 +338,7 @@ contains
       value = values(1)
    end subroutine exchange_real
 
-   !> Whole numbers, from `least` to `most` where given.
+   !> Integers, from `least` to `most` if given.
    subroutine exchange_integers(self, name, values, meaning, least, most)
       class(exchange_type), intent(inout) :: self
       character(*), intent(in) :: name, meaning
@@ -389,7 +388,7 @@ contains
       counter = nint(max(min(value, most), 0.0_wp), int64)
    end subroutine exchange_counter
 
-   !> A value that no run writes.
+   !> Error for an impossible value.
    subroutine complain(self, name)
       class(exchange_type), intent(inout) :: self
       character(*), intent(in) :: name

@@ -1,6 +1,5 @@
-!> Writing HDF5 files so that nothing half-written is left behind. HDF5 writes into memory; the bytes then replace the file
-!> (mfv_safe_file). HDF5 itself never meets a full disk: it does not come back from one, it ends the process with a segmentation
-!> fault when that ends. What a failed run leaves of an earlier file is that file.
+!> Writing HDF5 files atomically: HDF5 writes to memory, and the bytes then replace the file (mfv_safe_file). A failed run leaves an
+!> earlier file unchanged. On a full disk HDF5 itself would end the process with a segmentation fault at exit.
 module mfv_hdf5_writer
    use, intrinsic :: iso_c_binding, only: c_char, c_loc, c_null_char, c_null_ptr, c_ptr
    use, intrinsic :: iso_fortran_env, only: int8, int64
@@ -22,19 +21,19 @@ module mfv_hdf5_writer
       integer(hid_t) :: file = -1
       !> First failure of an HDF5 call, 0 for none.
       integer :: code = 0
-      !> What the file must still be when it is replaced, for a copy with additions.
+      !> Bytes that the file must still have when it is replaced, for a copy with additions.
       integer(int8), allocatable, private :: expected(:)
    end type writer_type
 
    !> Every result has this attribute of the root, and no other file.
    character(*), parameter :: mark_of_result = 'outcome'
-   !> After a path: a name that no file has.
+   !> Appended to a path: not the name of a file.
    character(*), parameter :: in_memory_only = '/in_memory'
 
 contains
 
-   !> Whether a result could be written to `path`: error MFV_INPUT_ERROR where not, found out before a long run. Of what is
-   !> there only a result is replaced; the case itself, a matrix that it names, or data of others are not.
+   !> Error MFV_INPUT_ERROR if a result cannot be written to `path`; to be called before a long run. Only a result is overwritten,
+   !> not the case itself, a matrix or other data.
    subroutine check_writable(path, error)
       character(*), intent(in) :: path
       type(error_type), allocatable, intent(out) :: error
@@ -46,11 +45,11 @@ contains
       if (allocated(error)) error%status = MFV_INPUT_ERROR
    end subroutine check_writable
 
-   !> Whether the file that is there may be replaced. Error MFV_FILE_ERROR.
+   !> Error MFV_FILE_ERROR if an existing file is not a result.
    subroutine check_is_result(path, error)
       character(*), intent(in) :: path
       type(error_type), allocatable, intent(out) :: error
-      character(*), parameter :: so = '; it is not replaced: name another file, or move this one away'
+      character(*), parameter :: so = '; not overwritten: choose another name, or move this file away'
       integer(hid_t) :: file
       logical :: is_hdf5, is_result
       integer :: code
@@ -58,22 +57,22 @@ contains
       call start_hdf5()
       call h5fis_hdf5_f(path, is_hdf5, code)
       if (code /= 0 .or. .not. is_hdf5) then
-         call set_error(error, MFV_FILE_ERROR, path//' is there and is no HDF5 file'//so)
+         call set_error(error, MFV_FILE_ERROR, path//' exists and is not an HDF5 file'//so)
          return
       end if
       call h5fopen_f(path, H5F_ACC_RDONLY_F, file, code)
       if (code /= 0) then
-         call set_error(error, MFV_FILE_ERROR, path//' is there and cannot be read: it is broken, or another program has it '// &
-                        'open to write'//so)
+         call set_error(error, MFV_FILE_ERROR, path//' exists and cannot be read: it is damaged, or another program has it '// &
+                        'open for writing'//so)
          return
       end if
       call h5aexists_f(file, mark_of_result, is_result, code)
-      if (code /= 0 .or. .not. is_result) call set_error(error, MFV_FILE_ERROR, path//' is there and is no result of MFV '// &
+      if (code /= 0 .or. .not. is_result) call set_error(error, MFV_FILE_ERROR, path//' exists and is not a result of MFV '// &
                                                          '(no attribute '//mark_of_result//')'//so)
       call h5fclose_f(file, code)
    end subroutine check_is_result
 
-   !> Begin an empty file, which is to become `path`. Error MFV_FILE_ERROR; see check_writable for what is not replaced.
+   !> Begin an empty file that will replace `path`. Error MFV_FILE_ERROR if check_writable refuses it.
    subroutine create_file(path, writer, error)
       character(*), intent(in) :: path
       type(writer_type), intent(out) :: writer
@@ -93,7 +92,7 @@ contains
       call h5pclose_f(access, code)
    end subroutine create_file
 
-   !> Open a copy of a file, given by its `bytes`, which is to take its place if it still is this file then.
+   !> Open a copy of a file, given by its `bytes`; it replaces the file if that is still unchanged.
    subroutine open_copy(path, bytes, writer)
       character(*), intent(in) :: path
       integer(int8), intent(in), target :: bytes(:)
@@ -111,7 +110,7 @@ contains
       call h5pclose_f(access, code)
    end subroutine open_copy
 
-   !> The bytes of a file; not allocated where it cannot be read.
+   !> The bytes of a file; not allocated if it cannot be read.
    subroutine read_bytes(path, bytes)
       character(*), intent(in) :: path
       integer(int8), allocatable, intent(out) :: bytes(:)
@@ -130,7 +129,7 @@ contains
       if (code /= 0 .and. allocated(bytes)) deallocate (bytes)
    end subroutine read_bytes
 
-   !> Properties of a file that is in memory only; to be closed.
+   !> Access properties of a file in memory; the caller closes them.
    subroutine in_memory(access, writer)
       integer(hid_t), intent(out) :: access
       type(writer_type), intent(inout) :: writer
@@ -144,8 +143,7 @@ contains
       call note(writer, code)
    end subroutine in_memory
 
-   !> Close the file and, where all went well, have it take its place; else what was there stays. `what`: the name of what was
-   !> written, for the message of the error, MFV_FILE_ERROR.
+   !> Close the file and replace the one at `path`, unless writing has failed. `what`: its name for messages. Error MFV_FILE_ERROR.
    subroutine finish_file(path, what, writer, error)
       character(*), intent(in) :: path, what
       type(writer_type), intent(inout) :: writer
@@ -159,16 +157,16 @@ contains
          call note(writer, code)
       end if
       if (writer%code /= 0) then
-         call set_error(error, MFV_FILE_ERROR, path//': '//what//' could not be written: HDF5 failed, perhaps for want of memory')
+         call set_error(error, MFV_FILE_ERROR, path//': HDF5 could not write '//what//' (out of memory?)')
       else if (has_changed(path, writer)) then
          call set_error(error, MFV_FILE_ERROR, path//' cannot be written: another process has replaced it in the meantime; '// &
-                        'start again')
+                        'run again')
       else
          call replace_file(path, bytes, error)
       end if
    end subroutine finish_file
 
-   !> Whether a file that has been copied is another one now.
+   !> Whether a file has changed since it was copied.
    logical function has_changed(path, writer)
       character(*), intent(in) :: path
       type(writer_type), intent(in) :: writer
@@ -215,8 +213,8 @@ contains
       if (code == 0) call h5gclose_f(id, code)
    end subroutine create_group
 
-   !> The dataset of a field at `path`, with its unit, description and flags; it is left open. `shape`: its dimensions, the fastest
-   !> first, where it has more than one.
+   !> Write a field at `path`, with its unit, description and flags; the dataset stays open. `shape`: its dimensions, the fastest
+   !> first, if it has more than one.
    subroutine write_dataset(writer, path, field, dataset, shape)
       type(writer_type), intent(inout) :: writer
       character(*), intent(in) :: path
@@ -256,7 +254,7 @@ contains
       if (field%flags /= '') call write_flags(writer, dataset, field%flags)
    end subroutine write_dataset
 
-   !> The meaning of coded values, as the CF conventions have it: flag_values and flag_meanings.
+   !> The meaning of coded values, by the CF conventions: flag_values and flag_meanings.
    subroutine write_flags(writer, dataset, flags)
       type(writer_type), intent(inout) :: writer
       integer(hid_t), intent(in) :: dataset
@@ -302,7 +300,7 @@ contains
       call h5tclose_f(text_type, code)
    end subroutine write_text
 
-   !> The version of HDF5 that writes, as an attribute of the file.
+   !> The version of HDF5, as an attribute of the file.
    subroutine write_hdf5_version(writer)
       type(writer_type), intent(inout) :: writer
       integer :: major, minor, release, code

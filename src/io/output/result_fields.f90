@@ -1,5 +1,5 @@
-!> The one catalogue of what a result consists of: names, meanings, units and values, by group. The result file, the C
-!> API and through it Python all take their names from here.
+!> All fields of a result: names, meanings, units and values, by group. The result file, the C API and, through it, Python take
+!> their names from here.
 module mfv_result_fields
    use, intrinsic :: ieee_arithmetic, only: ieee_is_nan, ieee_positive_inf, ieee_quiet_nan, ieee_value
    use mfv_body, only: body_type, shape_names, shape_power, shape_wedge
@@ -29,10 +29,10 @@ module mfv_result_fields
              along_companions, along_cycles, along_patches, along_nothing, scale_count, scale_group, scale_name
    public :: result_attributes, add_real, add_whole
 
-   !> What the values of a field run along.
+   !> Dimension along which the values of a field are listed.
    integer, parameter :: along_nothing = 0, along_nodes = 1, along_records = 2, along_companions = 3, along_cycles = 4, &
                          along_patches = 5, scale_count = 5
-   !> Group and name of the field that numbers them.
+   !> Group and name of the scale of each dimension.
    character(*), parameter :: scale_group(scale_count) = [character(14) :: 'mesh', 'history', 'error_estimate', 'cycles', 'patches']
    character(*), parameter :: scale_name(scale_count) = [character(15) :: 'x', 'record', 'companion_nodes', 'cycle', 'patch']
 
@@ -46,9 +46,8 @@ module mfv_result_fields
       character(:), allocatable :: flags
    end type field_type
 
-   !> Fields that are being gathered. Units are given in terms of length and force, such as force/length^2; the fields have the
-   !> user's
-   !> names for those two.
+   !> A list of fields. Units are given in terms of length and force, such as force/length^2; the fields have the user's names of
+   !> these two.
    type :: list_type
       type(field_type), allocatable :: fields(:)
       character(:), allocatable :: length_unit, force_unit
@@ -57,10 +56,10 @@ module mfv_result_fields
       procedure, private :: add_number, add_count, add_numbers, add_counts
    end type list_type
 
-   !> Moments whose tractions can be asked for: where the cycles begin; the far end of the last cycle; its end.
+   !> Instants whose tractions are available: start of the cycles; reversal of the last cycle; its end.
    character(*), parameter :: moment_names(3) = [character(8) :: 'loading', 'reversal', 'return']
    integer, parameter :: moment_marks(3) = [mark_loading, mark_reversal, mark_return]
-   !> Meanings that several groups share.
+   !> Meanings of fields in several groups.
    character(*), parameter :: pressure_meaning = 'compressive normal traction p'
    character(*), parameter :: shear_meaning = 'shear traction tau on the lower body, positive to the right'
    character(*), parameter :: dissipation_meaning = 'energy dissipated so far per unit thickness'
@@ -107,8 +106,8 @@ contains
       if (number > 9999) path = 'steps/'//to_text(number)
    end function padded_step_group
 
-   !> The fields of one group; none for a group that does not exist. Not in result files, and so not in result_groups: the
-   !> tractions at the moments of a cycle, moments/loading and so on.
+   !> The fields of one group; none for an unknown group. The tractions at instants of a cycle (moments/loading and so on) are not
+   !> in result files and result_groups.
    subroutine group_fields(case, simulation, group, fields)
       type(case_type), intent(in) :: case
       type(simulation_type), intent(in) :: simulation
@@ -186,8 +185,8 @@ contains
       end do
    end function field_named
 
-   !> Names and texts of the attributes of a result. `warnings`: see mfv_validity; finding them takes a search for the largest
-   !> stress, so that the caller, who may need them elsewhere too, does it once.
+   !> Names and texts of the attributes of a result. `warnings`: see mfv_validity; the caller finds them once, because they take a
+   !> search for the largest stress.
    subroutine result_attributes(case, simulation, warnings, names, texts)
       type(case_type), intent(in) :: case
       type(simulation_type), intent(in) :: simulation
@@ -237,7 +236,7 @@ contains
       end subroutine add
    end subroutine result_attributes
 
-   !> A text after a colon; nothing where there is none.
+   !> A text after a colon; empty if there is none.
    pure function separated(text) result(tail)
       character(*), intent(in) :: text
       character(len=merge(len(text) + 2, 0, text /= '')) :: tail
@@ -279,10 +278,10 @@ contains
          if (scene%modulus() > 0.0_wp) then
             call list%add('contact_modulus', scene%modulus(), 'force/length^2', 'modulus m of both bodies, 1/m = sum of '// &
                           '(kappa + 1)/(4 G)')
-            call list%add('dundurs_beta', scene%dundurs_beta(), '1', "Dundurs' parameter beta, positive where the lower body "// &
-                          "couples more")
+            call list%add('dundurs_beta', scene%dundurs_beta(), '1', "Dundurs' parameter beta, positive if the lower body "// &
+                          "couples more strongly")
          end if
-         call list%add('curvature', scene%curvature(), '1/length', 'relative curvature of disks and holes at the pole')
+         call list%add('curvature', scene%curvature(), '1/length', 'relative curvature of disks and holes at the origin')
          call list%add('friction_coefficient', scene%friction%static%largest(), '1', 'largest (static) coefficient of '// &
                        'friction, 0 without friction')
       end associate
@@ -303,7 +302,7 @@ contains
                     ' body are measured')
    end subroutine add_body
 
-   !> Which compliance blocks the scene needed, and the memory of what they are made from.
+   !> Compliance blocks of the scene, and memory of the kernels or matrices.
    subroutine add_compliance(list, simulation)
       type(list_type), intent(inout) :: list
       type(simulation_type), intent(in) :: simulation
@@ -333,16 +332,16 @@ contains
          if (model%scene%arc_radius() > 0.0_wp) call list%add('arc', model%arc, along_nodes, 'length', 'distance of the nodes '// &
                                                               'from the origin along the surface')
          call list%add('interval', model%interval(), 'length', 'width of an interval')
-         call list%add('width', model%width, along_nodes, 'length', 'surface that belongs to each node')
+         call list%add('width', model%width, along_nodes, 'length', 'length of the surface interval of each node')
          if (model%scene%friction%acts()) then
-            call list%add('static_friction', model%static_friction, along_nodes, '1', 'coefficient of friction of nodes that hold')
-            call list%add('kinetic_friction', model%kinetic_friction, along_nodes, '1', 'coefficient of friction of nodes '// &
-                          'that slip, in the end')
+            call list%add('static_friction', model%static_friction, along_nodes, '1', 'coefficient of friction of stuck nodes')
+            call list%add('kinetic_friction', model%kinetic_friction, along_nodes, '1', 'coefficient of friction of '// &
+                          'slipping nodes, after weakening')
          end if
       end associate
    end subroutine add_mesh
 
-   !> The fields of a state, with the edges of all zones, of which the tractions between nodes are made.
+   !> The fields of a state, with the edges of all zones.
    subroutine add_state(list, simulation, state)
       type(list_type), intent(inout) :: list
       type(simulation_type), intent(in) :: simulation
@@ -358,7 +357,7 @@ contains
          call list%add('gap', visible_gap(simulation, model%gap(state%fields)), along_nodes, 'length', 'gap between the '// &
                        'bodies, infinite where one of them has no surface')
          call list%add('slip', modelled(simulation, state%fields%slip()), along_nodes, 'length', 'slip s = u - U of the lower '// &
-                       'surface against the upper body (not modelled without friction)')
+                       'surface relative to the upper one (not modelled without friction)')
          call list%add('status', state%status, along_nodes, 'contact status of the nodes', node_status_names)
          if (model%tangential) call list%add('friction_work', state%friction_work, along_nodes, 'force/length', 'energy '// &
                                              'dissipated so far per unit of surface')
@@ -390,7 +389,7 @@ contains
       end do
    end subroutine add_displacements
 
-   !> A tangential quantity: NaN in scenes that leave the tangential problem out.
+   !> A tangential quantity: NaN in scenes without the tangential problem.
    function modelled(simulation, values)
       type(simulation_type), intent(in) :: simulation
       real(wp), intent(in) :: values(:)
@@ -425,7 +424,7 @@ contains
                     'without cycles')
    end subroutine add_step
 
-   !> The tractions at a moment of the last cycle; nothing where there is no such moment.
+   !> The tractions at an instant of the last cycle, if there is one.
    subroutine add_moment(list, simulation, mark)
       type(list_type), intent(inout) :: list
       type(simulation_type), intent(in) :: simulation
@@ -492,7 +491,7 @@ contains
       call list%add('edge_stick_ratio', edges%stick_ratio(), '1', 'stick zones over contact length, from edges between nodes')
    end subroutine add_edges
 
-   !> What an engineer reads off the load history, where it can be told.
+   !> Observables of the load history, where defined.
    subroutine add_observables(list, simulation)
       type(list_type), intent(inout) :: list
       type(simulation_type), intent(in) :: simulation
@@ -537,7 +536,7 @@ contains
 
    contains
 
-      !> The left or right edge of what sticks in a patch.
+      !> The left or right edge of the stick zones of a patch.
       pure real(wp) function outermost(patch, right) result(edge)
          type(patch_type), intent(in) :: patch
          logical, intent(in) :: right
@@ -549,7 +548,7 @@ contains
       end function outermost
    end subroutine add_patches
 
-   !> What every patch bears; the forces of all add up to those of the contact.
+   !> Forces and peak tractions of the patches; the forces add up to those of the contact.
    subroutine add_patch_loads(list, simulation, patches)
       type(list_type), intent(inout) :: list
       type(simulation_type), intent(in) :: simulation
@@ -577,11 +576,11 @@ contains
       call list%add('tangential_force', tangential_force, along, 'force/length', 'tangential force of the patch on the lower '// &
                     'body per unit thickness')
       call list%add('peak_pressure', peak_pressure, along, 'force/length^2', 'largest pressure in the patch')
-      if (simulation%contact%model%tangential) call list%add('peak_shear', peak_shear, along, 'force/length^2', 'largest size '// &
-                                                             'of the shear traction in the patch')
+      if (simulation%contact%model%tangential) call list%add('peak_shear', peak_shear, along, 'force/length^2', 'largest '// &
+                                                             'magnitude of the shear traction in the patch')
    end subroutine add_patch_loads
 
-   !> The cycles, one by one; and where the last one dissipated.
+   !> The cycles, and the distribution of dissipation in the last one.
    subroutine add_cycles(list, simulation)
       type(list_type), intent(inout) :: list
       type(simulation_type), intent(in) :: simulation
@@ -593,26 +592,26 @@ contains
       call list%add('cycle', c%overall, along, 'number of the cycle, over all steps')
       call list%add('step', c%step, along, 'number of its step')
       call list%add('dissipation', c%dissipation(), along, 'force', 'energy dissipated in the cycle per unit thickness')
-      call list%add('change', c%change, along, '1', 'largest change of a traction over the cycle, in parts of the largest traction')
-      call list%add('force_amplitude', c%force_amplitude(), along, 'force/length', 'half of what the tangential force changes by')
-      call list%add('shift_amplitude', c%shift_amplitude(), along, 'length', 'half of what the shift changes by')
+      call list%add('change', c%change, along, '1', 'largest change of a traction over the cycle, relative to the largest traction')
+      call list%add('force_amplitude', c%force_amplitude(), along, 'force/length', 'half the range of the tangential force')
+      call list%add('shift_amplitude', c%shift_amplitude(), along, 'length', 'half the range of the shift')
       call list%add('tangential_stiffness', c%return%stiffness_on_leaving, along, 'force/length^2', 'tangential force over '// &
-                    'shift right after the reversal, where all sticks')
+                    'shift right after the reversal, where all nodes stick')
       call list%add('secant_stiffness', c%secant_stiffness(), along, 'force/length^2', 'tangential force over shift from end '// &
                     'to end')
       call list%add('loss_factor', c%loss_factor(), along, '1', 'dissipation over 2 pi times the elastic energy of the secant '// &
                     'stiffness, at constant normal force and rotation')
-      call list%add('stick_ratio_reversal', c%reversal%edges%stick_ratio(), along, '1', 'stick ratio at the far end')
-      call list%add('stick_ratio_return', c%return%edges%stick_ratio(), along, '1', 'stick ratio at the end')
-      call list%add('contact_centre_reversal', c%reversal%edges%centre(), along, 'length', 'middle of the contact at the far '// &
-                    'end, along the surface from the origin')
-      call list%add('contact_centre_return', c%return%edges%centre(), along, 'length', 'middle of the contact at the end, '// &
-                    'along the surface from the origin')
+      call list%add('stick_ratio_reversal', c%reversal%edges%stick_ratio(), along, '1', 'stick ratio at the reversal')
+      call list%add('stick_ratio_return', c%return%edges%stick_ratio(), along, '1', 'stick ratio at the end of the cycle')
+      call list%add('contact_centre_reversal', c%reversal%edges%centre(), along, 'length', 'middle of the contact at the '// &
+                    'reversal, along the surface from the origin')
+      call list%add('contact_centre_return', c%return%edges%centre(), along, 'length', 'middle of the contact at the end of '// &
+                    'the cycle, along the surface from the origin')
       if (simulation%marks(mark_cycle_start)%step == 0 .or. simulation%marks(mark_return)%reversal == 0) return
       before = simulation%padded(simulation%marks(mark_cycle_start))
       after = simulation%padded(simulation%marks(mark_return))
-      call list%add('friction_work', after%friction_work - before%friction_work, along_nodes, 'force/length', 'energy that '// &
-                    'the last cycle dissipated per unit of surface')
+      call list%add('friction_work', after%friction_work - before%friction_work, along_nodes, 'force/length', 'energy '// &
+                    'dissipated in the last cycle per unit of surface')
    end subroutine add_cycles
 
    subroutine add_summary(list, simulation, state)
@@ -623,15 +622,15 @@ contains
       call add_loads(list, simulation, state)
       call list%add('steps_done', simulation%steps_done, 'steps reached')
       call list%add('events', simulation%contact%events, 'loads at which nodes changed their status')
-      call list%add('leaps', simulation%contact%certificate%leaps, 'large increments of the load history, without looking for '// &
-                    'events')
+      call list%add('leaps', simulation%contact%certificate%leaps, "stepping='leap': large increments, in which events are not "// &
+                    'located')
       if (simulation%contact%model%scene%method%stepping == stepping_leap) then
          call list%add('increment_traction_error', simulation%contact%certificate%increment_traction_error, '1', &
-                       "stepping='leap': largest estimated error of the tractions by large increments, in parts of the "// &
+                       "stepping='leap': largest estimated error of the tractions by large increments, relative to the "// &
                        "largest traction")
          call list%add('increment_dissipation_error', simulation%contact%certificate%increment_dissipation_error, '1', &
-                       "stepping='leap': largest estimated error of the dissipation of a load segment by large increments, in "// &
-                       "parts of that dissipation")
+                       "stepping='leap': largest estimated error of the dissipation of a load segment by large increments, "// &
+                       "relative to that dissipation")
       end if
       call list%add('linear_solves', simulation%contact%system%solves, linear_solves_meaning)
       call list%add('largest_residual', simulation%contact%certificate%largest(), '1', 'largest relative residual of the '// &
@@ -686,7 +685,7 @@ contains
             length = bar(quantity_half_width)
             length%value = 2.0_wp*length%value
             length%error = 2.0_wp*length%error
-            length%companions = 2.0_wp*length%companions
+            length%companions = 2.0_wp*length%companions  ! wording: ok
             call add_bar(list, length, 'contact_length', 'length', 'length of all intervals in contact')
          else
             call add_bar(list, bar(quantity_half_width), 'contact_half_width', 'length', 'half the length of all intervals in '// &
@@ -694,12 +693,12 @@ contains
          end if
          call add_bar(list, bar(quantity_stick_ratio), 'stick_ratio', '1', 'stuck nodes over nodes in contact')
          call add_bar(list, bar(quantity_peak_pressure), 'peak_pressure', 'force/length^2', 'largest pressure')
-         call add_bar(list, bar(quantity_peak_shear), 'peak_shear', 'force/length^2', 'largest size of the shear traction')
+         call add_bar(list, bar(quantity_peak_shear), 'peak_shear', 'force/length^2', 'largest magnitude of the shear traction')
          call add_bar(list, bar(quantity_dissipation), 'dissipation', 'force', dissipation_meaning)
       end associate
    end subroutine add_estimate
 
-   !> What a perturbation of friction changes.
+   !> Changes caused by perturbed friction.
    subroutine add_sensitivity(list, sensitivity)
       type(list_type), intent(inout) :: list
       type(sensitivity_type), intent(in) :: sensitivity
@@ -723,11 +722,11 @@ contains
 
       if (.not. bar%known) return
       call list%add(name, bar%value, unit, meaning)
-      call list%add(name//'_error', bar%error, unit, 'estimated discretisation error: '//meaning//'; infinite where there is '// &
-                    'no limit, NaN where slip zones with too few nodes do not resolve it')
-      call list%add(name//'_order', bar%order, '1', 'observed order of convergence, from 1 to 2 (negative: there is no limit; '// &
-                    'NaN: not resolved): '//meaning)
-      call list%add(name//'_companions', bar%companions, along_companions, unit, 'on the coarser meshes: '//meaning)
+      call list%add(name//'_error', bar%error, unit, 'estimated discretisation error: '//meaning//'; infinite if '// &
+                    'there is no limit, NaN if slip zones have too few nodes to resolve it')
+      call list%add(name//'_order', bar%order, '1', 'observed order of convergence, from 1 to 2 (negative: no limit; NaN: not '// &
+                    'resolved): '//meaning)
+      call list%add(name//'_companions', bar%companions, along_companions, unit, 'on the coarser meshes: '//meaning)  ! wording: ok
    end subroutine add_bar
 
    !> Some of the motions and their forces (shape (values, motion_count)), first the forces.
@@ -770,30 +769,30 @@ contains
          call list%add('dissipation', r%dissipation, along, 'force', dissipation_meaning)
          call list%add('contact_nodes', r%contact_nodes, along, contact_nodes_meaning)
          call list%add('stick_nodes', r%stick_nodes, along, stick_nodes_meaning)
-         call list%add('event_kind', r%event_kind, along, 'what happened', event_names)
-         call list%add('event_node', r%event_node, along, 'number, from 1, of the first node it happened to; 0 for none')
-         call list%add('event_count', r%event_count, along, 'number of nodes it happened to together')
+         call list%add('event_kind', r%event_kind, along, 'kind of the event', event_names)
+         call list%add('event_node', r%event_node, along, 'number, from 1, of the first node of the event; 0 for none')
+         call list%add('event_count', r%event_count, along, 'number of nodes of the event')
          call list%add('step', r%step, along, 'number of the step, 0 before the first')
          call list%add('linear_solves', r%linear_solves, along, linear_solves_meaning)
       end associate
    end subroutine add_history
 
-   !> How far the bodies have rolled, and slid while they did; where they can roll.
+   !> Distances of rolling and sliding, if the bodies can roll.
    subroutine add_rolling(list, simulation)
       type(list_type), intent(inout) :: list
       type(simulation_type), intent(in) :: simulation
 
       associate (model => simulation%contact%model, r => simulation%contact%history%record(:simulation%contact%history%records))
          if (.not. model%rolls()) return
-         call list%add('rolled', -r%motion(motion_rotation)/model%scene%curvature(), along_records, 'length', 'how far the '// &
-                       'contact has rolled to the right along the surfaces')
+         call list%add('rolled', -r%motion(motion_rotation)/model%scene%curvature(), along_records, 'length', 'distance that '// &
+                       'the contact has rolled to the right along the surfaces')
          call list%add('slid', r%motion(motion_shift) + model%centre_height()*r%motion(motion_rotation), along_records, 'length', &
-                       'how far the upper surface has slid to the right over the lower one, as rigid bodies')
+                       'rigid-body sliding of the upper surface to the right over the lower one')
       end associate
    end subroutine add_rolling
 
-   !> The non-linear part of the hysteresis loop, as in dissertation Fig. 6.2b: the linear part, that of a contact where all
-   !> sticks, is taken out. Where there are cycles whose stiffness is known.
+   !> The non-linear part of the hysteresis loop (dissertation Fig. 6.2b): the shift minus that of full stick, for cycles of known
+   !> stiffness.
    subroutine add_nonlinear_shift(list, simulation)
       type(list_type), intent(inout) :: list
       type(simulation_type), intent(in) :: simulation
@@ -805,7 +804,7 @@ contains
       if (.not. abs(stiffness) > 0.0_wp) return
       associate (r => simulation%contact%history%record(:simulation%contact%history%records))
          call list%add('nonlinear_shift', r%motion(motion_shift) - r%force(motion_shift)/stiffness, along_records, 'length', &
-                       'shift less tangential_force over the tangential stiffness right after the last reversal')
+                       'shift minus tangential_force over the tangential stiffness right after the last reversal')
       end associate
    end subroutine add_nonlinear_shift
 
@@ -889,7 +888,7 @@ contains
       if (present(flags)) fields(size(fields))%flags = flags
    end subroutine add_whole
 
-   !> Append a field without values. By move_alloc: gfortran leaks the components of arrays that a constructor joins.
+   !> Append a field without values; by move_alloc, because gfortran leaks components in array constructors.
    subroutine append_field(fields, name, along, unit, description)
       type(field_type), allocatable, intent(inout) :: fields(:)
       character(*), intent(in) :: name, unit, description

@@ -1,6 +1,5 @@
-!> The result file: HDF5, for people. Named datasets with units and descriptions, dimension scales, the input text,
-!> versions and the certificate. It takes its place when it is whole and on the disk, so that a failed run leaves an earlier
-!> result as it was and nothing half-written. docs/file-format.md describes it.
+!> The result file (HDF5): datasets with units and descriptions, dimension scales, the input text, versions and the certificate
+!> (docs/file-format.md). It replaces an earlier result only when complete.
 module mfv_result_file
    use hdf5
    use h5ds
@@ -20,7 +19,7 @@ module mfv_result_file
 
 contains
 
-   !> Whether there is the result of a run that was not interrupted.
+   !> Whether `path` is the result of a run that was not interrupted.
    logical function is_whole_result(path)
       character(*), intent(in) :: path
       type(error_type), allocatable :: error
@@ -39,10 +38,9 @@ contains
       if (is_whole_result) is_whole_result = outcome /= status_outcome(MFV_INTERRUPTED)
    end function is_whole_result
 
-   !> Bring a new simulation of a case to where the interrupted run was whose result is at `path`. `is_finished`: that run was
-   !> complete, nothing is done. Error MFV_INPUT_ERROR: the file cannot be read, is not a result, is that of a run that failed, of
-   !> another
-   !> case or of another version, or is damaged; the simulation is then of no use.
+   !> Restore a new simulation of a case from the result of an interrupted run at `path`. `is_finished`: that run is complete;
+   !> nothing is done. Error MFV_INPUT_ERROR: the file is unreadable or damaged, or not a result of this case, this version and a
+   !> run that did not fail; the simulation is then undefined.
    subroutine resume_result(path, case, simulation, is_finished, error)
       character(*), intent(in) :: path
       type(case_type), intent(in) :: case
@@ -58,7 +56,7 @@ contains
          call close_read(file)
          if (allocated(error)) error%message = path//': '//error%message
       end if
-      if (allocated(error)) error%message = error%message//'; without --resume the case starts again from step 1'
+      if (allocated(error)) error%message = error%message//'; run without --resume to start again from step 1'
    end subroutine resume_result
 
    !> The same for an open file.
@@ -76,7 +74,7 @@ contains
       if (.not. allocated(error)) call read_text_attribute(file, 'outcome', outcome, error)
       if (allocated(error)) return
       if (input /= case%text) then
-         call set_error(error, MFV_INPUT_ERROR, 'the result of another case: the text of the case has changed')
+         call set_error(error, MFV_INPUT_ERROR, 'the result of another case: the text of the case file has changed')
       else if (.not. has(file, restart_group)) then
          is_finished = outcome == status_outcome(MFV_COMPLETE)
          if (.not. is_finished) call set_error(error, MFV_INPUT_ERROR, 'the run ended ('//outcome//'); nothing to resume')
@@ -87,9 +85,8 @@ contains
       end if
    end subroutine resume_open_file
 
-   !> Write the result of a case to `path`, with its `warnings` (see mfv_validity). `with_restart`: with what an interrupted run
-   !> needs to continue. Error MFV_FILE_ERROR; what was at `path` before is then still there. See check_writable for what is not
-   !> replaced.
+   !> Write the result of a case to `path`, with its `warnings` (see mfv_validity). `with_restart`: with restart data. Error
+   !> MFV_FILE_ERROR, also if check_writable refuses; an earlier file is then unchanged.
    subroutine write_result(path, case, simulation, warnings, error, with_restart)
       character(*), intent(in) :: path
       type(case_type), intent(in) :: case
@@ -154,8 +151,8 @@ contains
       end do
    end subroutine find_scales
 
-   !> One group, with dimension scales of its own: a group can be read alone, and no scale has to list all the datasets of a
-   !> long load history (HDF5 allows 64 KiB for that).
+   !> One group, with its own dimension scales: HDF5 limits the list of datasets of a scale to 64 KiB, too little for a long load
+   !> history.
    subroutine write_group(writer, group, fields, scales)
       type(writer_type), intent(inout) :: writer
       character(*), intent(in) :: group

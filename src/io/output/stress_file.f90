@@ -1,4 +1,4 @@
-!> Stresses inside the bodies of a result, put into its file: /stress/<state>/<body>, on a grid or at points.
+!> Stresses inside the bodies of a result, added to its file under /stress/<state>/<body>, on a grid or at points.
 module mfv_stress_file
    use, intrinsic :: ieee_arithmetic, only: ieee_is_nan, ieee_quiet_nan, ieee_value
    use, intrinsic :: iso_fortran_env, only: int8
@@ -20,21 +20,21 @@ module mfv_stress_file
    private
    public :: stress_request_type, stress_result_type, add_stresses
 
-   !> What is asked for.
+   !> Request: state, body and points.
    type :: stress_request_type
       !> State after this step or reversal (as in /steps), 0 for the last one.
       integer :: step = 0
-      !> The body above, not the one below.
+      !> Whether the body is the upper one.
       logical :: upper = .false.
-      !> Grid: how far to either side of the contact's middle and how deep, in units of the contact half-width, and points.
+      !> Grid: half-width about the middle of the contact and depth, in contact half-widths, and numbers of points.
       real(wp) :: width = 2.0_wp, depth = 2.0_wp
       integer :: across = 161, down = 81
-      !> Points in place of the grid, lengths.
+      !> Points instead of the grid, lengths.
       real(wp), allocatable :: x(:), y(:)
    end type stress_request_type
 
-   !> What came out; stresses as mfv_interior's stress_names, shape (stress_count, points); x fastest in a grid. Grid: x and
-   !> depth below the surface, and y of every point; points: x and y.
+   !> Stresses in the order of stress_names (mfv_interior), shape (stress_count, points); x fastest in a grid. Grid: x, depth below
+   !> the surface, and y of every point; points: x and y.
    type :: stress_result_type
       real(wp), allocatable :: x(:), depth(:), y(:), stress(:, :)
       type(largest_type) :: largest
@@ -47,8 +47,8 @@ module mfv_stress_file
 
 contains
 
-   !> Compute the stresses of the result file `path` and put them into it, in place of what was there for this state and
-   !> body. Errors, which leave the file as it was: MFV_INPUT_ERROR, MFV_FILE_ERROR.
+   !> Compute the stresses of the result file `path` and add them to it, replacing those of the same state and body. Errors, which
+   !> leave the file unchanged: MFV_INPUT_ERROR, MFV_FILE_ERROR.
    subroutine add_stresses(path, request, result, error)
       character(*), intent(in) :: path
       type(stress_request_type), intent(in) :: request
@@ -69,7 +69,7 @@ contains
       result%length_unit = case%length_unit
       result%stress_unit = case%force_unit//'/'//case%length_unit//'^2'
       if (.not. result%half_width > 0.0_wp) then
-         call set_error(error, MFV_INPUT_ERROR, path//': there is no load in this state')
+         call set_error(error, MFV_INPUT_ERROR, path//': no load acts in this state')
          return
       end if
       call compute(request, interior, result)
@@ -86,7 +86,7 @@ contains
       type(error_type), allocatable, intent(out) :: error
       integer(hid_t) :: file
       character(:), allocatable :: text, source, directory, state, position
-      !> No result has larger numbers; products of them would overflow.
+      !> Limit of numbers in a result; products of larger ones would overflow.
       real(wp), parameter :: largest_size = 1.0e100_wp
       real(wp), allocatable, dimension(:) :: arc, width, pressure, shear, contact_edge, stick_edge
       logical :: available
@@ -99,7 +99,7 @@ contains
       if (.not. allocated(error)) call read_text_attribute(file, 'input_file', source, error)
       if (.not. allocated(error)) call read_text_attribute(file, 'working_directory', directory, error)
       if (.not. allocated(error)) then
-         if (.not. has(file, state)) call set_error(error, MFV_INPUT_ERROR, 'there is no state '//state)
+         if (.not. has(file, state)) call set_error(error, MFV_INPUT_ERROR, 'the result has no state '//state)
       end if
       position = 'mesh/x'
       if (has(file, 'mesh/arc')) position = 'mesh/arc'
@@ -120,11 +120,11 @@ contains
       if (allocated(error)) return
       result%yield_strength = merge(case%scene%upper%yield_strength, case%scene%lower%yield_strength, request%upper)
       call case%scene%interior(request%upper, arc, width, pressure, shear, contact_edge, stick_edge, interior, available)
-      if (.not. available) call set_error(error, MFV_INPUT_ERROR, 'the '//body_name(request)//' body is rigid or a matrix: '// &
-                                          'there are no stresses inside it')
+      if (.not. available) call set_error(error, MFV_INPUT_ERROR, 'the '//body_name(request)//' body is rigid or given by a '// &
+                                          'matrix: its stresses cannot be computed')
    end subroutine read_interior
 
-   !> Edges between nodes; no edges where the file has none.
+   !> Edges between nodes; NaN if the file has none.
    subroutine read_edges(file, path, nodes, edges, error)
       integer(hid_t), intent(in) :: file
       character(*), intent(in) :: path
@@ -181,7 +181,7 @@ contains
       end do
    end subroutine compute
 
-   !> Put them into a copy of the file that takes its place, if that still has the `bytes` that it had before.
+   !> Write the stresses to a copy of the file, which replaces it if it still has these `bytes`.
    subroutine write_stresses(path, bytes, request, case, result, error)
       character(*), intent(in) :: path
       integer(int8), allocatable, intent(in) :: bytes(:)
@@ -205,14 +205,14 @@ contains
       if (allocated(request%x)) result%group = result%group//'_points'
       call open_copy(path, bytes, writer)
       if (writer%code == 0) then
-         call make_way(writer, state, result%group)
+         call renew_group(writer, state, result%group)
          call write_group(writer, case, result)
       end if
       call finish_file(path, 'the stresses', writer, error)
    end subroutine write_stresses
 
-   !> The groups above the wanted one; and away with what was there.
-   subroutine make_way(writer, state, group)
+   !> Create the group and its parents, without earlier stresses.
+   subroutine renew_group(writer, state, group)
       type(writer_type), intent(inout) :: writer
       character(*), intent(in) :: state, group
       integer :: code
@@ -224,7 +224,7 @@ contains
          call note(writer, code)
       end if
       call create_group(writer, group)
-   end subroutine make_way
+   end subroutine renew_group
 
    !> The stresses in their group; over a grid with its dimension scales.
    subroutine write_group(writer, case, result)
@@ -236,7 +236,7 @@ contains
       integer :: code, i, j
 
       allocate (scales(0))
-      call add_real(scales, 'x', result%x, along_nodes, case%length_unit, 'position to the right of the pole')
+      call add_real(scales, 'x', result%x, along_nodes, case%length_unit, 'position to the right of the origin')
       if (allocated(result%depth)) &
          call add_real(scales, 'depth', result%depth, along_nodes, case%length_unit, 'depth below the surface')
       do i = 1, size(scales)
@@ -263,7 +263,7 @@ contains
       end do
    end subroutine write_group
 
-   !> What is written besides the scales.
+   !> The fields besides the scales.
    subroutine collect_fields(case, result, fields)
       type(case_type), intent(in) :: case
       type(stress_result_type), intent(in) :: result
@@ -273,18 +273,18 @@ contains
 
       allocate (fields(0))
       names = list_of_words(stress_names)
-      call add_real(fields, 'y', result%y, along_nodes, case%length_unit, 'height above the pole')
+      call add_real(fields, 'y', result%y, along_nodes, case%length_unit, 'height above the origin')
       do i = 1, stress_count
          call add_real(fields, names(i)%text, result%stress(i, :), along_nodes, result%stress_unit, trim(meaning(names(i)%text)))
          if (names(i)%text == 'principal_angle') fields(size(fields))%unit = '1'
       end do
       call add('largest_von_mises', result%largest%value, result%stress_unit, 'largest von Mises stress in the body, by refinement')
-      call add('largest_x', result%largest%x, case%length_unit, 'where it is: x')
-      call add('largest_y', result%largest%y, case%length_unit, 'where it is: y')
-      call add('largest_tension', result%tension%value, result%stress_unit, 'largest tension along the surface; not a number '// &
+      call add('largest_x', result%largest%x, case%length_unit, 'its position: x')
+      call add('largest_y', result%largest%y, case%length_unit, 'its position: y')
+      call add('largest_tension', result%tension%value, result%stress_unit, 'largest tension along the surface; NaN '// &
                'where it is singular')
-      call add('tension_x', result%tension%x, case%length_unit, 'where it is: x; not a number where there is no tension')
-      call add('tension_y', result%tension%y, case%length_unit, 'where it is: y')
+      call add('tension_x', result%tension%x, case%length_unit, 'its position: x; NaN where there is no tension')
+      call add('tension_y', result%tension%y, case%length_unit, 'its position: y')
       call add('half_width', result%half_width, case%length_unit, 'half the length of the loaded surface, from edges between nodes')
       call add('largest_pressure', result%largest_pressure, result%stress_unit, 'largest pressure')
 
@@ -298,24 +298,24 @@ contains
       end subroutine add
    end subroutine collect_fields
 
-   !> What a stress of mfv_interior's stress_names is; padded with blanks.
+   !> Description of a stress of stress_names (mfv_interior); padded with blanks.
    pure function meaning(name) result(text)
       character(*), intent(in) :: name
       character(len=120) :: text
 
       select case (name)
       case ('sigma_zz')
-         text = 'stress across the plane: nu (sigma_xx + sigma_yy) in plane strain, 0 in plane stress'
+         text = 'out-of-plane stress: nu (sigma_xx + sigma_yy) in plane strain, 0 in plane stress'
       case ('principal_1', 'principal_2')
          text = 'principal stress in the plane, the '//trim(merge('larger ', 'smaller', name == 'principal_1'))
       case ('von_mises')
          text = 'von Mises stress'
       case ('tresca')
-         text = 'Tresca stress: the largest difference of the three principal stresses, sigma_zz among them'
+         text = 'Tresca stress: the largest difference of the three principal stresses, including sigma_zz'
       case ('principal_angle')
          text = 'direction of principal_1 from the x axis, counterclockwise, in radians'
       case ('sigma_rr', 'sigma_thetatheta', 'sigma_rtheta')
-         text = 'stress in polar components about the centre of the disk or hole, counterclockwise; none in a half-plane'
+         text = 'stress in polar components about the centre of the disk or hole, counterclockwise; NaN in a half-plane'
       case default
          text = 'stress, positive in tension'
       end select

@@ -14,7 +14,7 @@ module mfv_stress_text
 
 contains
 
-   !> The stresses at every point, a line each.
+   !> The stresses at every point, one per line.
    subroutine list_stresses(result, text)
       type(stress_result_type), intent(in) :: result
       character(:), allocatable, intent(out) :: text
@@ -28,7 +28,8 @@ contains
       end do
    end subroutine list_stresses
 
-   !> The largest stresses, and where all of them are: in the file `path`. `warning`: beyond the yield strength; empty otherwise.
+   !> The largest stresses, and the group of all stresses in the file `path`. `warning`: if the yield strength is exceeded, else
+   !> empty.
    subroutine summarize_stresses(path, request, result, text, warning)
       character(*), intent(in) :: path
       type(stress_request_type), intent(in) :: request
@@ -40,7 +41,7 @@ contains
       call describe(result, result%largest%value, result%largest%x, result%largest%y, largest)
       text = 'largest von Mises   '//largest//line_feed
       if (.not. ieee_is_finite(result%tension%value)) then
-         text = text//'largest tension     singular: the surface of a body ends where it carries shear'//line_feed
+         text = text//'largest tension     singular: shear acts at a sharp corner of the body'//line_feed
       else if (result%tension%value > 0.0_wp) then
          call describe(result, result%tension%value, result%tension%x, result%tension%y, largest)
          text = text//'largest tension     '//largest//', along the surface'//line_feed
@@ -52,11 +53,11 @@ contains
       warning = ''
       if (result%yield_strength > 0.0_wp .and. result%largest%value > result%yield_strength) &
          warning = 'warning: the largest von Mises stress, '//to_text(result%largest%value, 4)//unit// &
-                   ', is beyond the yield_strength '//to_text(result%yield_strength)//unit//' of the '// &
+                   ', exceeds the yield_strength '//to_text(result%yield_strength)//unit//' of the '// &
                    trim(merge('upper', 'lower', request%upper))//' body: elasticity no longer holds'
    end subroutine summarize_stresses
 
-   !> A stress and its place, in the user's units and over those of the contact.
+   !> A stress and its position, in the user's units and relative to the contact.
    subroutine describe(result, value, x, y, text)
       type(stress_result_type), intent(in) :: result
       real(wp), intent(in) :: value, x, y

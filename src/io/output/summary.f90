@@ -19,7 +19,7 @@ module mfv_summary
 
 contains
 
-   !> What came out, one quantity a line. `warnings`: see mfv_validity. `seconds`: time the run took.
+   !> The result, one quantity per line. `warnings`: see mfv_validity. `seconds`: wall-clock time of the run.
    subroutine summarize(case, simulation, warnings, seconds, text)
       type(case_type), intent(in) :: case
       type(simulation_type), intent(in) :: simulation
@@ -39,7 +39,7 @@ contains
                        ', stuck '//amount(fields, 'stick_nodes')//', slipping '//amount(fields, 'slip_nodes'))
          words = ''
          if (field_named(fields, 'edge_stick_ratio') > 0) words = amount(fields, 'edge_stick_ratio')//' between nodes, '
-         if (model%tangential) call add_line(text, 'stick ratio', words//amount(fields, 'stick_ratio')//' as nodes count it')
+         if (model%tangential) call add_line(text, 'stick ratio', words//amount(fields, 'stick_ratio')//' in whole intervals')
          call add_line(text, 'normal force', amount(fields, 'normal_force')//', approach '//amount(fields, 'approach'))
          if (model%tangential) then
             call add_line(text, 'tangential force', amount(fields, 'tangential_force')//', shift '//amount(fields, 'shift'))
@@ -78,7 +78,7 @@ contains
       end associate
    end subroutine summarize
 
-   !> The size of the contact: a half-width where it is one patch, else the length of all patches and their number.
+   !> The size of the contact: the half-width of one patch, or the total length of several patches and their number.
    subroutine add_contact(text, fields)
       character(:), allocatable, intent(inout) :: text
       type(field_type), intent(in) :: fields(:)
@@ -89,14 +89,14 @@ contains
                           ' patches from '//amount(fields, 'contact_left')//' to '//amount(fields, 'contact_right'))
          else if (patches == 1) then
             call add_line(text, 'contact half-width', amount(fields, 'edge_half_width')//' between nodes, '// &
-                          amount(fields, 'contact_half_width')//' as nodes count it')
+                          amount(fields, 'contact_half_width')//' in whole intervals')
          else
-            call add_line(text, 'contact half-width', amount(fields, 'contact_half_width')//' as nodes count it')
+            call add_line(text, 'contact half-width', amount(fields, 'contact_half_width')//' in whole intervals')
          end if
       end associate
    end subroutine add_contact
 
-   !> What the last cycle was like.
+   !> Observables of the last cycle.
    subroutine add_last_cycle(text, fields)
       character(:), allocatable, intent(inout) :: text
       type(field_type), intent(in) :: fields(:)
@@ -110,7 +110,7 @@ contains
       call add_line(text, 'last cycle', words//', tractions change by '//amount(fields, 'cycle_change'))
    end subroutine add_last_cycle
 
-   !> The largest tension along the surface of each body that has any, or that it is singular: then there is no observable.
+   !> The largest tension along the surface of each body, or that it is singular: then there is no observable.
    subroutine add_tension(text, fields, model, touches)
       character(:), allocatable, intent(inout) :: text
       type(field_type), intent(in) :: fields(:)
@@ -134,7 +134,7 @@ contains
       if (words /= '') call add_line(text, 'largest tension', words(3:))
    end subroutine add_tension
 
-   !> Which blocks the scene needed, the memory of what they are made from, and the time that took.
+   !> Compliance blocks of the scene, memory of the kernels or matrices, and time of assembly.
    subroutine add_compliance(text, model)
       character(:), allocatable, intent(inout) :: text
       type(contact_model_type), intent(in) :: model
@@ -158,7 +158,7 @@ contains
       call add_line(text, 'compliance', words//', '//to_text(model%assembly_seconds, 2)//' s')
    end subroutine add_compliance
 
-   !> Values with their error bars, one a line, or why there are none.
+   !> Values with their error bars, one per line, or why there are none.
    subroutine add_estimate(text, case, simulation)
       character(:), allocatable, intent(inout) :: text
       type(case_type), intent(in) :: case
@@ -176,7 +176,7 @@ contains
          return
       end if
       call group_fields(case, simulation, 'error_estimate', fields)
-      ! Several patches have a length together, no half-width.
+      ! Several patches have a total length but no half-width.
       if (field_named(fields, 'contact_length') > 0) &
          call add_line(text, 'error estimate', 'contact length '//amount(fields, 'contact_length')//' +- '// &
                        to_text(2.0_wp*simulation%estimate%bar(quantity_half_width)%error, 2))
@@ -192,8 +192,8 @@ contains
                call add_line(text, 'error estimate', value//' +- '//to_text(bar%error, 2)//percent//', order '// &
                              to_text(bar%order, 2))
             else
-               call add_line(text, 'error estimate', value//' grows with every finer mesh, as nodes^'// &
-                             to_text(-bar%order, 2)//': it has no limit')
+               call add_line(text, 'error estimate', value//' grows as nodes^'//to_text(-bar%order, 2)// &
+                             ' with every finer mesh: it has no limit')
             end if
          end associate
       end do
@@ -204,8 +204,8 @@ contains
       call add_line(text, 'error estimate', 'from meshes with '//meshes//' nodes in place of '// &
                     to_text(simulation%estimate%nodes))
       if (.not. case%scene%friction%converges()) &
-         call add_line(text, 'error estimate', 'static and kinetic friction depends on every mesh: '// &
-                       'there is no limit that the bars could be from')
+         call add_line(text, 'error estimate', 'static and kinetic friction does not converge with the '// &
+                       'mesh: these bars are not bounds')
    end subroutine add_estimate
 
    !> A number of things: 1 event, 2 events; padded with blanks.
@@ -217,7 +217,7 @@ contains
       text = to_text(number)//' '//name//merge('s', ' ', number /= 1)
    end function numbered
 
-   !> What a second run with perturbed friction changed, or why there is nothing to compare.
+   !> Changes in a second run with perturbed friction, or why there are none.
    subroutine add_sensitivity(text, simulation)
       character(:), allocatable, intent(inout) :: text
       type(simulation_type), intent(in) :: simulation
@@ -234,11 +234,12 @@ contains
          call add_line(text, 'sensitivity', 'dissipation by '//to_text(s%dissipation, 1)//' (relative), the stick ratio by '// &
                        to_text(s%stick_ratio, 1))
          if (max(s%pressure, s%shear, s%dissipation, s%stick_ratio) > chaotic) &
-            call add_line(text, 'sensitivity', 'round-off decides this result: do not quote it more precisely than these changes')
+            call add_line(text, 'sensitivity', 'this result depends on round-off: do not quote it more precisely than these '// &
+                          'changes')
       end associate
    end subroutine add_sensitivity
 
-   !> What a valid case asks for.
+   !> Summary of a valid case.
    subroutine summarize_check(case, text)
       type(case_type), intent(in) :: case
       character(:), allocatable, intent(out) :: text
@@ -255,7 +256,7 @@ contains
       if (case%result_path /= '') call add_line(text, 'result', case%result_path)
    end subroutine summarize_check
 
-   !> Append a line: a label in a column of its own, and what it labels.
+   !> Append a line: a label, padded, and a value.
    subroutine add_line(text, label, value)
       character(:), allocatable, intent(inout) :: text
       character(*), intent(in) :: label, value
@@ -265,7 +266,7 @@ contains
       text = text//padded//value//line_feed
    end subroutine add_line
 
-   !> The value of a field, with its unit where that has a name.
+   !> The value of a field, with the user's unit if it has one.
    pure function amount(fields, name) result(text)
       type(field_type), intent(in) :: fields(:)
       character(*), intent(in) :: name
@@ -286,7 +287,7 @@ contains
       length = len(words)
    end function length_of_amount
 
-   !> The same for a caller who has a variable for it; empty where there is no such field.
+   !> The same as an allocatable; empty if there is no such field.
    pure subroutine find_amount(fields, name, text)
       type(field_type), intent(in) :: fields(:)
       character(*), intent(in) :: name
@@ -303,7 +304,7 @@ contains
       end if
    end subroutine find_amount
 
-   !> A unit to stand after a value: empty unless the user has named the units.
+   !> A unit after a value: empty unless the user has named the units.
    pure function unit_suffix(unit) result(suffix)
       character(*), intent(in) :: unit
       character(len=merge(len(unit) + 1, 0, is_named(unit))) :: suffix
@@ -311,7 +312,7 @@ contains
       suffix = ' '//unit
    end function unit_suffix
 
-   !> Whether a unit has names that the user gave.
+   !> Whether the user has named the units.
    pure logical function is_named(unit)
       character(*), intent(in) :: unit
 

@@ -1,4 +1,4 @@
-!> In place of io/matrix_file.f90 where MFV is built without HDF5: bodies given by a matrix cannot be read.
+!> Replaces matrix_file.f90 in a build without HDF5: bodies given by a matrix cannot be read.
 module mfv_matrix_file
    use mfv_body, only: body_type
    use mfv_error, only: error_type, set_error

@@ -1,4 +1,4 @@
-!> In place of result_file.f90 where MFV is built without HDF5: results cannot be written.
+!> Replaces result_file.f90 in a build without HDF5: results cannot be written.
 module mfv_result_file
    use mfv_case, only: case_type
    use mfv_error, only: error_type, set_error
