@@ -11,6 +11,5 @@ find build/coverage -name '*.gcda' -delete
 export PYTEST_ADDOPTS="--deselect tests/cli/test_bad_files.py::test_files_without_permission"
 ctest --preset coverage --timeout 3600 -E '^(installed_tree|memcheck_.*)$' || { echo "coverage: a test failed"; exit 1; }
 "$venv/bin/gcovr" --root . --object-directory build/coverage --filter src/ --filter drivers/ \
-  --gcov-ignore-errors=no_working_dir_found --gcov-ignore-parse-errors=negative_hits.warn_once_per_file \
-  --json build/coverage/lines.json build/coverage/src build/coverage/drivers >/dev/null
+  --gcov-ignore-errors=no_working_dir_found --gcov-ignore-parse-errors=negative_hits.warn_once_per_file --json build/coverage/lines.json build/coverage/src build/coverage/drivers >/dev/null
 "$venv/bin/python" scripts/coverage_by_folder.py build/coverage/lines.json

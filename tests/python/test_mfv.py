@@ -500,10 +500,10 @@ def test_cycles_of_a_result_and_their_picture(tmp_path: Path, capsys: pytest.Cap
     assert "loss_factor" in capsys.readouterr().out
     mfv.run(text=CYCLES.replace(", cycles=3", ""), output=tmp_path / "y.h5")
     assert command_line.main(["plot", str(tmp_path / "y.h5"), "--cycles"]) == 2
-    assert "this result has no cycles" in capsys.readouterr().err
+    assert "there are no cycles in this result" in capsys.readouterr().err
 
 
-@pytest.mark.parametrize("arguments", [["--step"], ["draw"], ["plot"], ["plot", "x.h5", "--step", "two"]])
+@pytest.mark.parametrize("arguments", [[], ["draw"], ["plot"], ["plot", "x.h5", "--step", "two"]])
 def test_a_wrong_command_line_ends_with_code_2(arguments: list[str]) -> None:
     with pytest.raises(SystemExit) as caught:
         command_line.main(arguments)
