@@ -101,7 +101,7 @@ def _meshes(bench: Bench, meshes: tuple[int, ...], finest: dict[str, Any]) -> di
 
 
 def _knobs(bench: Bench, finest: dict[str, Any], base: dict[str, Any]) -> dict[str, list[dict[str, Any]]]:
-    """The other knobs on one mesh; a setting that does not get to the end is left out."""
+    """The other knobs on one mesh; settings that end early are omitted."""
     found: dict[str, list[dict[str, Any]]] = {}
     for name, settings in KNOBS.items():
         found[name] = []
@@ -226,33 +226,32 @@ def section(data: dict[str, Any], pictures: Path) -> str:
     )
     return f"""## Speed against accuracy: which knob first?
 
-Two pictures: errors against closed forms (Mindlin: pressed without friction, sheared to Q, -Q, Q, decoupled; Spence: pressed with friction, mu = {SPENCE_MU},
-Goodman), and every knob on a scene where the path matters (pressed with friction, sheared to Q, -Q, Q, full coupling, nu = {POISSON},
-mu = {MU}, Q = {SHEAR / (MU * PRESS):g} mu P) against {data["finest"]} nodes in contact. Tractions by the l2 norm over the nodes, the stick ratio in parts of the contact, which comes
-in whole nodes.
+The first picture has errors against closed forms (Mindlin: pressed without friction, sheared to Q, -Q, Q, decoupled; Spence: pressed with friction, mu = {SPENCE_MU},
+Goodman). The second has every setting on a path-dependent case (pressed with friction, sheared to Q, -Q, Q, full coupling, nu = {POISSON},
+mu = {MU}, Q = {SHEAR / (MU * PRESS):g} mu P) against {data["finest"]} nodes in contact. Errors of tractions are l2 norms over the nodes; the stick ratio counts whole nodes.
 
 ![Errors over time for closed forms](pictures/pareto_closed_forms.png)
 
 ![Errors over time for every knob](pictures/pareto_knobs.png)
 
 *Nodes: first.* From {coarse["contact"]} to {fine["contact"]} in contact the error of the shear falls from {_error(coarse, "shear")} to {_error(fine, "shear")}, that of the dissipation from
-{_error(coarse, "dissipation")} to {_error(fine, "dissipation")}, in {_time(coarse)} and {_time(fine)}. No other knob brings the error below that of its mesh.
+{_error(coarse, "dissipation")} to {_error(fine, "dissipation")}, in {_time(coarse)} and {_time(fine)}. No other setting reduces the error below that of its mesh.
 
 *linear_solver: leave it `auto`.* It costs no accuracy: at {same["contact"]} nodes in contact dgesv takes {_time(dgesv)}, reduced {_time(same)}, fft
 {_time(_at(data["meshes"]["fft"], same["label"]))} for the same events; at {fine["contact"]} reduced {_time(fine)}, fft {_time(_at(data["meshes"]["fft"], fine["label"]))}.
 
-*stepping='leap': where the path does not matter.* For Mindlin with {mindlin_leaps["contact"]} nodes in contact it takes {duration(mindlin_leaps["seconds"])} where events take {duration(mindlin_events["seconds"])}, with
+*stepping='leap': if the result does not depend on the path.* For Mindlin with {mindlin_leaps["contact"]} nodes in contact it takes {duration(mindlin_leaps["seconds"])} instead of {duration(mindlin_events["seconds"])} by events, with
 errors of the shear of {mindlin_leaps["error"]["shear"]:.1e} and {mindlin_events["error"]["shear"]:.1e}, of the dissipation of {mindlin_leaps["error"]["dissipation"]:.1e} and {mindlin_events["error"]["dissipation"]:.1e}. On coupled
 scenes of that size most load segments are solved by events ([numbers of solves](verification.md#large-increments)).
 
-*coupling: physics, not speed.* `goodman` takes {_time(goodman)} in place of {_time(base)} and is wrong by {_knob(goodman, "pressure")} in pressure, {_knob(goodman, "shear")} in shear and {_knob(goodman, "dissipation")} in dissipation; `none`
-{_time(none)}, {_knob(none, "pressure")}, {_knob(none, "shear")} and {_knob(none, "dissipation")}. Those errors are larger than those of all but the coarsest meshes.
+*coupling: physics, not speed.* `goodman` takes {_time(goodman)} instead of {_time(base)} and is wrong by {_knob(goodman, "pressure")} in pressure, {_knob(goodman, "shear")} in shear and {_knob(goodman, "dissipation")} in dissipation; `none`
+{_time(none)}, {_knob(none, "pressure")}, {_knob(none, "shear")} and {_knob(none, "dissipation")}. Only the coarsest meshes have larger errors.
 
-*linear_tolerance: with fft only.* From {tight["label"]:g} ({_time(tight)}) {loose_text}; {enough["label"]:g} changes nothing by more than {_worst(enough["knob"]):.0e} and takes {_time(enough)}.
+*linear_tolerance: with fft only.* From {tight["label"]:g} ({_time(tight)}) {loose_text}; {enough["label"]:g} changes results by at most {_worst(enough["knob"]):.0e} and takes {_time(enough)}.
 
-*stepping='nominal': no trade.* With load_step {nominal["label"]:g} the same states ({_knob(nominal, "shear")} in shear) in {_time(nominal)}: for comparison with the dissertation.
+*stepping='nominal': no trade.* With load_step {nominal["label"]:g} it gives the same states ({_knob(nominal, "shear")} in shear) in {_time(nominal)}; use it for comparison with the dissertation.
 
-*algorithm='conventional': for comparison.* {conventional_text(conventional, knobs["conventional"])} An MFV run takes {_time(base)} and has no load step to choose.
+*algorithm='conventional': for comparison.* {conventional_text(conventional, knobs["conventional"])} MFV takes {_time(base)}.
 
 *kernel='fourier', harmonics: none.* On a disk of {CIRCLE} intervals the exact kernel takes {_time(data["harmonics"][0])} for the run; {few["label"]} harmonics an interval {_time(few)} with {_knob(few, "shear")} wrong in shear, {many["label"]} {_time(many)} with
 {_knob(many, "shear")}.
@@ -313,7 +312,7 @@ def knob_table(data: dict[str, Any]) -> str:
             continue
         differences = [f"{entry['knob'][quantity]:.0e}" for quantity in QUANTITIES]
         rows.append([name, _time(entry), entry["solves"], *differences, f"{entry['certificate']:.0e}"])
-    head = ["knob", "time", "solves", *QUANTITIES.values(), "certificate"]
+    head = ["setting", "time", "solves", *QUANTITIES.values(), "certificate"]
     return f"Coupled scene, {data['contact']} nodes in contact, differences from events on the same mesh:\n\n{table(head, rows)}"
 
 

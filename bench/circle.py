@@ -15,10 +15,9 @@ Kernels = dict[tuple[int, int], tuple[float, float]]
 
 TEXT = """## Which kernel for disk and hole?
 
-`kernel='exact'`, the default. It computes only the entries that the mesh near the contact needs ({window} here), each to round-off, so
-that its time does not depend on how fine the circle is. The Fourier series has to be summed over the whole circle; its error falls with
-the second power of the harmonics, and at the customary four for each interval (dissertation section 4.2.2.1) it is still
-{error_at_4:.0e} of the largest entry.
+Use the default, `kernel='exact'`. It computes only the entries that the mesh near the contact needs ({window} here), each to round-off, so
+its time does not depend on the number of intervals on the circle. The Fourier series is summed over the whole circle; its error decreases with
+the second power of the harmonics, and with four for each interval (dissertation section 4.2.2.1) it is {error_at_4:.0e} of the largest entry.
 
 ![Error over harmonics, and time over the intervals of the circle](pictures/circle_kernels.png)
 
@@ -26,7 +25,7 @@ Relative error of the largest of the three kernels of a disk, kappa = 1.8:
 
 {error_table}
 
-Time for {window} entries, in units of the exact kernel's on the same circle (that takes {exact_seconds:.0e} s):
+Time for {window} entries, relative to the exact kernel on the same circle ({exact_seconds:.0e} s):
 
 {time_table}
 

@@ -162,15 +162,14 @@ def section(data: dict[str, Any], pictures: Path) -> str:
     return f"""## What does an event cost?
 
 A rigid cylinder on a half-plane, nu = 0.3, mu = {MU}, full coupling: pressed with friction, then a cycle of shear to {SHEAR / (MU * PRESS):g} of
-the friction limit, by events; where that takes too long, pressed without friction and sheared until some nodes slip, the first
-few of which are not counted, nor is the first factorisation. Iterations and products with the compliance are a solve's, which finds state and rates. Operations are estimated:
-those of the factorisation (dgesv), of an update and a product with the inverse, as if all were in contact and stuck (reduced), of the transforms (fft).
+the sliding limit, by events ("press, cycle"). Large cases are pressed without friction and sheared until some nodes slip ("part of a shear"), without the first
+events and the first factorisation. Operations are estimated.
 
-{table(["linear solver", "nodes in contact", "history", "events", "solves an event", "iterations", "products", "Mflop an event", "time an event", "Gflop/s", "certificate"], rows)}
+{table(["linear solver", "nodes in contact", "history", "events", "solves per event", "iterations", "products", "Mflop per event", "time per event", "Gflop/s", "certificate"], rows)}
 
 ![Time of an event over nodes in contact](pictures/cost_per_event.png)
 
-Exponents of time over nodes in contact, from 150 nodes on: {exponents}. Peak memory of the process, of which the program itself is some 15 MB:
+The time grows with the nodes in contact to the power (from 150 nodes on): {exponents}. Peak memory of the process, of which the program itself is about 15 MB:
 
 {table(["nodes in contact", *SOLVERS], [[contact, *(size(memory[solver, contact]) if (solver, contact) in memory else "" for solver in SOLVERS)] for contact in contacts])}
 
@@ -196,12 +195,12 @@ def family_text(data: dict[str, Any]) -> str:
                     number(other[0]["seconds"] / row["seconds"]) if other else "",
                 ]
             )
-    head = ["coupling", "nodes in contact", "iterations of fft", "fft, an event", "reduced, an event", "reduced/fft"]
-    return f"""`auto` takes, by the number of nodes of the mesh, reduced up to {_most("coupled")} and fft beyond (events, full coupling), {_most("one_way")} with Goodman's coupling, {_most("apart")}
-decoupled; up to {_most("at_once")} where there are no events (no friction, large increments without coupling), {_most("bristles")} under Dahl's law and for large increments with coupling. A user's
-matrix is always reduced.
+    head = ["coupling", "nodes in contact", "iterations of fft", "fft, per event", "reduced, per event", "reduced/fft"]
+    return f"""`auto` uses reduced up to {_most("coupled")} nodes of the mesh and fft beyond (events, full coupling); up to {_most("one_way")} with Goodman's coupling, {_most("apart")} without
+coupling, {_most("at_once")} without events (no friction, large increments without coupling), {_most("bristles")} under Dahl's law and for large increments with coupling. A matrix body always
+uses reduced.
 
-Reduced against fft on the same short history, {EVENTS["fft"]} nodes or so beginning to slip, factorisation included:
+Reduced against fft on the same short history (about {EVENTS["fft"]} nodes begin to slip), including the factorisation:
 
 {table(head, rows)}"""
 

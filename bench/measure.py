@@ -27,15 +27,15 @@ import circle
 import events
 import peer
 import targets
-from harness import CERTIFICATE, CERTIFICATE_DIRECT, Bench, number
+from harness import CERTIFICATE, CERTIFICATE_DIRECT, Bench
 
 MODULES = {"targets": targets, "peer": peer, "events": events, "accuracy": accuracy, "circle": circle}
 HEAD = """# Performance
 
-Written by `bench/measure.py`; do not edit. Counts are the same everywhere; times are of one machine ({machine}), one thread, the least
-of several in turn with what they are compared with: compare them with each other, not with yours. Measured: {dates}.
+Written by `bench/measure.py`; do not edit. Counts do not depend on the machine. Times are of one machine ({machine}) with one thread, the least
+of several runs: compare them with each other, not with yours. Measured: {dates}.
 
-Every run that is compared has to be complete, with a certificate below {direct:.0e} ({iterative:.0e} with fft): {gate}
+Every run has to be complete, with a certificate below {direct:.0e} ({iterative:.0e} with fft): {gate}
 """
 
 
@@ -94,7 +94,7 @@ def head(results: dict[str, Any]) -> str:
     largest = max(entry["largest_certificate"] for entry in results.values())
     verdict = f"all {runs} are, the largest is {largest:.0e}." if not broken else f"{len(broken)} of {runs} are NOT:\n\n"
     verdict += "\n".join(f"    {line}" for text in broken for line in text.splitlines())
-    loads = ", ".join(f"{name} {entry['date']} (load {number(entry['load'])})" for name, entry in results.items())
+    loads = ", ".join(f"{name} {entry['date']}" for name, entry in results.items())
     return HEAD.format(machine=machine(), dates=loads, direct=CERTIFICATE_DIRECT, iterative=CERTIFICATE, gate=verdict)
 
 

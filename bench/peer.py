@@ -160,14 +160,11 @@ def ahead(job: str, place: int, cell: dict[str, Any]) -> tuple[float, dict[str, 
 def section(data: dict[str, Any]) -> str:
     """The text."""
     rows = []
-    missed = []
     for job, cells in data["jobs"].items():
         for place, cell in enumerate(cells):
             published = PUBLISHED[job][place]
             ratio, own = ahead(job, place, cell)
             fine = "" if own is cell else f"{own['window_nodes']} ({own['contact']}): {duration(own['wall'])}, {own['error']:.1e}"
-            if ratio < 1.0 or not reaches(own["error"], published.error):
-                missed.append(f"{NAMES[job]} at n = {NODES[place]}")
             rows.append(
                 [
                     NAMES[job],
@@ -180,28 +177,24 @@ def section(data: dict[str, Any]) -> str:
                 ]
             )
     press = data["press"][0]
-    low, high = (seconds / press["wall"] for seconds in PUBLISHED_PRESS)
-    head = ["job", "n", "CONTACT", "MFV computes", "MFV, process", "finer: n (in contact)", "times faster"]
+    head = ["job", "n", "CONTACT", "MFV computes", "MFV, process", "finer: n (in contact)", "ratio"]
     solvers = sorted({row["solver"] for row in data["solvers"]})
     best = {(row["job"], row["solver"]): row["seconds"] for row in data["solvers"]}
-    verdict = "Ahead in every cell." if not missed else f"Not ahead: {'; '.join(missed)}."
     return f"""## Against CONTACT
 
-Vollebregt's CONTACT as a one-row line model, one thread of a machine like this one, its start-up of about 10 ms included, from
-issue 5: E* = R = a = 1, n nodes across a window of 4a, so that n/2 are in contact. The same jobs here, frictionless ones straight
-to the load, the others with `stepping='leap'`, solver `auto`; mu = {MU}, Q = {SHARE} mu P; errors against Hertz and Cattaneo-Mindlin at the
-nodes, that of the dissipation over first loading and a whole cycle. *Process* is the wall time of a process that reads the case and solves
-it (the least of {REPEATS}), of which start-up takes {duration(data["start"])}; nothing is written. Where the error on the same mesh is
-larger, *finer* is the mesh that reaches CONTACT's error, its intervals as wide as n across 4a but spanning only the contact: no other
-nodes are needed. Ratios compare processes at the same or a smaller error. {verdict}
+Vollebregt's CONTACT as a one-row line model; its times, including its start-up of about 10 ms, were measured elsewhere on a similar machine, so that ratios are only indicative.
+E* = R = a = 1, n nodes across a window of 4a, of which n/2 are in contact; mu = {MU}, Q = {SHARE} mu P. MFV solves frictionless jobs directly and the others with
+`stepping='leap'`, solver `auto`. Errors are against Hertz and Cattaneo-Mindlin at the nodes, that of the dissipation over first loading and a whole cycle. *Process* is
+the wall time of a process that reads the case and solves it (the least of {REPEATS}), of which start-up takes {duration(data["start"])}. If the error on the same mesh
+is larger, *finer* is the mesh, over the contact only, that reaches CONTACT's error. *Ratio* is CONTACT's time over that of the MFV process at the same or a smaller error.
 
 {table(head, rows)}
 
 Pressing a rigid cylinder with friction, full coupling, mu = {MU}, nu = 0, n = {NODES[0]}, by events: CONTACT {PUBLISHED_PRESS[0]:g} to {PUBLISHED_PRESS[1]:g} s; MFV
-{duration(press["wall"])} with reduced ({press["whole"]["events"]} events, {press["whole"]["solves"]} solves, {duration(data["press"][1]["wall"])} with fft): **{low:.0f} to {high:.0f} times** faster. Stick ratio {press["ratio"]:.3f},
-where the limit is {PRESS_STICK_RATIO}.
+{duration(press["wall"])} with reduced ({press["whole"]["events"]} events, {press["whole"]["solves"]} solves) and {duration(data["press"][1]["wall"])} with fft. The stick ratio is {press["ratio"]:.3f}; the
+limit is {PRESS_STICK_RATIO}.
 
-Which solver: computing times at n = {NODES[0]} in one process.
+Computing times of the solvers at n = {NODES[0]} in one process.
 
 {table(["job", *solvers], [[NAMES[job], *(duration(best[job, solver]) for solver in solvers)] for job in NAMES])}
 """

@@ -29,7 +29,7 @@ int main(void) {
   mfv_scene_set_real(scene, "mesh%half_width", 0.0125);
   mfv_scene_set_text(scene, "friction%law", "coulomb");
   mfv_scene_set_real(scene, "friction%mu", 0.7);
-  int status = mfv_create(scene, &contact, message, sizeof message); /* what is wrong with the scene is told here */
+  int status = mfv_create(scene, &contact, message, sizeof message); /* errors in the scene are reported here */
   mfv_scene_free(&scene);
   if (status != MFV_COMPLETE) return fail(message);
 
