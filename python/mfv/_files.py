@@ -27,17 +27,17 @@ def target(given: Path | str | None, usual: Path, suffixes: Sequence[str], input
     """
     path = usual if given is None else Path(given)
     if not path.name:
-        raise ValueError(f"'{path}' is no name of a file to write; give one such as {usual.name}")
+        raise ValueError(f"'{path}' is not a file name; give one such as {usual.name}")
     if path.is_dir():
-        raise IsADirectoryError(f"{path}: is a directory; give a file in it, such as {path / usual.name}")
+        raise IsADirectoryError(f"{path}: is a directory; give a file, such as {path / usual.name}")
     if path.suffix.lower() not in suffixes:
-        raise ValueError(f"{path}: the name of what is written must end with {' or '.join(suffixes)}")
+        raise ValueError(f"{path}: the file name must end with {' or '.join(suffixes)}")
     if not path.parent.is_dir():
-        raise FileNotFoundError(f"{path}: there is no directory {path.parent} to write to")
+        raise FileNotFoundError(f"{path}: {path.parent} does not exist or is not a directory")
     if any(path.exists() and source.exists() and path.samefile(source) for source in inputs):
-        raise ValueError(f"{path}: is what is read; give another file to write")
+        raise ValueError(f"{path}: is the input file; choose another file name")
     if path.is_file() and h5py.is_hdf5(path):
-        raise ValueError(f"{path}: is HDF5, perhaps a result, and is not overwritten; give another file to write")
+        raise ValueError(f"{path}: is an HDF5 file, not overwritten; choose another file name")
     return path
 
 
@@ -50,7 +50,7 @@ def written(path: Path) -> Iterator[Path]:
     """
     place = Path(os.path.realpath(path))
     if place.exists() and not os.access(place, os.W_OK):
-        raise PermissionError(f"{path}: is there and may not be written")
+        raise PermissionError(f"{path}: exists and is read-only")
     part = place.with_name(f"{place.stem}.part{os.getpid()}-{next(_numbers)}{place.suffix}")
     part.touch()
     try:

@@ -31,7 +31,7 @@ SUFFIXES = (".gif", ".mp4")
 RESOLUTION = 100
 
 #: Heights in inch: of the picture, of the row of its caption, of the row of its legend.
-HEIGHT, CAPTION, LEGEND = 4.1, 0.3, 0.27
+HEIGHT, CAPTION, LEGEND = 4.05, 0.25, 0.27
 
 #: Margin of the axes, in parts of what they show.
 MARGIN = 0.06
@@ -115,7 +115,7 @@ def _writer(path: str, frames_per_second: int) -> AbstractMovieWriter:
         return PillowWriter(fps=frames_per_second)
     if suffix == ".mp4":
         return FFMpegWriter(fps=frames_per_second, codec="libx264", extra_args=["-pix_fmt", "yuv420p"])
-    raise ValueError(f"an animation is written as {' or '.join(SUFFIXES)}, not as '{suffix}'")
+    raise ValueError(f"the name of an animation must end with {' or '.join(SUFFIXES)}, not '{suffix}'")
 
 
 def _ffmpeg() -> str:
@@ -129,7 +129,7 @@ def _ffmpeg() -> str:
         return str(get_ffmpeg_exe())
     except (ImportError, RuntimeError):
         raise ValueError(
-            "an MP4 needs ffmpeg, which is not there: install it (apt-get install ffmpeg, or "
+            "an MP4 needs ffmpeg, which was not found: install it (apt-get install ffmpeg, or "
             f"{how_to_install('imageio-ffmpeg')}), or write a GIF (-o NAME.gif)"
         ) from None
 

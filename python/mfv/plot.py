@@ -30,10 +30,30 @@ NUMBERS, CLOSED_FORM, SURFACE, MARKS = "#0072B2", "#D55E00", "#009E73", "#000000
 STICK, RIGHT, LEFT, WITHOUT_FRICTION = "#DCEBF5", "#FBE3B4", "#EBD3E1", "#EEEEEE"
 ZONES: dict[int, dict[str, Any]] = {
     NodeStatus.STICK: {"label": "stick", "facecolor": STICK, "edgecolor": "none"},
-    NodeStatus.SLIP_RIGHT: {"label": "slip to the right", "facecolor": RIGHT, "edgecolor": "#C9A24B", "hatch": "///"},
-    NodeStatus.SLIP_LEFT: {"label": "slip to the left", "facecolor": LEFT, "edgecolor": "#B98AA6", "hatch": "\\\\\\"},
-    NodeStatus.CREEP_RIGHT: {"label": "creep to the right", "facecolor": STICK, "edgecolor": "#9FC3DA", "hatch": "//"},
-    NodeStatus.CREEP_LEFT: {"label": "creep to the left", "facecolor": STICK, "edgecolor": "#9FC3DA", "hatch": "\\\\"},
+    NodeStatus.SLIP_RIGHT: {
+        "label": "lower surface slips to the right",
+        "facecolor": RIGHT,
+        "edgecolor": "#C9A24B",
+        "hatch": "///",
+    },
+    NodeStatus.SLIP_LEFT: {
+        "label": "lower surface slips to the left",
+        "facecolor": LEFT,
+        "edgecolor": "#B98AA6",
+        "hatch": "\\\\\\",
+    },
+    NodeStatus.CREEP_RIGHT: {
+        "label": "lower surface creeps to the right",
+        "facecolor": STICK,
+        "edgecolor": "#9FC3DA",
+        "hatch": "//",
+    },
+    NodeStatus.CREEP_LEFT: {
+        "label": "lower surface creeps to the left",
+        "facecolor": STICK,
+        "edgecolor": "#9FC3DA",
+        "hatch": "\\\\",
+    },
     NodeStatus.FRICTIONLESS: {"label": "frictionless contact", "facecolor": WITHOUT_FRICTION, "edgecolor": "none"},
 }
 
@@ -73,8 +93,11 @@ STRESS_LABELS = {
 TENSIONS = ("sigma_xx", "sigma_thetatheta", "principal_1")
 AXES = ("normalised", "physical")
 
-#: Sizes of a panel with its labels in inch; letters of the caption in an inch.
-PANEL_WIDTH, PANEL_HEIGHT, LETTERS_PER_INCH = 3.6, 3.3, 19
+#: Size of a panel with its labels in inch.
+PANEL_WIDTH, PANEL_HEIGHT = 3.6, 3.3
+
+#: Letters of the caption per inch; width of the key of a legend entry, in letters.
+LETTERS_PER_INCH, KEY_LETTERS = 19, 9
 
 #: Step ends at one place of a load-displacement curve that are all named; of more, the first and the last.
 NAMED_TOGETHER = 4
@@ -114,7 +137,7 @@ def cycles_figure(result: Result) -> Figure:
     Raises ValueError where there are no cycles.
     """
     if not result.cycles:
-        raise ValueError("there are no cycles in this result: a step with cycles=... makes them")
+        raise ValueError("this result has no cycles; give a step cycles=...")
     turns = _turns_in_the_last_cycle(result)
     drawable = [
         (loop, "shift" in result.history and not turns),
@@ -124,7 +147,7 @@ def cycles_figure(result: Result) -> Figure:
     ]
     panels = [panel for panel, is_there in drawable if is_there]
     if not panels:
-        raise ValueError("nothing of the cycles can be drawn: the result has no history, and without friction nothing dissipates")
+        raise ValueError("no cycles to draw: the result has neither a history nor dissipation by friction")
     return _panels_in_a_row(panels, result, None, _cycle_caption(result))
 
 
@@ -137,7 +160,7 @@ def _panels_in_a_row(panels: Sequence[Panel], result: Result, step: int | None, 
             panel(result, ax, step)
             ax.set_title(f"({letter})")
         picture.suptitle(_heading(result, step), fontsize=12, parse_math=False)
-        _add_legend(picture, caption, 2 * len(panels))
+        _add_legend(picture, caption)
     return picture
 
 
@@ -157,9 +180,9 @@ def _cycle_caption(result: Result) -> str:
     seen, unit = result.observables, result.observables.unit("cycle_dissipation")
     parts = [
         f"{result.cycles.cycle.size} cycles",
-        f"the last dissipates {seen.cycle_dissipation:.4g}{f' {unit}' if is_named(unit) else ''}",
+        f"the last cycle dissipates {seen.cycle_dissipation:.4g}{f' {unit}' if is_named(unit) else ''}",
         f"loss factor {seen.loss_factor:.3g}" if "loss_factor" in seen else "",
-        f"tractions change by {seen.cycle_change:.1e} over it",
+        f"change of the tractions over it {seen.cycle_change:.1e}",
     ]
     return " \N{MIDDLE DOT} ".join(part for part in parts if part)
 
@@ -173,7 +196,7 @@ def stress_figure(
     drawn, else the stresses are computed, which needs the library. Raises ValueError for an unknown name, step or kind of axes.
     """
     if name not in NAMES:
-        raise ValueError(f"there is no stress {name}; there is {', '.join(NAMES)}")
+        raise ValueError(f"unknown stress {name}; choose from {', '.join(NAMES)}")
     field = stored(result, body=body, step=step) or grid(result, body=body, step=step)
     if np.isnan(field[name]).all():
         raise ValueError(f"{name} is not defined in a half-plane")
@@ -183,7 +206,7 @@ def stress_figure(
         ax = stress_contours(field, picture.subplots(), name, colour_bar=True, axes=axes, units=units)
         heading = _heading(result, step)
         ax.set_title(f"{heading}: {body} body" if heading else f"{body} body", fontsize=12, parse_math=False)
-        picture.supxlabel(_scales(result, field), fontsize=9, color="0.35", parse_math=False)
+        picture.supxlabel(_scales(result, field), fontsize=9, color="0.35")
     return picture
 
 
@@ -196,15 +219,17 @@ def _stress_size(field: StressField) -> tuple[float, float]:
 
 
 def _scales(result: Result, field: StressField) -> str:
-    """What pressure and length the picture is drawn over, the largest von Mises stress and tension, in the user's units."""
-    unit, length = (f" {unit}" if is_named(unit) else "" for unit in (result.state.unit("pressure"), result.mesh.unit("x")))
+    """The scales of the picture, the largest von Mises stress and the largest tension, in the user's units."""
+    unit, length = _unit(result.state.unit("pressure")), _unit(result.mesh.unit("x"))
     parts = [
-        f"p0 = {field.largest_pressure:.4g}{unit}",
-        f"a = {field.half_width:.4g}{length}",
+        f"$p_0$ = {field.largest_pressure:.4g}{unit}",
+        f"$a$ = {field.half_width:.4g}{length}",
         f"largest von Mises stress {field.largest.value:.4g}{unit}",
     ]
     if field.tension.value > 0.0:
-        parts[-1] += f"\nlargest tension along the surface {field.tension.value:.4g}{unit} at x = {field.tension.x:.4g}{length}"
+        parts[-1] += (
+            f"\nlargest tension along the surface {field.tension.value:.4g}{unit} at $x$ = {_signed(field.tension.x)}{length}"
+        )
     return " \N{MIDDLE DOT} ".join(parts)
 
 
@@ -246,7 +271,7 @@ def stress_contours(
     if mark is not None and np.isfinite(mark.x):
         place = (mark.x - origin) / length, mark.y / length
         unit = _unit(units[1]) if physical else " $p_0$"
-        at = f"{place[0]:.4g}, {place[1] + 0.0:.3g}" if physical else f"{_rounded(place[0])}, {_rounded(place[1])}"
+        at = f"{_signed(place[0])}, {_signed(place[1])}" if physical else f"{_rounded(place[0])}, {_rounded(place[1])}"
         text = f"{'largest' if name == 'von_mises' else 'largest tension'}: {mark.value / stress:.4g}{unit}"
         _mark_stress(ax, place, f"{text}\nat ({at}){_unit(units[0]) if physical else ' $a$'}", field.body == "upper")
     ax.set_aspect("equal")
@@ -259,7 +284,8 @@ def stress_contours(
         label = f"{STRESS_LABELS[name]} [degrees]" if is_angle else f"{STRESS_LABELS[name]}$/p_0$"
         if physical and not is_angle:
             label = f"{STRESS_LABELS[name]}{f' [{_unit(units[1]).strip()}]' if _unit(units[1]) else ''}"
-        ax.figure.colorbar(contours, ax=ax, label=label, pad=0.02, aspect=25)
+        beside = ax.inset_axes((1.02, 0.0, 0.025, 1.0))  # as high as the axes, which keep their aspect
+        ax.figure.colorbar(contours, cax=beside, label=label)
     return ax
 
 
@@ -304,7 +330,12 @@ def _unit(unit: str) -> str:
 
 def _rounded(value: float) -> str:
     """Two decimals, without a minus before zero."""
-    return f"{round(value, 2) + 0.0:.2f}"
+    return f"{round(value, 2) + 0.0:.2f}".replace("-", "\N{MINUS SIGN}")
+
+
+def _signed(value: float) -> str:
+    """Four digits, with a minus sign as on the axes."""
+    return f"{value + 0.0:.4g}".replace("-", "\N{MINUS SIGN}")
 
 
 def pressure(result: Result, ax: Axes | None = None, step: int | None = None) -> Axes:
@@ -385,7 +416,7 @@ def friction_work(result: Result, ax: Axes | None = None, step: int | None = Non
     ax = _axes(ax)
     cycles = result.cycles
     ax.plot(result.mesh.x, cycles.friction_work, color=NUMBERS, linewidth=0.8, **_points(result.mesh.x.size))
-    ax.set_ylabel(_label("dissipated per cycle and surface", "d", cycles.unit("friction_work")))
+    ax.set_ylabel(_label("dissipation per cycle and area", "d", cycles.unit("friction_work")))
     _frame_contact(ax, result, result.at(step))
     return ax
 
@@ -512,13 +543,14 @@ def _mark_step_ends(ax: Axes, result: Result, step: int | None, across: str, up:
     history = result.history
     curve = np.column_stack((history[across], history[up]))
     curve_size = np.maximum(np.ptp(curve, axis=0), np.finfo(float).tiny)
-    ends = _places(curve[history.event_kind == EventKind.STEP_END], 0.02 * curve_size)
+    ends = _places(curve[history.event_kind == EventKind.STEP_END], 0.03 * curve_size)
     marks = [(place, _enumeration(numbers), "o", step in numbers) for place, numbers in ends]
     marks += [(place, "stopped", "s", False) for place in curve[history.event_kind == EventKind.STOPPED]]
     relative = np.array([place for place, *_ in marks] or np.empty((0, 2))) / curve_size
     middle = np.mean((curve.min(axis=0), curve.max(axis=0)), axis=0) / curve_size
     for number, (place, text, marker, bold) in enumerate(marks):
-        _mark(ax, place, text, marker, bold, _is_labelled_above(relative, number, middle))
+        is_far_right = relative[number, 0] > middle[0] + 0.3
+        _mark(ax, place, text, marker, bold, _is_labelled_above(relative, number, middle), is_far_right)
 
 
 def _is_labelled_above(places: np.ndarray, number: int, middle: np.ndarray) -> bool:
@@ -531,10 +563,12 @@ def _is_labelled_above(places: np.ndarray, number: int, middle: np.ndarray) -> b
     return bool(here[0] >= middle[0])
 
 
-def _mark(ax: Axes, place: np.ndarray, text: str, marker: str, bold: bool, above: bool) -> None:
-    """A mark with its text."""
+def _mark(ax: Axes, place: np.ndarray, text: str, marker: str, bold: bool, above: bool, is_far_right: bool) -> None:
+    """A mark with its text: above and to the left, or below and to the right; long text at the right margin is centred below."""
     width, weight = (1.8, "bold") if bold else (0.8, "normal")
     ha, va, offset = ("right", "bottom", (-5, 5)) if above else ("left", "top", (5, -5))
+    if is_far_right and not above and len(text) > 4:
+        ha, offset = "center", (0, -6)
     ax.plot(*place, marker=marker, markersize=7, markerfacecolor="none", markeredgecolor=MARKS, markeredgewidth=width)
     ax.annotate(text, tuple(place), xytext=offset, textcoords="offset points", ha=ha, va=va, fontsize=9, fontweight=weight)
 
@@ -567,12 +601,15 @@ def _legend_entries(picture: Figure, lines_first: bool = True) -> tuple[list[Art
     return [handles[label] for label in labels], labels
 
 
-def _add_legend(picture: Figure, caption: str, columns: int = 6, lines_first: bool = True) -> None:
+def _add_legend(picture: Figure, caption: str = "", lines_first: bool = True) -> None:
     """One legend below all panels of a picture with a constrained layout, lines before zones, with the caption above it."""
     letters = int(LETTERS_PER_INCH * picture.get_figwidth())
+    handles, labels = _legend_entries(picture, lines_first)
+    rows = -(-sum(len(label) + KEY_LETTERS for label in labels) // letters) or 1
     legend = picture.legend(
-        *_legend_entries(picture, lines_first),
-        ncols=columns,
+        handles,
+        labels,
+        ncols=-(-len(labels) // rows) or 1,
         fontsize=10,
         loc="outside lower center",
         title="\n".join(textwrap.fill(line, letters) for line in caption.splitlines()),

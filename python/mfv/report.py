@@ -48,11 +48,11 @@ DIGITS = 7
 STATUSES = {
     NodeStatus.OPEN: ("open", "rgba(0,0,0,0)"),
     NodeStatus.STICK: ("stick", "#cfe3f1"),
-    NodeStatus.SLIP_RIGHT: ("slip to the right", "#f8d998"),
-    NodeStatus.SLIP_LEFT: ("slip to the left", "#e6c3d8"),
+    NodeStatus.SLIP_RIGHT: ("lower surface slips to the right", "#f8d998"),
+    NodeStatus.SLIP_LEFT: ("lower surface slips to the left", "#e6c3d8"),
     NodeStatus.FRICTIONLESS: ("frictionless contact", "#e2e4e6"),
-    NodeStatus.CREEP_RIGHT: ("creep to the right", "#b5d6e6"),
-    NodeStatus.CREEP_LEFT: ("creep to the left", "#c3cdec"),
+    NodeStatus.CREEP_RIGHT: ("lower surface creeps to the right", "#b5d6e6"),
+    NodeStatus.CREEP_LEFT: ("lower surface creeps to the left", "#c3cdec"),
 }
 
 #: Key numbers of the page: group, name, what it is called. Those that a result is without are left out.
@@ -301,7 +301,7 @@ def _cycle_figures(result: Result, inside: slice) -> dict[str, Any]:
     figure.add_scatter(x=cycles.cycle.tolist(), y=_list(cycles.dissipation), name="dissipation", mode="lines+markers", line=NUMBERS)
     figures = {"cycles": figure}
     if "friction_work" in cycles:
-        label = _axis("dissipated per surface", "", cycles.unit("friction_work"))
+        label = _axis("dissipation per cycle and area", "", cycles.unit("friction_work"))
         work = _figure(_axis("position", "x", result.mesh.unit("x")), label)
         x, values = _list(result.mesh.x[inside]), _list(cycles.friction_work[inside])
         work.add_scatter(x=x, y=values, name="friction work", **POINTS)

@@ -1,4 +1,4 @@
-"""Results: what a run gives and what a result file holds."""
+"""Results of runs and of result files."""
 
 from __future__ import annotations
 
@@ -80,11 +80,11 @@ class Group(Mapping[str, Values]):
             raise AttributeError(name)
         if name in self:
             return self[name]
-        raise AttributeError(f"there is no '{name}' here; there is {', '.join(self) or 'nothing'}")
+        raise AttributeError(f"no quantity '{name}'; there are {', '.join(self) or 'none'}")
 
     def __setattr__(self, name: str, value: object) -> None:
         if not name.startswith("_") and name in self:
-            raise AttributeError(f"'{name}' is a quantity of the result and cannot be set; its values can be copied")
+            raise AttributeError(f"'{name}' is a quantity of the result and cannot be set; copy its values instead")
         super().__setattr__(name, value)
 
     def __eq__(self, other: object) -> bool:
@@ -178,7 +178,7 @@ class Result:
 
     @property
     def message(self) -> str:
-        """What was reached, or why not."""
+        """What was reached, or why the run ended early."""
         return self.attributes["message"]
 
     @property
@@ -191,7 +191,7 @@ class Result:
         if step is None:
             return self.state
         if not 1 <= step <= len(self.steps):
-            raise ValueError(f"there is no state {step}: the result has {len(self.steps)} in steps")
+            raise ValueError(f"no state {step}: the result has {len(self.steps)} in steps")
         return self.steps[step - 1]
 
     def to_xarray(self) -> dict[str, xarray.Dataset]:
@@ -253,24 +253,24 @@ def read(path: str | os.PathLike[str]) -> Result:
     """The result in a file. Raises OSError, NotAResult."""
     path = os.fspath(path)
     if os.path.exists(path) and not os.path.isfile(path) and not os.path.isdir(path):
-        raise NotAResult(None, f"{path}: not a result file of MFV, but a pipe or a device")
+        raise NotAResult(None, f"{path}: not a result file of MFV; it is a pipe or a device")
     with open(path, "rb"):  # a missing file and the like are Python's to report
         pass
     if not h5py.is_hdf5(path):
-        raise NotAResult(None, f"{path}: not a result file of MFV (not even HDF5)")
+        raise NotAResult(None, f"{path}: not a result file of MFV; it is not an HDF5 file")
     try:
         with h5py.File(path, "r") as file:
             is_ours = "mfv_version" in file.attrs
             groups = _groups(file) if is_ours else {}
             texts = {name: str(value) for name, value in file.attrs.items()} if is_ours else {}
     except Exception as error:  # of every kind: h5py and numpy meet what is damaged wherever it is
-        raise NotAResult(None, f"{path}: not a result file of MFV, or damaged: {error}") from error
+        raise NotAResult(None, f"{path}: damaged, or not a result file of MFV: {error}") from error
     if not is_ours:
-        raise NotAResult(None, f"{path}: not a result file of MFV, though it is HDF5")
+        raise NotAResult(None, f"{path}: an HDF5 file, but not a result file of MFV")
     missing = [f"the group {name}" for name in GROUPS if name not in groups]
     missing += [f"the attribute {name}" for name in TEXTS if name not in texts]
     if missing:
-        raise NotAResult(None, f"{path}: not a result file of MFV: it is without {', '.join(missing)}")
+        raise NotAResult(None, f"{path}: not a result file of MFV; missing: {', '.join(missing)}")
     return Result(groups, texts)
 
 
@@ -278,7 +278,7 @@ def _values_of(dataset: h5py.Dataset) -> Values:
     """The values of a dataset. Raises ValueError where it says that it is larger than what the file holds can be: no memory is
     taken for what is not there. (Deflate makes at most 1032 bytes of one; a value can come from one byte.)"""
     if dataset.nbytes > 2**20 and dataset.size > 1032 * dataset.id.get_storage_size():
-        raise ValueError(f"{dataset.name} has fewer values in the file than its size says")
+        raise ValueError(f"{dataset.name} has fewer values than its size")
     return dataset[()]
 
 

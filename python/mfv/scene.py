@@ -484,9 +484,9 @@ def _numbers(values: ArrayLike, name: str = "an array") -> NDArray[np.float64]:
     """Numbers as the library takes them; not copied where they are so already. Raises TypeError, which names them, for complex
     ones and those of which some are masked."""
     if np.iscomplexobj(values):
-        raise TypeError(f"{name}: real numbers are wanted, not complex ones")
+        raise TypeError(f"{name}: must be real numbers, not complex")
     if np.ma.is_masked(values):
-        raise TypeError(f"{name}: an array without masked values is wanted")
+        raise TypeError(f"{name}: must be an array without masked values")
     return np.ascontiguousarray(values, dtype=np.float64)
 
 
@@ -559,7 +559,7 @@ def _set_key(handle: c_void_p, key: str, value: Any) -> int:
         values = _numbers(np.atleast_1d(value), key)
         status = library().mfv_scene_set_reals(handle, name, real_pointer(values), values.size)
     else:
-        raise TypeError(f"{key}: a text, a truth value, a number or an array is wanted, not {value!r}")
+        raise TypeError(f"{key}: must be a text, a truth value, a number or an array, not {value!r}")
     return status
 
 
@@ -567,7 +567,7 @@ def _set_data(handle: c_void_p, file: str | os.PathLike[str], dataset: str, valu
     """Give the library an array in place of one in a file; return the status. Raises ValueError."""
     array = _numbers(values, f"{os.fspath(file)}: {dataset}")
     if array.ndim not in (1, 2) or array.size == 0:
-        raise ValueError(f"{os.fspath(file)}: {dataset} must have values in one dimension or two, not the shape {array.shape}")
+        raise ValueError(f"{os.fspath(file)}: {dataset} must have one or two dimensions, not the shape {array.shape}")
     rows, columns = array.shape if array.ndim == 2 else (array.size, 1)
     status: int = library().mfv_scene_set_data(handle, text_for(file), text_for(dataset), rows, columns, real_pointer(array))
     return status

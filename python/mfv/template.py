@@ -84,14 +84,14 @@ def write(name: str, path: Path, written: Callable[[Path], Any], overwrite: bool
     overwritten; then nothing is written.
     """
     if name not in names():
-        raise ValueError(f"there is no template {name}; there is {', '.join(names())}")
+        raise ValueError(f"unknown template {name}; choose from {', '.join(names())}")
     wanted = {path.with_name(companion): companion for companion in COMPANIONS.get(name, ()) if path.name != companion}
     if len(wanted) < len(COMPANIONS.get(name, ())):
-        raise ValueError(f"{path}: another file of this template has that name; give another with -o")
+        raise ValueError(f"{path}: another file of this template has this name; choose another with -o")
     targets = {path: f"{name}.nml", **{place: c for place, c in wanted.items() if not _is_there(place, c)}}
     for place in targets:
         if place.exists() and not overwrite:
-            raise FileExistsError(f"{place}: exists already; --force overwrites it, -o NAME.nml writes elsewhere")
+            raise FileExistsError(f"{place}: exists; overwrite it with --force, or choose another name with -o NAME.nml")
     for place, source in reversed(targets.items()):
         with written(place) as part:
             part.write_bytes(_content(source, place))

@@ -58,7 +58,7 @@ def test_a_result_is_no_different_from_itself(tmp_path: Path, capsys: pytest.Cap
     assert all(number.relative_difference == 0.0 or np.isnan(number.first) for number in same.numbers)
     assert len(same.numbers) > 40
     assert main(["compare", str(tmp_path / "a.h5"), str(tmp_path / "a.h5"), "--no-picture", "--tolerance", "0"]) == 0
-    assert "keys of the inputs that differ: none" in capsys.readouterr().out
+    assert "different input keys: none" in capsys.readouterr().out
     assert sorted(path.name for path in tmp_path.iterdir()) == ["a.h5"]
 
 
@@ -172,7 +172,7 @@ def test_results_are_not_overwritten_by_what_is_drawn_of_them(tmp_path: Path, ca
     before = {path.name: path.read_bytes() for path in tmp_path.iterdir()}
     first, other = str(tmp_path / "a.h5"), str(tmp_path / "b.png")
     for arguments, complaint in (
-        (["plot", first, "-o", first], f"{first}: the name of what is written must end with .png or "),
+        (["plot", first, "-o", first], f"{first}: the file name must end with .png or "),
         (["plot", other], f"{other}: is what is read"),
         (["plot", first, "-o", other], f"{other}: is HDF5"),
         (["plot", first, "-o", str(tmp_path / "out")], f"{tmp_path / 'out'}: the name of what"),
@@ -181,11 +181,11 @@ def test_results_are_not_overwritten_by_what_is_drawn_of_them(tmp_path: Path, ca
         (["plot", first, "-o", str(tmp_path / "no" / "x.png")], f"{tmp_path / 'no' / 'x.png'}: there is no directory"),
         (["plot", first, "--body", "upper"], "give --stress NAME too"),
         (["plot", first, "--cycles", "--step", "1"], "give one of them"),
-        (["report", first, "-o", first], f"{first}: the name of what is written must end with .html or .htm"),
+        (["report", first, "-o", first], f"{first}: the file name must end with .html or .htm"),
         (["animate", first, "--kept", "-o", first], f"{first}: the name of what"),
         (["new", "--force", "-o", first], f"{first}: the name of what"),
         (["study", study, "-o", first], f"{first}: is HDF5"),
-        (["study", study, "-o", other], f"{other}: the name of what is written must end with .nc or .h5 or .csv"),
+        (["study", study, "-o", other], f"{other}: the file name must end with .nc or .h5 or .csv"),
         (["study", study, "--case", "25"], f"{study}: there is no case 25; there are 24"),
     ):
         assert main(arguments) == 2, arguments

@@ -354,7 +354,7 @@ def test_arguments_of_a_wrong_kind_are_named(pressed: mfv.Case) -> None:
         (lambda: pressed.advance(normal_force="1"), "must be numbers, not normal_force='1'"),
         (lambda: pressed.advance(shift=1e-5, steady_tolerance="no"), "steady_tolerance='no'"),
         (lambda: pressed.observe(5), "observe takes what can be called .* not 5"),
-        (lambda: pressed.values("state/pressure", out=[0.0]), "out must be a numpy array to be filled, not list"),
+        (lambda: pressed.values("state/pressure", out=[0.0]), "out must be a numpy array, not list"),
     ):
         with pytest.raises(TypeError, match=message):
             call()

@@ -118,17 +118,17 @@ def test_a_case_is_printed_though_others_cannot_be_used(tmp_path):
         (("values=0.3, 0.7", "values=0.3, -0.7"), 2, "&friction mu=-0.7: must be a number at least 0"),
         (("'goodman', 'none'", "'gudman', 'none'"), 4, "&scene coupling='gudman': must be 'full', 'goodman' or 'none'"),
         (("base='base.nml'", "base='bass.nml'"), 1, "&sweep base='bass.nml': bass.nml cannot be read: No such file or directory"),
-        (("base='base.nml'", "base=''"), 1, "&sweep base='': the name of a file is empty"),
+        (("base='base.nml'", "base=''"), 1, "&sweep base='': empty file name"),
         (("base='base.nml', ", ""), 1, "&sweep: needs base"),
         (("&vary key='friction", "&very key='friction"), 2, "&very: unknown group; did you mean &vary?"),
         (("spacing='log'", "spacing='logg'"), 3, "&vary 2 spacing='logg': must be 'linear' or 'log'"),
         (("spacing='log'", "spaicng='log'"), 3, "&vary spaicng: unknown key; did you mean spacing?"),
-        (("spacing='log'", "count=4"), 3, "count: comes twice"),
-        (("from=1e-4", "from=-1e-4"), 3, "needs from and to above 0, or both below"),
+        (("spacing='log'", "count=4"), 3, "count: given twice"),
+        (("from=1e-4", "from=-1e-4"), 3, "needs from and to of the same sign"),
         (("count=3, ", ""), 3, "needs values=..., or from, to and count; count is missing"),
         (("count=3", "count=0"), 3, "&vary 2 count=0: must be a whole number from 1 to 100000"),
         (("count=3", "count=2.5"), 3, "&vary 2 count=2.5: must be a whole number"),
-        (("count=3", "values=1e-4"), 3, "values is there too; give values, or from, to and count"),
+        (("count=3", "values=1e-4"), 3, "values is also given; give either values, or from, to and count"),
         (
             ("'full', 'goodman', 'none'", "'goodman', 'none'"),
             1,
@@ -145,8 +145,8 @@ def test_a_case_is_printed_though_others_cannot_be_used(tmp_path):
         (("factor=1, -1", "factor=1"), 3, "must have one value a key, 2, not 1"),
         (("factor=1, -1", "factor='a', 'b'"), 3, "&vary 2 factor='a', 'b': must be a number"),
         (("reference='full'", "combine='paired'"), 1, "&vary 2 has 3 values, &vary 1 has 2"),
-        (("reference='full' /", "reference='full' /\n&sweep base='base.nml' /"), 2, "&sweep: comes twice"),
-        (("key='friction%mu', ", ""), 2, "&vary 1: needs key"),
+        (("reference='full' /", "reference='full' /\n&sweep base='base.nml' /"), 2, "&sweep: given twice"),
+        (("key='friction%mu', ", ""), 2, "&vary 1: key missing"),
         (("values=0.3, 0.7", "values=0.3, 'a'"), 2, "friction%mu='a'"),
         (("values=0.3, 0.7 /", "values=0.3, 0.7"), 3, "&vary (line 2) has no / at its end"),
     ],
@@ -334,10 +334,7 @@ def test_two_at_once(tmp_path):
     write(tmp_path)
     with contextlib.closing(Store(tmp_path / "study.sqlite")):
         done = run("study.nml", cwd=tmp_path)
-    assert (
-        done.returncode == INPUT
-        and "study.sqlite: solved cases cannot be kept here: another study is at work with it" in done.stderr
-    )
+    assert done.returncode == INPUT and "study.sqlite: cannot save solved cases: another study is using it" in done.stderr
 
 
 def limited(size):
@@ -349,7 +346,7 @@ def test_a_full_disk(tmp_path):
     """It is said, what is there stays, and the same command goes on."""
     cases = long_study(tmp_path)
     done = run("study.nml", "--workers", 2, cwd=tmp_path, preexec_fn=limited(80_000))
-    assert done.returncode == INPUT and "study.sqlite: solved cases cannot be kept here: " in done.stderr, done.stderr
+    assert done.returncode == INPUT and "study.sqlite: cannot save solved cases: " in done.stderr, done.stderr
     there = cases_kept(tmp_path)
     assert 0 < there < cases and not (tmp_path / "study.nc").exists()
     assert run("study.nml", cwd=tmp_path).returncode == COMPLETE and cases_kept(tmp_path) == cases

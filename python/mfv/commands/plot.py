@@ -37,7 +37,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     add_result(parser)
     where = "png, pdf, svg or eps (default: RESULT.png, for a stress RESULT_NAME_BODY.png, beside the file)"
     add_output(parser, "PICTURE", where)
-    parser.add_argument("--step", type=int, metavar="N", help="draw state N of the file (group steps/000N); the last state by default")
+    parser.add_argument(
+        "--step", type=int, metavar="N", help="draw state N of the file (group steps/000N); the last state by default"
+    )
     kind = parser.add_mutually_exclusive_group()
     stress = kind.add_argument(
         "--stress",

@@ -29,7 +29,9 @@ examples:
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the arguments of the command."""
     add_result(parser)
-    parser.add_argument("-o", "--output", type=Path, metavar="PAGE.html", help="file to write (default: RESULT.html beside the file)")
+    parser.add_argument(
+        "-o", "--output", type=Path, metavar="PAGE.html", help="file to write (default: RESULT.html beside the file)"
+    )
     parser.add_argument(
         "--states",
         type=at_least(2),

@@ -58,7 +58,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         help=f"{', '.join(NAMES)}, or dask:ADDRESS of a cluster (threads by default)",
     )
     complete_words(executor, lambda: NAMES)
-    parser.add_argument("--workers", type=at_least(1), metavar="N", help="number of cases at a time (default: number of processors)")
+    parser.add_argument(
+        "--workers", type=at_least(1), metavar="N", help="number of cases at a time (default: number of processors)"
+    )
     either = parser.add_mutually_exclusive_group()
     either.add_argument("--again", action="store_true", help="solve all cases again")
     either.add_argument("--so-far", action="store_true", help="solve nothing; write the table of the cases solved so far")

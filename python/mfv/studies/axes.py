@@ -48,9 +48,9 @@ class Coordinate:
         self.values = [_plain(value) for value in values]
         self.factors = (1,) * len(self.keys) if factors is None else tuple(factors)
         if len(self.factors) != len(self.keys):
-            raise fault(f"{name}: must have one value a key, {len(self.keys)}, not {len(self.factors)}", 0, "factor")
+            raise fault(f"{name}: must have one value per key ({len(self.keys)}), not {len(self.factors)}", 0, "factor")
         if not self.values:
-            raise fault(f"{name}: there are no values", 0, "values")
+            raise fault(f"{name}: no values given", 0, "values")
         check_name(name)
         for factor in self.factors:
             if factor != 1:
@@ -64,9 +64,9 @@ class Coordinate:
     def _check_products(self, factor: float) -> None:
         for value in self.values:
             if isinstance(value, bool) or not isinstance(value, (int, float)):
-                raise fault(f"{as_written(value)} is no number, and cannot be multiplied by {factor:g}", 0, "factor")
+                raise fault(f"{as_written(value)} is not a number and cannot be multiplied by {factor:g}", 0, "factor")
             if not math.isfinite(float(value) * factor):
-                raise fault(f"{as_written(value)} times {factor:g} is too large for a number", 0, "factor")
+                raise fault(f"{as_written(value)} times {factor:g} overflows", 0, "factor")
 
 
 class Dimension:
@@ -78,11 +78,13 @@ class Dimension:
         self.name = name
         self.coordinates = list(coordinates)
         if not self.coordinates:
-            raise input_error(f"{name}: there are no axes")
+            raise input_error(f"{name}: no axes given")
         for other in self.coordinates[1:]:
             if len(other.values) != len(self):
                 first = self.coordinates[0]
-                raise input_error(f"{other.name} has {len(other.values)} values, {first.name} has {len(self)}: they are paired")
+                raise input_error(
+                    f"{other.name} has {len(other.values)} values, but {first.name} has {len(self)}; paired axes need equal numbers"
+                )
 
     def __len__(self) -> int:
         return len(self.coordinates[0].values)
@@ -92,7 +94,7 @@ def check_name(name: Any) -> None:
     """Raises InputError for what cannot be the name of an axis or a dimension in a dataset and its file."""
     if not isinstance(name, str) or not name or name != name.strip() or "/" in name:
         raise fault(
-            f"{name!r}: a name must be a text that is not empty, does not begin or end with a blank, and has no /",
+            f"{name!r}: a name must be a non-empty text without / and without blanks at either end",
             0,
             "name",
         )
@@ -110,7 +112,7 @@ def as_written(value: Any) -> str:
 def _in_one_form(key: Any) -> str:
     """A key in small letters, its number without zeros before it, so that keys that are the same are equal. Raises TypeError."""
     if not isinstance(key, str):
-        raise TypeError(f"a key of the case is wanted, such as 'friction%mu', not {key!r}")
+        raise TypeError(f"must be a key of the case such as 'friction%mu', not {key!r}")
     return re.sub(r"\(0+(?=\d)", "(", key.lower())
 
 
@@ -145,7 +147,7 @@ def _coordinate(name: str, values: Any, are_keys: bool) -> Coordinate:
         return Coordinate(name, [name] if are_keys else [], _listed(name, values))
     keys = [values.keys] if isinstance(values.keys, str) else list(values.keys)
     if not keys:
-        raise fault(f"{name}: there are no keys", 0, "key")
+        raise fault(f"{name}: no keys given", 0, "key")
     factors = None if values.factors is None else _listed(name, values.factors)
     return Coordinate(name, keys, _listed(name, values.values), factors)
 
@@ -153,7 +155,7 @@ def _coordinate(name: str, values: Any, are_keys: bool) -> Coordinate:
 def _listed(name: str, values: Any) -> list[Any]:
     """Values as a list. Raises TypeError for a single one."""
     if isinstance(values, (str, Mapping)) or not isinstance(values, Iterable):
-        raise TypeError(f"{name}: a list of values or a mfv.Axis is wanted, not {values!r}")
+        raise TypeError(f"{name}: must be a list of values or a mfv.Axis, not {values!r}")
     return list(values)
 
 
@@ -161,11 +163,11 @@ def _columns_of_table(table: Any) -> dict[str, list[Any]]:
     """The columns of a table of cases: a pandas.DataFrame, or a list with a mapping for each case. Raises TypeError."""
     if hasattr(table, "columns"):
         if len(set(table.columns)) < len(table.columns) or len(table) == 0:
-            raise input_error("a table of cases must have rows, and columns with names of their own")
+            raise input_error("a table of cases must have rows and unique column names")
         return {str(name): list(table[name]) for name in table.columns}
     rows = _listed("a table of cases", table)
     if not rows or not all(isinstance(row, Mapping) and row.keys() == rows[0].keys() for row in rows):
-        raise TypeError("a table of cases is a pandas.DataFrame, or a list of mappings, one a case, with the same keys")
+        raise TypeError("a table of cases must be a pandas.DataFrame or a list of mappings with equal keys, one per case")
     return {str(name): [row[name] for row in rows] for name in rows[0]}
 
 
@@ -174,7 +176,7 @@ def fault_of_key(key: str) -> str:
     if key == DUNDURS_BETA:
         return ""
     if key == "output%file":
-        return "'output%file': the study names its files itself"
+        return "'output%file': cannot be varied; the study names the result files"
     if key_info(key) is None:
         with _scene_handle("", "key") as handle:
             _set_key(handle, key, 0)
@@ -190,10 +192,8 @@ def fault_of_pair(one: str, other: str) -> str:
     """Why a study cannot vary two keys; empty where it can."""
     for beta, key in ((one, other), (other, one)):
         if beta == DUNDURS_BETA and key.partition("%")[2] in OF_MATERIALS:
-            return (
-                f"'{key}' and '{DUNDURS_BETA}' cannot be varied in one study: {DUNDURS_BETA} decides the materials of both bodies"
-            )
-    return f"'{other}': is varied already" if one == other or _stands_for(one, other) else ""
+            return f"'{key}' and '{DUNDURS_BETA}' cannot be varied in one study: {DUNDURS_BETA} sets the materials of both bodies"
+    return f"'{other}' is already varied" if one == other or _stands_for(one, other) else ""
 
 
 def _stands_for(one: str, other: str) -> bool:

@@ -22,10 +22,10 @@ Given = Union[Scene, str, "os.PathLike[str]", Base]
 def text_of_file(path: str | os.PathLike[str]) -> str:
     """The text of a regular file; what is no UTF-8 is for the library to refuse. Raises OSError."""
     if os.path.exists(path) and not os.path.isfile(path):  # a pipe may keep one waiting, a device may have no end
-        raise OSError(errno.EINVAL, f"{os.fspath(path)}: is no file of text")
+        raise OSError(errno.EINVAL, f"{os.fspath(path)}: not a regular file")
     content = Path(path).read_bytes()
     if b"\0" in content:
-        raise OSError(errno.EINVAL, f"{os.fspath(path)}: is no text, but has a null character in it")
+        raise OSError(errno.EINVAL, f"{os.fspath(path)}: not a text file; it contains a null character")
     return os.fsdecode(content)
 
 
@@ -35,7 +35,7 @@ def base_of(given: Given) -> Base:
         return given
     if not isinstance(given, Scene):
         if not isinstance(given, (str, os.PathLike)):
-            raise TypeError(f"a mfv.Scene, or the path of a case, is wanted, not {given!r}")
+            raise TypeError(f"must be a mfv.Scene or the path of a case, not {given!r}")
         name = os.fspath(given)
         return Base(text_of_file(name), name, folder=os.path.dirname(name))
     data = []

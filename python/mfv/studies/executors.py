@@ -70,16 +70,16 @@ def check(executor: Any, workers: int | None) -> None:
     """Raises TypeError for what is no executor, ValueError for an unknown name, or a number of workers that cannot be."""
     if isinstance(executor, Executor):
         if workers is not None:
-            raise ValueError("an Executor of your own has its own number of workers: leave workers= out")
+            raise ValueError("workers= has no effect with an Executor object; remove it")
         return
     if not isinstance(executor, str):
-        raise TypeError(f"an executor is a concurrent.futures.Executor or the name of one, not {executor!r}")
+        raise TypeError(f"executor must be a concurrent.futures.Executor or a name, not {executor!r}")
     name, _, address = executor.partition(":")
     if name not in NAMES or (address and name != "dask"):
-        raise ValueError(f"there is no executor '{executor}'; there are {', '.join(NAMES)}, dask:ADDRESS")
+        raise ValueError(f"unknown executor '{executor}'; choose from {', '.join(NAMES)}, dask:ADDRESS")
     if workers is not None and (workers < 1 or address):
         raise ValueError(
-            "a running cluster has its own number of workers" if address else f"workers must be 1 or more, not {workers}"
+            "workers has no effect with a running cluster; remove it" if address else f"workers must be 1 or more, not {workers}"
         )
 
 

@@ -190,7 +190,7 @@ class _Reader:
                 if key not in KEYS[group.name]:
                     self._fail(group.lines[key], f"&{group.name} {key}: unknown key{_suggestion(key, KEYS[group.name])}")
             if group.twice:
-                self._fail(group.lines[group.twice[0]], f"&{group.name} {group.twice[0]}: comes twice")
+                self._fail(group.lines[group.twice[0]], f"&{group.name} {group.twice[0]}: given twice")
             number = self._varied().index(group) + 1 if group.name == "vary" else 0
             for key, values in group.values.items():
                 why = _fault_of_values(KEYS[group.name][key], values)
@@ -198,14 +198,14 @@ class _Reader:
                     self._complain(group, key, why, number)
         if self._names().count("sweep") != 1:
             lines = [group.line for group in self.groups if group.name == "sweep"]
-            self._fail(lines[-1] if lines else 0, "&sweep: comes twice" if lines else "&sweep: the group is missing")
+            self._fail(lines[-1] if lines else 0, "&sweep: given twice" if lines else "&sweep: group missing")
 
     def _base(self, sweep: _Group, name: str) -> Base:
         """A base case, which must be a valid one by itself."""
         path = Path(self.source).parent / name
         try:
             if not name:
-                raise input_error("the name of a file is empty")
+                raise input_error("empty file name")
             base = Base(text_of_file(path), name, folder=str(path.parent))
             check(base, list(whole_paths(base).items()))
             return base
@@ -218,12 +218,12 @@ class _Reader:
         """The axis of one &vary."""
         keys = group.values.get("key", [])
         if not keys:
-            self._fail(group.line, f"&vary {number}: needs key")
+            self._fail(group.line, f"&vary {number}: key missing")
         name = group.values.get("name", keys)[0]
         row = [key for key in ("from", "to", "count") if key in group.values]
         if "values" in group.values:
             if row:
-                self._complain(group, row[0], "values is there too; give values, or from, to and count", number)
+                self._complain(group, row[0], "values is also given; give either values, or from, to and count", number)
             values = group.values["values"]
         elif len(row) == 3:
             values = self._row(number, group, keys)
@@ -243,7 +243,7 @@ class _Reader:
             self._complain(group, "count", f"must be a whole number from 1 to {MOST_VALUES}", number)
         is_log = group.values.get("spacing") == ["log"]
         if is_log and not first * last > 0:
-            self._complain(group, "spacing", "needs from and to above 0, or both below", number)
+            self._complain(group, "spacing", "needs from and to of the same sign", number)
         parts = [place / max(count - 1, 1) for place in range(count)]
         row = [first * (last / first) ** part if is_log else first + part * (last - first) for part in parts]
         if count > 1:
@@ -254,7 +254,9 @@ class _Reader:
             for place, (before, after) in enumerate(zip(whole, whole[1:])):
                 if before == after:
                     both = f"{row[place]:g} and {row[place + 1]:g} both become {after}"
-                    self._complain(group, "count", f"{both}, for {keys[0]} takes whole numbers; give fewer, or values=...", number)
+                    self._complain(
+                        group, "count", f"{both}, since {keys[0]} takes whole numbers; reduce count, or give values=...", number
+                    )
             return whole
         return [float(value) for value in row]
 
@@ -272,7 +274,7 @@ class _Reader:
         if written == "none":
             return
         if is_paired:
-            why = "needs combine='all': among pairs there is no case that is the same otherwise"
+            why = "needs combine='all'; with pairs no other case differs in this key alone"
             self._complain(sweep, "reference", why)
         name, _, value = written.rpartition("=") if "=" in written else ("scene%coupling", "", written)
         axis = next((axis for axis in study.coordinates if name == axis.name or name.lower() in axis.keys[:1]), None)
@@ -280,7 +282,7 @@ class _Reader:
         try:
             study.set_reference({axis.name if axis else name: values[0] if values else value})
         except errors.InputError:
-            why = f"needs a &vary of key='{name}' alone with '{value}' among its values"
+            why = f"needs a &vary with the single key='{name}' and '{value}' among its values"
             self._complain(sweep, "reference", why)
 
 
@@ -297,7 +299,7 @@ def _fault_of_values(key: Key, values: Sequence[Any]) -> str:
     if len(values) > 1 and not key.is_list:
         return "must be one value"
     if any(value is None or isinstance(value, complex) for value in values):
-        return "must have values between all commas"
+        return "a value is missing between commas"
     if any(isinstance(value, float) and not math.isfinite(value) for value in values):
         return "must be finite"
     words = key.kind.split()
@@ -314,7 +316,7 @@ def _fault_of_values(key: Key, values: Sequence[Any]) -> str:
 def _suggestion(word: str, known: Sequence[str] | dict[str, Any], before: str = "") -> str:
     """The known word that is nearest, as a question; else all of them."""
     near = difflib.get_close_matches(word, list(known), n=1)
-    return f"; did you mean {before}{near[0]}?" if near else f"; there are {', '.join(known)}"
+    return f"; did you mean {before}{near[0]}?" if near else f"; choose from {', '.join(known)}"
 
 
 def _placed(text: str, parsed: Sequence[tuple[str, dict[str, Any]]]) -> list[_Group]:

@@ -99,7 +99,7 @@ class Study:
         self.makes_scenes: Callable[[dict[str, Any]], Scene] | None = base if callable(base) else None
         given = [] if callable(base) else [base] if isinstance(base, (Scene, str, os.PathLike, Base)) else list(base)
         if self.makes_scenes is None and not given:
-            raise input_error("there is no base case")
+            raise input_error("no base case given")
         self.bases = [base_of(one) for one in given]
         self._shared = [whole_paths(one) for one in self.bases]
         self._check_bases()
@@ -216,7 +216,7 @@ class Study:
         A case that cannot be begun, or that ends early, is in the dataset with its outcome and message.
         Raises InputError, FileError, and what an executor raises; KeyboardInterrupt within an increment with threads.
         """
-        from tqdm.auto import tqdm  # here: it looks whether this is a notebook
+        from tqdm.auto import tqdm  # here, since it checks whether this is a notebook
 
         from .dataset import dataset_of  # here: it imports xarray
 
@@ -252,7 +252,7 @@ class Study:
         from .dataset import dataset_of  # here: it imports xarray
 
         if not os.path.isfile(store):
-            raise FileNotFoundError(errno.ENOENT, "there is no file of solved cases", os.fspath(store))
+            raise FileNotFoundError(errno.ENOENT, "no file of solved cases", os.fspath(store))
         with contextlib.closing(Store(store)) as kept:
             names, _, solved = self._cases(kept)
         return dataset_of(self, names, [solved.get(name) for name in names])
@@ -282,7 +282,7 @@ class Study:
     def _places(self, number: int) -> tuple[int, ...]:
         """Where case `number` is along each dimension. Raises ValueError."""
         if not 1 <= number <= len(self):
-            raise ValueError(f"there is no case {number}; there are {len(self)}, numbered from 1")
+            raise ValueError(f"no case {number}; the cases are numbered from 1 to {len(self)}")
         return tuple(int(place) for place in np.unravel_index(number - 1, self.shape))
 
     def _number(self, places: Sequence[int]) -> int:
@@ -310,19 +310,19 @@ class Study:
         if number == 1:
             self.units = units_of(base)
         elif units_of(base) != self.units:
-            raise input_error(f"case {number} ({self.describe(number)}): the scene names other units than that of case 1")
+            raise input_error(f"case {number} ({self.describe(number)}): the units of the scene differ from those of case 1")
 
     def _check_bases(self) -> None:
         """Raises InputError where bases have one name, or name other units than the first."""
         names = [base.name for base in self.bases]
         twice = next((name for name in names if names.count(name) > 1), None)
         if twice is not None:
-            raise input_error(f"two bases have the name {twice}; give them names of their own (Scene(..., name=...))")
+            raise input_error(f"two bases have the name {twice}; give them different names (Scene(..., name=...))")
         for base in self.bases[1:]:
             if units_of(base) != units_of(self.bases[0]):
                 first = self.bases[0].name
                 raise input_error(
-                    f"{base.name} names other units than {first} (length_unit, force_unit); one study has one system of units"
+                    f"{base.name}: the units (length_unit, force_unit) differ from those of {first}; a study needs one system of units"
                 )
 
     def _check_names(self) -> None:
@@ -333,17 +333,17 @@ class Study:
             name = coordinate.name
             is_ours = name in ("base", "row") and not coordinate.keys
             if not is_ours and (name in taken or "_error_" in name or name == "dissipation_ratio"):
-                raise fault(f"every study has a column {name}; give another name", place, "name")
+                raise fault(f"{name} is a column of every study; choose another name", place, "name")
             if name in seen:
-                raise fault(f"another axis has the name {name}; give another one", place, "name")
+                raise fault(f"{name} is the name of another axis; choose another name", place, "name")
             seen.add(name)
         for dimension in self.dimensions:
             is_alone = [dimension.name] == [coordinate.name for coordinate in dimension.coordinates]
             if not is_alone and dimension.name != "row" and dimension.name in taken | seen:
-                raise input_error(f"{dimension.name}: this name is taken; give the zipped axes another one")
+                raise input_error(f"{dimension.name}: this name is already in use; give the zipped axes another name")
         unknown = [name for name in self.observables or () if name not in observables()]
         if unknown:
-            raise input_error(f"there is no observable {unknown[0]!r}; there are {', '.join(observables())}")
+            raise input_error(f"unknown observable {unknown[0]!r}; choose from {', '.join(observables())}")
 
     def _check_keys(self) -> None:
         """Raises InputError for keys that are none, that no base has a group for, or that are varied already."""
@@ -364,14 +364,14 @@ class Study:
         for base, count in zip(self.bases, counts):
             there = count.get(group, 0)
             if number is not None and not 1 <= number <= there:
-                return f"'{key}': there is no &{group} {number} in {base.name}, which has {there}"
+                return f"'{key}': no &{group} {number} in {base.name}, which has {there}"
         return ""
 
     def set_reference(self, reference: str | Mapping[str, Any]) -> None:
         """What cases are compared with: see `Study`. Raises InputError."""
         wanted = {"scene%coupling": reference} if isinstance(reference, str) else reference
         if not isinstance(wanted, Mapping) or len(wanted) != 1:
-            raise input_error("reference: one axis with one of its values is wanted, such as {'scene%coupling': 'full'}")
+            raise input_error("reference: must be one axis with one of its values, such as {'scene%coupling': 'full'}")
         ((name, value),) = wanted.items()
         for along, dimension in enumerate(self.dimensions):
             (first, *others) = dimension.coordinates
@@ -379,7 +379,7 @@ class Study:
                 self.reference = along, first.values.index(value)
                 return
         raise input_error(
-            f"reference={as_written(value)}: needs an axis of '{name}' alone with {as_written(value)} among its values"
+            f"reference={as_written(value)}: needs an axis with the single key '{name}' and {as_written(value)} among its values"
         )
 
 

@@ -58,7 +58,7 @@ class Store:
         execute("PRAGMA locking_mode = EXCLUSIVE")
         application = execute("PRAGMA application_id").fetchone()[0]
         if application != APPLICATION and execute("SELECT count(*) FROM sqlite_master").fetchone()[0]:
-            raise sqlite3.DatabaseError("this is the file of another program, and is left as it is")
+            raise sqlite3.DatabaseError("it belongs to another program; not changed")
         execute("PRAGMA journal_mode = WAL")
         execute("PRAGMA synchronous = NORMAL")
         execute("BEGIN IMMEDIATE")
@@ -72,8 +72,8 @@ class Store:
         try:
             yield
         except (sqlite3.Error, ValueError, KeyError) as error:
-            why = "another study is at work with it" if "locked" in str(error) else error
-            raise errors.file_error(f"{self.path}: solved cases cannot be kept here: {why}") from None
+            why = "another study is using it" if "locked" in str(error) else error
+            raise errors.file_error(f"{self.path}: cannot save solved cases: {why}") from None
 
 
 def _text(solved: Solved) -> str:
