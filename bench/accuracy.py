@@ -52,7 +52,7 @@ SPENCE_MU = 0.2
 
 
 def disk(harmonics: int) -> Case:
-    """An elastic disk on a rigid plane, with so many harmonics an interval; 0: exact kernel."""
+    """An elastic disk on a rigid plane, with this many harmonics per interval; 0: exact kernel."""
     half_width = CIRCLE_FORCE_WIDTH * 2.0 * np.pi / CIRCLE
     force = float(half_width**2 * np.pi * MODULUS / 2.0)
     elastic = {"shape": "disk", "radius": 1.0, "shear_modulus": 1.0, "poisson_ratio": POISSON}
@@ -101,7 +101,7 @@ def _meshes(bench: Bench, meshes: tuple[int, ...], finest: dict[str, Any]) -> di
 
 
 def _knobs(bench: Bench, finest: dict[str, Any], base: dict[str, Any]) -> dict[str, list[dict[str, Any]]]:
-    """The other knobs on one mesh; a setting that does not get to the end is left out."""
+    """Other settings on one mesh; settings that do not complete are omitted."""
     found: dict[str, list[dict[str, Any]]] = {}
     for name, settings in KNOBS.items():
         found[name] = []

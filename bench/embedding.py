@@ -99,7 +99,7 @@ def _step(shift: float) -> StepStructure:
 
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--repeats", type=int, default=40, help="measurements, of which the least counts (40 unless told)")
+    parser.add_argument("--repeats", type=int, default=40, help="number of measurements; the minimum is reported (40)")
     options = parser.parse_args()
     for count in INCREMENTS:
         print(f"{count} increments a cycle")

@@ -1,4 +1,4 @@
-!> The simulation without the C interface, for embedding.c to compare with: what mfv_advance stands on, called as directly as C can.
+!> The simulation without the C interface, for comparison in embedding.c: direct calls of the procedures behind mfv_advance.
 module embedding_direct
    use, intrinsic :: iso_c_binding
    use mfv_case, only: case_type

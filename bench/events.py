@@ -15,9 +15,9 @@ MU, PRESS, SHEAR = 0.5, 1.0e-3, 3.0e-4
 #: Nodes in contact up to which a solver is measured, and up to which the whole history is led.
 MOST = {"dgesv": 1000, "reduced": 3000, "fft": 10000}
 WHOLE = {"dgesv": 331, "reduced": 1000, "fft": 1000}
-#: Above: so many events of shear, about.
+#: Approximate number of shear events.
 EVENTS = {"dgesv": 10, "reduced": 60, "fft": 60}
-#: and so many of a shorter one, which is taken off.
+#: Number of events of a shorter run, which is subtracted.
 FEW = 2
 BODIES = [
     {"shape": "half_plane", "shear_modulus": 1.0, "poisson_ratio": 0.3},
@@ -38,7 +38,7 @@ def cycles(contact: int, number_of: int = 1, coupling: str = "full") -> Case:
 
 
 def little(contact: int, events: int, coupling: str = "full") -> Case:
-    """Press without friction, straight to the load, and shear until about so many nodes slip."""
+    """Press without friction in one step, and shear until about this many nodes slip."""
     share = min(1.0 - (1.0 - events / contact) ** 2, SHEAR / (MU * PRESS)) if events < contact else SHEAR / (MU * PRESS)
     steps = [{"normal_force": PRESS, "friction": False}, {"tangential_force": share * MU * PRESS}]
     return Case(BODIES, steps, {"nodes": round(1.2 * contact)}, MU, coupling)

@@ -164,7 +164,7 @@ def duration(seconds: float) -> str:
 
 
 def number(value: float, digits: int = 2) -> str:
-    """A number with so many digits, without an exponent where it is neither large nor small."""
+    """A number with this many digits, with an exponent only if it is large or small."""
     if value == 0.0:
         return "0"
     if 1e-3 <= abs(value) < 1e6:

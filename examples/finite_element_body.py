@@ -206,7 +206,7 @@ def working_directory(kept: Path | None) -> Iterator[Path]:
 
 def main() -> None:
     parser = argparse.ArgumentParser(description="a finite-element body in contact, against the half-plane")
-    parser.add_argument("--surface-nodes", type=int, default=41, help="nodes of the contact (41 unless told)")
+    parser.add_argument("--surface-nodes", type=int, default=41, help="number of surface nodes (default: 41)")
     parser.add_argument("-o", "--output", help="picture to draw")
     parser.add_argument("--keep", type=Path, metavar="DIRECTORY", help="where to leave body.h5 and its case")
     options = parser.parse_args()

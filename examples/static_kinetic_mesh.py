@@ -31,7 +31,7 @@ SPARE = 8  # intervals of the mesh beyond the contact
 
 
 def stick_ratio(nodes: int, friction: str) -> float:
-    """Stick ratio with so many intervals over Hertz's contact."""
+    """Stick ratio with this many intervals over Hertz's contact."""
     half_width = float(mfv.reference.hertz_half_width(FORCE, 0.25, 1.0, 1.8)) * (nodes + SPARE) / nodes
     result = mfv.run(text=CASE.format(nodes=nodes + SPARE, half_width=half_width, friction=friction, force=SHEAR), check=True)
     if result.summary.contact_nodes != nodes:
@@ -73,7 +73,7 @@ def draw(meshes: list[int], table: dict[str, list[float]], path: str) -> None:
 def main() -> None:
     parser = argparse.ArgumentParser(description="stick ratio under static and kinetic friction over the mesh")
     parser.add_argument("-o", "--output", help="picture to draw")
-    parser.add_argument("--finest", type=int, default=321, help="most nodes in contact (321 unless told)")
+    parser.add_argument("--finest", type=int, default=321, help="number of contact nodes of the finest mesh (default: 321)")
     parser.add_argument("--distances", type=float, nargs="*", default=[1.0e-5, 3.0e-5, 1.0e-4], help="weakening distances")
     options = parser.parse_args()
     meshes = [nodes for nodes in MESHES if nodes <= options.finest]

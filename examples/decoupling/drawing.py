@@ -11,7 +11,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from sweeps import COUPLINGS, Table
 
-#: Colours from Okabe and Ito, told apart by the colour-blind too, with a marker each.
+#: Colours from Okabe and Ito, distinguishable with colour blindness, with a marker each.
 BLUE, ORANGE, GREEN, YELLOW, SKY, PINK, BLACK = (
     "#0072B2",
     "#D55E00",

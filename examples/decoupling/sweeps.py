@@ -30,7 +30,7 @@ NAMES = (
 )
 COUPLINGS = {"full": "full coupling", "goodman": "Goodman", "none": "decoupled"}
 
-#: What a quick study leaves of an axis: so many values, and meshes of at most so many nodes; other cases have COARSE.
+#: Limits of a quick study: number of values of an axis, and nodes of a mesh; other cases have COARSE.
 FEW, OTHERWISE, LARGEST, COARSE = 4, {"small_force": 9, "laws": 1}, 195, 97
 
 

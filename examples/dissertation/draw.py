@@ -664,7 +664,7 @@ FIGURES: dict[str, Callable[[str], Drawn]] = {
 def main() -> None:
     parser = argparse.ArgumentParser(description="draws figures 3.1 to 3.20 of the dissertation")
     parser.add_argument(
-        "--only", nargs="+", choices=FIGURES, default=list(FIGURES), metavar="3.N", help="figures to draw, all unless told"
+        "--only", nargs="+", choices=FIGURES, default=list(FIGURES), metavar="3.N", help="figures to draw (default: all)"
     )
     parser.add_argument("--output", type=Path, default=HERE / "pictures", help="folder for the pictures")
     options = parser.parse_args()

@@ -29,7 +29,7 @@ int main(void) {
   mfv_scene_set_real(scene, "mesh%half_width", 0.0125);
   mfv_scene_set_text(scene, "friction%law", "coulomb");
   mfv_scene_set_real(scene, "friction%mu", 0.7);
-  int status = mfv_create(scene, &contact, message, sizeof message); /* what is wrong with the scene is told here */
+  int status = mfv_create(scene, &contact, message, sizeof message); /* errors of the scene are reported here */
   mfv_scene_free(&scene);
   if (status != MFV_COMPLETE) return fail(message);
 
@@ -42,7 +42,7 @@ int main(void) {
   if (status == MFV_COMPLETE) status = mfv_advance(contact, &shear);
   if (status == MFV_COMPLETE) status = mfv_get_loads(contact, &loads);
   if (status == MFV_COMPLETE) status = mfv_copy_real(contact, "state/shear", traction, NODES);
-  mfv_message(contact, message, sizeof message); /* what was reached, or why not */
+  mfv_message(contact, message, sizeof message); /* what was reached, or why the run ended early */
   mfv_free(&contact);
   if (status != MFV_COMPLETE) return fail(message);
 

@@ -19,12 +19,12 @@ program cylinder
    call scene%set('mesh%half_width', 0.0125_wp)
    call scene%set('friction%law', 'coulomb')
    call scene%set('friction%mu', 0.7_wp)
-   call new_contact(scene, contact, error)                    ! what is wrong with the scene is told here
+   call new_contact(scene, contact, error)                    ! errors of the scene are reported here
    if (.not. allocated(error)) call contact%advance(step_to(normal_force=1.0e-3_wp, friction=.false.), error)
    if (.not. allocated(error)) call contact%advance(step_to(tangential_force=2.8e-4_wp), error)
    if (.not. allocated(error)) call contact%get('state/shear', shear, error)
    if (allocated(error)) error stop error%message
-   call contact%get_message(message)                          ! what was reached, or why not
+   call contact%get_message(message)                          ! what was reached, or why the run ended early
    if (contact%status() /= MFV_COMPLETE) error stop message
 
    loads = contact%loads()

@@ -121,11 +121,11 @@ class Series:
 
 @dataclass
 class RingDown:
-    """What a mass did after it was let go."""
+    """Motion of a mass after its release."""
 
     time: NDArray[np.float64]
     shift: NDArray[np.float64]
-    #: Tangential forces when it turned round, the first one when it was let go, and the energy dissipated up to then.
+    #: Tangential forces at the turning points, the first one at the release, and the energy dissipated so far.
     forces: NDArray[np.float64]
     dissipation: NDArray[np.float64]
 
@@ -197,7 +197,7 @@ def main() -> None:
         print(f"two contacts in series, {words}: {series.evaluations / len(tops):.1f} evaluations an equilibrium")
 
     free = ring_down(contact(0.5), 0.8 * 0.5 * WEIGHT, 1.0, 12)
-    print("a mass let go at Q = 0.8 mu P turns round at Q/(mu P) =", np.round(free.forces / (0.5 * WEIGHT), 3))
+    print("a mass released at Q = 0.8 mu P turns at Q/(mu P) =", np.round(free.forces / (0.5 * WEIGHT), 3))
     if options.output:
         draw(tops, np.array(forces), free, options.output)
 

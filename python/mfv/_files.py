@@ -14,16 +14,15 @@ import h5py
 #: Suffixes of pictures.
 PICTURES = (".png", ".pdf", ".svg", ".eps")
 
-#: Numbers for the names of files that are being written: threads write under different ones.
+#: Numbers for the names of temporary files, which differ between threads.
 _numbers = itertools.count()
 
 
 def target(given: Path | str | None, usual: Path, suffixes: Sequence[str], inputs: Sequence[Path]) -> Path:
-    """Where a command is to write: what the user gave, or the usual place where that is None.
+    """The file that a command writes: `given`, or `usual` if that is None.
 
-    `suffixes`: those that it may have, in small letters or capitals. `inputs`: the files that the command reads.
-    Raises OSError and ValueError, with messages that name the place, where it cannot be written to or must not be: a
-    directory, another suffix, one of the inputs, a file of HDF5, which is no such thing and may be a result.
+    `suffixes`: the allowed ones, in lower or upper case. `inputs`: the files that the command reads. Raises OSError and
+    ValueError for a directory, another suffix, one of the inputs, and an existing HDF5 file, which may be a result.
     """
     path = usual if given is None else Path(given)
     if not path.name:
@@ -43,10 +42,10 @@ def target(given: Path | str | None, usual: Path, suffixes: Sequence[str], input
 
 @contextlib.contextmanager
 def written(path: Path) -> Iterator[Path]:
-    """A new file beside `path`, with the same suffix, to write to: it becomes `path` when the block ends and its bytes are on the
-    disk, and is removed when the block fails, so that nothing half-written is left and what was there before stays.
+    """A temporary file beside `path`, with the same suffix. At the end of the block it is flushed to disk and renamed to `path`; if
+    the block fails it is removed, and an existing file is unchanged.
 
-    A symbolic link stays one, and a file keeps its mode. Raises OSError.
+    Symbolic links and file modes are preserved. Raises OSError.
     """
     place = Path(os.path.realpath(path))
     if place.exists() and not os.access(place, os.W_OK):

@@ -275,7 +275,7 @@ class Case:
             control[motion], target[motion] = kind, value
         turns = max(-LARGEST_INTEGER, min(index(cycles), LARGEST_INTEGER)) if cycles else 0
         with self._lock:
-try:  # one call in place of eleven: the largest cost of Python in a host program
+            try:  # one call in place of eleven: the largest cost of Python in a host program
                 StepStructure.pack(
                     self._step,
                     0,

@@ -25,7 +25,7 @@ from .result import Group, Result, counts, is_last
 from .stress import NAMES, StressField, grid, stored
 from .views import contact, friction_limits, has_friction, has_last_normal_force, heights, is_named, limit_of_friction
 
-#: Colours from Okabe and Ito, told apart by the colour-blind too.
+#: Colours from Okabe and Ito, distinguishable with colour blindness.
 NUMBERS, CLOSED_FORM, SURFACE, MARKS = "#0072B2", "#D55E00", "#009E73", "#000000"
 STICK, RIGHT, LEFT, WITHOUT_FRICTION = "#DCEBF5", "#FBE3B4", "#EBD3E1", "#EEEEEE"
 ZONES: dict[int, dict[str, Any]] = {
@@ -89,7 +89,7 @@ STRESS_LABELS = {
     "principal_angle": r"direction of $\sigma_1$",
 }
 
-#: Pictures on which the largest tension along the surface is marked; what the axes of stresses can be.
+#: Stresses with a mark at the largest tension along the surface; kinds of axes.
 TENSIONS = ("sigma_xx", "sigma_thetatheta", "principal_1")
 AXES = ("normalised", "physical")
 
@@ -103,17 +103,17 @@ LETTERS_PER_INCH, KEY_LETTERS = 19, 9
 NAMED_TOGETHER = 4
 
 
-#: What draws a result, or one of its states, into axes.
+#: A function that draws a result, or one of its states, into axes.
 Panel = Callable[[Result, "Axes | None", "int | None"], Axes]
 
 
 def figure(result: Result, step: int | None = None) -> Figure:
-    """A picture of a result: pressure; shear traction, or the surfaces without friction; load-displacement curve of the
-    tangential force, with cycles also without its linear part, which hides the loop, or, without a force, of the moment; or,
-    where the bodies have rolled, how they creep.
+    """A picture of a result: pressure; shear traction, or without friction the deformed surfaces; tangential force over shift,
+    with cycles also over the non-linear shift, or, without tangential force, moment over rotation; after rolling, sliding over
+    rolled distance.
 
-    `step`: draw the state in `result.steps[step - 1]` not the last one. Raises ValueError where there is none. A contact of
-    several patches has a picture of its own: all patches, the one that bears most, and the gap.
+    `step`: draw `result.steps[step - 1]`, not the last state. Raises ValueError if it does not exist. For a contact with
+    several patches the panels show all patches, the patch with the largest load, and the gap.
     """
     if _loads(result, step).get("patches", 1) > 1:
         from . import patches_figure  # here: it takes its panels from this module
@@ -132,9 +132,9 @@ def figure(result: Result, step: int | None = None) -> Figure:
 
 
 def cycles_figure(result: Result) -> Figure:
-    """A picture of the cycles of a result: hysteresis loop; its non-linear part; where the last cycle dissipates.
+    """A picture of the cycles of a result: hysteresis loop; its non-linear part; dissipation of the last cycle over x.
 
-    Raises ValueError where there are no cycles.
+    Raises ValueError without cycles.
     """
     if not result.cycles:
         raise ValueError("this result has no cycles; give a step cycles=...")
@@ -165,7 +165,7 @@ def _panels_in_a_row(panels: Sequence[Panel], result: Result, step: int | None, 
 
 
 def _turns_in_the_last_cycle(result: Result) -> bool:
-    """Whether the moment goes to and fro in the last cycle, and not the tangential force."""
+    """Whether the moment alternates in the last cycle, and the tangential force does not."""
     history = result.history
     if "rotation" not in history:
         return False
@@ -176,7 +176,7 @@ def _turns_in_the_last_cycle(result: Result) -> bool:
 
 
 def _cycle_caption(result: Result) -> str:
-    """How many cycles, what the last one dissipates and how much it still changes."""
+    """Number of cycles, dissipation of the last one, and its change of the tractions."""
     seen, unit = result.observables, result.observables.unit("cycle_dissipation")
     parts = [
         f"{result.cycles.cycle.size} cycles",
@@ -192,8 +192,8 @@ def stress_figure(
 ) -> Figure:
     """A picture of a stress inside a body: contours over the largest pressure, axes over the contact half-width.
 
-    `name`: one of `mfv.stress.NAMES`. `axes`: 'physical' for stresses and lengths as they are. What mfv_stress has put into the file is
-    drawn, else the stresses are computed, which needs the library. Raises ValueError for an unknown name, step or kind of axes.
+    `name`: one of `mfv.stress.NAMES`. `axes`: 'physical' for stresses and lengths in their units. Stresses that mfv_stress has written into the
+    file are drawn; otherwise they are computed, which needs the library. Raises ValueError for an unknown name, step or kind of axes.
     """
     if name not in NAMES:
         raise ValueError(f"unknown stress {name}; choose from {', '.join(NAMES)}")
@@ -339,7 +339,7 @@ def _signed(value: float) -> str:
 
 
 def pressure(result: Result, ax: Axes | None = None, step: int | None = None) -> Axes:
-    """Pressure over x, with its closed form where one holds."""
+    """Pressure over x, with its closed form if there is one."""
     ax = _axes(ax)
     state = result.at(step)
     _draw_points(ax, result, state, state.pressure)
@@ -352,7 +352,7 @@ def pressure(result: Result, ax: Axes | None = None, step: int | None = None) ->
 
 
 def shear(result: Result, ax: Axes | None = None, step: int | None = None) -> Axes:
-    """Shear traction over x between the limits of friction, stick and slip zones, closed form where one holds."""
+    """Shear traction over x with the friction limits, stick and slip zones, and the closed form if there is one."""
     ax = _axes(ax)
     state = result.at(step)
     _shade_zones(ax, result, state)
@@ -387,7 +387,7 @@ def surfaces(result: Result, ax: Axes | None = None, step: int | None = None) ->
 
 
 def loop(result: Result, ax: Axes | None = None, step: int | None = None) -> Axes:
-    """Tangential force over shift, with the closed form where one holds; step ends are numbered, `step` stands out."""
+    """Tangential force over shift, with the closed form if there is one; step ends are numbered, `step` is bold."""
     ax = _axes(ax)
     history = result.history
     shift, force = history.shift, history.tangential_force
@@ -402,7 +402,7 @@ def loop(result: Result, ax: Axes | None = None, step: int | None = None) -> Axe
 
 
 def nonlinear_loop(result: Result, ax: Axes | None = None, step: int | None = None) -> Axes:
-    """Tangential force over the non-linear part of the shift: what slip adds to a contact where all sticks."""
+    """Tangential force over the non-linear part of the shift, which is due to slip."""
     ax = _axes(ax)
     history = result.history
     ax.plot(history.nonlinear_shift, history.tangential_force, color=NUMBERS, linewidth=0.8)
@@ -422,7 +422,7 @@ def friction_work(result: Result, ax: Axes | None = None, step: int | None = Non
 
 
 def turning(result: Result, ax: Axes | None = None, step: int | None = None) -> Axes:
-    """Moment over rotation; step ends are numbered, `step` stands out."""
+    """Moment over rotation; step ends are numbered, `step` is bold."""
     ax = _axes(ax)
     history = result.history
     points = _points(history.rotation.size)
@@ -432,7 +432,7 @@ def turning(result: Result, ax: Axes | None = None, step: int | None = None) -> 
 
 
 def rolling(result: Result, ax: Axes | None = None, step: int | None = None) -> Axes:
-    """Sliding over the rolled distance, whose slope is the creepage; step ends are numbered, `step` stands out."""
+    """Sliding over the rolled distance, whose slope is the creepage; step ends are numbered, `step` is bold."""
     ax = _axes(ax)
     history = result.history
     ax.plot(history.rolled, history.slid, color=NUMBERS, linewidth=0.8, **_points(len(history.slid)), label="computed")
@@ -453,10 +453,10 @@ def _finished_curve(
 
 
 def _axes(ax: Axes | None) -> Axes:
-    """The axes to draw into: new ones, of a figure of pyplot, where none are given."""
+    """The given axes, or those of a new figure of pyplot."""
     if ax is not None:
         return ax
-    from matplotlib import pyplot  # here: it looks for a display, which pictures in files do not need
+    from matplotlib import pyplot  # here, since it needs a display
 
     with matplotlib.rc_context(STYLE):
         _, made = pyplot.subplots(figsize=(PANEL_WIDTH, PANEL_HEIGHT), layout="constrained")
@@ -469,7 +469,7 @@ def _loads(result: Result, step: int | None) -> Group:
 
 
 def _is_sheared(result: Result) -> bool:
-    """Whether the load history has a tangential force to speak of."""
+    """Whether the load history has a tangential force above round-off."""
     if not has_friction(result) or not result.history:
         return False
     negligible = 1.0e-9 * np.max(np.abs(result.history.normal_force))
@@ -487,7 +487,7 @@ def _is_rolled(result: Result) -> bool:
 
 
 def _same_normal_force(result: Result, step: int | None) -> bool:
-    """Whether the closed form of the pressure, which is that of the last state, holds for this one."""
+    """Whether the closed form of the pressure, computed for the last state, also holds for this one."""
     return step is None or (has_last_normal_force(result, result.at(step)) and not _is_rolled(result))
 
 
@@ -509,7 +509,7 @@ def _draw_points(ax: Axes, result: Result, state: Group, values: np.ndarray, lab
 
 
 def _points(number: int) -> dict[str, Any]:
-    """Markers that leave each other room: smaller where there are more."""
+    """Markers, smaller for more points."""
     return {"marker": "o", "markersize": float(np.clip(350.0 / max(number, 1), 1.0, 3.5)), "markeredgewidth": 0.0}
 
 
@@ -532,14 +532,14 @@ def _runs(values: np.ndarray) -> Iterator[tuple[int, int, int]]:
 
 
 def _frame_contact(ax: Axes, result: Result, state: Group) -> None:
-    """Show the contact and a quarter of its length on either side, as far as the mesh goes; else all of it."""
+    """Show the contact and a quarter of its length on either side within the mesh; without contact the whole mesh."""
     ax.set_xlim(contact(result, [state]))
     ax.locator_params(axis="x", nbins=5)
     ax.set_xlabel(_label("position", "x", result.mesh.unit("x")))
 
 
 def _mark_step_ends(ax: Axes, result: Result, step: int | None, across: str, up: str) -> None:
-    """Numbers at the ends of steps and reversals, as in `result.steps`, those at one place together; an early end."""
+    """Number the ends of steps and reversals, as in `result.steps`, coinciding ones together; mark an early end."""
     history = result.history
     curve = np.column_stack((history[across], history[up]))
     curve_size = np.maximum(np.ptp(curve, axis=0), np.finfo(float).tiny)
@@ -627,7 +627,7 @@ def _heading(result: Result, step: int | None) -> str:
 
 
 def _caption(result: Result, step: int | None) -> str:
-    """How the run ended unless well, node counts and certificate; below, where the closed forms come from."""
+    """Outcome unless complete, node counts and certificate; below, the sources of the closed forms."""
     parts = [
         f"{result.mesh.x.size} nodes, {counts(_loads(result, step))}",
         f"largest relative residual {result.certificate.largest:.1e}",
@@ -640,7 +640,7 @@ def _caption(result: Result, step: int | None) -> str:
 
 
 def _label(name: str, symbol: str, unit: str) -> str:
-    """Label of an axis; the unit only where the user has named it."""
+    """Label of an axis, with the unit if the user has named it."""
     if not is_named(unit):
         return f"{name} ${symbol}$"
     shown = unit.replace("$", r"\$").replace("^2", "$^2$")

@@ -173,20 +173,23 @@ def test_results_are_not_overwritten_by_what_is_drawn_of_them(tmp_path: Path, ca
     first, other = str(tmp_path / "a.h5"), str(tmp_path / "b.png")
     for arguments, complaint in (
         (["plot", first, "-o", first], f"{first}: the file name must end with .png or "),
-        (["plot", other], f"{other}: is what is read"),
-        (["plot", first, "-o", other], f"{other}: is HDF5"),
-        (["plot", first, "-o", str(tmp_path / "out")], f"{tmp_path / 'out'}: the name of what"),
+        (["plot", other], f"{other}: is the input file"),
+        (["plot", first, "-o", other], f"{other}: is an HDF5 file, not overwritten"),
+        (["plot", first, "-o", str(tmp_path / "out")], f"{tmp_path / 'out'}: the file name must end with"),
         (["plot", first, "-o", str(tmp_path)], f"{tmp_path}: is a directory"),
         (["plot", first, "-o", ""], "such as a.png"),
-        (["plot", first, "-o", str(tmp_path / "no" / "x.png")], f"{tmp_path / 'no' / 'x.png'}: there is no directory"),
-        (["plot", first, "--body", "upper"], "give --stress NAME too"),
-        (["plot", first, "--cycles", "--step", "1"], "give one of them"),
+        (
+            ["plot", first, "-o", str(tmp_path / "no" / "x.png")],
+            f"{tmp_path / 'no' / 'x.png'}: {tmp_path / 'no'} does not exist or is not a directory",
+        ),
+        (["plot", first, "--body", "upper"], "add --stress NAME"),
+        (["plot", first, "--cycles", "--step", "1"], "remove one of them"),
         (["report", first, "-o", first], f"{first}: the file name must end with .html or .htm"),
-        (["animate", first, "--kept", "-o", first], f"{first}: the name of what"),
-        (["new", "--force", "-o", first], f"{first}: the name of what"),
-        (["study", study, "-o", first], f"{first}: is HDF5"),
+        (["animate", first, "--kept", "-o", first], f"{first}: the file name must end with"),
+        (["new", "--force", "-o", first], f"{first}: the file name must end with"),
+        (["study", study, "-o", first], f"{first}: is an HDF5 file, not overwritten"),
         (["study", study, "-o", other], f"{other}: the file name must end with .nc or .h5 or .csv"),
-        (["study", study, "--case", "25"], f"{study}: there is no case 25; there are 24"),
+        (["study", study, "--case", "25"], f"{study}: no case 25; the cases are numbered from 1 to 24"),
     ):
         assert main(arguments) == 2, arguments
         printed = capsys.readouterr()
@@ -447,7 +450,7 @@ def test_new_lists_templates_and_names_what_it_does_not_have(
     assert main(["new", "--list"]) == 0
     assert [line.split()[0] for line in capsys.readouterr().out.splitlines()] == list(template.names())
     assert main(["new", "cube"]) == 2
-    assert "there is no template cube; there is cylinder, " in capsys.readouterr().err
+    assert "unknown template cube; choose from cylinder, " in capsys.readouterr().err
     assert main(["new"]) == 0
     assert [path.name for path in tmp_path.iterdir()] == ["cylinder.nml"]
 
@@ -459,3 +462,61 @@ def test_every_command_teaches(command: str, capsys: pytest.CaptureFixture[str])
     assert caught.value.code == 0
     printed = capsys.readouterr().out
     assert f"python -m mfv {command}" in printed.split("examples:")[1] and len(printed) > 400
+
+
+# --- the overview, and completion in the shell ---
+
+
+def test_without_arguments_there_is_an_overview(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main([]) == 0
+    shown = capsys.readouterr()
+    assert shown.err == "" and len(shown.out.splitlines()) < 24
+    for line in ("usage: python -m mfv COMMAND", "  new ", "  study ", "first steps:", "  mfv_run cylinder.nml"):
+        assert line in shown.out
+
+
+def test_new_takes_the_name_of_a_file(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
+    monkeypatch.chdir(tmp_path)
+    assert main(["new", "mine.nml"]) == main(["new", "weakening.nml"]) == 0
+    assert "solve it: mfv_run mine.nml" in capsys.readouterr().out
+    assert Path("mine.nml").read_text() == template.text("cylinder").replace("FILE", "mine")
+    assert Path("weakening.nml").read_text() == template.text("weakening").replace("FILE", "weakening")
+    assert main(["new", "mine.nml"]) == 2 and main(["new", "a.nml", "-o", "b.nml"]) == 2
+    complaints = capsys.readouterr().err
+    assert "mine.nml: exists; overwrite it with --force" in complaints
+    assert "write 'python -m mfv new cylinder -o b.nml'" in complaints
+
+
+@pytest.mark.parametrize(
+    ("line", "expected"),
+    [
+        ("mfv ", {"new", "plot", "info", "compare", "animate", "report", "study"}),
+        ("mfv an", {"animate"}),
+        ("mfv plot --st", {"--step", "--stress"}),
+        ("mfv new two", {"two_cylinders"}),
+        ("mfv plot --stress von", {"von_mises"}),
+        ("mfv plot --body ", {"lower", "upper"}),
+        ("mfv plot a", {"a.h5"}),
+        ("mfv compare a.h5 b", {"b.h5"}),
+        ("mfv study s", {"s.nml"}),
+    ],
+)
+def test_completion_in_the_shell(line: str, expected: set[str], tmp_path: Path) -> None:
+    """The protocol of argcomplete: the shell sets the line and the cursor, and reads the words from file descriptor 8."""
+    for name in ("a.h5", "a.png", "b.h5", "b.txt", "s.nml", "s.txt"):
+        (tmp_path / name).touch()
+    of_shell = {"_ARGCOMPLETE": "1", "_ARGCOMPLETE_SHELL": "bash", "_ARGCOMPLETE_IFS": "\n", "COMP_LINE": line, "COMP_TYPE": "9"}
+    environment = {**os.environ, **of_shell, "COMP_POINT": str(len(line))}
+    script = '"$0" -m mfv 8>words 9>/dev/null'
+    subprocess.run(["bash", "-c", script, sys.executable], cwd=tmp_path, env=environment, check=True, capture_output=True)
+    assert {word.strip() for word in (tmp_path / "words").read_text().split("\n")} - {"-h", "--help", "--version"} == expected
+
+
+def test_completion_needs_no_argcomplete(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
+    from mfv.commands import completion
+
+    monkeypatch.setattr(completion, "IS_COMPLETING", True)
+    monkeypatch.setitem(sys.modules, "argcomplete", None)
+    monkeypatch.setitem(sys.modules, "argcomplete.completers", None)
+    assert main(["new", "--list"]) == 0
+    assert "two_cylinders" in capsys.readouterr().out

@@ -34,7 +34,7 @@ def pressed() -> mfv.Case:
 
 
 def tractions(case: mfv.Case) -> bytes:
-    """Everything that a state has at the nodes, to the bit."""
+    """All fields of a state at the nodes, bit-identical."""
     return b"".join(np.asarray(case[f"state/{name}"]).tobytes() for name in ("pressure", "shear", "slip", "status"))
 
 

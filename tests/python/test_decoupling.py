@@ -1,6 +1,6 @@
 """The study of elastic decoupling, quick: its report is whole, and what it finds of the dissertation's chapter 6 holds.
 
-75 nodes in contact unless told; tolerances are what such a mesh leaves open (numbers of finer ones: examples/decoupling).
+75 nodes in contact by default; tolerances are the discretisation errors of this mesh (finer ones: examples/decoupling).
 """
 
 from __future__ import annotations
@@ -181,7 +181,7 @@ def test_stick_ratios(folder):
 
 
 def test_errors_of_tractions(folder):
-    """Pressure to 23 %, shear of full decoupling from 100 %, all the same near gross sliding (section 6.4)."""
+    """Pressure to 23 %, shear of full decoupling from 100 %, nearly equal near gross sliding (section 6.4)."""
     _, goodman, none = by_coupling(folder, "lateral_force")
     assert goodman["pressure_error_reversal"].max() == pytest.approx(0.225, abs=0.01)
     assert none["shear_error_loading"].max() == pytest.approx(1.0, abs=0.02)

@@ -145,4 +145,4 @@ def test_names_of_executors(study, tmp_path):
         mfv.study(folder / "base.nml", AXES, executor=pool, workers=2)
     write(tmp_path)
     done = run("study.nml", "--executor", "treads", cwd=tmp_path)
-    assert done.returncode == 2 and "there is no executor 'treads'" in done.stderr
+    assert done.returncode == 2 and "unknown executor 'treads'" in done.stderr

@@ -89,7 +89,7 @@ def test_comma_separated_values(study, tmp_path):
 def test_cases_are_listed_and_printed(tmp_path):
     write(tmp_path)
     done = run("study.nml", "--list", cwd=tmp_path)
-    assert done.returncode == COMPLETE and f"study.nml is valid: {CASES} cases, into study.nc" in done.stdout
+    assert done.returncode == COMPLETE and f"study.nml is valid: {CASES} cases, to be written to study.nc" in done.stdout
     assert "case 2: base='base.nml', friction%mu=0.3, Q=0.0001, scene%coupling='goodman'" in done.stdout
     done = run("study.nml", "--case", 5, cwd=tmp_path)
     (tmp_path / "case.nml").write_text(done.stdout)
@@ -234,7 +234,7 @@ def test_several_bases_pairs_and_whole_numbers(tmp_path):
     done = run("study.nml", cwd=tmp_path)
     assert (
         done.returncode == INPUT
-        and "&vary 1 count=3: 11.5 and 12 both become 12, for mesh%nodes takes whole numbers" in done.stderr
+        and "&vary 1 count=3: 11.5 and 12 both become 12, since mesh%nodes takes whole numbers" in done.stderr
     )
 
 
@@ -300,7 +300,10 @@ def test_interrupted(executor, number, tmp_path):
     process.send_signal(number)
     _, said = process.communicate(timeout=60)
     assert process.returncode == INTERRUPTED
-    assert said.splitlines() == ["mfv: solved cases are kept in study.sqlite; the same command goes on", "mfv: interrupted"], said
+    assert said.splitlines() == [
+        "mfv: solved cases are saved in study.sqlite; repeat the command to continue",
+        "mfv: interrupted",
+    ], said
     there = cases_kept(tmp_path)
     assert 0 < there < cases and not (tmp_path / "study.nc").exists()
     for options, words in (
@@ -338,7 +341,7 @@ def test_two_at_once(tmp_path):
 
 
 def limited(size):
-    """Files can have so many bytes in a process begun with this: a disk that is full."""
+    """Limit the size of files of a process, to simulate a full disk."""
     return lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (size, size))
 
 
@@ -364,7 +367,7 @@ def test_other_files_are_not_replaced(tmp_path, capsys, monkeypatch):
     for name, words in (
         ("study.h5", "is HDF5, perhaps a result, and is not overwritten"),
         ("study.nml", "must end with .nc or .h5 or .csv"),
-        ("no/study.nc", "there is no directory no"),
+        ("no/study.nc", "no does not exist or is not a directory"),
     ):
         for option in ([], ["--again"], ["--list"]):
             assert main(["study", "study.nml", "-o", name, *option]) == INPUT

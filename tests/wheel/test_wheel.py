@@ -79,6 +79,7 @@ def test_files_of_the_package_are_there(tmp_path):
     subprocess.run(["mfv_run", "cylinder.nml"], cwd=tmp_path, capture_output=True, check=True)
     subprocess.run([sys.executable, "-m", "mfv", "report", "cylinder.h5"], cwd=tmp_path, capture_output=True, check=True)
     assert "<html" in (tmp_path / "cylinder.html").read_text()[:1000]
+    assert "usage: mfv COMMAND" in subprocess.run(["mfv"], capture_output=True, text=True, check=True).stdout
 
 
 def test_licences_of_what_is_bundled():

@@ -1,4 +1,4 @@
-"""What a study varies: keys of the case, axes with their values, one or several along a dimension."""
+"""Axes of a study: keys of the case and their values, one or several axes along a dimension."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ OF_MATERIALS = ("shear_modulus", "youngs_modulus", "poisson_ratio", "rigid")
 
 @dataclass(frozen=True)
 class Axis:
-    """Values of one key of the case, or of several that move together, each times the factor of its key.
+    """Values of one key of the case, or of several that change together, each multiplied by the factor of its key.
 
     `keys`: such as 'friction%mu', or ['step(2)%force_ratio', 'step(3)%force_ratio'] with `factors` [1, -1].
     """
@@ -57,7 +57,7 @@ class Coordinate:
                 self._check_products(factor)
 
     def settings(self, place: int) -> list[tuple[str, Any]]:
-        """The keys with what each becomes at a place, from 0."""
+        """The keys and their values at a place, from 0."""
         value = self.values[place]
         return [(key, value if factor == 1 else value * factor) for key, factor in zip(self.keys, self.factors)]
 
@@ -70,10 +70,10 @@ class Coordinate:
 
 
 class Dimension:
-    """A dimension of the study: one axis, or several that move together along it."""
+    """A dimension of the study: one axis, or several that change together."""
 
     def __init__(self, name: str, coordinates: Sequence[Coordinate]) -> None:
-        """Raises InputError where there are no axes, or where they do not have the same number of values."""
+        """Raises InputError without axes, or for axes of different lengths."""
         check_name(name)
         self.name = name
         self.coordinates = list(coordinates)
@@ -91,7 +91,7 @@ class Dimension:
 
 
 def check_name(name: Any) -> None:
-    """Raises InputError for what cannot be the name of an axis or a dimension in a dataset and its file."""
+    """Raises InputError for an invalid name of an axis or a dimension."""
     if not isinstance(name, str) or not name or name != name.strip() or "/" in name:
         raise fault(
             f"{name!r}: a name must be a non-empty text without / and without blanks at either end",
@@ -101,7 +101,7 @@ def check_name(name: Any) -> None:
 
 
 def as_written(value: Any) -> str:
-    """A value as a namelist has it."""
+    """A value as written in a namelist."""
     if isinstance(value, bool):
         return ".true." if value else ".false."
     if isinstance(value, list):
@@ -110,7 +110,7 @@ def as_written(value: Any) -> str:
 
 
 def _in_one_form(key: Any) -> str:
-    """A key in small letters, its number without zeros before it, so that keys that are the same are equal. Raises TypeError."""
+    """A key in lower case, its number without leading zeros, so that equivalent keys are equal. Raises TypeError."""
     if not isinstance(key, str):
         raise TypeError(f"must be a key of the case such as 'friction%mu', not {key!r}")
     return re.sub(r"\(0+(?=\d)", "(", key.lower())
@@ -124,7 +124,7 @@ def _plain(value: Any) -> Any:
 
 
 def dimensions_of(axes: Any, *, are_keys: bool = True) -> list[Dimension]:
-    """The dimensions of what `study` takes as axes. `are_keys`: whether a name without an Axis is that of a key.
+    """The dimensions from the axes of `study`. `are_keys`: whether a name without an Axis is a key.
 
     Raises InputError, TypeError.
     """
@@ -172,7 +172,7 @@ def _columns_of_table(table: Any) -> dict[str, list[Any]]:
 
 
 def fault_of_key(key: str) -> str:
-    """Why something is no key of a case, in the words of the library, or not for a study to set; empty where it is."""
+    """Why a study cannot set a key, as a message of the library; empty if it can."""
     if key == DUNDURS_BETA:
         return ""
     if key == "output%file":
@@ -189,7 +189,7 @@ def fault_of_key(key: str) -> str:
 
 
 def fault_of_pair(one: str, other: str) -> str:
-    """Why a study cannot vary two keys; empty where it can."""
+    """Why a study cannot vary both keys; empty if it can."""
     for beta, key in ((one, other), (other, one)):
         if beta == DUNDURS_BETA and key.partition("%")[2] in OF_MATERIALS:
             return f"'{key}' and '{DUNDURS_BETA}' cannot be varied in one study: {DUNDURS_BETA} sets the materials of both bodies"
@@ -197,7 +197,7 @@ def fault_of_pair(one: str, other: str) -> str:
 
 
 def _stands_for(one: str, other: str) -> bool:
-    """Whether one key takes the place of another, as the library sees it."""
+    """Whether one key is an alternative to another, according to the library."""
     if DUNDURS_BETA in (one, other) or one.partition("%")[0] != other.partition("%")[0]:
         return False
     with _scene_handle("", "keys") as handle:
@@ -208,7 +208,7 @@ def _stands_for(one: str, other: str) -> bool:
 
 
 def numbered_group(key: str) -> tuple[str, int | None]:
-    """Group of a key, and its number where it has one."""
+    """Group of a key, and its number if it has one."""
     group, _, _ = key.partition("%")
     name, bracket, number = group.partition("(")
     return name, int(number.rstrip(")")) if bracket else None
