@@ -1,4 +1,4 @@
-"""Speed against accuracy: what every knob buys, as Pareto pictures."""
+"""Speed against accuracy of every solver setting, as Pareto pictures."""
 
 from __future__ import annotations
 
@@ -17,14 +17,14 @@ QUANTITIES = {"pressure": "pressure, l2", "shear": "shear, l2", "stick": "stick 
 RADIUS, POISSON, SHEAR = 0.25, 0.3, 3.0e-4
 KOLOSOV = 3.0 - 4.0 * POISSON
 MODULUS = 4.0 / (KOLOSOV + 1.0)
-#: &mesh nodes of the meshes, of the one on which the other knobs are turned, and of the finest.
+#: &mesh nodes of the meshes, of the mesh for the other settings, and of the finest mesh.
 MESHES, MESH, FINEST = (30, 60, 120, 240, 480, 960), 240, 1800
 DGESV_MOST = 120
 STEPS = [{"normal_force": PRESS}, {"tangential_force": SHEAR}, {"tangential_force": -SHEAR, "cycles": 1}]
 CIRCLE, CIRCLE_FORCE_WIDTH = 10000, 50
 Errors = dict[str, float]
 
-#: Knobs on the coupled scene: name, and the keys of &solver for every setting.
+#: Settings for the coupled scene: name, and the keys of &solver for every value.
 KNOBS: dict[str, list[dict[str, Any]]] = {
     "linear_tolerance": [{"linear_solver": "fft", "linear_tolerance": value} for value in (1e-3, 1e-5, 1e-7, 1e-9, 1e-11)],
     "nominal": [{"stepping": "nominal", "load_step": value} for value in (0.2, 0.05, 0.0125)],
@@ -33,7 +33,7 @@ KNOBS: dict[str, list[dict[str, Any]]] = {
 
 
 def coupled(nodes: int, coupling: str = "full") -> Case:
-    """Pressed and sheared to and fro with friction: where the path matters."""
+    """Pressed and cyclically sheared with friction: path-dependent."""
     return Case(BODIES, STEPS, {"nodes": nodes}, MU, coupling)
 
 
@@ -123,7 +123,7 @@ def _harmonics(bench: Bench) -> list[dict[str, Any]]:
 
 
 def point(label: Any, result: dict[str, Any], finest: dict[str, Any], base: dict[str, Any]) -> dict[str, Any]:
-    """Errors against the finest run (all that is wrong), and against `base` on the same mesh (what the knob does)."""
+    """Errors relative to the finest run (total), and to `base` on the same mesh (effect of the setting)."""
     return {
         "label": label,
         "outcome": result["outcome"],
@@ -138,7 +138,7 @@ def point(label: Any, result: dict[str, Any], finest: dict[str, Any], base: dict
 
 
 def errors(result: dict[str, Any], other: dict[str, Any]) -> Errors:
-    """Relative differences; of the stick ratio in parts of the contact. Tractions at the nodes of `result`."""
+    """Relative differences; of the stick ratio absolute. Tractions at the nodes of `result`."""
     here, there = result["tractions"], other["tractions"]
     found = {name: _distance(here, there, name) for name in ("pressure", "shear")}
     ratios = [run["stuck"] / run["contact"] for run in (result, other)]
@@ -181,7 +181,7 @@ def _against_mindlin(bench: Bench, case: Case) -> dict[str, Any]:
     exact = {
         "pressure": reference.hertz_pressure(x, PRESS, width),
         "shear": reference.mindlin_shear(x, SHEAR, PRESS, width, MU),
-        # After -Q and back to Q the last reversal has left stuck what half its length leaves.
+        # After -Q and back to Q the stick zone is that of first loading (Masing).
         "stick": reference.mindlin_stick_ratio(SHEAR, PRESS, MU),
         "dissipation": 1.25 * cycle,
     }
@@ -274,7 +274,7 @@ def _knob(entry: dict[str, Any], quantity: str) -> str:
 
 
 def percent(value: float) -> str:
-    """Per cent, or parts where they are tiny."""
+    """Per cent, or a ratio if it is tiny."""
     return f"{number(100.0 * value)} %" if value >= 1e-5 else f"{value:.0e}"
 
 
@@ -287,7 +287,7 @@ def _at(entries: list[dict[str, Any]], label: Any) -> dict[str, Any]:
 
 
 def conventional_text(done: list[dict[str, Any]], tried: list[dict[str, Any]]) -> str:
-    """What the conventional algorithm came to."""
+    """Results of the conventional algorithm."""
     early = [f"{entry['label']:g}" for entry in tried if entry["outcome"] != 0]
     text = f"With load_step {', '.join(early)} it ends early. " if early else ""
     if not done:
@@ -301,7 +301,7 @@ def conventional_text(done: list[dict[str, Any]], tried: list[dict[str, Any]]) -
 
 
 def knob_table(data: dict[str, Any]) -> str:
-    """Every setting: what it takes, and by how much it differs from events on the same mesh."""
+    """Time of every setting, and its difference from events on the same mesh."""
     entries = [("events, auto", data["base"])]
     for name, settings in data["knobs"].items():
         entries += [(f"{name} {entry['label']:g}", entry) for entry in settings]
@@ -335,7 +335,7 @@ def draw_knobs(data: dict[str, Any], path: Path) -> None:
 
 
 def _draw(path: Path, lines: Callable[[], list[tuple[str, list[dict[str, Any]], str]]]) -> None:
-    """Four panels, one a quantity."""
+    """Four panels, one per quantity."""
     figure, panels = pyplot.subplots(2, 2, figsize=(9.5, 7.5), layout="constrained", sharex=True)
     for axes, (quantity, title) in zip(panels.flat, QUANTITIES.items(), strict=True):
         for name, entries, mark in lines():

@@ -1,4 +1,4 @@
-/* What the C interface costs a step: mfv_advance, with and without mfv_get_loads, against the simulation behind it called directly
+/* Cost of the C interface per step: mfv_advance, with and without mfv_get_loads, against direct calls of the simulation
  * (embedding_direct.f90), in one program.
  *
  *     embedding [REPEATS]                    times: minimum of every increment over this many cycles, alternating (40)

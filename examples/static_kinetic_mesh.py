@@ -3,9 +3,9 @@
     python examples/static_kinetic_mesh.py [-o PICTURE.png] [--finest N] [--distances D ...]
 
 Mindlin's problem: a rigid cylinder is pressed without friction and sheared by Q = 0.475 mu_s P, the ratio of the dissertation's
-section 5.2, with mu_s = 0.7 and mu_k = 0.49. Under static and kinetic friction the stick ratio falls with every finer mesh, from
-sqrt(1 - Q/(mu_s P)) towards sqrt(1 - Q/(mu_k P)). Weakening friction, whose coefficient falls over a slip distance D, settles
-as soon as the intervals resolve what D asks for.
+section 5.2, with mu_s = 0.7 and mu_k = 0.49. Under static and kinetic friction the stick ratio decreases with mesh refinement, from
+sqrt(1 - Q/(mu_s P)) towards sqrt(1 - Q/(mu_k P)). With weakening friction, whose coefficient falls over a slip distance D, it
+converges once the intervals resolve the slip over D.
 """
 
 from __future__ import annotations
@@ -40,7 +40,7 @@ def stick_ratio(nodes: int, friction: str) -> float:
 
 
 def laws(distances: list[float]) -> dict[str, str]:
-    """What each row of the table is called, and its friction in a case."""
+    """The rows of the table: name, and friction in the case."""
     weakening = {f"weakening, D = {d:.0e}": f"law='weakening', weakening_distance={d}" for d in distances}
     return {"static and kinetic": "law='static_kinetic'"} | weakening
 

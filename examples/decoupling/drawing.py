@@ -1,4 +1,4 @@
-"""What the pictures of the study have in common."""
+"""Shared by the pictures of the study."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ BLUE, ORANGE, GREEN, YELLOW, SKY, PINK, BLACK = (
 CYCLE = ((BLUE, "o"), (ORANGE, "s"), (GREEN, "^"), (YELLOW, "v"), (PINK, "D"), (SKY, "x"), (BLACK, "P"))
 OF_COUPLING = dict(zip(COUPLINGS, CYCLE))
 
-#: The bodies of section 6.2.1, and what all of them come to where the contact is small.
+#: The bodies of section 6.2.1, and their common limit for small contacts.
 BODIES = {
     "hole_097": "0.97R in hole R, $KR=0.03$",
     "hole_050": "0.5R in hole R, $KR=1$",

@@ -79,7 +79,7 @@ def mean_of(table: Table, column: str) -> float:
 
 
 def run(name: str, folder: Path, quick: bool) -> Table:
-    """The table of a study; cases that `folder` has already are not solved again. Raises RuntimeError where one ends early."""
+    """The table of a study; cases already solved in `folder` are reused. Raises RuntimeError if one ends early."""
     text = HERE / f"{name}.nml"
     if quick:
         text = folder / f"{name}.nml"
