@@ -31,7 +31,7 @@ SUFFIXES = (".gif", ".mp4")
 RESOLUTION = 100
 
 #: Heights in inch: of the picture, of the row of its caption, of the row of its legend.
-HEIGHT, CAPTION, LEGEND = 4.05, 0.25, 0.27
+HEIGHT, CAPTION, LEGEND = 4.06, 0.25, 0.27
 
 #: Margin of the axes, relative to their range.
 MARGIN = 0.06

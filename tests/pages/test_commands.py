@@ -152,7 +152,7 @@ def test_only_a_difference_ends_with_1(tmp_path: Path, capsys: pytest.CaptureFix
         file["state/pressure"] = [0.0]
     arguments = ["compare", str(tmp_path / "a.h5"), str(tmp_path / "a.h5"), "--no-picture", "--tolerance", "1e-3"]
     assert main(arguments) == 2
-    assert "it is without the group mesh, the group scene, the group summary" in capsys.readouterr().err
+    assert "missing: the group mesh, the group scene, the group summary" in capsys.readouterr().err
     (tmp_path / "a.h5").unlink()
     solved(tmp_path / "a.h5")
     monkeypatch.setattr("mfv.compare.compare", lambda *_: 1 // 0)
@@ -242,7 +242,7 @@ def test_an_early_end_is_the_end_of_the_states() -> None:
 
 def test_another_end_is_told_and_so_is_what_cannot_be_solved_again() -> None:
     # Dahl's friction is solved to a tolerance of an increment, of which more states make more.
-    assert "ends elsewhere" in with_states_between(mfv.run(EXAMPLES / "dahl.nml"), 20).note
+    assert "ends in a different state" in with_states_between(mfv.run(EXAMPLES / "dahl.nml"), 20).note
     result = mfv.run(text=SHEARED.format(**{**MINDLIN, "title": ""}))
     assert "want 8 states at least" in with_states_between(result, 7).note
     result.attributes["input"] = result.attributes["input"].replace("shift", "").replace("disk", "disc")
@@ -253,7 +253,7 @@ def test_another_end_is_told_and_so_is_what_cannot_be_solved_again() -> None:
         case.advance(normal_force=1.0e-3)
         led = case.result()
     again, note = with_states_between(led, 40)
-    assert "ends elsewhere" in note and len(again.steps) == 1
+    assert "ends in a different state" in note and len(again.steps) == 1
     without = mfv.run(text=SHEARED.format(**{**MINDLIN, "title": ""}) + "&output states='none' /\n")
     assert without.steps == [] and len(with_states_between(without, 8).result.steps) == 8
     steady = SHEARED.replace("cycles=1", "cycles=9, steady_tolerance=1e-6") + "&output states='none' /\n"
@@ -432,7 +432,7 @@ def test_nothing_is_overwritten_unless_told(tmp_path: Path, capsys: pytest.Captu
     (tmp_path / "compliance.h5").write_text("mine\n")
     arguments = ["new", "matrix", "-o", str(tmp_path / "case.nml")]
     assert main(arguments) == 2
-    assert f"{tmp_path / 'compliance.h5'}: exists already" in capsys.readouterr().err
+    assert f"{tmp_path / 'compliance.h5'}: exists" in capsys.readouterr().err
     assert (tmp_path / "compliance.h5").read_text() == "mine\n" and len(list(tmp_path.iterdir())) == 1
     assert main([*arguments, "--force"]) == 0
     assert (tmp_path / "compliance.h5").read_bytes().startswith(b"\x89HDF")

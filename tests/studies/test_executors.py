@@ -137,7 +137,7 @@ def test_blas_is_left_as_it_was(study):
 
 def test_names_of_executors(study, tmp_path):
     folder, _ = study
-    with pytest.raises(ValueError, match="there is no executor 'thread'; there are threads, processes, mpi, dask, dask:ADDRESS"):
+    with pytest.raises(ValueError, match="unknown executor 'thread'; choose from threads, processes, mpi, dask, dask:ADDRESS"):
         mfv.study(folder / "base.nml", AXES, executor="thread")
     with pytest.raises(ValueError, match="workers must be 1 or more, not 0"):
         mfv.study(folder / "base.nml", AXES, workers=0)

@@ -98,7 +98,7 @@ def test_cases_are_listed_and_printed(tmp_path):
         shift = result["observables/shift"][()]
     assert shift == read_study(tmp_path / "study.nml").run()["shift"].values.ravel()[4]
     done = run("study.nml", "--case", 99, cwd=tmp_path)
-    assert done.returncode == INPUT and "there is no case 99; there are 18, numbered from 1" in done.stderr
+    assert done.returncode == INPUT and "no case 99; the cases are numbered from 1 to 18" in done.stderr
     assert run("--keys", cwd=tmp_path).stdout.strip() in (ROOT / "docs/studies.md").read_text()
 
 
@@ -114,7 +114,7 @@ def test_a_case_is_printed_though_others_cannot_be_used(tmp_path):
     [
         (("friction%mu", "friction%my"), 2, "&vary 1 key='friction%my': 'friction%my': unknown key of &friction; did you mean mu?"),
         (("friction%mu", "frictoin%mu"), 2, "unknown group; did you mean friction?"),
-        (("step(2)", "step(4)"), 3, "there is no &step 4 in base.nml, which has 3"),
+        (("step(2)", "step(4)"), 3, "no &step 4 in base.nml, which has 3"),
         (("values=0.3, 0.7", "values=0.3, -0.7"), 2, "&friction mu=-0.7: must be a number at least 0"),
         (("'goodman', 'none'", "'gudman', 'none'"), 4, "&scene coupling='gudman': must be 'full', 'goodman' or 'none'"),
         (("base='base.nml'", "base='bass.nml'"), 1, "&sweep base='bass.nml': bass.nml cannot be read: No such file or directory"),
@@ -132,17 +132,17 @@ def test_a_case_is_printed_though_others_cannot_be_used(tmp_path):
         (
             ("'full', 'goodman', 'none'", "'goodman', 'none'"),
             1,
-            "reference='full': needs a &vary of key='scene%coupling' alone with 'full'",
+            "reference='full': needs a &vary with the single key='scene%coupling' and 'full'",
         ),
         (
             ("reference='full'", "reference='mesh%nodes=11'"),
             1,
-            "needs a &vary of key='mesh%nodes' alone with '11' among its values",
+            "needs a &vary with the single key='mesh%nodes' and '11' among its values",
         ),
-        (("name='Q'", "name='outcome'"), 3, "&vary 2 name='outcome': every study has a column outcome"),
-        (("name='Q'", "name='friction%mu'"), 3, "another axis has the name friction%mu"),
+        (("name='Q'", "name='outcome'"), 3, "&vary 2 name='outcome': outcome is a column of every study"),
+        (("name='Q'", "name='friction%mu'"), 3, "friction%mu is the name of another axis"),
         (("name='Q'", "name=3"), 3, "&vary 2 name=3: must be a text between quotes"),
-        (("factor=1, -1", "factor=1"), 3, "must have one value a key, 2, not 1"),
+        (("factor=1, -1", "factor=1"), 3, "must have one value per key (2), not 1"),
         (("factor=1, -1", "factor='a', 'b'"), 3, "&vary 2 factor='a', 'b': must be a number"),
         (("reference='full'", "combine='paired'"), 1, "&vary 2 has 3 values, &vary 1 has 2"),
         (("reference='full' /", "reference='full' /\n&sweep base='base.nml' /"), 2, "&sweep: given twice"),
