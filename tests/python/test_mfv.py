@@ -448,8 +448,8 @@ def test_unusable_input_ends_with_one_line_and_code_2(tmp_path: Path, capsys: py
         (["info", str(tmp_path / "text.h5")], "not a result file"),
         (["plot", str(tmp_path / "other.h5")], "not a result file"),
         (["info", str(tmp_path)], "directory"),
-        (["plot", good, "--step", "9"], "there is no state 9"),
-        (["plot", good, "--step", "0"], "there is no state 0"),
+        (["plot", good, "--step", "9"], "no state 9"),
+        (["plot", good, "--step", "0"], "no state 0"),
         (["plot", good, "-o", str(tmp_path / "nowhere" / "x.png")], "nowhere"),
         (["plot", good, "-o", str(tmp_path / "x.tiffany")], "tiffany"),
     ):
