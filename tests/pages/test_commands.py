@@ -440,7 +440,7 @@ def test_nothing_is_overwritten_unless_told(tmp_path: Path, capsys: pytest.Captu
     for template_name in ("cylinder", "study"):
         assert main(["new", template_name, "-o", str(tmp_path / f"{template_name}.nml")]) == 0
     assert main(["new", "study", "-o", str(tmp_path / "cylinder.nml")]) == 2
-    assert "give another" in capsys.readouterr().err
+    assert "choose another" in capsys.readouterr().err
 
 
 def test_new_lists_templates_and_names_what_it_does_not_have(
