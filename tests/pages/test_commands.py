@@ -62,7 +62,7 @@ def test_a_result_is_no_different_from_itself(tmp_path: Path, capsys: pytest.Cap
     assert sorted(path.name for path in tmp_path.iterdir()) == ["a.h5"]
 
 
-def test_what_differs_is_told(tmp_path: Path) -> None:
+def test_differences_are_reported(tmp_path: Path) -> None:
     first, second = solved(tmp_path / "a.h5"), solved(tmp_path / "b.h5", coupling="full")
     found = compare(first, second)
     assert ("coupling", "goodman", "full") in found.settings
@@ -160,7 +160,7 @@ def test_only_a_difference_ends_with_1(tmp_path: Path, capsys: pytest.CaptureFix
     assert "ZeroDivisionError" in capsys.readouterr().err
 
 
-# --- where commands write ---
+# --- output files of commands ---
 
 
 def test_results_are_not_overwritten_by_what_is_drawn_of_them(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
@@ -200,7 +200,7 @@ def test_results_are_not_overwritten_by_what_is_drawn_of_them(tmp_path: Path, ca
     assert (tmp_path / "A.PNG").read_bytes()[1:4] == b"PNG" and (tmp_path / "A.GIF").read_bytes()[:3] == b"GIF"
 
 
-# --- states between those that a result keeps ---
+# --- states between those saved in a result ---
 
 PROJECT = Path(__file__).resolve().parents[2]
 EXAMPLES = PROJECT / "examples"
@@ -244,11 +244,11 @@ def test_another_end_is_told_and_so_is_what_cannot_be_solved_again() -> None:
     # Dahl's friction is solved to a tolerance of an increment, of which more states make more.
     assert "ends in a different state" in with_states_between(mfv.run(EXAMPLES / "dahl.nml"), 20).note
     result = mfv.run(text=SHEARED.format(**{**MINDLIN, "title": ""}))
-    assert "want 8 states at least" in with_states_between(result, 7).note
+    assert "need at least 8 states" in with_states_between(result, 7).note
     result.attributes["input"] = result.attributes["input"].replace("shift", "").replace("disk", "disc")
     again, note = with_states_between(result, 40)
     assert "disc" in note and again.steps == result.steps
-    # A host that leads the contact itself has other states than the steps of the text.
+    # A host that advances the contact itself has other states than the steps of the text.
     with mfv.Case.from_text(SHEARED.format(**{**MINDLIN, "title": ""})) as case:
         case.advance(normal_force=1.0e-3)
         led = case.result()

@@ -1,4 +1,4 @@
-"""The documents: links that lead somewhere, and references that leave nothing out. scripts/docs.sh builds the site."""
+"""The documents: valid links and complete references. scripts/docs.sh builds the site."""
 
 import importlib
 import re

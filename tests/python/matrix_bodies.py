@@ -1,4 +1,4 @@
-"""Half-planes as matrices, for the tests: what MFV has in closed form, on meshes of the tests' own."""
+"""Half-planes as matrix bodies, for comparison with the closed-form half-planes of MFV."""
 
 from __future__ import annotations
 

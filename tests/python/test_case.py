@@ -1,4 +1,4 @@
-"""Cases led from Python: increments, loads, tangent, kept states, trials, observers, interrupts, arrays of the caller's."""
+"""Cases advanced from Python: increments, loads, tangent, saved states, trials, observers, interrupts, arrays of the caller."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ SHEARED = PRESS, mfv.Step(tangential_force=2.8e-4), mfv.Step(tangential_force=-1
 
 @pytest.fixture
 def pressed() -> mfv.Case:
-    """The cylinder, pressed, where states can be gone to in any order."""
+    """The pressed cylinder; states can be restored in any order."""
     case = cylinder(output=NOTHING_KEPT).contact()
     case.advance(normal_force=1.0e-3, friction=False, check=True)
     return case
@@ -120,7 +120,7 @@ def test_a_tangent_of_a_wrong_size_is_refused(pressed: mfv.Case) -> None:
         pressed.tangent(motions=7)
 
 
-# --- kept states, trials, copies ---
+# --- saved states, trials, copies ---
 
 
 def test_states_can_be_gone_to_in_any_order(pressed: mfv.Case) -> None:

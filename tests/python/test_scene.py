@@ -1,4 +1,4 @@
-"""Scenes in Python: their keys are those of the library, they run as their texts do, arrays stand in for files."""
+"""Scenes in Python: they have the keys of the library, run like their texts, and take arrays in place of files."""
 
 from __future__ import annotations
 
@@ -173,7 +173,7 @@ def test_values_of_a_wrong_kind_are_told_of() -> None:
         mfv.Scene(HALF_PLANE, mfv.Body.profile([], [], rigid=True)).text()
     with pytest.raises(FileNotFoundError):
         mfv.Scene.from_file("no_such_file.nml")
-    with pytest.raises(TypeError, match="one of them"):
+    with pytest.raises(TypeError, match="takes either"):
         mfv.run(cylinder(PRESS), text="&scene /")
 
 
@@ -214,7 +214,7 @@ def test_arrays_that_are_no_real_numbers_are_refused() -> None:
         cylinder(PRESS, friction=mfv.Friction.coulomb(masked)).run()
     with pytest.raises(TypeError, match="friction%mu: must be real numbers, not complex"):
         cylinder(PRESS, friction=mfv.Friction.coulomb(np.full(61, 0.5 + 0.1j))).run()
-    with pytest.raises(TypeError, match="height: real numbers"):
+    with pytest.raises(TypeError, match="height: must be real numbers"):
         mfv.Body.profile([0.0, 1.0], [0.0, 1j])
 
 

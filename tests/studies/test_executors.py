@@ -1,4 +1,4 @@
-"""Every executor gives the same bits, and loses nothing when a worker dies."""
+"""All executors give bit-identical results, and lose nothing when a worker dies."""
 
 import concurrent.futures
 import os
@@ -108,7 +108,7 @@ def die(jobs):
 
 
 def test_a_worker_process_is_killed(study, tmp_path, monkeypatch):
-    """The study is given up with what is solved kept, and goes on."""
+    """The study ends with its solved cases saved, and can be continued."""
     folder, table = study
     kept = {"reference": "full", "executor": "processes", "workers": 1, "store": tmp_path / "cases.sqlite"}
     monkeypatch.setattr("mfv.studies.executors.solve", die)

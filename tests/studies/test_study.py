@@ -1,4 +1,4 @@
-"""mfv.study: what is varied, what comes out, what is compared, in one process."""
+"""mfv.study: axes, results and references, in one process."""
 
 import math
 
@@ -278,8 +278,8 @@ def test_what_is_no_study(study):
     for axes, kind, words in (
         ({3: [1]}, TypeError, "must be a key of the case such as 'friction%mu', not 3"),
         ({"a": mfv.Axis([], [1])}, mfv.errors.InputError, "no keys given"),
-        ({"a": mfv.Axis("friction%mu", "full")}, TypeError, "a: a list of values"),
-        ({"a": mfv.Axis("friction%mu", [0.3], 2)}, TypeError, "a: a list of values"),
+        ({"a": mfv.Axis("friction%mu", "full")}, TypeError, "a: must be a list of values"),
+        ({"a": mfv.Axis("friction%mu", [0.3], 2)}, TypeError, "a: must be a list of values"),
         ({"a": mfv.Axis([3], [0.3])}, TypeError, "a key of the case is wanted"),
         ({"a": mfv.Axis("friction%mu", [[0.3]], [2])}, mfv.errors.InputError, "is not a number"),
         ({"p": {}}, mfv.errors.InputError, "p: no axes given"),

@@ -41,12 +41,12 @@ def read(path):
 
 
 def bytes_kept(folder):
-    """Size of what is being kept: SQLite's log grows with every case."""
+    """Size of the saved cases: SQLite's log grows with every case."""
     return sum(path.stat().st_size for path in folder.glob("study.sqlite*") if not path.name.endswith("-shm"))
 
 
 def wait_for_growth(folder, size, process):
-    """Wait until more than this is kept; false where the process ended first."""
+    """Wait until more than this is saved; false if the process ended first."""
     while process.poll() is None:
         try:
             if bytes_kept(folder) > size:
@@ -346,7 +346,7 @@ def limited(size):
 
 
 def test_a_full_disk(tmp_path):
-    """It is said, what is there stays, and the same command goes on."""
+    """There is a message, saved cases stay, and the same command continues."""
     cases = long_study(tmp_path)
     done = run("study.nml", "--workers", 2, cwd=tmp_path, preexec_fn=limited(80_000))
     assert done.returncode == INPUT and "study.sqlite: cannot save solved cases: " in done.stderr, done.stderr
