@@ -280,7 +280,7 @@ def test_what_is_no_study(study):
         ({"a": mfv.Axis([], [1])}, mfv.errors.InputError, "no keys given"),
         ({"a": mfv.Axis("friction%mu", "full")}, TypeError, "a: must be a list of values"),
         ({"a": mfv.Axis("friction%mu", [0.3], 2)}, TypeError, "a: must be a list of values"),
-        ({"a": mfv.Axis([3], [0.3])}, TypeError, "a key of the case is wanted"),
+        ({"a": mfv.Axis([3], [0.3])}, TypeError, "must be a key of the case"),
         ({"a": mfv.Axis("friction%mu", [[0.3]], [2])}, mfv.errors.InputError, "is not a number"),
         ({"p": {}}, mfv.errors.InputError, "p: no axes given"),
         ({"a/b": {"friction%mu": [0.5]}}, mfv.errors.InputError, "a name must be a text"),
