@@ -1,4 +1,4 @@
-"""Speed against accuracy: what every knob buys, as Pareto pictures."""
+"""Speed against accuracy of every solver setting, as Pareto pictures."""
 
 from __future__ import annotations
 
@@ -17,14 +17,14 @@ QUANTITIES = {"pressure": "pressure, l2", "shear": "shear, l2", "stick": "stick 
 RADIUS, POISSON, SHEAR = 0.25, 0.3, 3.0e-4
 KOLOSOV = 3.0 - 4.0 * POISSON
 MODULUS = 4.0 / (KOLOSOV + 1.0)
-#: &mesh nodes of the meshes, of the one on which the other knobs are turned, and of the finest.
+#: &mesh nodes of the meshes, of the mesh for the other settings, and of the finest mesh.
 MESHES, MESH, FINEST = (30, 60, 120, 240, 480, 960), 240, 1800
 DGESV_MOST = 120
 STEPS = [{"normal_force": PRESS}, {"tangential_force": SHEAR}, {"tangential_force": -SHEAR, "cycles": 1}]
 CIRCLE, CIRCLE_FORCE_WIDTH = 10000, 50
 Errors = dict[str, float]
 
-#: Knobs on the coupled scene: name, and the keys of &solver for every setting.
+#: Settings for the coupled scene: name, and the keys of &solver for every value.
 KNOBS: dict[str, list[dict[str, Any]]] = {
     "linear_tolerance": [{"linear_solver": "fft", "linear_tolerance": value} for value in (1e-3, 1e-5, 1e-7, 1e-9, 1e-11)],
     "nominal": [{"stepping": "nominal", "load_step": value} for value in (0.2, 0.05, 0.0125)],
@@ -33,7 +33,7 @@ KNOBS: dict[str, list[dict[str, Any]]] = {
 
 
 def coupled(nodes: int, coupling: str = "full") -> Case:
-    """Pressed and sheared to and fro with friction: where the path matters."""
+    """Pressed and cyclically sheared with friction: path-dependent."""
     return Case(BODIES, STEPS, {"nodes": nodes}, MU, coupling)
 
 
@@ -52,7 +52,7 @@ SPENCE_MU = 0.2
 
 
 def disk(harmonics: int) -> Case:
-    """An elastic disk on a rigid plane, with so many harmonics an interval; 0: exact kernel."""
+    """An elastic disk on a rigid plane, with this many harmonics per interval; 0: exact kernel."""
     half_width = CIRCLE_FORCE_WIDTH * 2.0 * np.pi / CIRCLE
     force = float(half_width**2 * np.pi * MODULUS / 2.0)
     elastic = {"shape": "disk", "radius": 1.0, "shear_modulus": 1.0, "poisson_ratio": POISSON}
@@ -101,7 +101,7 @@ def _meshes(bench: Bench, meshes: tuple[int, ...], finest: dict[str, Any]) -> di
 
 
 def _knobs(bench: Bench, finest: dict[str, Any], base: dict[str, Any]) -> dict[str, list[dict[str, Any]]]:
-    """The other knobs on one mesh; settings that end early are omitted."""
+    """Other settings on one mesh; settings that do not complete are omitted."""
     found: dict[str, list[dict[str, Any]]] = {}
     for name, settings in KNOBS.items():
         found[name] = []
@@ -123,7 +123,7 @@ def _harmonics(bench: Bench) -> list[dict[str, Any]]:
 
 
 def point(label: Any, result: dict[str, Any], finest: dict[str, Any], base: dict[str, Any]) -> dict[str, Any]:
-    """Errors against the finest run (all that is wrong), and against `base` on the same mesh (what the knob does)."""
+    """Errors relative to the finest run (total), and to `base` on the same mesh (effect of the setting)."""
     return {
         "label": label,
         "outcome": result["outcome"],
@@ -138,7 +138,7 @@ def point(label: Any, result: dict[str, Any], finest: dict[str, Any], base: dict
 
 
 def errors(result: dict[str, Any], other: dict[str, Any]) -> Errors:
-    """Relative differences; of the stick ratio in parts of the contact. Tractions at the nodes of `result`."""
+    """Relative differences; of the stick ratio absolute. Tractions at the nodes of `result`."""
     here, there = result["tractions"], other["tractions"]
     found = {name: _distance(here, there, name) for name in ("pressure", "shear")}
     ratios = [run["stuck"] / run["contact"] for run in (result, other)]
@@ -181,7 +181,7 @@ def _against_mindlin(bench: Bench, case: Case) -> dict[str, Any]:
     exact = {
         "pressure": reference.hertz_pressure(x, PRESS, width),
         "shear": reference.mindlin_shear(x, SHEAR, PRESS, width, MU),
-        # After -Q and back to Q the last reversal has left stuck what half its length leaves.
+        # After -Q and back to Q the stick zone is that of first loading (Masing).
         "stick": reference.mindlin_stick_ratio(SHEAR, PRESS, MU),
         "dissipation": 1.25 * cycle,
     }
@@ -226,32 +226,33 @@ def section(data: dict[str, Any], pictures: Path) -> str:
     )
     return f"""## Speed against accuracy: which knob first?
 
-The first picture has errors against closed forms (Mindlin: pressed without friction, sheared to Q, -Q, Q, decoupled; Spence: pressed with friction, mu = {SPENCE_MU},
-Goodman). The second has every setting on a path-dependent case (pressed with friction, sheared to Q, -Q, Q, full coupling, nu = {POISSON},
-mu = {MU}, Q = {SHEAR / (MU * PRESS):g} mu P) against {data["finest"]} nodes in contact. Errors of tractions are l2 norms over the nodes; the stick ratio counts whole nodes.
+Two pictures: errors against closed forms (Mindlin: pressed without friction, sheared to Q, -Q, Q, decoupled; Spence: pressed with friction, mu = {SPENCE_MU},
+Goodman), and every knob on a scene where the path matters (pressed with friction, sheared to Q, -Q, Q, full coupling, nu = {POISSON},
+mu = {MU}, Q = {SHEAR / (MU * PRESS):g} mu P) against {data["finest"]} nodes in contact. Tractions by the l2 norm over the nodes, the stick ratio in parts of the contact, which comes
+in whole nodes.
 
 ![Errors over time for closed forms](pictures/pareto_closed_forms.png)
 
 ![Errors over time for every knob](pictures/pareto_knobs.png)
 
 *Nodes: first.* From {coarse["contact"]} to {fine["contact"]} in contact the error of the shear falls from {_error(coarse, "shear")} to {_error(fine, "shear")}, that of the dissipation from
-{_error(coarse, "dissipation")} to {_error(fine, "dissipation")}, in {_time(coarse)} and {_time(fine)}. No other setting reduces the error below that of its mesh.
+{_error(coarse, "dissipation")} to {_error(fine, "dissipation")}, in {_time(coarse)} and {_time(fine)}. No other knob brings the error below that of its mesh.
 
 *linear_solver: leave it `auto`.* It costs no accuracy: at {same["contact"]} nodes in contact dgesv takes {_time(dgesv)}, reduced {_time(same)}, fft
 {_time(_at(data["meshes"]["fft"], same["label"]))} for the same events; at {fine["contact"]} reduced {_time(fine)}, fft {_time(_at(data["meshes"]["fft"], fine["label"]))}.
 
-*stepping='leap': if the result does not depend on the path.* For Mindlin with {mindlin_leaps["contact"]} nodes in contact it takes {duration(mindlin_leaps["seconds"])} instead of {duration(mindlin_events["seconds"])} by events, with
+*stepping='leap': where the path does not matter.* For Mindlin with {mindlin_leaps["contact"]} nodes in contact it takes {duration(mindlin_leaps["seconds"])} where events take {duration(mindlin_events["seconds"])}, with
 errors of the shear of {mindlin_leaps["error"]["shear"]:.1e} and {mindlin_events["error"]["shear"]:.1e}, of the dissipation of {mindlin_leaps["error"]["dissipation"]:.1e} and {mindlin_events["error"]["dissipation"]:.1e}. On coupled
 scenes of that size most load segments are solved by events ([numbers of solves](verification.md#large-increments)).
 
-*coupling: physics, not speed.* `goodman` takes {_time(goodman)} instead of {_time(base)} and is wrong by {_knob(goodman, "pressure")} in pressure, {_knob(goodman, "shear")} in shear and {_knob(goodman, "dissipation")} in dissipation; `none`
-{_time(none)}, {_knob(none, "pressure")}, {_knob(none, "shear")} and {_knob(none, "dissipation")}. Only the coarsest meshes have larger errors.
+*coupling: physics, not speed.* `goodman` takes {_time(goodman)} in place of {_time(base)} and is wrong by {_knob(goodman, "pressure")} in pressure, {_knob(goodman, "shear")} in shear and {_knob(goodman, "dissipation")} in dissipation; `none`
+{_time(none)}, {_knob(none, "pressure")}, {_knob(none, "shear")} and {_knob(none, "dissipation")}. Those errors are larger than those of all but the coarsest meshes.
 
-*linear_tolerance: with fft only.* From {tight["label"]:g} ({_time(tight)}) {loose_text}; {enough["label"]:g} changes results by at most {_worst(enough["knob"]):.0e} and takes {_time(enough)}.
+*linear_tolerance: with fft only.* From {tight["label"]:g} ({_time(tight)}) {loose_text}; {enough["label"]:g} changes nothing by more than {_worst(enough["knob"]):.0e} and takes {_time(enough)}.
 
-*stepping='nominal': no trade.* With load_step {nominal["label"]:g} it gives the same states ({_knob(nominal, "shear")} in shear) in {_time(nominal)}; use it for comparison with the dissertation.
+*stepping='nominal': no trade.* With load_step {nominal["label"]:g} the same states ({_knob(nominal, "shear")} in shear) in {_time(nominal)}: for comparison with the dissertation.
 
-*algorithm='conventional': for comparison.* {conventional_text(conventional, knobs["conventional"])} MFV takes {_time(base)}.
+*algorithm='conventional': for comparison.* {conventional_text(conventional, knobs["conventional"])} An MFV run takes {_time(base)} and has no load step to choose.
 
 *kernel='fourier', harmonics: none.* On a disk of {CIRCLE} intervals the exact kernel takes {_time(data["harmonics"][0])} for the run; {few["label"]} harmonics an interval {_time(few)} with {_knob(few, "shear")} wrong in shear, {many["label"]} {_time(many)} with
 {_knob(many, "shear")}.
@@ -273,7 +274,7 @@ def _knob(entry: dict[str, Any], quantity: str) -> str:
 
 
 def percent(value: float) -> str:
-    """Per cent, or parts where they are tiny."""
+    """Per cent, or a ratio if it is tiny."""
     return f"{number(100.0 * value)} %" if value >= 1e-5 else f"{value:.0e}"
 
 
@@ -286,7 +287,7 @@ def _at(entries: list[dict[str, Any]], label: Any) -> dict[str, Any]:
 
 
 def conventional_text(done: list[dict[str, Any]], tried: list[dict[str, Any]]) -> str:
-    """What the conventional algorithm came to."""
+    """Results of the conventional algorithm."""
     early = [f"{entry['label']:g}" for entry in tried if entry["outcome"] != 0]
     text = f"With load_step {', '.join(early)} it ends early. " if early else ""
     if not done:
@@ -300,7 +301,7 @@ def conventional_text(done: list[dict[str, Any]], tried: list[dict[str, Any]]) -
 
 
 def knob_table(data: dict[str, Any]) -> str:
-    """Every setting: what it takes, and by how much it differs from events on the same mesh."""
+    """Time of every setting, and its difference from events on the same mesh."""
     entries = [("events, auto", data["base"])]
     for name, settings in data["knobs"].items():
         entries += [(f"{name} {entry['label']:g}", entry) for entry in settings]
@@ -312,7 +313,7 @@ def knob_table(data: dict[str, Any]) -> str:
             continue
         differences = [f"{entry['knob'][quantity]:.0e}" for quantity in QUANTITIES]
         rows.append([name, _time(entry), entry["solves"], *differences, f"{entry['certificate']:.0e}"])
-    head = ["setting", "time", "solves", *QUANTITIES.values(), "certificate"]
+    head = ["knob", "time", "solves", *QUANTITIES.values(), "certificate"]
     return f"Coupled scene, {data['contact']} nodes in contact, differences from events on the same mesh:\n\n{table(head, rows)}"
 
 
@@ -334,7 +335,7 @@ def draw_knobs(data: dict[str, Any], path: Path) -> None:
 
 
 def _draw(path: Path, lines: Callable[[], list[tuple[str, list[dict[str, Any]], str]]]) -> None:
-    """Four panels, one a quantity."""
+    """Four panels, one per quantity."""
     figure, panels = pyplot.subplots(2, 2, figsize=(9.5, 7.5), layout="constrained", sharex=True)
     for axes, (quantity, title) in zip(panels.flat, QUANTITIES.items(), strict=True):
         for name, entries, mark in lines():

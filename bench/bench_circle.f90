@@ -64,7 +64,7 @@ contains
              maxval(abs(kernels%tangential - exact%tangential)))/maxval(abs(exact%radial))
    end subroutine measure
 
-   !> A frictional run with about a hundred nodes in contact, whatever the circle.
+   !> A frictional run with about a hundred nodes in contact on any circle.
    subroutine run(circle, kernel)
       integer, intent(in) :: circle, kernel
       type(scene_type) :: scene

@@ -1,5 +1,5 @@
-!> Cases, timed. Every case is solved several times, in turn with the others, so that what else the machine does falls on all;
-!> nothing is recorded and no file is written but the tractions. A line of JSON for every case.
+!> Timed cases. Every case is solved several times, alternating with the others, so that other load of the machine affects all;
+!> nothing is recorded and only the tractions are written. A line of JSON for every case.
 module bench_runs
    use, intrinsic :: iso_fortran_env, only: error_unit, int64, output_unit
    use mfv_case, only: case_type
@@ -15,14 +15,14 @@ module bench_runs
    private
    public :: run_cases
 
-   !> What the last step of the load history, or the whole of it, took.
+   !> Cost of the last step of the load history, or of the whole.
    type :: counts_type
       real(wp) :: seconds = 0.0_wp
       integer :: events = 0, solves = 0
       integer(int64) :: iterations = 0, products = 0
    end type counts_type
 
-   !> A case with the least times that it took.
+   !> A case with its minimum times.
    type :: entry_type
       type(case_type) :: case
       type(simulation_type) :: simulation
@@ -55,7 +55,7 @@ contains
       end do
    end subroutine run_cases
 
-   !> Read one case; the program ends where it cannot be used.
+   !> Read one case; stop the program if it is invalid.
    subroutine read_entry(path, entry)
       character(*), intent(in) :: path
       type(entry_type), intent(inout) :: entry
@@ -96,7 +96,7 @@ contains
       entry%whole = after
    end subroutine solve
 
-   !> What has been counted so far.
+   !> Present counts.
    type(counts_type) function counts_now(simulation, started) result(counts)
       type(simulation_type), intent(in) :: simulation
       real(wp), intent(in) :: started
@@ -142,7 +142,7 @@ contains
       write (output_unit, '(a)') '}'
    end subroutine write_entry
 
-   !> Peak memory of this process so far, bytes; 0 where the system does not tell.
+   !> Peak memory of this process so far, bytes; 0 if unknown.
    integer(int64) function peak_memory() result(bytes)
       character(*), parameter :: key = 'VmHWM:'
       character(len=80) :: line

@@ -1,7 +1,7 @@
-/* What the C interface costs a step: mfv_advance, with and without mfv_get_loads, against the simulation behind it called directly
+/* Cost of the C interface per step: mfv_advance, with and without mfv_get_loads, against direct calls of the simulation
  * (embedding_direct.f90), in one program.
  *
- *     embedding [REPEATS]                    times: the least of every increment over so many cycles, each way in turn (40)
+ *     embedding [REPEATS]                    times: minimum of every increment over this many cycles, alternating (40)
  *     embedding direct|advance|loads SCENE   one way only, a cycle in scene 0, 1, ...: for callgrind to count instructions, such as
  *                                            valgrind --tool=callgrind --toggle-collect=mfv_advance embedding advance 0
  *

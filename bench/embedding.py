@@ -1,11 +1,11 @@
-"""What it costs to lead a contact from Python: time of `Case.advance` against that of the library for the same steps.
+"""Cost of advancing a contact from Python: time of `Case.advance` against that of the library for the same steps.
 
 PYTHONPATH=python build/venv/bin/python bench/embedding.py
 
-85 nodes in contact, Coulomb's friction, sheared to and fro in small increments of the shift. In turn: the whole of `advance`;
-`mfv_advance` called through ctypes with steps made before; and the same function with no case, which returns at once and tells what
-the call and the clock cost by themselves. The second less the third is the library's own time. Then the same with a look at the
-loads after every increment. Of every increment the least time of all repeats counts: other programs on the machine then do not.
+85 nodes in contact, Coulomb friction, cyclic shear in small increments of the shift. Measured alternately: `advance`;
+`mfv_advance` called through ctypes with prepared steps; and the same function without a case, which returns at once and measures
+the call and the clock. The second minus the third is the time of the library. Then the same with a query of the loads after every
+increment. The minimum over all repeats of every increment is used, which excludes other programs on the machine.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ import mfv
 from mfv._library import Control, LoadsStructure, StepStructure, library
 from mfv.loads import MOTIONS
 
-#: Increments of a cycle, the smallest steps first, and the shift that they go to and fro between [length].
+#: Increments of a cycle, the smallest steps first, and the amplitude of the shift [length].
 INCREMENTS, AMPLITUDE = (400, 80, 40), 2.0e-4
 
 
@@ -47,20 +47,20 @@ def scene() -> mfv.Scene:
 
 
 def pressed() -> mfv.Case:
-    """The case where the shear begins."""
+    """The case at the beginning of the shear."""
     case = scene().contact()
     case.advance(normal_force=1.0e-3, friction=False, check=True)
     return case
 
 
 def increments(count: int) -> list[float]:
-    """So many increments of the shift: up, down, up again to where it began."""
+    """Increments of the shift: up, down, and up to the start."""
     to_and_fro = np.concatenate(([0.0], AMPLITUDE * np.sin(2.0 * np.pi * np.arange(1, count + 1) / count)))
     return [float(increment) for increment in np.diff(to_and_fro)]
 
 
 def durations(count: int, lead: Callable[[float], object]) -> NDArray[np.float64]:
-    """Seconds that each increment takes."""
+    """Seconds of each increment."""
     taken = []
     for increment in increments(count):
         started = time.perf_counter()
@@ -70,7 +70,7 @@ def durations(count: int, lead: Callable[[float], object]) -> NDArray[np.float64
 
 
 def by_advance(count: int, loads: bool) -> NDArray[np.float64]:
-    """The whole of `advance`; with `loads` also asking for the loads."""
+    """`advance`; with `loads` followed by a query of the loads."""
     with pressed() as case:
         if loads:
             return durations(count, lambda shift: (case.advance(shift=shift, relative=True), case.loads))
@@ -99,7 +99,7 @@ def _step(shift: float) -> StepStructure:
 
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--repeats", type=int, default=40, help="measurements, of which the least counts (40 unless told)")
+    parser.add_argument("--repeats", type=int, default=40, help="number of measurements; the minimum is reported (40)")
     options = parser.parse_args()
     for count in INCREMENTS:
         print(f"{count} increments a cycle")
@@ -108,7 +108,7 @@ def main() -> None:
 
 
 def report(count: int, loads: bool, repeats: int) -> None:
-    """Measure in turn, and print what Python adds."""
+    """Measure alternately, and print the overhead of Python."""
     measures = {
         "package": functools.partial(by_advance, count, loads),
         "library": functools.partial(by_ctypes, count, True, loads),

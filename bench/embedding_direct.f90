@@ -1,4 +1,4 @@
-!> The simulation without the C interface, for embedding.c to compare with: what mfv_advance stands on, called as directly as C can.
+!> The simulation without the C interface, for comparison in embedding.c: direct calls of the procedures behind mfv_advance.
 module embedding_direct
    use, intrinsic :: iso_c_binding
    use mfv_case, only: case_type
@@ -15,7 +15,7 @@ module embedding_direct
 
 contains
 
-   !> Run the steps of a case anew. Returns the status.
+   !> Run the steps of a new case. Returns the status.
    integer(c_int) function direct_start(text, length) bind(C, name='direct_start') result(status)
       integer(c_size_t), value :: length
       character(kind=c_char), intent(in) :: text(length)
@@ -33,7 +33,7 @@ contains
       status = simulation%outcome
    end function direct_start
 
-   !> Lead the shift on by an increment, length. Returns the status.
+   !> Increase the shift by an increment, length. Returns the status.
    integer(c_int) function direct_advance(increment) bind(C, name='direct_advance') result(status)
       real(c_double), value :: increment
       type(step_type) :: step

@@ -12,18 +12,18 @@ from matplotlib import pyplot
 
 CONTACTS = (40, 80, 160, 331, 1000, 3000, 10000)
 MU, PRESS, SHEAR = 0.5, 1.0e-3, 3.0e-4
-#: Nodes in contact up to which a solver is measured, and up to which the whole history is led.
+#: Largest number of contact nodes for each solver, and for the whole load history.
 MOST = {"dgesv": 1000, "reduced": 3000, "fft": 10000}
 WHOLE = {"dgesv": 331, "reduced": 1000, "fft": 1000}
-#: Above: so many events of shear, about.
+#: Approximate number of shear events.
 EVENTS = {"dgesv": 10, "reduced": 60, "fft": 60}
-#: and so many of a shorter one, which is taken off.
+#: Number of events of a shorter run, which is subtracted.
 FEW = 2
 BODIES = [
     {"shape": "half_plane", "shear_modulus": 1.0, "poisson_ratio": 0.3},
     {"shape": "disk", "radius": 0.25, "rigid": True},
 ]
-#: Families of scenes, each with what makes a linear solve dear or cheap.
+#: Families of scenes, which differ in the cost of a linear solve.
 FAMILIES = {
     "full coupling": {"coupling": "full"},
     "Goodman": {"coupling": "goodman"},
@@ -38,7 +38,7 @@ def cycles(contact: int, number_of: int = 1, coupling: str = "full") -> Case:
 
 
 def little(contact: int, events: int, coupling: str = "full") -> Case:
-    """Press without friction, straight to the load, and shear until about so many nodes slip."""
+    """Press without friction in one step, and shear until about this many nodes slip."""
     share = min(1.0 - (1.0 - events / contact) ** 2, SHEAR / (MU * PRESS)) if events < contact else SHEAR / (MU * PRESS)
     steps = [{"normal_force": PRESS, "friction": False}, {"tangential_force": share * MU * PRESS}]
     return Case(BODIES, steps, {"nodes": round(1.2 * contact)}, MU, coupling)
@@ -59,7 +59,7 @@ def measure(bench: Bench, quick: bool) -> dict[str, Any]:
 
 
 def _cost(bench: Bench, contact: int, coupling: str, quick: bool) -> list[dict[str, Any]]:
-    """Cost per event, of one cycle where that is affordable, else of a part of the first shear."""
+    """Cost per event, of one cycle if affordable, else of a part of the first shear."""
     rows = []
     whole = [solver for solver in SOLVERS if contact <= WHOLE[solver]]
     if whole:
@@ -70,14 +70,14 @@ def _cost(bench: Bench, contact: int, coupling: str, quick: bool) -> list[dict[s
     for solver in part:
         cases = [little(contact, number_of, coupling).by(linear_solver=solver) for number_of in (FEW, EVENTS[solver])]
         few, many = bench.run(cases)
-        # What both have in common, the first factorisation above all, is no event's.
+        # The common cost, mainly the first factorisation, belongs to no event.
         counts = {key: many["last"][key] - few["last"][key] for key in many["last"]}
         rows.append(_row(many, counts, "part of a shear"))
     return rows
 
 
 def _little(bench: Bench, contact: int, coupling: str) -> list[dict[str, Any]]:
-    """Reduced and fft on the same part of a shear, factorisation included and not."""
+    """Reduced and fft on the same part of a shear, with and without factorisation."""
     solvers = [solver for solver in ("reduced", "fft") if contact <= MOST[solver]]
     case = little(contact, EVENTS["fft"], coupling)
     results = bench.run([case.by(linear_solver=solver) for solver in solvers], 2 if contact < 2000 else 1)
@@ -98,8 +98,8 @@ def _row(result: dict[str, Any], counts: dict[str, Any], history: str) -> dict[s
 
 
 def _memory(bench: Bench, contacts: tuple[int, ...], cycle: list[dict[str, Any]]) -> list[dict[str, Any]]:
-    """Peak memory of a process for the press, straight to the load, and the first few nodes that slip."""
-    # The largest have had a process of their own.
+    """Peak memory of a process for pressing in one step and the first few slipping nodes."""
+    # The largest cases ran in separate processes.
     rows = [row for row in cycle if row["solver"] == "reduced" and row["contact"] > 1.1 * WHOLE["reduced"]]
     for contact in contacts:
         for solver in SOLVERS:
@@ -111,7 +111,7 @@ def _memory(bench: Bench, contacts: tuple[int, ...], cycle: list[dict[str, Any]]
 
 
 def fits(rows: list[dict[str, Any]], key: str = "seconds", least: int = 150) -> dict[str, tuple[float, float]]:
-    """Exponent and factor of every solver, from `least` nodes in contact on."""
+    """Exponent and factor of every solver, from `least` nodes in contact."""
     laws = {}
     for solver in SOLVERS:
         points = [(row["contact"], row[key]) for row in rows if row["solver"] == solver and row["contact"] >= least]
@@ -121,7 +121,7 @@ def fits(rows: list[dict[str, Any]], key: str = "seconds", least: int = 150) -> 
 
 
 def flops(row: dict[str, Any]) -> float:
-    """Floating-point operations of an event, about: what the linear algebra alone does."""
+    """Approximate floating-point operations of the linear algebra per event."""
     contact, solves = row["contact"], row["solves"] / max(row["events"], 1)
     if row["solver"] == "dgesv":
         return float(solves * 2.0 / 3.0 * (4.0 * contact) ** 3)
@@ -206,7 +206,7 @@ Reduced against fft on the same short history (about {EVENTS["fft"]} nodes begin
 
 
 def _most(structure: str) -> int:
-    """Where the library has its crossover."""
+    """The crossover in the library."""
     found = re.search(rf"most_{structure} = (\d+)", (ROOT / "src/algorithms/solvers/solver_costs.f90").read_text())
     assert found is not None
     return int(found[1])

@@ -1,4 +1,4 @@
-"""What all sections share: cases, runs of the program `bench`, tables, fits."""
+"""Shared by all sections: cases, runs of the program `bench`, tables, fits."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ ROOT = Path(__file__).resolve().parents[1]
 ENVIRONMENT = os.environ | {"OPENBLAS_NUM_THREADS": "1"}
 SOLVERS = ("dgesv", "reduced", "fft")
 Group = dict[str, Any]
-#: Certificates that runs may have: with fft and its default tolerance, and with a factorisation.
+#: Limits of certificates: with fft and its default tolerance, and with a factorisation.
 CERTIFICATE, CERTIFICATE_DIRECT = 1e-8, 1e-10
 
 
@@ -59,7 +59,7 @@ class Case:
 
 
 def _value(value: Any) -> str:
-    """As a namelist has it."""
+    """A value as written in a namelist."""
     if isinstance(value, bool):
         return f".{str(value).lower()}."
     return f"'{value}'" if isinstance(value, str) else repr(value)
@@ -75,7 +75,7 @@ class Tractions:
 
 
 class Bench:
-    """The program, and what its runs broke."""
+    """The program, and the violations of its runs."""
 
     def __init__(self, program: Path, limit: float) -> None:
         self.program = program
@@ -87,7 +87,7 @@ class Bench:
     def run(self, cases: Sequence[Case], repeats: int = 1, strict: bool = True) -> list[dict[str, Any]]:
         """Solve cases in turn in one process, `repeats` times; with the tractions at the end as `tractions`.
 
-        `strict`: an early end, or a certificate beyond what the linear solver can do, breaks the gate.
+        `strict`: an early end, or a certificate above the limit of the linear solver, is a violation.
         """
         with tempfile.TemporaryDirectory() as folder:
             paths = [Path(folder) / f"case{i}.nml" for i in range(len(cases))]
@@ -108,7 +108,7 @@ class Bench:
         return str(done.stdout)
 
     def process(self, case: Case, repeats: int) -> dict[str, Any]:
-        """Solve a case in a process of its own: the least wall time of the process; `memory`: its peak, bytes."""
+        """Solve a case in a separate process: minimum wall time of the process; `memory`: its peak, bytes."""
         least = float("inf")
         best: dict[str, Any] = {}
         with tempfile.TemporaryDirectory() as folder:
@@ -127,7 +127,7 @@ class Bench:
         return best | {"wall": least}
 
     def check(self, case: Case, result: dict[str, Any], strict: bool) -> None:
-        """The gate: the outcome is complete, and the certificate what the linear solver can do."""
+        """Check that the outcome is complete and the certificate below the limit of the linear solver."""
         self.runs += 1
         if not strict:
             return
@@ -138,7 +138,7 @@ class Bench:
 
 
 def plain(result: Mapping[str, Any]) -> dict[str, Any]:
-    """A result without its tractions, to be kept."""
+    """A result without its tractions, to be saved."""
     return {key: value for key, value in result.items() if key not in ("tractions", "case")}
 
 
@@ -156,7 +156,7 @@ def slope(x: Sequence[float], y: Sequence[float]) -> tuple[float, float]:
 
 
 def duration(seconds: float) -> str:
-    """A time in words."""
+    """A time with its unit."""
     for unit, size in (("s", 1.0), ("ms", 1e-3)):
         if seconds >= size:
             return f"{number(seconds / size)} {unit}"
@@ -164,7 +164,7 @@ def duration(seconds: float) -> str:
 
 
 def number(value: float, digits: int = 2) -> str:
-    """A number with so many digits, without an exponent where it is neither large nor small."""
+    """A number with this many digits, with an exponent only if it is large or small."""
     if value == 0.0:
         return "0"
     if 1e-3 <= abs(value) < 1e6:
@@ -174,10 +174,10 @@ def number(value: float, digits: int = 2) -> str:
 
 
 def size(value: float) -> str:
-    """A number of bytes in words."""
+    """A number of bytes with its unit."""
     return f"{value / 1e6:.0f} MB"
 
 
 def stamp() -> dict[str, Any]:
-    """When, and how busy the machine was."""
+    """Date and load of the machine."""
     return {"date": datetime.date.today().isoformat(), "load": os.getloadavg()[0]}

@@ -6,7 +6,7 @@
 The first prints, for some tolerances, the linear solves and the largest error of what a cycle dissipates. The second compares
 tractions and the dissipation of every load segment in random scenes of Coulomb friction: couplings, materials, disks and a flat
 punch, 101 to 401 nodes, pressing with friction, oblique loads, cycles of either force, unloading, prescribed displacements. It
-prints the scenes beyond the tolerance, and how often the estimated errors cover the true ones.
+prints the scenes above the tolerance, and how often the estimated errors bound the true ones.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ import mfv
 from mfv import Body, Friction, Mesh, Output, Scene, Solver, Step
 
 NODES = (101, 161, 241, 401)
-#: Differences below these parts of the largest are round-off.
+#: Relative differences below these are round-off.
 ROUND_OFF_TRACTION, ROUND_OFF_DISSIPATION = 1e-9, 1e-9
 
 
@@ -128,7 +128,7 @@ def random_steps(draw: np.random.Generator, force: float, mu: float, approach: f
 
 
 def differences(events: mfv.Result, result: mfv.Result) -> tuple[float, float]:
-    """The largest error of a traction, in parts of the largest traction; and of what a load segment dissipates, in parts of that."""
+    """The largest relative errors of the tractions and of the dissipation of a load segment."""
     traction = largest = 0.0
     for one, other in zip(events.steps, result.steps):
         largest = max(largest, np.abs(one.pressure).max(), np.abs(one.shear).max())

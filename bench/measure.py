@@ -40,15 +40,15 @@ Every run has to be complete, with a certificate below {direct:.0e} ({iterative:
 
 
 def main() -> None:
-    """Measure, keep the numbers, write the page."""
+    """Measure, save the numbers, write the page."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--only", nargs="+", choices=[*MODULES, "none"], help="sections to measure; none: write the page")
-    parser.add_argument("--quick", action="store_true", help="smaller meshes, fewer repeats, to try it out")
-    parser.add_argument("--long", action="store_true", help="measure 10,000 nodes too (about 10 minutes)")
+    parser.add_argument("--quick", action="store_true", help="smaller meshes, fewer repeats, for a trial")
+    parser.add_argument("--long", action="store_true", help="also measure 10,000 nodes (about 10 minutes)")
     parser.add_argument("--program", type=Path, default=ROOT / "build/release/bin/bench")
-    parser.add_argument("--results", type=Path, default=Path(__file__).with_name("results.json"), help="where numbers are kept")
+    parser.add_argument("--results", type=Path, default=Path(__file__).with_name("results.json"), help="file of the numbers")
     parser.add_argument("--docs", type=Path, default=ROOT / "docs", help="where performance.md goes")
-    parser.add_argument("--limit", type=float, default=1800.0, help="seconds that one process may take")
+    parser.add_argument("--limit", type=float, default=1800.0, help="time limit of a process in seconds")
     options = parser.parse_args()
     results: dict[str, Any] = json.loads(options.results.read_text()) if options.results.exists() else {}
     failed = False
@@ -69,12 +69,12 @@ def main() -> None:
 
 
 def gate(bench: Bench) -> dict[str, Any]:
-    """What the gate has seen."""
+    """Number of checked runs, their largest certificate and violations."""
     return {"runs": bench.runs, "broken": bench.broken, "largest_certificate": bench.largest_certificate}
 
 
 def page(results: dict[str, Any], pictures: Path) -> str:
-    """All sections that there are numbers of."""
+    """All sections with numbers."""
     pictures.mkdir(parents=True, exist_ok=True)
     parts = [head(results)]
     if "targets" in results:
@@ -88,7 +88,7 @@ def page(results: dict[str, Any], pictures: Path) -> str:
 
 
 def head(results: dict[str, Any]) -> str:
-    """The beginning of the page, with the gate."""
+    """The head of the page, with the checks of the runs."""
     runs = sum(entry["runs"] for entry in results.values())
     broken = [text for entry in results.values() for text in entry["broken"]]
     largest = max(entry["largest_certificate"] for entry in results.values())

@@ -15,7 +15,7 @@ WINDOW, HALF_WIDTH, RADIUS, MODULUS, MU, SHARE, POISSON = 4.0, 1.0, 1.0, 1.0, 0.
 FORCE = float(np.pi) * MODULUS * HALF_WIDTH**2 / (4.0 * RADIUS)
 SHEAR = SHARE * MU * FORCE
 NODES = (512, 2048, 8192)
-#: The mesh that just spans the contact, in parts of the window.
+#: The mesh that just spans the contact, relative to the window.
 NARROW = 1.02 * 2.0 * HALF_WIDTH / WINDOW
 REPEATS = 60
 #: Stick ratio of the frictional press (nu = 0, mu = 0.7), of the issue.
@@ -24,7 +24,7 @@ PRESS_STICK_RATIO = 0.745
 
 @dataclass(frozen=True)
 class Published:
-    """What CONTACT takes, process and start-up included: seconds, and the error."""
+    """Time of CONTACT in seconds, including process and start-up, and its error."""
 
     seconds: float
     error: float
@@ -123,7 +123,7 @@ def _smallest(bench: Bench, job: str, nodes: int, wanted: float) -> dict[str, An
 
 
 def _solvers(bench: Bench) -> list[dict[str, Any]]:
-    """What the linear solvers take for these jobs at n = 512, in one process."""
+    """Times of the linear solvers for these jobs at n = 512, in one process."""
     rows = []
     for job in NAMES:
         case = case_of(job, NODES[0])
@@ -142,7 +142,7 @@ def _press(bench: Bench) -> list[dict[str, Any]]:
 
 
 def _start(bench: Bench) -> float:
-    """Wall time of a process that has next to nothing to do."""
+    """Wall time of a process with a trivial case."""
     return float(bench.process(case_of("hertz", 16), REPEATS)["wall"])
 
 
@@ -152,7 +152,7 @@ def reaches(error: float, published: float) -> bool:
 
 
 def ahead(job: str, place: int, cell: dict[str, Any]) -> tuple[float, dict[str, Any]]:
-    """How many times faster than the published time at the same or a smaller error; and the cell that is."""
+    """Speed-up over the published time at the same or a smaller error, and its cell."""
     own = cell.get("enough") or cell
     return PUBLISHED[job][place].seconds / own["wall"], own
 

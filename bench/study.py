@@ -1,9 +1,9 @@
-"""Measure studies: what a case costs beside being solved, by every executor, and that kill -9 loses nothing but the cases
-on their way. Prints Markdown tables. A quarter of an hour. build/venv/bin/python bench/study.py
+"""Measure studies: overhead of a case with every executor; check that kill -9 loses only the cases in progress.
+Prints Markdown tables. A quarter of an hour. build/venv/bin/python bench/study.py
 
 Overhead of a case: workers x (wall time less that of the same study with 2 cases) / (cases - 2), less the time per case when
 the same jobs are solved one after another in this process, without a study, in the same round. Every run keeps its cases in a
-store and writes its table. A study is killed at random moments; a trigger in its store refuses a case that comes twice.
+store and writes its table. A study is killed at random times; a trigger in its store rejects a case that is solved twice.
 """
 
 from __future__ import annotations
@@ -58,7 +58,7 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--cases", type=int, default=1000, help="a multiple of 40")
     parser.add_argument("--nodes", type=int, nargs="+", default=[41, 221], help="sizes of a case: about 1 ms and 26 ms")
-    parser.add_argument("--rounds", type=int, default=3, help="how often all runs are repeated, in turn")
+    parser.add_argument("--rounds", type=int, default=3, help="number of repetitions of all runs")
     parser.add_argument("--kills", type=int, default=10)
     options = parser.parse_args()
     with tempfile.TemporaryDirectory() as name:
@@ -73,7 +73,7 @@ def main() -> None:
 
 
 def ways() -> dict[str, tuple[int, Solve]]:
-    """Workers of every way to solve a study, and what solves the study with a text."""
+    """Workers of every executor, and the function that solves a study."""
     here = (("threads", 1), ("threads", 2), ("processes", 2), ("dask", 2))
     found = {f"{name}, {workers}": (workers, functools.partial(solve_here, name, workers)) for name, workers in here}
     launcher = ("mpiexec", "-n", "3", "--oversubscribe", sys.executable, "-m", "mpi4py.futures")
@@ -93,7 +93,7 @@ def call(command: tuple[str, ...], text: Path) -> None:
 
 
 def seconds(solve: Solve, text: Path) -> float:
-    """Time of a study that finds nothing from before."""
+    """Time of a study without saved cases."""
     for path in {*text.parent.glob(f"{text.stem}.*")} - {text}:
         path.unlink()
     started = time.perf_counter()
@@ -102,7 +102,7 @@ def seconds(solve: Solve, text: Path) -> float:
 
 
 def print_overheads(measured: dict[str, tuple[int, Solve]], folder: Path, rounds: int) -> None:
-    """Print start-up and overhead per case of every way; their tables must be the same."""
+    """Print start-up and overhead per case of every executor; their tables must be equal."""
     jobs = [study.job(number) for study in [read_study(folder / "study.nml")] for number in range(1, len(study) + 1)]
     solve_here("threads", 1, folder / "two.nml")  # for what is imported on first use
     alone, tables, begun, beside = [], {}, {name: [] for name in measured}, {name: [] for name in measured}
@@ -125,12 +125,12 @@ def print_overheads(measured: dict[str, tuple[int, Solve]], folder: Path, rounds
 
 
 def told(values: list[float]) -> str:
-    """The least value and the median."""
+    """The minimum and the median."""
     return f"{min(values):.2f}, {statistics.median(values):.2f}"
 
 
 def print_kills(folder: Path, count: int, chance: random.Random) -> None:
-    """Kill a study at random moments, go on, and compare the table in the end."""
+    """Kill a study at random times, continue it, and compare the final table."""
     text, store = folder / "study.nml", folder / "study.sqlite"
     start, whole = (seconds(functools.partial(call, COMMAND), path) for path in (folder / "two.nml", text))
     undisturbed = xarray.load_dataset(folder / "study.nc")
@@ -151,7 +151,7 @@ def print_kills(folder: Path, count: int, chance: random.Random) -> None:
 
 
 def names_in(store: Path) -> set[str]:
-    """Names of the cases in a store, read from a copy: what a kill has left the next run is to bring in order."""
+    """Hashes of the cases in a store, read from a copy, so that the next run recovers the original."""
     with tempfile.TemporaryDirectory() as place:
         for path in store.parent.glob(f"{store.name}*"):
             shutil.copy(path, place)

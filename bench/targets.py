@@ -1,4 +1,4 @@
-"""What was to be reached: reduced against dgesv, a thousand nodes, ten thousand nodes."""
+"""Targets: reduced against dgesv, a thousand nodes, ten thousand nodes."""
 
 from __future__ import annotations
 
@@ -24,10 +24,10 @@ def measure(bench: Bench, quick: bool) -> dict[str, Any]:
 
 
 def pair(bench: Bench, contact: int, number_of: int) -> dict[str, Any]:
-    """The same case by dgesv and reduced, in turn in one process."""
+    """The same case with dgesv and reduced, alternately in one process."""
     case = cycles(contact, number_of)
     repeats = 3 if contact < 100 else 1
-    # The fast one is measured more often: its share of noise is larger.
+    # The fast one is measured more often, since its relative scatter is larger.
     solvers = ["dgesv"] + ["reduced"] * 5
     results = bench.run([case.by(linear_solver=solver) for solver in solvers], repeats)
     slow, fast = results[0], min(results[1:], key=lambda result: result["whole"]["seconds"])

@@ -1,4 +1,4 @@
-# HDF5 with its Fortran and high-level interfaces: HDF5Fortran_FOUND, target HDF5Fortran::hdf5_fortran. CMake's own module wants a
+# HDF5 with its Fortran and high-level interfaces: HDF5Fortran_FOUND, target HDF5Fortran::hdf5_fortran. CMake's own module needs a
 # Fortran compiler; without one, as in a C project that links the static libmfv, the libraries are found by their names.
 if(CMAKE_Fortran_COMPILER_LOADED)
   find_package(HDF5 QUIET COMPONENTS Fortran HL)

@@ -1,8 +1,8 @@
-# Install tree: libraries, header, Fortran modules, programs, package files for find_package(mfv) and pkg-config. Nothing in it names
-# the place where it was installed first: it may be moved.
+# Install tree: libraries, header, Fortran modules, programs, package files for find_package(mfv) and pkg-config. The tree is
+# relocatable.
 set(package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/mfv)
 
-# Modules are read by the compiler that wrote them only.
+# Only the compiler that wrote the modules can read them.
 string(REGEX MATCH "^[0-9]+" fortran_major ${CMAKE_Fortran_COMPILER_VERSION})
 set(MFV_FORTRAN_COMPILER ${CMAKE_Fortran_COMPILER_ID}-${fortran_major})
 set(MFV_MODULE_DIR ${CMAKE_INSTALL_LIBDIR}/fortran-modules/mfv/${MFV_FORTRAN_COMPILER})
@@ -10,7 +10,7 @@ foreach(modules ${MFV_MODULE_DIRECTORIES})
   install(DIRECTORY ${modules}/ DESTINATION ${MFV_MODULE_DIR} FILES_MATCHING PATTERN "*.mod" PATTERN "*.smod")
 endforeach()
 
-# The static library is exported by itself: only who asks for it needs what it stands on.
+# The static library is exported separately: only its users need its dependencies.
 if(BUILD_SHARED_LIBS)
   set(static_library mfv_static)
   install(TARGETS mfv EXPORT mfv-shared-targets LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR})
@@ -26,7 +26,7 @@ install(EXPORT mfv-programs NAMESPACE mfv:: DESTINATION ${package_dir})
 install(FILES ${PROJECT_SOURCE_DIR}/include/mfv.h ${PROJECT_SOURCE_DIR}/include/mfv_status.def
   DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
 
-# What the compiler adds when it links Fortran, for those who link the static library by another compiler.
+# Run-time libraries of Fortran, for linking the static library with another compiler.
 set(MFV_FORTRAN_LIBRARIES ${CMAKE_Fortran_IMPLICIT_LINK_LIBRARIES})
 list(REMOVE_ITEM MFV_FORTRAN_LIBRARIES ${CMAKE_C_IMPLICIT_LINK_LIBRARIES} m)
 list(REMOVE_DUPLICATES MFV_FORTRAN_LIBRARIES)
@@ -38,7 +38,7 @@ write_basic_package_version_file(${PROJECT_BINARY_DIR}/mfv-config-version.cmake 
 install(FILES ${PROJECT_BINARY_DIR}/mfv-config.cmake ${PROJECT_BINARY_DIR}/mfv-config-version.cmake
   ${PROJECT_SOURCE_DIR}/cmake/FindFFTW3.cmake ${PROJECT_SOURCE_DIR}/cmake/FindHDF5Fortran.cmake DESTINATION ${package_dir})
 
-# pkg-config: the way back from the .pc file to the prefix, and what the static library stands on.
+# pkg-config: the path from the .pc file to the prefix, and the dependencies of the static library.
 file(RELATIVE_PATH MFV_PREFIX_FROM_PC ${CMAKE_INSTALL_FULL_LIBDIR}/pkgconfig ${CMAKE_INSTALL_PREFIX})
 string(REGEX REPLACE "/$" "" MFV_PREFIX_FROM_PC ${MFV_PREFIX_FROM_PC})
 set(private_libraries ${HDF5Fortran_LIBRARIES} ${FFTW3_LIBRARY} ${GSL_LIBRARIES} ${LAPACK_LIBRARIES} ${BLAS_LIBRARIES})
@@ -50,7 +50,7 @@ string(APPEND MFV_LIBS_PRIVATE " ${fortran_libraries} -lm")
 configure_file(${PROJECT_SOURCE_DIR}/cmake/mfv.pc.in ${PROJECT_BINARY_DIR}/mfv.pc @ONLY)
 install(FILES ${PROJECT_BINARY_DIR}/mfv.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig)
 
-# What pip puts into the Python package: the library under the one name that programs ask for (a wheel has no links), and the programs.
+# Files of the Python package: the library under its soname (a wheel has no symbolic links), and the programs.
 if(BUILD_SHARED_LIBS)
   install(FILES $<TARGET_FILE:mfv> DESTINATION mfv/lib RENAME $<TARGET_SONAME_FILE_NAME:mfv> COMPONENT python EXCLUDE_FROM_ALL)
   install(TARGETS ${MFV_PROGRAMS} RUNTIME DESTINATION mfv/bin COMPONENT python EXCLUDE_FROM_ALL)

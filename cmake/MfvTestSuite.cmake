@@ -9,7 +9,7 @@ include_guard(GLOBAL)
 function(mfv_add_suite)
   cmake_parse_arguments(PARSE_ARGV 0 arg "" "NAME;SOURCES" "LIBRARIES;LABELS")
   if(NOT arg_NAME OR NOT arg_SOURCES MATCHES "\\.pf$" OR arg_UNPARSED_ARGUMENTS)
-    message(FATAL_ERROR "mfv_add_suite needs NAME and SOURCES with one .pf file; not understood: "
+    message(FATAL_ERROR "mfv_add_suite needs NAME and SOURCES with one .pf file; unknown arguments: "
                         "'${arg_UNPARSED_ARGUMENTS}'")
   endif()
 

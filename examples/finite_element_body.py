@@ -2,11 +2,10 @@
 
     python examples/finite_element_body.py [--surface-nodes 41] [-o PICTURE.png] [--keep DIRECTORY]
 
-scikit-fem (`pip install scikit-fem`) makes an elastic block, clamped at its bottom and so large that the contact sees
-next to nothing of its edges. Unit forces at the surface nodes under the contact give the compliance matrix, which goes
-into body.h5. A rigid disk is pressed on without friction and then sheared: once on this body, once on an elastic
-half-plane with nodes at the same places. Another finite-element program takes the place of the functions `block_mesh`
-and `surface_compliance`; the rest stays.
+scikit-fem (`pip install scikit-fem`) makes an elastic block, clamped at its bottom and so large that its edges hardly affect
+the contact. Unit forces at the surface nodes under the contact give the compliance matrix, which is written to body.h5. A rigid
+disk is pressed without friction and then sheared: once on this body, once on an elastic half-plane with nodes at the same
+positions. To use another finite-element program, replace the functions `block_mesh` and `surface_compliance`.
 """
 
 from __future__ import annotations
@@ -30,9 +29,9 @@ SHEAR_MODULUS, POISSON_RATIO = 1.0, 0.3
 RADIUS, NORMAL_FORCE, TANGENTIAL_FORCE = 0.25, 1.0e-3, 2.8e-4
 #: The nodes of the contact cover [-HALF_WIDTH, HALF_WIDTH]; pressed on, the disk touches [-0.01056, 0.01056] (Hertz).
 HALF_WIDTH = 0.0127
-#: With fewer nodes the contact would come to the end of those that there are.
+#: With fewer nodes the contact would extend beyond the matrix.
 FEWEST_NODES = 15
-#: The block reaches this far to either side and down: some 100 contact half-widths.
+#: Extent of the block to either side and down: about 100 contact half-widths.
 REACH = 1.0
 #: Each element beyond the fine ones is larger than its neighbour by this factor.
 GROWTH = 1.15
@@ -83,13 +82,12 @@ def block_mesh(x: np.ndarray) -> MeshQuad:
 def surface_compliance(mesh: MeshQuad, x: np.ndarray) -> np.ndarray:
     """Displacements of the nodes at (x, 0) by unit forces at them, per unit thickness, in plane strain; shape (2n, 2n).
 
-    Rows and columns as MFV has them: normal components, positive into the body, of all nodes, then tangential ones,
+    Rows and columns in the order of MFV: normal components, positive into the body, of all nodes, then tangential ones,
     positive to the right.
     """
-    # Bilinear elements on purpose. MFV makes the force at a node from its own traction alone, traction times width, and
-    # linear shape functions on equal elements give an even traction the same nodal forces ("lumped"). Quadratic ones do
-    # not: theirs alternate, 1/3 of an element's at shared corners and 2/3 at mid-side nodes, so that traction times
-    # width would make the surface wavy.
+    # Bilinear elements, since the nodal force of MFV is traction times width, which equals the consistent force of linear shape
+    # functions on equal elements for uniform traction. Those of quadratic elements alternate: 1/3 of an element's force at shared
+    # corners and 2/3 at mid-side nodes, so that traction times width would give a wavy surface.
     basis = Basis(mesh, ElementVector(ElementQuad1()))
     youngs_modulus = 2 * SHEAR_MODULUS * (1 + POISSON_RATIO)
     # The Lame constants of three dimensions make the two-dimensional form plane strain.
@@ -119,10 +117,10 @@ def write_body(path: Path, x: np.ndarray, compliance: np.ndarray) -> None:
 
 
 def equivalent_datum(x: np.ndarray, compliance: np.ndarray) -> float:
-    """Distance from which a half-plane has to measure its displacements to be shifted as much as the block.
+    """Datum of a half-plane whose displacements equal those of the block.
 
     A force Q on a half-plane shifts the surface at the distance d by (1 - nu)/(pi G) Q ln(datum/d). The mean over nodes
-    more than five elements from the force leaves out what elements make of the singularity.
+    more than five elements from the force excludes the discretised singularity.
     """
     tangential = compliance[len(x) :, len(x) :]
     distance = np.abs(x[:, None] - x)
@@ -132,7 +130,7 @@ def equivalent_datum(x: np.ndarray, compliance: np.ndarray) -> float:
 
 
 def compare(surface_nodes: int, directory: Path) -> Comparison:
-    """Both contacts. The directory gets body.h5 and the case that uses it."""
+    """Both contacts. body.h5 and its case are written to the directory."""
     x = contact_positions(surface_nodes)
     compliance = surface_compliance(block_mesh(x), x)
     write_body(directory / "body.h5", x, compliance)
@@ -146,7 +144,7 @@ def compare(surface_nodes: int, directory: Path) -> Comparison:
 
 
 def quantities(result: mfv.Result) -> dict[str, float]:
-    """What the table compares."""
+    """The compared quantities."""
     summary = result.summary
     numbers = (summary.contact_half_width, result.state.pressure.max(), summary.stick_ratio, summary.shift)
     return dict(zip(QUANTITIES, map(float, numbers), strict=True))
@@ -155,7 +153,7 @@ def quantities(result: mfv.Result) -> dict[str, float]:
 def differences(comparison: Comparison) -> dict[str, float]:
     """Relative differences of the finite-element body from the half-plane.
 
-    The approach is not among them: like the shift it contains a rigid translation, which depends on where the bodies
+    The approach is not compared: like the shift it contains a rigid translation, which depends on where the bodies
     are held, and the datum has been chosen for the shift.
     """
     numbers, expected = map(quantities, comparison)
@@ -163,7 +161,7 @@ def differences(comparison: Comparison) -> dict[str, float]:
 
 
 def half_width_step(comparison: Comparison) -> float:
-    """Relative change of the contact half-width by one node more in contact; it changes in such steps only."""
+    """Relative change of the contact half-width by one more node in contact, its resolution."""
     x = comparison.half_plane.mesh.x
     return float(0.5 * (x[1] - x[0]) / comparison.half_plane.summary.contact_half_width)
 
@@ -195,7 +193,7 @@ def draw(comparison: Comparison, path: str) -> None:
 
 @contextlib.contextmanager
 def working_directory(kept: Path | None) -> Iterator[Path]:
-    """The directory to keep, made where it is missing, or one that vanishes afterwards."""
+    """The directory to keep, created if missing, or a temporary one."""
     if kept is None:
         with tempfile.TemporaryDirectory() as directory:
             yield Path(directory)
@@ -206,9 +204,9 @@ def working_directory(kept: Path | None) -> Iterator[Path]:
 
 def main() -> None:
     parser = argparse.ArgumentParser(description="a finite-element body in contact, against the half-plane")
-    parser.add_argument("--surface-nodes", type=int, default=41, help="nodes of the contact (41 unless told)")
+    parser.add_argument("--surface-nodes", type=int, default=41, help="number of surface nodes (default: 41)")
     parser.add_argument("-o", "--output", help="picture to draw")
-    parser.add_argument("--keep", type=Path, metavar="DIRECTORY", help="where to leave body.h5 and its case")
+    parser.add_argument("--keep", type=Path, metavar="DIRECTORY", help="save body.h5 and its case there")
     options = parser.parse_args()
     if options.surface_nodes < FEWEST_NODES:
         parser.error(f"--surface-nodes must be {FEWEST_NODES} or more")

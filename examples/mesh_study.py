@@ -116,7 +116,7 @@ def draw(meshes: list[int], table: dict[str, list[float]], path: str) -> None:
 def main() -> None:
     parser = argparse.ArgumentParser(description="errors against the closed forms over the number of intervals")
     parser.add_argument("-o", "--output", help="picture to draw")
-    parser.add_argument("--finest", type=int, default=201, help="largest mesh (201 unless told)")
+    parser.add_argument("--finest", type=int, default=201, help="number of nodes of the finest mesh (default: 201)")
     options = parser.parse_args()
     meshes = [n for n in (25, 51, 101, 201, 401) if n <= options.finest]
     columns = [mean_errors(nodes) for nodes in meshes]

@@ -3,9 +3,9 @@
     python examples/static_kinetic_mesh.py [-o PICTURE.png] [--finest N] [--distances D ...]
 
 Mindlin's problem: a rigid cylinder is pressed without friction and sheared by Q = 0.475 mu_s P, the ratio of the dissertation's
-section 5.2, with mu_s = 0.7 and mu_k = 0.49. Under static and kinetic friction the stick ratio falls with every finer mesh, from
-sqrt(1 - Q/(mu_s P)) towards sqrt(1 - Q/(mu_k P)). Weakening friction, whose coefficient falls over a slip distance D, settles
-as soon as the intervals resolve what D asks for.
+section 5.2, with mu_s = 0.7 and mu_k = 0.49. Under static and kinetic friction the stick ratio decreases with mesh refinement, from
+sqrt(1 - Q/(mu_s P)) towards sqrt(1 - Q/(mu_k P)). With weakening friction, whose coefficient falls over a slip distance D, it
+converges once the intervals resolve the slip over D.
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ SPARE = 8  # intervals of the mesh beyond the contact
 
 
 def stick_ratio(nodes: int, friction: str) -> float:
-    """Stick ratio with so many intervals over Hertz's contact."""
+    """Stick ratio with this many intervals over Hertz's contact."""
     half_width = float(mfv.reference.hertz_half_width(FORCE, 0.25, 1.0, 1.8)) * (nodes + SPARE) / nodes
     result = mfv.run(text=CASE.format(nodes=nodes + SPARE, half_width=half_width, friction=friction, force=SHEAR), check=True)
     if result.summary.contact_nodes != nodes:
@@ -40,7 +40,7 @@ def stick_ratio(nodes: int, friction: str) -> float:
 
 
 def laws(distances: list[float]) -> dict[str, str]:
-    """What each row of the table is called, and its friction in a case."""
+    """The rows of the table: name, and friction in the case."""
     weakening = {f"weakening, D = {d:.0e}": f"law='weakening', weakening_distance={d}" for d in distances}
     return {"static and kinetic": "law='static_kinetic'"} | weakening
 
@@ -73,7 +73,7 @@ def draw(meshes: list[int], table: dict[str, list[float]], path: str) -> None:
 def main() -> None:
     parser = argparse.ArgumentParser(description="stick ratio under static and kinetic friction over the mesh")
     parser.add_argument("-o", "--output", help="picture to draw")
-    parser.add_argument("--finest", type=int, default=321, help="most nodes in contact (321 unless told)")
+    parser.add_argument("--finest", type=int, default=321, help="number of contact nodes of the finest mesh (default: 321)")
     parser.add_argument("--distances", type=float, nargs="*", default=[1.0e-5, 3.0e-5, 1.0e-4], help="weakening distances")
     options = parser.parse_args()
     meshes = [nodes for nodes in MESHES if nodes <= options.finest]

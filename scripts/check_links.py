@@ -1,9 +1,9 @@
-"""Links that lead nowhere: of the repository's Markdown files as read in place, or of a site. Standard library only.
+"""Broken links of the repository's Markdown files, or of a site. Standard library only.
 
     python3 scripts/check_links.py                     # every Markdown file of the source tree
     python3 scripts/check_links.py build/docs/html     # every page of a site
 
-Files and anchors are looked up; addresses of the web are listed, not fetched. Exit code 1 where a link is broken.
+Files and anchors are checked; web addresses are listed, not fetched. Exit code 1 if a link is broken.
 """
 
 import argparse
@@ -20,8 +20,8 @@ WEB = re.compile(r"[a-z][a-z0-9+.-]*:|//", re.IGNORECASE)
 
 
 def main() -> int:
-    parser = argparse.ArgumentParser(description="Name the links that lead nowhere.")
-    parser.add_argument("site", nargs="?", type=Path, help="folder of HTML files; without: the repository's Markdown files")
+    parser = argparse.ArgumentParser(description="List broken links.")
+    parser.add_argument("site", nargs="?", type=Path, help="folder of HTML files (default: the repository's Markdown files)")
     site = parser.parse_args().site
     pages = read_site(site) if site else read_markdown(markdown_files())
     broken, web = check(pages)
@@ -43,7 +43,7 @@ class Page:
 
 
 def check(pages: dict[Path, Page]) -> tuple[list[str], set[str]]:
-    """What is wrong, a line each, and the addresses of the web."""
+    """Broken links, one per line, and the web addresses."""
     broken, web = [], set()
     for path, page in pages.items():
         for link in page.links:
@@ -56,14 +56,14 @@ def check(pages: dict[Path, Page]) -> tuple[list[str], set[str]]:
             if target.is_dir() and (target / "index.html").exists():
                 target /= "index.html"
             if not target.exists():
-                broken.append(f"{path}: {link}: there is no such file")
+                broken.append(f"{path}: {link}: no such file")
             elif anchor and target in pages and unquote(anchor) not in pages[target].anchors | {"", "top"}:
-                broken.append(f"{path}: {link}: there is no such place in {target.name}")
+                broken.append(f"{path}: {link}: no such anchor in {target.name}")
     return broken, web
 
 
 def markdown_files() -> list[Path]:
-    """Those of the source tree, without what is built, and what is hidden."""
+    """The Markdown files of the source tree, without build and hidden folders."""
     files = sorted(ROOT.rglob("*.md"))
     return [path for path in files if not any(part == "build" or part[0] == "." for part in path.relative_to(ROOT).parts)]
 

@@ -36,7 +36,7 @@ RULES = {
     r"\b(is|are) told\b": "is reported",
     r"\bso many\b": "this many, a number of",
     r"\bwas freed, or is none\b": "is null, freed or invalid",
-    r"\b[Mm]ake .{1,30} safe from\b": "protect",
+    r"\b(Make|make) .{1,30} safe from\b": "protect",
 }
 #: Suffixes of the files that are read, with their longest line.
 LONGEST = {".f90": 132, ".pf": 132, ".nml": 160, ".c": 160, ".h": 140, ".sh": 160, ".def": 160, ".py": 160, ".md": 240}

@@ -7,10 +7,10 @@ jobs=$(nproc 2>/dev/null || echo 2)
 
 say() { printf '== %s\n' "$*"; }
 
-# Debian packages: compilers and build tools, and the libraries that MFV stands on.
+# Debian packages: compilers, build tools, and the libraries that MFV depends on.
 packages='gfortran gcc make cmake libopenblas-dev liblapack-dev libgsl-dev libfftw3-dev libhdf5-dev'
 
-# Install what is missing on Debian and Ubuntu; elsewhere, or without the right to, name it and go on.
+# Install missing packages on Debian and Ubuntu; elsewhere, or without root rights, name them and continue.
 install_missing() {
   missing=
   if command -v dpkg-query >/dev/null 2>&1; then
@@ -38,8 +38,8 @@ install_missing() {
   fi
 }
 
-# Python environment of the project, in build/venv: what the package depends on, the package itself being run from the source tree.
-# $1: extra of pyproject.toml to install too, or nothing.
+# Python environment of the project, in build/venv: the dependencies of the package, which runs from the source tree.
+# $1: extra of pyproject.toml to install, or nothing.
 python_environment() {
   stamp=$venv/done${1:+-$1}
   [ "$stamp" -nt "$root/pyproject.toml" ] && return 0
@@ -50,7 +50,7 @@ python_environment() {
   touch "$stamp"
 }
 
-# Configure and build one preset. $1: its name; what follows: options of the build, such as --target mfv_run.
+# Configure and build one preset. $1: its name; further arguments: options of the build, such as --target mfv_run.
 build() {
   say "building preset $1 in build/$1"
   cd "$root"

@@ -6,7 +6,7 @@ import sys
 from collections import defaultdict
 from pathlib import Path
 
-# What gfortran makes of types, copies and finalisation is booked on these lines, run or not.
+# gfortran attributes code for types, copies and finalisation to these lines.
 NO_CODE = re.compile(r"(end (function|subroutine|module)|use |associate \(|(pure |elemental )*(module|function|subroutine)\b)|^$")
 DECLARATION = re.compile(r"(?!allocate|call|if|where|do )[a-z][\w ]*(\(.*\))?[^'=]*::")
 

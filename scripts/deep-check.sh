@@ -1,6 +1,6 @@
 #!/bin/sh
-# Checks that take too long for .ci/run. Arguments: parts, all of them unless told. A part is a script scripts/deep-PART.sh, which
-# installs and builds what it needs and ends with one line that tells what was found. Its output is in build/deep/PART.log.
+# Checks that take too long for .ci/run. Arguments: parts, by default all. A part is a script scripts/deep-PART.sh, which
+# installs and builds what it needs and ends with one line of results. Its output is in build/deep/PART.log.
 . "$(dirname "$0")/common.sh"
 all=
 for script in "$root"/scripts/deep-*.sh; do

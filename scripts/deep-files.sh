@@ -1,6 +1,6 @@
 #!/bin/sh
-# Files that are written: 50 kills at random moments of each of two programs, among the other tests of tests/cli/test_files.py;
-# after each there must be the old file or the new one.
+# Output files: 50 kills at random times of each of two programs, with the other tests of tests/cli/test_files.py;
+# after each the old or the new file must be complete.
 . "$(dirname "$0")/common.sh"
 install_missing
 python_environment test

@@ -19,9 +19,10 @@ export OPENBLAS_NUM_THREADS=1
 "$folder/bin/test_embedding"
 "$folder/bin/test_threads"
 
-# What a summary says but for times and files. $1: build; $2: case.
+# A summary without times and file names. $1: build; $2: case.
 summary() {
-  "$root/build/$1/bin/mfv_run" "$2" | sed -n -E 's/, ([^,]* s|tractions change by .*)$//; /^(outcome|contact|nodes|stick|normal|tangential|dissipation|last|work)/p'
+  "$root/build/$1/bin/mfv_run" "$2" |
+    sed -n -E 's/, ([^,]* s|tractions change by .*)$//; /^(outcome|contact|nodes|stick|normal|tangential|dissipation|last|work)/p'
 }
 work=$folder/examples
 rm -rf "$work"

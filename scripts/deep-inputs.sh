@@ -1,5 +1,5 @@
 #!/bin/sh
-# What is right in a case is taken (tests/cli/test_bad_input.py): with the right values that take seconds each, too.
+# Valid cases are accepted (tests/cli/test_bad_input.py), including values that take seconds each.
 . "$(dirname "$0")/common.sh"
 install_missing
 python_environment test

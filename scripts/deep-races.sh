@@ -1,5 +1,5 @@
 #!/bin/sh
-# Races between threads, by valgrind's helgrind, which looks into libgfortran, GSL, FFTW and OpenBLAS too: the test of threads of the
+# Races between threads, by valgrind's helgrind, which also checks libgfortran, GSL, FFTW and OpenBLAS: the test of threads of the
 # C interface.
 . "$(dirname "$0")/common.sh"
 packages="$packages valgrind"

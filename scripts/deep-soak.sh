@@ -1,6 +1,6 @@
 #!/bin/sh
-# An hour of random cases through the C interface in one process (tests/soak): memory flat, no certificate beyond what is promised, the
-# same digits when a case is lived through again. Environment: MFV_SOAK_SECONDS, MFV_SOAK_THREADS, MFV_SOAK_SEED (the day).
+# An hour of random cases through the C interface in one process (tests/soak): memory flat, no certificate above its limit,
+# bit-identical repetitions. Environment: MFV_SOAK_SECONDS, MFV_SOAK_THREADS, MFV_SOAK_SEED (the day).
 . "$(dirname "$0")/common.sh"
 install_missing
 build release

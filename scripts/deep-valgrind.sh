@@ -1,5 +1,5 @@
 #!/bin/sh
-# Memcheck over the tests of the interfaces: no error, nothing lost. (Two of them are in the suite of the debug preset.)
+# Memcheck over the tests of the interfaces: no errors, no leaks. (Two of them are in the suite of the debug preset.)
 . "$(dirname "$0")/common.sh"
 packages="$packages valgrind"
 install_missing

@@ -1,6 +1,6 @@
 #!/bin/sh
-# The warnings of uninitialised variables, which the builds leave out because gfortran gives them for the bounds of allocatables
-# too: of anything else, at -O0 and at -O2, they are failures.
+# Warnings of uninitialised variables at -O0 and at -O2. The builds disable them, since gfortran also gives them for the bounds of
+# allocatables; all others are failures.
 . "$(dirname "$0")/common.sh"
 install_missing
 found=0

@@ -53,7 +53,7 @@ def read_folders():
 
 
 def read_arrows(order, modules):
-    """How often a folder uses another one; and what points back."""
+    """Numbers of uses between folders, and the wrong ones."""
     arrows, wrong = Counter(), []
     for folder in order:
         for path in sources(folder):

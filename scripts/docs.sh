@@ -1,6 +1,6 @@
 #!/bin/sh
 # Builds the site of the documents, build/docs/html/index.html, from the sources: installs what is missing, solves and draws the
-# gallery, checks every link. Safe to repeat. Needs no network to be read.
+# gallery, checks every link. Safe to repeat. The site can be read offline.
 . "$(dirname "$0")/common.sh"
 install_missing
 build release --target mfv_run mfv_stress mfv_conventional

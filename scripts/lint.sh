@@ -1,5 +1,5 @@
 #!/bin/sh
-# Checks the sources without running them: formatting, spelling, wording, types, shell scripts, licences. Prints what to mend and
+# Checks the sources without running them: formatting, spelling, wording, types, shell scripts, licences. Prints what to fix and
 # exits with 1 if anything is found. Part of the tests (ctest entry "lint"). Argument: names of checks; all by default.
 . "$(dirname "$0")/common.sh"
 python_environment test
@@ -19,9 +19,9 @@ check() {
   fi
 }
 
-# Fortran in the project's format: fprettify would change nothing.
+# Fortran in the project's format: fprettify changes nothing.
 fortran_format() {
-  # The texts of --help are written as they are printed.
+  # The texts of --help are formatted as printed.
   find src drivers tests examples bench -name '*.f90' ! -name '*_help.f90' ! -path '*/build/*' -print0 |
     xargs -0 "$bin/fprettify" -c .fprettify.rc --diff --silent >"$venv/fprettify.diff"
   [ ! -s "$venv/fprettify.diff" ] || { cat "$venv/fprettify.diff"; return 1; }

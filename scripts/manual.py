@@ -1,11 +1,11 @@
-"""Manual pages from what the programs say about themselves: --help and --keys. Standard library only.
+"""Manual pages from the --help and --keys of the programs. Standard library only.
 
     python3 scripts/manual.py build/release/bin docs/man
 
 Written are mfv_run.1, mfv_stress.1 and mfv_conventional.1 from --help, mfv_case.5 from mfv_run --keys and the beginning of
 docs/namelist.md. A help text consists of its usage, paragraphs, and headings that end in a colon. Below a heading, lines of a
 term, two blanks or more and an explanation are a list, and others are words; examples, and indented lines above the first
-heading, stay as they are.
+heading, are unchanged.
 """
 
 import argparse
@@ -34,7 +34,7 @@ TERM = r"  (\S.*?) {2,}(\S.*)"
 def main() -> int:
     parser = argparse.ArgumentParser(description="Make the manual pages from --help and --keys of the programs.")
     parser.add_argument("programs", type=Path, help="folder of the programs, such as build/release/bin")
-    parser.add_argument("folder", type=Path, help="where the pages go, such as docs/man")
+    parser.add_argument("folder", type=Path, help="output folder, such as docs/man")
     arguments = parser.parse_args()
     arguments.folder.mkdir(parents=True, exist_ok=True)
     for name, text in pages(arguments.programs).items():

@@ -1,5 +1,5 @@
 #!/bin/sh
-# Draws the pictures of the documents anew, from the examples, into docs/pictures. Needs a release build, the Python packages and the
+# Draws the pictures of the documents from the examples into docs/pictures. Needs a release build, the Python packages and the
 # chromium of scripts/test.sh.
 . "$(dirname "$0")/common.sh"
 bin=$root/build/release/bin

@@ -1,4 +1,4 @@
-"""Print what the Python package depends on, from pyproject.toml, as pip takes it: python requirements.py [EXTRA].
+"""Print the dependencies of the Python package from pyproject.toml for pip: python requirements.py [EXTRA].
 
 With this installed the package runs from the source tree."""
 
@@ -22,7 +22,7 @@ def of_extra(project: dict, extra: str) -> list[str]:
 
 
 def main() -> None:
-    """Print the requirements, one a line."""
+    """Print the requirements, one per line."""
     project = tomllib.loads((Path(__file__).resolve().parents[1] / "pyproject.toml").read_text())["project"]
     requirements = project["dependencies"] + [line for extra in sys.argv[1:] for line in of_extra(project, extra)]
     print("\n".join(requirements))

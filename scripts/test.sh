@@ -9,13 +9,13 @@ while [ $# -gt 0 ]; do
   presets="$presets $1"
   shift
 done
-# The studies of the Python package are tested with MPI too. Users' programs are built in C++ and by pkg-config too.
+# Tests of studies with MPI, and of users' programs in C++ and by pkg-config.
 packages="$packages openmpi-bin libopenmpi-dev g++ pkgconf"
-# The manual pages are looked at by both programs that show such pages.
+# Tests of the manual pages, with both programs that show them.
 packages="$packages mandoc groff-base"
-# The tests of the C interface run under valgrind too.
+# Tests of the C interface under valgrind.
 packages="$packages valgrind"
-# Pages of python -m mfv report are looked at in chromium.
+# Tests of the pages of python -m mfv report in a browser.
 packages="$packages chromium"
 install_missing
 python_environment test

@@ -1,5 +1,5 @@
 #!/bin/sh
-# Installs what is missing and makes build/wheel/mfv-*.whl: the Python package with the library, the programs and what they stand on,
+# Installs what is missing and makes build/wheel/mfv-*.whl: the Python package with the library, the programs and their dependencies,
 # down to the C library. It works on machines without compilers and without these libraries, with a C library no older than here.
 # The licence texts of these libraries go with it. Safe to repeat. Needs Linux (Debian or Ubuntu for the licence texts).
 . "$(dirname "$0")/common.sh"

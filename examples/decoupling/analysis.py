@@ -19,7 +19,7 @@ def slope(x: np.ndarray, y: np.ndarray) -> float:
 
 
 def local_slopes(x: np.ndarray, y: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Slopes of log y over log x from point to point, and where they are."""
+    """Slopes of log y over log x between points, and their positions."""
     with np.errstate(divide="ignore", invalid="ignore"):
         return np.sqrt(x[1:] * x[:-1]), np.diff(np.log(np.maximum(y, 0.0))) / np.diff(np.log(x))
 
@@ -44,7 +44,7 @@ def edge_scale(beta: float, mu: float) -> float:
 
 @dataclass
 class Threshold:
-    """Where slip sets in: lateral force ratio, shift of the contact over its half-width, and whether the mesh can tell."""
+    """Onset of slip: lateral force ratio, shift of the contact over its half-width, and whether the mesh resolves it."""
 
     force_ratio: float
     patch_shift: float
@@ -52,7 +52,7 @@ class Threshold:
 
 
 def threshold(rows: Table, mu: float, part: float = 1e-3) -> Threshold | None:
-    """Where the dissipation passes a part of the decoupled one, between two forces; None where that is not in the table."""
+    """Force at which the dissipation crosses a fraction of the decoupled one; None if it is not in the table."""
     decoupled = mindlin_number(rows["force_ratio"]) * (mu / MU) ** 2
     ratio = np.log(np.maximum(rows["dissipation_number"] / decoupled, 1e-6))
     above = np.flatnonzero(ratio > np.log(part))
@@ -89,7 +89,7 @@ def bodies_spread(table: Table, column: str, keys: list[str], leave_out: tuple[s
 
 @dataclass
 class Rule:
-    """ln(D_Goodman/D_full) = beta^2 (c0 + c1 mu^2), fitted where it is meant to hold."""
+    """ln(D_Goodman/D_full) = beta^2 (c0 + c1 mu^2), fitted in its range of validity."""
 
     coefficients: np.ndarray
     beta_limit: float
@@ -101,7 +101,7 @@ class Rule:
         return np.asarray(np.exp(terms(beta, mu) @ self.coefficients))
 
     def misses(self, rows: Table) -> np.ndarray:
-        """What it misses of ln(D_Goodman/D_full), in parts of that."""
+        """Relative error of the fit of ln(D_Goodman/D_full)."""
         return np.asarray(terms(rows["beta"], rows["mu"]) @ self.coefficients / np.log(rows["dissipation_ratio"]) - 1.0)
 
 
@@ -121,6 +121,6 @@ def fitted_rule(table: Table, beta_limit: float = 0.3, ratio_limit: float = 0.5)
 
 
 def scatter_about(x: np.ndarray, y: np.ndarray, degree: int = 3) -> float:
-    """Root mean square of y about its best polynomial in x, over the spread of y: 0 where y is a function of x, 1 where not."""
+    """Root mean square of y about its best polynomial in x, over the spread of y: 0 if y is a function of x, 1 if not."""
     fit = np.polyval(np.polyfit(x, y, degree), x)
     return float(np.sqrt(np.mean((y - fit) ** 2)) / np.std(y))

@@ -72,7 +72,7 @@ def small_force(table: Table) -> Drawn:
         ax.set_xticks([0.02, 0.05, 0.1, 0.2, 0.5], ["0.02", "0.05", "0.1", "0.2", "0.5"])
         ax.minorticks_off()
     letter(axes)
-    axes[1].legend(fontsize=8.5, title="nodes of the mesh", title_fontsize=8.5)
+    axes[1].legend(fontsize=8.5, title="number of mesh nodes", title_fontsize=8.5)
     caption = (
         "Small lateral forces, mu = 0.7, beta = 0.286: slope of the dissipation from point to point by mesh, and the "
         "over-prediction. On meshes of fewer nodes only a few slip at the left end."

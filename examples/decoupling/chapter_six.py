@@ -70,7 +70,7 @@ def draw_tractions(ax: Axes, x: np.ndarray, pressure: np.ndarray, shear: np.ndar
 
 
 def figure_6_2(results: Results) -> Drawn:
-    """Hysteresis loops, and what remains without their linear part."""
+    """Hysteresis loops, and their non-linear part."""
     picture, axes = panels(2, 3, (10.0, 6.4), sharex="row", sharey=True)
     scale = np.abs(results["none"].history.shift).max()
     numbers: dict[str, np.ndarray] = {}
@@ -98,7 +98,7 @@ def figure_6_2(results: Results) -> Drawn:
 
 
 def record_of_steady(result: mfv.Result) -> int:
-    """Record of the history where the last cycle begins."""
+    """Record of the history at the beginning of the last cycle."""
     ends = result.history.record[result.history.event_kind == mfv.EventKind.STEP_END]
     return int(ends[-3])
 

@@ -1,4 +1,4 @@
-"""What a coupling costs: the disk in its hole, pressed with friction, four cycles of Q = 0.65 mu P, as a table in Markdown.
+"""Cost of a coupling: the disk in its hole, pressed with friction, four cycles of Q = 0.65 mu P, as a table in Markdown.
 
     python examples/decoupling/cost.py [NODES ...]
 

@@ -1,4 +1,4 @@
-"""What the pictures of the study have in common."""
+"""Shared by the pictures of the study."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from sweeps import COUPLINGS, Table
 
-#: Colours from Okabe and Ito, told apart by the colour-blind too, with a marker each.
+#: Colours from Okabe and Ito, distinguishable with colour blindness, with a marker each.
 BLUE, ORANGE, GREEN, YELLOW, SKY, PINK, BLACK = (
     "#0072B2",
     "#D55E00",
@@ -24,7 +24,7 @@ BLUE, ORANGE, GREEN, YELLOW, SKY, PINK, BLACK = (
 CYCLE = ((BLUE, "o"), (ORANGE, "s"), (GREEN, "^"), (YELLOW, "v"), (PINK, "D"), (SKY, "x"), (BLACK, "P"))
 OF_COUPLING = dict(zip(COUPLINGS, CYCLE))
 
-#: The bodies of section 6.2.1, and what all of them come to where the contact is small.
+#: The bodies of section 6.2.1, and their common limit for small contacts.
 BODIES = {
     "hole_097": "0.97R in hole R, $KR=0.03$",
     "hole_050": "0.5R in hole R, $KR=1$",

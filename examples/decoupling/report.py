@@ -114,7 +114,7 @@ def page(drawings: Sequence[Drawn], statements: Sequence[Statement], tables: Map
         "<h2>Statement by statement</h2>",
         f"<p>{html.escape(counted(statements))}</p>",
         statements_table(statements),
-        "<h2>What a case costs</h2>",
+        "<h2>Cost of a case</h2>",
         f"<p>Means over the cases of Figure 6.3, meshes of {tables['lateral_force']['nodes'].max()} nodes, four cycles.</p>",
         cost_table(tables["lateral_force"]),
         "<h2>Pictures</h2>",

@@ -37,7 +37,7 @@ STYLE: dict[Any, Any] = {
 
 
 def arguments() -> argparse.Namespace:
-    """What the user asks for."""
+    """The command-line options."""
     parser = argparse.ArgumentParser(description="chapter 6 of the dissertation, computed again")
     parser.add_argument("--output", type=Path, default=Path("decoupling"), help="folder of tables and report (decoupling)")
     parser.add_argument("--quick", action="store_true", help="few values on every axis, coarse meshes: half a minute")

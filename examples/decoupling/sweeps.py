@@ -30,7 +30,7 @@ NAMES = (
 )
 COUPLINGS = {"full": "full coupling", "goodman": "Goodman", "none": "decoupled"}
 
-#: What a quick study leaves of an axis: so many values, and meshes of at most so many nodes; other cases have COARSE.
+#: Limits of a quick study: number of values of an axis, and nodes of a mesh; other cases have COARSE.
 FEW, OTHERWISE, LARGEST, COARSE = 4, {"small_force": 9, "laws": 1}, 195, 97
 
 
@@ -79,7 +79,7 @@ def mean_of(table: Table, column: str) -> float:
 
 
 def run(name: str, folder: Path, quick: bool) -> Table:
-    """The table of a study; cases that `folder` has already are not solved again. Raises RuntimeError where one ends early."""
+    """The table of a study; cases already solved in `folder` are reused. Raises RuntimeError if one ends early."""
     text = HERE / f"{name}.nml"
     if quick:
         text = folder / f"{name}.nml"

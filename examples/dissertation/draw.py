@@ -44,7 +44,7 @@ def varied(text: str, group: str, **keys: object) -> str:
     """A namelist with keys of its first group of that name changed or added; texts bring their quotes."""
     found = re.search(rf"&{group}\b[^/]*", text)
     if found is None:
-        raise ValueError(f"there is no &{group}")
+        raise ValueError(f"no &{group} group")
     body = found.group().rstrip()
     for key, value in keys.items():
         body, count = re.subn(rf"\b{key}\s*=\s*[^,\s]+", f"{key}={value}", body)
@@ -101,7 +101,7 @@ def draw_curve(
 
 
 def draw_limit(ax: Axes, result: mfv.Result, scale: tuple[float, float]) -> None:
-    """Friction limits of the touching nodes, static and, where it is another, kinetic."""
+    """Friction limits of the touching nodes, static and, if different, kinetic."""
     touching = result.state.status != NodeStatus.OPEN
     coefficients = {r"$\pm\mu_s p$": (result.mesh.static_friction, "-"), r"$\pm\mu_k p$": (result.mesh.kinetic_friction, ":")}
     if np.array_equal(result.mesh.static_friction, result.mesh.kinetic_friction):
@@ -314,7 +314,7 @@ def figure_3_09(name: str) -> Drawn:
 
 
 def ending(result: mfv.Result) -> str:
-    """Outcome of a run, with the loads where it ended early."""
+    """Outcome of a run, with the loads if it ended early."""
     if result.outcome == "complete":
         return "complete"
     loads = result.summary
@@ -394,7 +394,7 @@ def figure_3_12(name: str) -> Drawn:
 
 
 def farthest(text: str, steps: Iterable[float]) -> tuple[float, mfv.Result, str]:
-    """Of runs of the conventional algorithm the one that came farthest, at the smallest load step, and a line about all."""
+    """The run of the conventional algorithm that progressed farthest, at the smallest load step, and a summary of all."""
     runs = {step: conventional(text, step) for step in steps}
     reached = max(runs, key=lambda step: (runs[step].summary.normal_force, runs[step].summary.tangential_force, -step))
     return reached, runs[reached], "; ".join(f"{step:g}: {ending(run)}" for step, run in runs.items())
@@ -516,7 +516,7 @@ def figure_3_16(name: str, title: str = "3.16  Static and kinetic friction (0.7,
 
 # A cycle: 3.18
 
-#: Of every sub-figure the step whose end it shows.
+#: The step whose end each sub-figure shows.
 SUB_FIGURES = (1, 2, 3, 4, 5, 6, 7, 8, 8, 9, 10, 11, 12, 13, 14, 15, 15, 16, 17, 18)
 
 
@@ -664,7 +664,7 @@ FIGURES: dict[str, Callable[[str], Drawn]] = {
 def main() -> None:
     parser = argparse.ArgumentParser(description="draws figures 3.1 to 3.20 of the dissertation")
     parser.add_argument(
-        "--only", nargs="+", choices=FIGURES, default=list(FIGURES), metavar="3.N", help="figures to draw, all unless told"
+        "--only", nargs="+", choices=FIGURES, default=list(FIGURES), metavar="3.N", help="figures to draw (default: all)"
     )
     parser.add_argument("--output", type=Path, default=HERE / "pictures", help="folder for the pictures")
     options = parser.parse_args()

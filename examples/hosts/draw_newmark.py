@@ -1,12 +1,12 @@
-"""Draw what examples/hosts/newmark computes: a free decay with what quasi-static dissipation makes of it, and Newton's residuals.
+"""Draw the results of examples/hosts/newmark: a free decay with its quasi-static prediction, and Newton's residuals.
 
     python examples/hosts/draw_newmark.py PROGRAM [-o newmark_decay.png]
 
 Needs numpy, matplotlib and the mfv package (for Mindlin's dissipation). PROGRAM is the built newmark.
 
-Why the decay is known beforehand. Friction does not know of time: what a half swing dissipates depends on where it turns, not on how
-fast it goes. At a turning point nothing moves, so that the force does no net work between two of them: Q integrates to zero over the half swing
-from (U0, Q0) to (U1, Q1). By Masing's rule U0 - U = 2 u(y), y = (Q0 - Q)/2, with the curve u(q) of first loading. With the dissipation
+The decay can be predicted. Friction is rate-independent: the dissipation of a half swing depends on its turning points, not on the
+velocity. At a turning point the kinetic energy is zero, so the force does no net work between two of them: Q integrates to zero over
+the half swing from (U0, Q0) to (U1, Q1). By Masing's rule U0 - U = 2 u(y), y = (Q0 - Q)/2, with the curve u(q) of first loading. With the dissipation
 of a closed cycle between -y and y, D(y) = 4 y u(y) - 8 (integral of u over q from 0 to y), that is
 
     (Q0 - y) u(y) = D(y)/4,    Q1 = Q0 - 2 y,    U1 = U0 - 2 u(y),
@@ -38,7 +38,7 @@ LIMIT = MU * FORCE
 
 
 def simulate(program: Path | str, *options: str) -> tuple[dict[str, np.ndarray], dict[str, np.ndarray]]:
-    """Columns of the program's table; with --verbose those of its residuals too."""
+    """Columns of the program's table; with --verbose also those of its residuals."""
     done = subprocess.run([str(Path(program).resolve()), *options], capture_output=True, text=True, check=False)
     if done.returncode:
         raise RuntimeError(f"{program} {' '.join(options)}: {done.stderr}")
@@ -52,7 +52,7 @@ def columns(text: str) -> dict[str, np.ndarray]:
 
 
 def turning_points(table: dict[str, np.ndarray]) -> dict[str, np.ndarray]:
-    """Where the shift turns: the start, and of every time step over which the velocity changes its sign the end farther out."""
+    """Turning points of the shift: the start, and the outer end of every time step in which the velocity changes its sign."""
     velocity, shift = table["shift_velocity"], table["shift"]
     places = [0]
     for i in np.flatnonzero(velocity[1:-1] * velocity[2:] < 0) + 1:
@@ -92,7 +92,7 @@ def predicted_turns(force: float, number: int) -> tuple[np.ndarray, np.ndarray]:
 
 
 def draw_decay(ax: Axes, program: Path | str) -> None:
-    """A free decay between the turning points that quasi-static dissipation tells."""
+    """A free decay with the turning points predicted by quasi-static dissipation."""
     amplitude = 0.8
     table, _ = simulate(program, "--amplitude", str(amplitude), "--nodes", "201", "--periods", "15")
     turns = turning_points(table)
@@ -109,7 +109,7 @@ def draw_decay(ax: Axes, program: Path | str) -> None:
 def draw_residuals(ax: Axes, program: Path | str) -> None:
     """Residuals of one large time step, with the tangent and with the initial stiffness."""
     step = ["--amplitude", "0", "--force", "0.5", "--steps", "1", "--periods", "1", "--verbose"]
-    least = 1e-16  # in place of nothing at all
+    least = 1e-16  # in place of zero, on the logarithmic axis
     for nodes, marker in ((101, "s"), (401, "o")):
         _, newton = simulate(program, *step, "--nodes", str(nodes))
         ax.semilogy(

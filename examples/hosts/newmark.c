@@ -4,13 +4,13 @@
  *
  *     m U'' + Q(U) = F(t).
  *
- * Q is MFV's: Coulomb friction with stick and slip zones, so that it depends on the way, not on U alone. A time step is therefore a
- * trial: the state at its beginning is kept (mfv_save); every iteration comes back to it (mfv_restore), leads the shift to the new
- * guess at constant P (mfv_advance), and takes the tangent there (mfv_tangent). The last trial, which fulfils the equation of motion,
- * stays. Friction dissipates; nothing else damps: Newmark's method with beta = 1/4, gamma = 1/2 (the average acceleration) does not.
+ * MFV computes Q: Coulomb friction with stick and slip zones, so that it depends on the load history, not on U alone. A time step is
+ * therefore a trial: the state at its beginning is saved (mfv_save); every iteration restores it (mfv_restore), advances the shift to
+ * the new iterate at constant P (mfv_advance), and computes the tangent there (mfv_tangent). The last trial, which satisfies the
+ * equation of motion, is kept. Only friction dissipates: Newmark's method with beta = 1/4, gamma = 1/2 (average acceleration) does not.
  *
  * Units: G = 1, R = 1/4; the mass is such that small vibrations of the contact, all of it stuck, have the period 1.
- * Options: newmark --help. Standard output: CSV, a line a time step. Exit codes: 0, 2 for options, 3 when the contact or Newton fails.
+ * Options: newmark --help. Standard output: CSV, a line per time step. Exit codes: 0, 2 for options, 3 when the contact or Newton fails.
  */
 #include <getopt.h>
 #include <math.h>
@@ -21,7 +21,7 @@
 
 enum { NORMAL, TANGENTIAL, MOTIONS }; /* approach with normal force, shift with tangential force */
 enum { ITERATIONS = 200 };
-static const double PI = 3.141592653589793, TOLERANCE = 1e-11; /* of the residual, in parts of mu P and of the first one */
+static const double PI = 3.141592653589793, TOLERANCE = 1e-11; /* of the residual, relative to mu P and to the first one */
 static const double MODULUS = 1.0, RADIUS = 0.25, FORCE = 1.0e-3, MU = 0.7;
 
 typedef struct settings {
@@ -32,14 +32,14 @@ typedef struct settings {
 typedef struct host {
   mfv_case *contact;
   mfv_state *start; /* of the time step */
-  int first;        /* of the motions that are free: NORMAL, or TANGENTIAL where the normal force is constant */
+  int first;        /* first free motion: NORMAL, or TANGENTIAL at constant normal force */
   double mass, dt;
   double load[MOTIONS]; /* forces on the cylinder, constant in time */
   double position[MOTIONS], velocity[MOTIONS], acceleration[MOTIONS];
   double reaction[MOTIONS];            /* P and Q of the contact */
-  double initial[MOTIONS][MOTIONS];    /* tangent where all nodes stick */
+  double initial[MOTIONS][MOTIONS];    /* tangent with all nodes stuck */
   size_t nodes;
-  double *fields; /* room for what the elastic energy takes */
+  double *fields; /* buffer for the elastic energy */
 } host;
 
 static void stop(const char *what, const char *message) {
@@ -47,7 +47,7 @@ static void stop(const char *what, const char *message) {
   exit(3);
 }
 
-/* Go on only where a call went well. */
+/* Stop if a call fails. */
 static void check(const host *self, int status, const char *what) {
   char message[500] = "";
   if (status == MFV_COMPLETE) return;
@@ -70,13 +70,13 @@ static void make_contact(host *self, const settings *wanted) {
   mfv_scene_set_text(scene, "body(2)%shape", "disk");
   mfv_scene_set_real(scene, "body(2)%radius", RADIUS);
   mfv_scene_set_logical(scene, "body(2)%rigid", 1);
-  mfv_scene_set_text(scene, "mesh%gap", "parabolic"); /* as the closed forms have it */
+  mfv_scene_set_text(scene, "mesh%gap", "parabolic"); /* as in the closed forms */
   mfv_scene_set_integer(scene, "mesh%nodes", wanted->nodes);
   mfv_scene_set_real(scene, "mesh%half_width", 1.3 * half_width);
   mfv_scene_set_text(scene, "friction%law", "coulomb");
   mfv_scene_set_real(scene, "friction%mu", MU);
-  mfv_scene_set_text(scene, "output%history", "none"); /* nothing grows from step to step, */
-  mfv_scene_set_text(scene, "output%states", "none");  /* and any state can be gone back to */
+  mfv_scene_set_text(scene, "output%history", "none"); /* constant memory, */
+  mfv_scene_set_text(scene, "output%states", "none");  /* and any state can be restored */
   if (mfv_create(scene, &self->contact, message, sizeof message) != MFV_COMPLETE) stop("scene", message);
   mfv_scene_free(&scene);
   self->nodes = (size_t)wanted->nodes;
@@ -100,7 +100,7 @@ static void load_quasi_statically(host *self, double normal_force, double tangen
   check(self, mfv_advance(self->contact, &shear), "shear");
 }
 
-/* Lead the free motions to `position`; the normal force stays as it is where the approach is not free. */
+/* Advance the free motions to `position`; without free approach the normal force is constant. */
 static void lead(host *self, const double position[MOTIONS]) {
   mfv_step step = MFV_STEP_INIT;
   mfv_loads loads = MFV_LOADS_INIT;
@@ -116,8 +116,8 @@ static void lead(host *self, const double position[MOTIONS]) {
   self->reaction[TANGENTIAL] = loads.force[MFV_SHIFT];
 }
 
-/* Derivatives of the reactions by the free motions. Where P is constant the approach follows the shift, by -K_NU/K_NN: Schur's
- * complement is what is left. */
+/* Derivatives of the reactions with respect to the free motions. At constant P the approach follows the shift by -K_NU/K_NN, which
+ * gives the Schur complement. */
 static void get_tangent(host *self, const double *direction, double tangent[MOTIONS][MOTIONS]) {
   check(self, mfv_tangent(self->contact, MOTIONS, direction, &tangent[0][0]), "tangent");
   if (self->first == NORMAL) return;
@@ -149,7 +149,7 @@ static double acceleration_at(const host *self, int i, double position) {
   return 4.0 * (position - self->position[i] - self->dt * self->velocity[i]) / (self->dt * self->dt) - self->acceleration[i];
 }
 
-/* m U'' + Q - F at a trial, and its size in parts of mu P. */
+/* m U'' + Q - F at a trial, and its norm relative to mu P. */
 static double residual_at(const host *self, const double position[MOTIONS], double residual[MOTIONS]) {
   double sum = 0.0;
   residual[NORMAL] = 0.0;
@@ -200,7 +200,7 @@ static int advance(host *self, const settings *wanted, int number) {
     if (wanted->initial_stiffness) {
       memcpy(tangent, self->initial, sizeof tangent);
     } else if (iteration == 0) {
-      /* Nothing has moved yet: the contact may turn, and the residual tells where to. */
+      /* Nothing has moved yet: the direction may change, and the residual gives it. */
       const double direction[MOTIONS] = {-residual[NORMAL], -residual[TANGENTIAL]};
       get_tangent(self, direction, tangent);
     } else {
@@ -225,7 +225,7 @@ static void start(host *self, const settings *wanted) {
   self->load[TANGENTIAL] = wanted->force * MU * FORCE;
   make_contact(self, wanted);
   load_quasi_statically(self, wanted->normal ? 1.1 * FORCE : FORCE, wanted->amplitude * MU * FORCE);
-  get_tangent(self, back, self->initial); /* where the load turns, all nodes stick */
+  get_tangent(self, back, self->initial); /* at a load reversal all nodes stick */
   get_loads(self, &loads);
   self->position[NORMAL] = loads.motion[MFV_APPROACH];
   self->position[TANGENTIAL] = loads.motion[MFV_SHIFT];
@@ -279,7 +279,7 @@ static void usage(FILE *stream) {
         stream);
 }
 
-/* The number that an option has. */
+/* The value of an option. */
 static double number_of(const char *text, double least, double most) {
   char *end = NULL;
   const double value = strtod(text, &end);

@@ -1,10 +1,10 @@
 !> A parameter study in a Fortran program with OpenMP: shear cycles of a rigid cylinder on a half-plane for every combination of
 !> coefficient
-!> of friction, lateral force and Dundurs' parameter, one contact a thread at a time. Prints a table (CSV), a row a case.
+!> of friction, lateral force and Dundurs' parameter, one contact per thread. Prints a table (CSV), a row per case.
 !>
 !>     OMP_NUM_THREADS=4 OPENBLAS_NUM_THREADS=1 openmp_study > study.csv
 !>
-!> Contacts know nothing of each other, so that the table has the same bytes for any number of threads. A case that ends early, as
+!> Contacts are independent, so that the table is identical for any number of threads. A case that ends early, as
 !> the ones
 !> beyond the friction limit do, is a row with its outcome. What thousands of cases take (axes of any keys, restarts, MPI) mfv.study
 !> of the Python package has.
@@ -20,7 +20,7 @@ program openmp_study
    character(len=*), parameter :: columns(*) = [character(len=20) :: 'cycle_dissipation', 'tangential_stiffness', 'loss_factor', &
                                                                                          'contact_half_width', 'stick_ratio_return']
 
-   !> A case and what came of it: status (see mfv_status), and columns, NaN where there is none.
+   !> A case and its results: status (see mfv_status), and columns, NaN if missing.
    type :: row_type
       real(wp) :: friction = 0.0_wp, force_ratio = 0.0_wp, beta = 0.0_wp
       integer :: status = MFV_COMPLETE
@@ -43,7 +43,7 @@ program openmp_study
       end do
    end do
 
-   ! Cases take different times: whoever is free takes the next one.
+   ! Cases take different times: a free thread takes the next one.
    !$omp parallel do schedule(dynamic)
    do number = 1, size(rows)
       call solve(rows(number))
@@ -96,7 +96,7 @@ contains
       call scene%set('output%history', 'none')
    end subroutine describe
 
-   !> The columns of a contact; NaN for what a case that ended early does not have.
+   !> The columns of a contact; NaN for those missing in a case that ended early.
    subroutine read_values(contact, values)
       use, intrinsic :: ieee_arithmetic, only: ieee_quiet_nan, ieee_value
       type(contact_type), intent(inout) :: contact
@@ -110,7 +110,7 @@ contains
       end do
    end subroutine read_values
 
-   !> The table; the program stops where a case could not be used.
+   !> The table; the program stops at an invalid case.
    subroutine print_table(rows)
       type(row_type), intent(in) :: rows(:)
       integer :: i

@@ -2,8 +2,8 @@
 
     python examples/hosts/scipy_host.py -o scipy_host.png
 
-A contact remembers its history, and a solver tries motions that it does not keep. So every try begins at the same kept state:
-`restore` brings the contact back to it, to the last digit, and only what the solver accepts is `save`d as the next one.
+A contact depends on its history, and a solver tries motions that it rejects. Every trial therefore begins at the same saved state:
+`restore` restores it bit-identically, and only an accepted state is saved with `save`.
 """
 
 from __future__ import annotations
@@ -18,15 +18,15 @@ from scipy.optimize import OptimizeResult, root
 
 import mfv
 
-#: Forces per unit thickness, in parts of the shear modulus times a length: normal force that presses every contact.
+#: Forces per unit thickness, relative to the shear modulus times a length: normal force that presses every contact.
 WEIGHT = 1.0e-3
 
 
 def contact(mu: float) -> mfv.Case:
     """A rigid cylinder on a half-plane, pressed by WEIGHT without friction.
 
-    Goodman's coupling: shear does not change the pressure, as in the closed forms that the tests compare with. No history is kept:
-    then any number of states can be gone to in any order.
+    Goodman's coupling: shear does not change the pressure, as in the closed forms that the tests compare with. No history is recorded,
+    so that states can be restored in any order.
     """
     case = mfv.Scene(
         mfv.Body.half_plane(shear_modulus=1.0, poisson_ratio=0.3),
@@ -45,7 +45,7 @@ def contact(mu: float) -> mfv.Case:
 
 @dataclass
 class Series:
-    """Two contacts, one on top of the other, a plate between them; both carry WEIGHT. The top is shifted, the bottom held.
+    """Two contacts, one on top of the other, a plate between them; both are loaded by WEIGHT. The top is shifted, the bottom is fixed.
 
     Unknowns: the approaches of both contacts and the shift of the plate, [a1, a2, s]; the upper contact then has the shift
     top - s. Equilibrium: P1 = P2 = WEIGHT, Q1 = Q2.
@@ -55,7 +55,7 @@ class Series:
     upper: mfv.Case
     with_tangent: bool = True
     evaluations: int = 0
-    #: The try at which the contacts are, with its shift of the top.
+    #: The present trial of the contacts, with its shift of the top.
     led: NDArray[np.float64] = field(init=False)
     states: list[mfv.State] = field(init=False)
     unknowns: NDArray[np.float64] = field(init=False)
@@ -66,7 +66,7 @@ class Series:
         self.led = np.append(self.unknowns, 0.0)
 
     def lead(self, unknowns: NDArray[np.float64], top: float) -> None:
-        """Lead both contacts from their kept states straight to a try, unless they are there."""
+        """Advance both contacts from their saved states to a trial, unless they are there."""
         if np.array_equal(self.led, np.append(unknowns, top)):
             return
         lower_approach, upper_approach, plate = unknowns
@@ -80,14 +80,14 @@ class Series:
         self.evaluations += 1
 
     def imbalance(self, unknowns: NDArray[np.float64], top: float) -> NDArray[np.float64]:
-        """What equilibrium lacks, in parts of WEIGHT."""
+        """Residual of equilibrium, relative to WEIGHT."""
         self.lead(unknowns, top)
         lower, upper = self.lower.loads, self.upper.loads
         forces = lower.normal_force, upper.normal_force, lower.tangential_force
         return (np.array(forces) - (WEIGHT, WEIGHT, upper.tangential_force)) / WEIGHT
 
     def jacobian(self, unknowns: NDArray[np.float64], top: float) -> NDArray[np.float64]:
-        """Its derivatives by the unknowns, from the consistent tangents of both contacts, rows (P, Q), columns (a, s)."""
+        """Derivatives of the residual, from the consistent tangents of both contacts, rows (P, Q), columns (a, s)."""
         self.lead(unknowns, top)
         lower, upper = self.lower.tangent(), self.upper.tangent()
         return (
@@ -102,15 +102,15 @@ class Series:
         )
 
     def shift_top(self, top: float) -> float:
-        """Find the equilibrium with the top at a shift and keep it; return the tangential force.
+        """Find the equilibrium for a shift of the top and save it; return the tangential force.
 
-        Raises RuntimeError when it is not found; the joint is then where it was.
+        Raises RuntimeError if it is not found; the joint is then unchanged.
         """
         derivatives = self.jacobian if self.with_tangent else None
         found: OptimizeResult = root(self.imbalance, self.unknowns, args=(top,), jac=derivatives, tol=1e-6)
         if not found.success:
             raise RuntimeError(f"no equilibrium at the shift {top:.6g}: {found.message}")
-        self.lead(found.x, top)  # the last try was not necessarily this one
+        self.lead(found.x, top)  # the last trial may be another one
         self.states = [case.save(state) for case, state in zip((self.lower, self.upper), self.states)]
         self.unknowns = found.x
         return self.lower.loads.tangential_force
@@ -121,21 +121,21 @@ class Series:
 
 @dataclass
 class RingDown:
-    """What a mass did after it was let go."""
+    """Motion of a mass after its release."""
 
     time: NDArray[np.float64]
     shift: NDArray[np.float64]
-    #: Tangential forces when it turned round, the first one when it was let go, and the energy dissipated up to then.
+    #: Tangential forces at the turning points, the first one at the release, and the energy dissipated so far.
     forces: NDArray[np.float64]
     dissipation: NDArray[np.float64]
 
 
 def ring_down(case: mfv.Case, force: float, mass: float, half_cycles: int) -> RingDown:
-    """Pull a mass on a contact by a tangential force, let it go, and follow it; nothing but friction brakes it.
+    """Load a mass on a contact by a tangential force, release it, and follow its motion; only friction damps it.
 
-    m x'' = -Q(x): Q depends on the way. Between two turns x goes one way, and the contact is led straight there, with all
-    events on the way. So solve_ivp integrates from turn to turn (an event ends it where the velocity is zero), and every
-    evaluation begins at the contact's state of the last turn. No evaluation then depends on one before.
+    m x'' = -Q(x), where Q depends on the load history. Between two turning points x is monotonic, so the contact advances there
+    in one step with all events. solve_ivp therefore integrates from one turning point to the next (an event ends it at zero
+    velocity), and every evaluation begins at the contact's state at the last turning point, independent of other evaluations.
     """
     case.advance(tangential_force=force, check=True)
     turns = [case.loads]
@@ -152,7 +152,7 @@ def ring_down(case: mfv.Case, force: float, mass: float, half_cycles: int) -> Ri
 
     velocity.terminal = True  # type: ignore[attr-defined]
     for _ in range(half_cycles):
-        # It begins at rest too, but there the velocity leaves zero the other way.
+        # At the start it is also at rest, but there the velocity leaves zero in the other direction.
         velocity.direction = np.sign(turns[-1].tangential_force)  # type: ignore[attr-defined]
         start, long_enough = (
             times[-1][-1],
@@ -168,7 +168,7 @@ def ring_down(case: mfv.Case, force: float, mass: float, half_cycles: int) -> Ri
             max_step=0.01 * long_enough,
         )
         if not way.t_events[0].size:
-            raise RuntimeError(f"it did not turn round: {way.message}")
+            raise RuntimeError(f"no turning point: {way.message}")
         times.append(way.t[1:])
         shifts.append(way.y[0, 1:])
         case.restore(state)
@@ -197,7 +197,7 @@ def main() -> None:
         print(f"two contacts in series, {words}: {series.evaluations / len(tops):.1f} evaluations an equilibrium")
 
     free = ring_down(contact(0.5), 0.8 * 0.5 * WEIGHT, 1.0, 12)
-    print("a mass let go at Q = 0.8 mu P turns round at Q/(mu P) =", np.round(free.forces / (0.5 * WEIGHT), 3))
+    print("a mass released at Q = 0.8 mu P turns at Q/(mu P) =", np.round(free.forces / (0.5 * WEIGHT), 3))
     if options.output:
         draw(tops, np.array(forces), free, options.output)
 

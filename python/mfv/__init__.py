@@ -1,10 +1,10 @@
 """MFV: two-dimensional frictional elastic contact by the Method of First Violation.
 
-`Scene` with `Body`, `Mesh`, `Friction`, `Step`, `Solver` and `Output` says what is in contact and how it is loaded; `run` solves it, `Case`
-leads it step by step; `study` solves many that differ in some values; `read` reads a result file, `stress` computes stresses inside the bodies,
-`plot` draws results, `animate` and `report` make films and web pages of them, `compare` and `comparison_figure` set two side by
-side, `load_history` has the states on the way, `template` cases to begin with, `reference` the closed forms. Reading and drawing
-need no shared library.
+`Scene` with `Body`, `Mesh`, `Friction`, `Step`, `Solver` and `Output` defines bodies and loads; `run` solves it, `Case` advances it
+step by step; `study` solves many cases; `read` reads a result file, `stress` computes stresses inside the bodies, `plot` draws
+results, `animate` and `report` make animations and web pages, `compare` and `comparison_figure` compare two results,
+`load_history` has intermediate states, `template` commented cases, `reference` closed forms. Reading and drawing do not need the
+shared library.
 """
 
 from __future__ import annotations
@@ -61,7 +61,7 @@ _version_file = _Path(__file__).resolve().parents[2] / "VERSION"
 __version__ = _version_file.read_text().strip() if _version_file.is_file() else _installed_version("mfv")
 
 
-#: Modules that are loaded on first use, so that matplotlib and the like are not loaded by those who do not draw.
+#: Modules that are loaded on first use, so that matplotlib is loaded for drawing only.
 _ON_FIRST_USE = ("animate", "compare", "comparison_figure", "load_history", "plot", "report", "template")
 
 

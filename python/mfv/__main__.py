@@ -1,4 +1,5 @@
-"""The command line: python -m mfv COMMAND."""
+# PYTHON_ARGCOMPLETE_OK
+"""The command line: mfv COMMAND, or python -m mfv COMMAND."""
 
 import sys
 

@@ -1,4 +1,4 @@
-"""The shared library: where it is, and the C interface of include/mfv.h as ctypes sees it."""
+"""The shared library: its path, and the C interface of include/mfv.h for ctypes."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 from .errors import LibraryNotFound
 from .loads import MOTIONS
 
-#: Room for a text that the library hands out; a longer one is cut.
+#: Size of the buffer for a text from the library; longer ones are truncated.
 TEXT_SIZE = 16384
 
 #: The largest number that a C int holds.
@@ -32,7 +32,7 @@ HOW_TO_BUILD = (
 
 
 class Control(IntEnum):
-    """What a step does with a motion: keep its load, or prescribe its force or its displacement."""
+    """Control of a motion in a step: constant load, prescribed force or prescribed displacement."""
 
     KEEP = 0
     FORCE = 1
@@ -40,12 +40,12 @@ class Control(IntEnum):
 
 
 class Along(IntEnum):
-    """What the values of a field run along."""
+    """The dimension of a field."""
 
     NOTHING = 0
     NODES = 1
     RECORDS = 2
-    COMPANIONS = 3
+    EXTRA_FILES = 3
     CYCLES = 4
     PATCHES = 5
 
@@ -177,11 +177,11 @@ def library() -> ctypes.CDLL:
 
 
 def find_library() -> str:
-    """Path of the library: what MFV_LIBRARY says, else the first that is there. Raises LibraryNotFound."""
+    """Path of the library: MFV_LIBRARY if set, else the first one found. Raises LibraryNotFound."""
     asked_for = os.environ.get("MFV_LIBRARY")
     if asked_for:
         if not Path(asked_for).is_file():
-            raise LibraryNotFound(None, f"there is no file {asked_for}, where MFV_LIBRARY says that the MFV library is")
+            raise LibraryNotFound(None, f"MFV_LIBRARY={asked_for}: no such file; set it to the path of libmfv.so")
         return str(Path(asked_for).resolve())
     found = next((str(path) for path in _usual_places() if path.is_file()), None) or ctypes.util.find_library("mfv")
     if not found:
@@ -190,7 +190,7 @@ def find_library() -> str:
 
 
 def _usual_places() -> Iterator[Path]:
-    """In the package (an installed one), then in the builds of the source tree, the release first."""
+    """In the installed package, then in the builds of the source tree, the release build first."""
     package = Path(__file__).resolve().parent
     yield from sorted((package / "lib").glob("libmfv.*"))
     builds = package.parents[1] / "build"
@@ -209,7 +209,7 @@ def text_of(buffer: ctypes.Array[ctypes.c_char]) -> str:
 
 
 def whole_text(call: Callable[..., object], *arguments: object) -> str:
-    """A text of any length from what takes, after the arguments, a buffer, its size and where to put the length."""
+    """A text of any length, from a function whose last arguments are a buffer, its size and the length."""
     length = c_size_t()
     call(*arguments, None, 0, ctypes.byref(length))
     buffer = ctypes.create_string_buffer(length.value + 1)
@@ -218,7 +218,7 @@ def whole_text(call: Callable[..., object], *arguments: object) -> str:
 
 
 def text_for(text: str | os.PathLike[str]) -> bytes:
-    """A text or path as the library takes it."""
+    """A text or path, encoded for the library."""
     encoded = os.fsencode(text)
     if b"\0" in encoded:
         raise ValueError("a text for the MFV library must not contain a null character")
@@ -234,7 +234,7 @@ def statuses() -> tuple[tuple[int, str, str], ...]:
         if library().mfv_status_text(code, outcome, len(outcome), explanation, len(explanation)) != 0:
             return tuple(found)
         found.append((code, text_of(outcome), text_of(explanation)))
-    raise AssertionError("the list of statuses has no end")
+    raise AssertionError("the list of statuses does not end")
 
 
 def outcome_of(status: int) -> str:
@@ -249,12 +249,12 @@ def has_feature(feature: str) -> bool:
     """
     there = c_int()
     if library().mfv_has_feature(text_for(feature), ctypes.byref(there)) != 0:
-        raise ValueError(f"the MFV library knows no feature '{feature}'")
+        raise ValueError(f"the MFV library has no feature '{feature}'")
     return bool(there.value)
 
 
 def real_pointer(values: NDArray[np.float64]) -> ctypes._Pointer[c_double]:
-    """The numbers of a contiguous array where they are; the array must outlive the pointer's use."""
+    """A pointer to the numbers of a contiguous array; the array must outlive it."""
     return values.ctypes.data_as(POINTER(c_double))
 
 

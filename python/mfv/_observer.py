@@ -1,4 +1,4 @@
-"""Who is told of a run while it goes on: a callback of the user's, a bar; and how an interrupt from the keyboard ends it."""
+"""Observers of a run: a callback of the user, a progress bar, and Ctrl-C."""
 
 from __future__ import annotations
 
@@ -16,10 +16,10 @@ BAR_FORMAT = "{percentage:3.0f}%|{bar}| {elapsed}<{remaining}{postfix}"
 
 
 class Observer:
-    """The one observer that the library knows of a case. It passes on what it is told, and ends the run when told to."""
+    """The observer of a case: forwards the progress to the callback and the bar, and stops the run on request."""
 
     def __init__(self, handle: c_void_p) -> None:
-        #: Nobody is to be told, and the library knows of no observer: a case can be led without a thought for it.
+        #: Neither a callback nor a bar is set, and no observer is registered with the library.
         self.is_idle = True
         self.is_leading = False
         self._callback: Callable[[Progress], object] | None = None
@@ -32,17 +32,17 @@ class Observer:
 
     @property
     def is_wanted(self) -> bool:
-        """Whether someone wants to be told, or is being told."""
+        """Whether a callback or a bar is set, or a run is in progress."""
         return self._callback is not None or self._bar is not None or self.is_leading
 
     def tell(self, callback: Callable[[Progress], object] | None) -> None:
-        """Whom to tell from now on."""
+        """Set the callback."""
         self.refuse_while_leading()
         self._callback = callback
         self.is_idle = False
 
     def watch(self, function: Callable[..., int], *arguments: object) -> int:
-        """Call what leads the loads while observing it; return its status."""
+        """Call a function that changes the loads, with the observer; return its status."""
         self.refuse_while_leading()
         library().mfv_observe(self._handle, self._function, None)
         self._signals, self._raised, self.is_leading, self.is_idle = [], None, True, False
@@ -53,13 +53,13 @@ class Observer:
             self.is_leading = False
 
     def rest(self, function: Callable[..., int], *arguments: object) -> int:
-        """The same without an observer, and from now on."""
+        """Remove the observer and call the function; return its status."""
         library().mfv_observe(self._handle, OBSERVER(), None)
         self.is_idle = True
         return function(*arguments)
 
     def raise_what_ended_it(self) -> None:
-        """Raise what a callback raised; let an interrupt from the keyboard be handled, which as a rule raises."""
+        """Raise the exception of the callback; handle a pending Ctrl-C, which usually raises."""
         raised, self._raised = self._raised, None
         signals, self._signals = self._signals, []
         for number, frame in signals[:1]:
@@ -70,15 +70,15 @@ class Observer:
     def refuse_while_leading(self) -> None:
         """Raises RuntimeError in a callback, which must not use the case that calls it."""
         if self.is_leading:
-            raise RuntimeError("a callback of observe must not use the case that calls it; what it needs is in its argument")
+            raise RuntimeError("a callback of observe must not use its case; use the callback's argument instead")
 
     @contextmanager
     def bar(self, wanted: bool) -> Iterator[None]:
-        """Show how far a run is, on a terminal or in a notebook."""
+        """Show the progress of a run, on a terminal or in a notebook."""
         if not wanted:
             yield
             return
-        from tqdm.auto import tqdm  # here: it looks whether this is a notebook
+        from tqdm.auto import tqdm  # here, since it checks whether this is a notebook
 
         with tqdm(total=1.0, disable=None, bar_format=BAR_FORMAT) as bar:
             self._bar, self.is_idle = None if bar.disable else bar, False
@@ -88,7 +88,7 @@ class Observer:
                 self._bar = None
 
     def _tell(self, progress: Any, _: object) -> int:
-        """What the library calls: not 0 ends the run."""
+        """The function that the library calls; a value other than 0 ends the run."""
         if self._signals:
             return 1
         if not self.is_wanted:
@@ -104,9 +104,9 @@ class Observer:
 
     @contextmanager
     def _signals_held(self) -> Iterator[None]:
-        """Hold an interrupt from the keyboard back until the run has ended because of it.
+        """Delay Ctrl-C until the run has ended because of it.
 
-        Without this the interrupt would be raised inside the callback, where Python can only report and forget it.
+        Otherwise KeyboardInterrupt would be raised inside the callback, where Python reports and ignores it.
         """
         self._handler = signal.getsignal(signal.SIGINT)
         if threading.current_thread() is not threading.main_thread() or not callable(self._handler):

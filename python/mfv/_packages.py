@@ -1,4 +1,4 @@
-"""Python packages that are needed for some things only."""
+"""Optional Python packages."""
 
 from __future__ import annotations
 
@@ -9,6 +9,6 @@ TOGETHER = (("plotly", "jinja2"), ("xarray", "h5netcdf", "threadpoolctl"), ("das
 
 
 def how_to_install(package: str) -> str:
-    """The command that installs a package and those that belong to it, for the Python that runs this."""
+    """The command that installs a package and related ones for this Python."""
     packages = next((group for group in TOGETHER if package in group), (package,))
     return f'"{sys.executable}" -m pip install {" ".join(repr(name) for name in packages)}'

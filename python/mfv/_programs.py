@@ -12,7 +12,7 @@ def _become(name: str) -> None:
     """Replace this process by the program `name` of the package, with the arguments of this one."""
     program = Path(__file__).resolve().parent / "bin" / name
     if not program.is_file():
-        sys.exit(f"{name}: there is no {program}: install mfv with 'pip install .', or a wheel")
+        sys.exit(f"{name}: {program} not found; install mfv with 'pip install .' or from a wheel")
     os.execv(program, [str(program), *sys.argv[1:]])
 
 

@@ -24,21 +24,21 @@ from .load_history import kept_states
 from .result import Group, Result, counts
 from .views import LOADS, Curve, contact, curve_of, has_friction, heights, is_named, statuses
 
-#: What can be written, by the suffix of the file.
+#: Suffixes of files that can be written.
 SUFFIXES = (".gif", ".mp4")
 
 #: Dots an inch: a panel of 3.6 inch is 360 pixels wide.
 RESOLUTION = 100
 
 #: Heights in inch: of the picture, of the row of its caption, of the row of its legend.
-HEIGHT, CAPTION, LEGEND = 4.1, 0.3, 0.27
+HEIGHT, CAPTION, LEGEND = 4.06, 0.25, 0.27
 
-#: Margin of the axes, in parts of what they show.
+#: Margin of the axes, relative to their range.
 MARGIN = 0.06
 
 
 class Movie(NamedTuple):
-    """A picture and what draws each of the frames into it."""
+    """A picture and a function that draws a frame into it."""
 
     picture: Figure
     draw: Callable[[int], None]
@@ -46,8 +46,8 @@ class Movie(NamedTuple):
 
 
 def movie(result: Result) -> Movie:
-    """The states in `result.steps`, without any the last one, one after the other: pressure; shear traction with stick and slip
-    zones, or the surfaces without friction; the curve of load over displacement with a point where the state is."""
+    """The states in `result.steps`, or the last state, one after the other: pressure; shear traction with stick and slip zones, or
+    the surfaces without friction; load over displacement with a point at the state."""
     result = result if result.steps else kept_states(result)
     is_rubbed = has_friction(result)
     with matplotlib.rc_context(plot.STYLE):
@@ -86,7 +86,7 @@ def movie(result: Result) -> Movie:
     draw(len(result.steps) - 1)
     with matplotlib.rc_context(plot.STYLE):
         picture.draw_without_rendering()
-    picture.set_layout_engine("none")  # panels stay where they are
+    picture.set_layout_engine("none")  # fixed panels
     return Movie(picture, draw, len(result.steps))
 
 
@@ -98,7 +98,7 @@ def save(
 ) -> None:
     """Write a movie as a GIF or an MP4, by the suffix. `progress` is called with each frame and their number.
 
-    Raises ValueError for another suffix and where there is no ffmpeg for an MP4; OSError.
+    Raises ValueError for another suffix, or for an MP4 without ffmpeg; OSError.
     """
     path = os.fspath(path)
     program: dict[Any, Any] = {"animation.ffmpeg_path": _ffmpeg()} if path.lower().endswith(".mp4") else {}
@@ -109,17 +109,17 @@ def save(
 
 
 def _writer(path: str, frames_per_second: int) -> AbstractMovieWriter:
-    """What writes a file with that suffix."""
+    """The writer of files with this suffix."""
     suffix = os.path.splitext(path)[1].lower()
     if suffix == ".gif":
         return PillowWriter(fps=frames_per_second)
     if suffix == ".mp4":
         return FFMpegWriter(fps=frames_per_second, codec="libx264", extra_args=["-pix_fmt", "yuv420p"])
-    raise ValueError(f"an animation is written as {' or '.join(SUFFIXES)}, not as '{suffix}'")
+    raise ValueError(f"the name of an animation must end with {' or '.join(SUFFIXES)}, not '{suffix}'")
 
 
 def _ffmpeg() -> str:
-    """The program ffmpeg, or that of the package imageio-ffmpeg. Raises ValueError where there is none."""
+    """The program ffmpeg, or that of the package imageio-ffmpeg. Raises ValueError if neither exists."""
     found = shutil.which(matplotlib.rcParams["animation.ffmpeg_path"])
     if found:
         return str(found)
@@ -129,7 +129,7 @@ def _ffmpeg() -> str:
         return str(get_ffmpeg_exe())
     except (ImportError, RuntimeError):
         raise ValueError(
-            "an MP4 needs ffmpeg, which is not there: install it (apt-get install ffmpeg, or "
+            "an MP4 needs ffmpeg, which was not found: install it (apt-get install ffmpeg, or "
             f"{how_to_install('imageio-ffmpeg')}), or write a GIF (-o NAME.gif)"
         ) from None
 
@@ -144,7 +144,7 @@ def _largest(result: Result, name: str) -> float:
 
 
 def _limits_of_shear(result: Result) -> tuple[float, float]:
-    """The largest limits of friction; without any, the largest shear traction."""
+    """The largest friction limits, or the largest shear traction if they are unknown."""
     largest = _largest(result, "shear")
     if "static_friction" in result.mesh:
         largest = max(float(np.max(result.mesh.static_friction * state.pressure)) for state in result.steps) or 1.0
@@ -166,7 +166,7 @@ def _with_margin(limits: tuple[float, float]) -> tuple[float, float]:
 
 
 def _draw_curve(result: Result, ax: Axes, curve: Curve) -> Any:
-    """The curve of load over displacement, from the history or, without one, the states; returns the point to be moved."""
+    """Draw load over displacement, from the history or else the states; return the moving point."""
     with matplotlib.rc_context(plot.STYLE):
         ax.plot(*curve.values(result), color=plot.NUMBERS, linewidth=0.8)
         (point,) = ax.plot([], [], "o", color=plot.CLOSED_FORM, markersize=8, zorder=5)

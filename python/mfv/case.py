@@ -1,4 +1,4 @@
-"""Cases in this process through the C interface: run, led step by step, tried and taken back."""
+"""Cases in this process through the C interface: run, advance step by step, try and undo."""
 
 from __future__ import annotations
 
@@ -44,24 +44,23 @@ if TYPE_CHECKING:
 #: HDF5, which writes the result files, is in general not safe to call from two threads at once.
 writing = threading.Lock()
 
-#: Nodes from which, and friction laws with which, a single step may take so long that an interrupt from the keyboard has to end
-#: it; it is then observed, which costs about 1 microsecond an increment.
+#: Number of nodes from which, and friction laws for which, a single step may take so long that Ctrl-C must be able to stop it.
+#: It then has an observer, which costs about 1 microsecond per increment.
 MANY_NODES, LONG_LAWS = 400, ("weakening", "dahl")
 
-#: Dimensions of fields by what the library says they run along; the companions of an error estimate, cycles and patches come after
-#: those of the header.
+#: Dimensions of fields by the library's code for them.
 _DIMENSIONS: tuple[tuple[str, ...], ...] = ((), ("x",), ("record",), ("companion_nodes",), ("cycle",), ("patch",))
 
 
-#: Plain numbers, which are quicker at hand than members of enumerations.
+#: Plain numbers, faster than members of enumerations.
 _KEEP, _FORCE, _DISPLACEMENT = map(int, Control)
 _SIZE_OF_STEP = ctypes.sizeof(StepStructure)
 
-#: What a step does that controls nothing.
+#: A step without targets.
 _NO_CONTROL: list[int] = [_KEEP] * len(MOTIONS)
 _NO_TARGET: list[Any] = [0.0] * len(MOTIONS)
 
-#: Motion and control by what a target is named.
+#: Motion and control by the name of a target.
 _CONTROLLED = {
     **{motion.force: (number, _FORCE) for number, motion in enumerate(MOTIONS)},
     **{motion.displacement: (number, _DISPLACEMENT) for number, motion in enumerate(MOTIONS)},
@@ -78,17 +77,15 @@ def run(
 ) -> Result:
     """Solve a case and return its result.
 
-    `case`: a Scene or the path of a namelist file; or the namelist `text`. `output`: where to write the result file; without
-    it none is written, whatever the &output group of the case says. A run that ends early is a result, with its `outcome`
-    and `message` and the state up to there; `check=True` raises the exception of the outcome instead, after writing.
-    `progress`: show a bar on a terminal or in a notebook, by tqdm.
-    Raises InputError for a case that cannot be used, FileError when the result could not be written; before solving where there
-    is no directory for it.
+    `case`: a Scene or the path of a namelist file; or the namelist `text`. `output`: the result file to write; if omitted, none
+    is written, also if &output names one. A run that ends early has a result with its `outcome`, `message` and last state;
+    `check=True` raises the exception of the outcome instead, after writing. `progress`: show a progress bar (tqdm).
+    Raises InputError for an invalid case, FileError if the result cannot be written (before solving if the directory is missing).
     """
     if output is not None:
         _check_directory(output)
     if (case is None) == (text is None):
-        raise TypeError("mfv.run takes a scene, the path of a case, or text=, one of them")
+        raise TypeError("mfv.run takes either a scene, or the path of a case, or text=")
     if text is not None:
         made = Case.from_text(text)
     elif isinstance(case, Scene):
@@ -105,47 +102,47 @@ def run(
 
 
 def _check_directory(output: str | os.PathLike[str]) -> None:
-    """Raises FileError where there is no directory for a result."""
+    """Raises FileError if the directory of a result does not exist."""
     directory = os.path.dirname(os.path.abspath(output))
     if not os.path.isdir(directory):
-        raise errors.file_error(f"{os.fspath(output)}: cannot be written: there is no directory {directory}")
+        raise errors.file_error(f"{os.fspath(output)}: cannot be written: {directory} does not exist or is not a directory")
 
 
 class State:
-    """A state that was kept with `Case.save`. It may outlive its case; its storage is freed with it."""
+    """A state saved with `Case.save`. It may outlive its case."""
 
     def __init__(self) -> None:
-        """Not to be called: see `Case.save`."""
+        """Do not call this; use `Case.save`."""
         self._handle = c_void_p()
         self._status = 0
         _freed_with(self, library().mfv_state_free, self._handle)
 
     def __reduce__(self) -> NoReturn:
-        raise TypeError("a State lives in this process and cannot be pickled or copied")
+        raise TypeError("a State belongs to this process and cannot be pickled or copied")
 
 
 class Trial:
-    """What `Case.trial` gives: unless it is accepted, the case goes back to where the `with` statement began."""
+    """A trial of `Case.trial`: the case is restored at the end of the `with` statement unless the trial is accepted."""
 
     def __init__(self) -> None:
         self.accepted = False
 
     def accept(self) -> None:
-        """Let what was done stay, however the `with` statement ends."""
+        """Keep the new state, however the `with` statement ends."""
         self.accepted = True
 
 
 class Case:
-    """A case with its state, to be run or led step by step. Use it in a `with` statement or `close` it.
+    """A case with its state, to run or to advance step by step. Use it in a `with` statement or `close` it.
 
-    One thread at a time leads a case; others wait. Different cases run in different threads at once.
+    One thread at a time can use a case; others wait. Different cases can run in different threads concurrently.
     """
 
     def __init__(self, scene: Scene) -> None:
-        """A case of a scene, which may change or go afterwards. Raises InputError."""
+        """A case of a scene, which may be changed or deleted afterwards. Raises InputError."""
         with scene._handle() as built:
             self._adopt(created("mfv_create", built))
-        #: What was run, where the text of the result does not have all of it.
+        #: The scene, if it has arrays, which the text of the result does not contain.
         self._scene: Scene | None = copy.deepcopy(scene) if scene.has_arrays else None
 
     @classmethod
@@ -155,7 +152,7 @@ class Case:
 
     @classmethod
     def from_text(cls, text: str, name: str = "text") -> Case:
-        """The case in a namelist text. `name`: what messages call it; files it names are looked for beside that.
+        """The case in a namelist text. `name`: its name in messages; paths of files are relative to its directory.
 
         Raises InputError.
         """
@@ -169,7 +166,7 @@ class Case:
         return case
 
     def _adopt(self, handle: c_void_p) -> None:
-        """Take a handle over, with what every call needs at hand."""
+        """Own a handle, and prepare what every call needs."""
         self._handle = handle
         self._lock = threading.RLock()
         self._free = _freed_with(self, library().mfv_free, handle)
@@ -209,10 +206,10 @@ class Case:
         return self.copy()
 
     def __reduce__(self) -> NoReturn:
-        raise TypeError("a Case lives in this process and cannot be pickled; its scene and its result can")
+        raise TypeError("a Case belongs to this process and cannot be pickled; pickle its scene or its result")
 
     def copy(self) -> Case:
-        """A case of its own with the same scene, state and history. Who observes this one does not observe the copy."""
+        """An independent case with the same scene, state and history, without the observer."""
         handle = c_void_p()
         with self._lock:
             self._call("mfv_copy", byref(handle))
@@ -221,27 +218,26 @@ class Case:
         return copied
 
     def close(self) -> None:
-        """Free the case; using it afterwards raises BadHandle. Closing twice does no harm."""
+        """Free the case; using it afterwards raises BadHandle. Closing twice is harmless."""
         with self._lock:
             self._observer.refuse_while_leading()
             self._free()
 
     @property
     def outcome(self) -> str:
-        """How the run has gone so far, in words: 'complete' while nothing has gone wrong. It can be asked after `close` too."""
+        """Outcome so far: 'complete' unless the run has ended early. Also available after `close`."""
         return outcome_of(self._status)
 
     @property
     def message(self) -> str:
-        """What was reached, or why not."""
+        """What was reached, or why the run ended early."""
         return self._attribute("message")
 
     def run(self, *, check: bool = False, progress: bool = False) -> str:
-        """Run the steps of the case that have not been run; return the outcome.
+        """Run the remaining steps of the case; return the outcome.
 
-        `check`: raise the exception of an outcome that is not 'complete'. `progress`: show a bar on a terminal or in a
-        notebook, by tqdm. KeyboardInterrupt, and what an observer raises, end the run with the outcome 'interrupted' and the
-        state up to there, and are raised here.
+        `check`: raise the exception of an outcome other than 'complete'. `progress`: show a progress bar (tqdm).
+        KeyboardInterrupt and exceptions of an observer end the run with the outcome 'interrupted' and are raised again.
         """
         with self._lock, self._observer.bar(progress):
             return self._lead(check, True, library().mfv_run, self._handle)
@@ -256,13 +252,14 @@ class Case:
         check: bool = False,
         **targets: Unpack[Targets],
     ) -> str:
-        """Lead the loads through one more step, whatever the steps of the case are; return the outcome.
+        """Apply one more load step, independent of the steps of the case; return the outcome.
 
-        Targets are reached linearly from the loads now; a load without a target keeps what it has. Give `normal_force`
-        [force/length] or `approach` [length], `tangential_force` or `shift` likewise, `moment` [force] or `rotation`
-        [radians]. `relative`: targets are increments, added to the loads now. `friction`: whether it acts during this step;
-        None: it does, as for a Step. `cycles`: go to the targets and back this many times, ending early when two cycles in a row end with the same
-        tractions to within `steady_tolerance` times the largest one (0: never). `check`: as for `run`.
+        Loads change linearly from their present values to the targets; a load without a target is constant. Prescribe
+        `normal_force` [force/length] or `approach` [length], `tangential_force` or `shift` likewise, `moment` [force] or
+        `rotation` [radians]. `relative`: targets are increments of the present loads. `friction`: whether friction acts during
+        this step (None: it does, as for a Step). `cycles`: number of cycles to the targets and back; they end early when
+        the tractions of two consecutive cycles differ by at most `steady_tolerance` times the largest one (0: never).
+        `check`: as for `run`.
         Raises BadArgument.
         """
         control, target = _NO_CONTROL.copy(), _NO_TARGET.copy()
@@ -278,7 +275,7 @@ class Case:
             control[motion], target[motion] = kind, value
         turns = max(-LARGEST_INTEGER, min(index(cycles), LARGEST_INTEGER)) if cycles else 0
         with self._lock:
-            try:  # one call in place of eleven: this is where a host program spends its time with Python
+            try:  # one call in place of eleven: the largest cost of Python in a host program
                 StepStructure.pack(
                     self._step,
                     0,
@@ -306,35 +303,35 @@ class Case:
 
     @property
     def loads(self) -> Loads:
-        """Loads and motions now, without the cost of a field. Raises BadHandle."""
+        """Present loads and motions, without the cost of a field. Raises BadHandle."""
         with self._lock:
             if self._observer.is_leading:
                 self._observer.refuse_while_leading()
             status = self._get_loads(self._handle, self._loads_reference)
             if status != 0:
                 self._check(status)
-            return Loads._make(LoadsStructure.unpack(self._loads)[1:-1])  # without the size and what is unused
+            return Loads._make(LoadsStructure.unpack(self._loads)[1:-1])  # without the size and the unused members
 
     def tangent(self, direction: ArrayLike | None = None, *, motions: int = 2) -> NDArray[np.float64]:
         """Consistent tangent at the present state: an array (motions, motions), derivatives of normal force, tangential force
         (and moment) with respect to approach, shift (and rotation).
 
-        Contact and friction have corners: the tangent is the one of motions that go on towards `direction` (motions lengths,
-        such as (0, 1) for a shift to the right), or, without one, on the way that led here. `motions`: 2, or 3 with rotation.
-        Raises BadArgument where the contact does not determine it.
+        The tangent of contact and friction depends on the direction of motion: `direction` has a number for every motion, such
+        as (0, 1) for a shift to the right; if omitted, the direction of the last step is used. `motions`: 2, or 3 with
+        rotation. Raises BadArgument if the contact does not determine it.
         """
         towards = None
         if direction is not None:
             values = np.ascontiguousarray(direction, dtype=np.float64)
             if values.shape != (motions,):
-                raise ValueError(f"the direction must have {motions} numbers, not the shape {values.shape}")
+                raise ValueError(f"direction must have {motions} numbers, not the shape {values.shape}")
             towards = real_pointer(values)
         tangent = np.empty((motions, motions))
         self._call("mfv_tangent", motions, towards, real_pointer(tangent))
         return tangent
 
     def save(self, state: State | None = None) -> State:
-        """Keep the present state, to come back to it with `restore`. `state`: one whose storage is to be used again."""
+        """Save the present state for `restore`. `state`: overwrite this one, which avoids an allocation."""
         kept = State() if state is None else state
         with self._lock:
             self._call("mfv_save", byref(kept._handle))
@@ -342,10 +339,10 @@ class Case:
         return kept
 
     def restore(self, state: State) -> None:
-        """Come back to a state of this case or a copy: it goes on with the same digits as if nothing had been done in between.
+        """Restore a state of this case or of a copy; results afterwards are bit-identical.
 
-        With history='none' and states='none' in &output any number of states can be gone to in any order; otherwise only to
-        states on the way that led to the present one. Raises BadArgument.
+        With history='none' and states='none' in &output any state can be restored in any order; otherwise only states of the
+        load history that led to the present one. Raises BadArgument.
         """
         with self._lock:
             self._call("mfv_restore", state._handle)
@@ -353,8 +350,8 @@ class Case:
 
     @contextmanager
     def trial(self) -> Iterator[Trial]:
-        """Try steps and take them back: at the end of the `with` statement the case is where it was at its beginning, also
-        after an exception, unless `accept` was called on what it gives.
+        """Try steps and undo them: the end of the `with` statement restores the state at its beginning, also after an
+        exception, unless the trial was accepted.
 
             with case.trial() as trial:
                 case.advance(shift=1e-4)
@@ -371,17 +368,17 @@ class Case:
             self._spare_states.append(before)
 
     def observe(self, callback: Callable[[Progress], object] | None) -> None:
-        """From now on call `callback` (None: nobody) with the Progress after every increment of the load, in the thread that
-        leads the case; it must not use this case. A true value from it ends the run with the outcome 'interrupted', and so
-        does an exception, which is then raised by `run` or `advance`.
+        """Call `callback` with the Progress after every load increment, in the thread that runs the case; None ends this. The
+        callback must not use this case. If it returns a true value, the run ends with the outcome 'interrupted'; likewise if
+        it raises an exception, which `run` or `advance` raises again.
         """
         if callback is not None and not callable(callback):
-            raise TypeError(f"observe takes what can be called with the progress, or None, not {callback!r}")
+            raise TypeError(f"observe takes a function of the progress, or None, not {callback!r}")
         with self._lock:
             self._observer.tell(callback)
 
     def fields(self) -> list[str]:
-        """Paths of the fields that the case has now, such as 'state/pressure'."""
+        """Paths of the present fields, such as 'state/pressure'."""
         count, buffer = c_size_t(), text_buffer()
         with self._lock:
             self._call("mfv_field_count", byref(count))
@@ -398,7 +395,7 @@ class Case:
         return iter(self.fields())
 
     def __getitem__(self, path: str) -> Values:
-        """Values of the field at a path, copied now. Raises KeyError."""
+        """A copy of the values of the field at a path. Raises KeyError."""
         try:
             return self._field(path).values
         except errors.BadArgument as error:
@@ -406,10 +403,10 @@ class Case:
 
     def values(self, path: str, out: NDArray[Any]) -> NDArray[Any]:
         """Copy the values of the field at a path into `out`, a contiguous array of float64 or int32 with the field's size,
-        and return it: nothing is allocated. Raises TypeError, ValueError, BadArgument.
+        and return it, without an allocation. Raises TypeError, ValueError, BadArgument.
         """
         if not isinstance(out, np.ndarray):
-            raise TypeError(f"out must be a numpy array to be filled, not {type(out).__name__}")
+            raise TypeError(f"out must be a numpy array, not {type(out).__name__}")
         if not (out.flags.c_contiguous and out.flags.writeable) or out.dtype not in (np.float64, np.int32):
             raise ValueError("out must be a contiguous, writable array of float64 or int32")
         if out.dtype == np.float64:
@@ -428,7 +425,7 @@ class Case:
             return self._x
 
     def result(self) -> Result:
-        """Everything there is now, copied; it does not change when the case goes on."""
+        """A copy of the present result; it does not change when the case advances."""
         groups: dict[str, dict[str, Field]] = {}
         with self._lock:
             for path in self.fields():
@@ -438,7 +435,7 @@ class Case:
         return Result(groups, attributes, self._scene)
 
     def write(self, path: str | os.PathLike[str] | None = None) -> None:
-        """Write the result file to `path`, or where the &output group of the case says. Raises FileError."""
+        """Write the result file to `path`; by default to the file of &output. Raises FileError."""
         with writing:
             self._call("mfv_write", None if path is None else text_for(path))
 
@@ -474,9 +471,9 @@ class Case:
             return whole_text(self._call, "mfv_attribute", text_for(name))
 
     def _lead(self, check: bool, watched: bool, function: Callable[..., int], *arguments: object) -> str:
-        """Call what leads the loads; return the outcome. Raises for a bad call, and with `check` for an early end.
+        """Call a function that changes the loads; return the outcome. Raises for a bad call, and with `check` for an early end.
 
-        `watched`: whether it may take long, so that KeyboardInterrupt has to end it.
+        `watched`: whether it may take long, so that KeyboardInterrupt must be able to end it.
         """
         observer = self._observer
         if observer.is_idle and not watched:
@@ -517,14 +514,14 @@ class Case:
 
 
 def _not_numbers(targets: dict[str, Any]) -> str:
-    """Which of the targets, None where they were not given, are no numbers."""
+    """The targets that are given but are not numbers."""
     wrong = {name: value for name, value in targets.items() if value is not None and not hasattr(value, "__float__")}
     return ", ".join(f"{name}={value!r}" for name, value in wrong.items())
 
 
 def _freed_with(owner: object, free: Callable[..., object], handle: c_void_p) -> weakref.finalize[..., Any]:
-    """Free a handle when its owner goes. When the interpreter ends, what is left is for the operating system: a thread may still
-    lead a case then."""
+    """Free a handle when its owner is deleted. At the end of the interpreter nothing is freed, since a thread may still use a
+    case."""
     finalizer = weakref.finalize(owner, free, byref(handle))
     finalizer.atexit = False
     return finalizer

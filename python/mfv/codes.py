@@ -4,19 +4,19 @@ from enum import IntEnum
 
 
 class NodeStatus(IntEnum):
-    """What a surface node can be."""
+    """Status of a surface node. Slip and creep are those of the lower surface relative to the upper one."""
 
     OPEN = 0
     STICK = 1
-    SLIP_RIGHT = 2  #: slips to the right: tau = -mu p
-    SLIP_LEFT = 3  #: slips to the left: tau = +mu p
+    SLIP_RIGHT = 2  #: lower surface slips to the right: tau = -mu p
+    SLIP_LEFT = 3  #: lower surface slips to the left: tau = +mu p
     FRICTIONLESS = 4  #: in contact while friction is off or absent
-    CREEP_RIGHT = 5  #: held by bristles below the friction limit, which give way to the right
+    CREEP_RIGHT = 5  #: bristles yield below the friction limit; lower surface creeps to the right
     CREEP_LEFT = 6  #: the same, to the left
 
 
 class EventKind(IntEnum):
-    """What ended an increment of the load."""
+    """Event at the end of a load increment."""
 
     START = 0
     CLOSE = 1
@@ -26,8 +26,8 @@ class EventKind(IntEnum):
     STICK = 5
     STEP_END = 6
     STOPPED = 7
-    REVERSE = 8  #: a creeping node turns round
-    WEAKENED = 9  #: a slipping node's friction has fallen to its last value
-    CAUGHT = 10  #: a node that snapped is where its friction law holds again
-    CAPPED = 11  #: shear traction on its way down has come to the static limit, because the pressure falls faster
-    DROPPED = 12  #: the end of a stress drop, at the load at which it began
+    REVERSE = 8  #: a creeping node reverses
+    WEAKENED = 9  #: the friction of a slipping node has reached its kinetic value
+    CAUGHT = 10  #: a node satisfies its friction law again after a stress drop
+    CAPPED = 11  #: a decreasing shear traction has reached the static limit, since the pressure falls faster
+    DROPPED = 12  #: the end of a stress drop, at constant load

@@ -1,7 +1,4 @@
-"""Two results side by side: what differs in their settings and inputs, their numbers, their tractions, a picture.
-
-`compare` makes the comparison, `figure` draws it.
-"""
+"""Comparison of two results: settings, inputs, numbers and tractions."""
 
 from __future__ import annotations
 
@@ -18,7 +15,7 @@ from .result import Group, Result
 #: Groups of numbers that are compared.
 GROUPS = ("summary", "observables", "certificate")
 
-#: Attributes that are not settings: the input is compared by its keys, and where a run was started says nothing.
+#: Attributes that are not settings: the input is compared by its keys, and the working directory does not matter.
 NOT_SETTINGS = ("input", "working_directory")
 
 TRACTIONS = ("pressure", "shear")
@@ -27,7 +24,7 @@ Array = np.ndarray
 
 
 class Setting(NamedTuple):
-    """An attribute or a key of the input that differs; None where one of the results is without it."""
+    """An attribute or an input key that differs; None if a result does not have it."""
 
     name: str
     first: Any
@@ -35,7 +32,7 @@ class Setting(NamedTuple):
 
 
 class Number(NamedTuple):
-    """A number of both results; NaN where one of them is without it."""
+    """A number of both results; NaN if a result does not have it."""
 
     group: str
     name: str
@@ -46,67 +43,64 @@ class Number(NamedTuple):
 
     @property
     def relative_difference(self) -> float:
-        """Difference in parts of the larger of the two; 0 where they are equal."""
+        """Difference relative to the larger number; 0 if they are equal."""
         return relative_difference(self.first, self.second)
 
 
 class Traction(NamedTuple):
-    """How a traction differs between the states that are compared."""
+    """Differences of a traction between the two states."""
 
     name: str
     unit: str
     #: Largest absolute values.
     first: float
     second: float
-    #: Largest difference, and that in the mean square, both in parts of the largest value of this traction in either result; 0
-    #: where both are zero.
+    #: Largest and root-mean-square difference, relative to the largest value of this traction in either result; 0 if both are zero.
     largest_difference: float
     mean_square_difference: float
 
 
 @dataclass(frozen=True)
 class Comparison:
-    """What differs between two results."""
+    """Differences of two results."""
 
     first: Result
     second: Result
     #: Number of the state in `steps`, None for the last one.
     step: int | None
     settings: list[Setting]
-    #: Keys of the inputs that differ, or the reason why they cannot be told.
+    #: Input keys that differ, or why they cannot be compared.
     inputs: list[Setting] | str
     numbers: list[Number]
     tractions: list[Traction]
-    #: The number to judge by: the largest difference of a traction, in parts of the largest traction of either result.
+    #: The overall measure: the largest difference of a traction, relative to the largest traction of either result.
     largest_difference: float
     #: Whether the meshes differ, so that tractions were compared by interpolation.
     interpolated: bool
 
     def describe(self) -> str:
-        """The comparison in words and numbers."""
+        """The comparison as text."""
         state = "at the end" if self.step is None else f"in state {self.step}"
         meshes = f"{self.first.mesh.x.size} and {self.second.mesh.x.size} nodes"
         how = f"interpolated linearly to the nodes of both meshes ({meshes})" if self.interpolated else "node by node"
         blocks = [
-            _setting_lines("settings that differ", self.settings),
-            [f"keys of the inputs: {self.inputs}"]
-            if isinstance(self.inputs, str)
-            else _setting_lines("keys of the inputs that differ", self.inputs),
+            _setting_lines("different settings", self.settings),
+            [f"input keys: {self.inputs}"] if isinstance(self.inputs, str) else _setting_lines("different input keys", self.inputs),
             *(self._number_lines(group) for group in GROUPS),
             [
                 f"tractions {state}, {how}",
-                f"  {'':26}{'first':>14} {'second':>14}   largest difference, and in the mean square",
+                f"  {'':26}{'first':>14} {'second':>14}   largest and root-mean-square difference",
                 *(
                     f"  {name:26}{first:14.6g} {second:14.6g}   {largest:<10.3g}{mean_square:<10.3g}{_html.unit(unit)}"
                     for name, unit, first, second, largest, mean_square in self.tractions
                 ),
             ],
-            [f"largest difference of the tractions: {self.largest_difference:.3g} of the largest traction"],
+            [f"largest difference of the tractions / largest traction: {self.largest_difference:.3g}"],
         ]
         return "\n\n".join("\n".join(block) for block in blocks if block)
 
     def _number_lines(self, group: str) -> list[str]:
-        """The numbers of one group, one a line."""
+        """The numbers of one group, one per line."""
         numbers = [number for number in self.numbers if number.group == group]
         if not numbers:
             return []
@@ -122,8 +116,8 @@ class Comparison:
 def compare(first: Result, second: Result, step: int | None = None) -> Comparison:
     """The comparison of two results, of their last states or of `steps[step - 1]`.
 
-    Tractions on different meshes are interpolated linearly to the nodes of both; outside a mesh there are none. Numbers are
-    compared as they stand, whatever their units. Raises ValueError where a result has no such state.
+    Tractions on different meshes are interpolated linearly to the nodes of both; outside a mesh they are zero. Units are not
+    converted. Raises ValueError if a result has no such state.
     """
     states = first.at(step), second.at(step)
     meshes = first.mesh.x, second.mesh.x
@@ -144,8 +138,7 @@ def compare(first: Result, second: Result, step: int | None = None) -> Compariso
 
 
 def relative_difference(first: float, second: float) -> float:
-    """Difference of two numbers in parts of the larger; 0 where they are equal, infinite where one of them is, NaN where one is
-    not a number."""
+    """Difference of two numbers relative to the larger; 0 if they are equal, infinite if one of them is, NaN if one is NaN."""
     if first == second:
         return 0.0
     if not np.isfinite(first + second):
@@ -154,7 +147,7 @@ def relative_difference(first: float, second: float) -> float:
 
 
 def _different_keys(first: Result, second: Result) -> list[Setting] | str:
-    """Keys of the inputs that differ, or why they cannot be told."""
+    """Input keys that differ, or why they cannot be compared."""
     try:
         return _different(keys(first.attributes["input"]), keys(second.attributes["input"]))
     except ValueError as error:
@@ -178,7 +171,7 @@ def _numbers(name: str, first: Group, second: Group) -> list[Number]:
 
 
 def _traction(name: str, unit: str, one: Array, other: Array) -> Traction:
-    """How a traction differs; both at the same nodes."""
+    """Differences of a traction at the same nodes."""
     largest = float(np.max(np.abs((one, other))))
     difference = np.abs(one - other)
     return Traction(
@@ -192,12 +185,12 @@ def _traction(name: str, unit: str, one: Array, other: Array) -> Traction:
 
 
 def _ratio(part: float, whole: float) -> float:
-    """part/whole, 0 where both are zero."""
+    """part/whole, 0 if both are zero."""
     return 0.0 if part == 0.0 else float(part / whole)
 
 
 def _setting_lines(heading: str, settings: list[Setting]) -> list[str]:
-    """Settings one a line, as wide as the first ones are."""
+    """Settings, one per line, in columns."""
     if not settings:
         return [f"{heading}: none"]
     width = max(len("first"), min(48, max(len(_text(first)) for _, first, _ in settings))) + 1
@@ -208,10 +201,10 @@ def _setting_lines(heading: str, settings: list[Setting]) -> list[str]:
 
 
 def _text(value: Any) -> str:
-    """A setting on one line; - where there is none."""
+    """A setting on one line; - for None."""
     return "-" if value is None else "; ".join(str(value).splitlines())
 
 
 def _figure(value: float, digits: int = 6) -> str:
-    """A number; - where there is none."""
+    """A number; - for NaN."""
     return "-" if np.isnan(value) else f"{value or 0.0:.{digits}g}"

@@ -1,4 +1,4 @@
-"""A picture of two results: the first, the second, both over each other."""
+"""A picture of two results: the first, the second, both superposed."""
 
 from __future__ import annotations
 
@@ -15,19 +15,19 @@ from . import plot
 from .compare import Comparison
 from .views import has_friction, heights
 
-#: How the two are drawn over each other, and their difference.
+#: Styles of the two superposed results, and of their difference.
 STYLES: tuple[dict[str, Any], dict[str, Any]] = (
     {"label": "first", "color": plot.NUMBERS, "linewidth": 1.0},
     {"label": "second", "color": plot.CLOSED_FORM, "linewidth": 1.0, "linestyle": (0, (4, 2))},
 )
-DIFFERENCE: dict[str, Any] = {"label": "second less first", "color": plot.SURFACE, "linewidth": 0.8}
+DIFFERENCE: dict[str, Any] = {"label": "second minus first", "color": plot.SURFACE, "linewidth": 0.8}
 
 
 def figure(comparison: Comparison, first: str = "first", second: str = "second") -> Figure:
-    """A picture of a comparison, a column for each result and one for both over each other; a row for the pressure, one for
+    """A picture of a comparison, a column for each result and one for both superposed; a row for the pressure, one for
     the shear traction and, where a load history has a tangential force, one for that over the shift.
 
-    `first`, `second`: what the results are called.
+    `first`, `second`: names of the results.
     """
     results = comparison.first, comparison.second
     rows = [plot.pressure, plot.shear if any(map(has_friction, results)) else plot.surfaces]
@@ -53,10 +53,10 @@ def figure(comparison: Comparison, first: str = "first", second: str = "second")
         for ax, name in zip(axes[0], (first, second, "both")):
             ax.set_title(name, parse_math=False)
         picture.suptitle(
-            f"Largest difference of the tractions: {comparison.largest_difference:.3g} of the largest traction",
+            f"Largest difference of the tractions / largest traction: {comparison.largest_difference:.3g}",
             fontsize=12,
         )
-        picture.legend(*plot._legend_entries(picture), ncols=6, fontsize=10, loc="outside lower center")
+        plot._add_legend(picture)
     return picture
 
 
@@ -80,7 +80,7 @@ def _draw_gaps(comparison: Comparison, ax: Axes) -> None:
 
 
 def _draw_loops(comparison: Comparison, ax: Axes) -> None:
-    """Tangential force over shift of those that have it."""
+    """Tangential force over shift, of results that are sheared."""
     for result, style in zip((comparison.first, comparison.second), STYLES):
         if plot._is_sheared(result):
             ax.plot(result.history.shift, result.history.tangential_force, **style)
@@ -90,7 +90,7 @@ def _draw_loops(comparison: Comparison, ax: Axes) -> None:
 
 
 def _unite_limits(axes: Sequence[Axes], only_across: bool) -> None:
-    """Show the same part in all panels of a row, so that they can be compared; the names of their axes once."""
+    """Give all panels of a row the same limits, so that they can be compared; show equal labels once."""
     across = np.array([ax.get_xlim() for ax in axes])
     up = np.array([ax.get_ylim() for ax in axes])
     for ax in axes:
@@ -98,4 +98,5 @@ def _unite_limits(axes: Sequence[Axes], only_across: bool) -> None:
         if not only_across:
             ax.set_ylim(up[:, 0].min(), up[:, 1].max())
     for ax in axes[1:]:
-        ax.set_ylabel("")
+        if ax.get_ylabel() in ("", axes[0].get_ylabel()):
+            ax.set_ylabel("")

@@ -1,6 +1,6 @@
 """Exceptions.
 
-Beside those below there is one for every status with which the library can fail, named after its outcome:
+In addition to those below there is one for every failure status of the library, named after its outcome:
 `InputError` for "input error", `GrossSliding` for "gross sliding", and so on; `failures()` has them all. They are made
 from the library's own list when first asked for.
 """
@@ -11,9 +11,9 @@ import functools
 
 
 class MfvError(Exception):
-    """What this package raises: a message for a person, and the status of the library behind it, if any."""
+    """Base of the exceptions of this package: a message, and the status of the library if there is one."""
 
-    #: Of a study's axis that cannot be: its number from 0, and which part of it.
+    #: For an invalid axis of a study: its number from 0, and its invalid part.
     where: tuple[int, str] | None = None
 
     def __init__(self, status: int | None, message: str) -> None:
@@ -68,7 +68,7 @@ def _exception(outcome: str, explanation: str) -> type[MfvError]:
 
 
 def __dir__() -> list[str]:
-    """What there is, with the exceptions of the statuses where there is a library that has them."""
+    """All names, including the exceptions of the statuses if the library is available."""
     try:
         kinds = [kind.__name__ for kind in failures().values()]
     except LibraryNotFound:

@@ -1,4 +1,4 @@
-"""The input of a result, a namelist text: its keys and values, and the case that it describes."""
+"""The input of a result, a namelist text: its keys and values, and its case."""
 
 from __future__ import annotations
 
@@ -14,16 +14,16 @@ if TYPE_CHECKING:
     from .case import Case
     from .result import Result
 
-#: Groups that may come more than once; their keys are named group(number)%key, as in a study.
+#: Groups that may occur several times; their keys are named group(number)%key, as in a study.
 REPEATED = ("body", "step")
 
-#: The comment with which an input names the arrays that its scene had in place of a file.
+#: The comment in an input that names an array given in memory.
 _IN_MEMORY = re.compile(r"^! '(.*)' was given in memory: ", flags=re.MULTILINE)
 
 
 def keys(text: str) -> dict[str, Any]:
-    """Values of a namelist text by the names that studies have for them, such as 'scene%coupling' and 'step(2)%cycles':
-    numbers, texts, logicals, or lists of them. Raises ValueError for a text that is no namelist."""
+    """Values of a namelist text by key, as in studies, such as 'scene%coupling' and 'step(2)%cycles': numbers, texts, logicals,
+    or lists of them. Raises ValueError for an invalid namelist."""
     found: dict[str, Any] = {}
     numbers: Counter[str] = Counter()
     for group, values in groups(text):
@@ -34,11 +34,11 @@ def keys(text: str) -> dict[str, Any]:
 
 
 def groups(text: str) -> list[tuple[str, dict[str, Any]]]:
-    """Name, keys and values of every group of a namelist text, those of one name in their order. Raises ValueError."""
+    """Name, keys and values of every group of a namelist text, groups of one name in their order. Raises ValueError."""
     try:
         namelist = f90nml.reads(text)
-    except Exception as error:  # f90nml has no exception of its own for a text that it cannot read
-        raise ValueError(f"the input is no namelist that f90nml can read: {error}") from error
+    except Exception as error:  # f90nml raises exceptions of many types
+        raise ValueError(f"f90nml cannot read the input as a namelist: {error}") from error
     return [
         (name, dict(values))
         for name in namelist
@@ -47,11 +47,11 @@ def groups(text: str) -> list[tuple[str, dict[str, Any]]]:
 
 
 def case_of(result: Result, *, keeping_states: bool = False) -> Case:
-    """The case of a result, as it was before its load history. `keeping_states`: also where the result keeps none.
+    """The case of a result, before its load history. `keeping_states`: save states even if the result has none.
 
-    Raises ValueError where arrays of the scene were in memory and the result is from a file, which has them not; InputError.
+    Raises ValueError if the scene had arrays in memory and the result is from a file, which does not contain them; InputError.
     """
-    from .case import Case  # here: cases are made of scenes, which read inputs
+    from .case import Case  # here, since it imports this module
 
     if result._source is not None:
         scene = copy.deepcopy(result._source)
@@ -62,8 +62,8 @@ def case_of(result: Result, *, keeping_states: bool = False) -> Case:
     in_memory = dict.fromkeys(_IN_MEMORY.findall(text))
     if in_memory:
         raise ValueError(
-            f"arrays of the scene ({', '.join(in_memory)}) were given in memory and are not in the file: "
-            "stresses and states in between need the result that the run itself gave"
+            f"arrays of the scene ({', '.join(in_memory)}) were given in memory and are not in the file; "
+            "use the result object of the run for stresses and intermediate states"
         )
     if keeping_states:
         text = re.sub(r"(\bstates\s*=\s*)(['\"])none\2", r"\1\2steps\2", text, flags=re.IGNORECASE)

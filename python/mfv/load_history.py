@@ -1,4 +1,4 @@
-"""States along a load history: those that a result keeps, or more of them by solving its case again."""
+"""States along a load history: those saved in a result, or more of them by solving its case again."""
 
 from __future__ import annotations
 
@@ -14,41 +14,41 @@ from .inputs import case_of, groups
 from .loads import MOTIONS
 from .result import Field, Group, Result, is_last
 
-#: Loads by the keys of a step that lead them.
+#: Keys of a step that prescribe a load or a displacement.
 LOADS = tuple(key for motion in MOTIONS for key in (motion.force, motion.displacement))
 
 #: Keys of a step that this module knows; a step with any other cannot be divided.
 KNOWN = (*LOADS, "force_ratio", "friction", "cycles", "steady_tolerance")
 
-#: By how much the tractions at the end may differ from those of the file, in parts of the largest.
+#: Tolerance of the tractions at the end, relative to the largest traction: beyond it there is a note.
 AGREEMENT = 1.0e-9
 
-#: By how much they may differ at all; beyond it the result was not led by the steps of its case.
+#: Beyond this difference the steps of the case did not produce the result.
 LIKENESS = 1.0e-2
 
 Progress = Callable[[Iterable[Any]], Iterable[Any]]
 
 
 class Part(NamedTuple):
-    """A straight part of a load history: loads to lead to targets; those on the way back go to where the step began."""
+    """A load segment: targets of the loads; segments of return go to the loads at the beginning of the step."""
 
     step: int
     targets: dict[str, float]
     is_back: bool
     friction: bool
-    #: The loads where it ended early, on the way to the targets.
+    #: The loads at which it ended early.
     reached: dict[str, float] | None = None
 
 
 class LoadHistory(NamedTuple):
-    """A result with a state in `steps` for every picture, and what is to be said of it, if anything."""
+    """A result with a state in `steps` for every picture, and a note for the user, or an empty text."""
 
     result: Result
     note: str
 
 
 def kept_states(result: Result) -> Result:
-    """A result whose `steps` end with its last state, also where a run ended early, or has not begun."""
+    """A result whose `steps` end with its last state, also if the run ended early or has not begun."""
     if result.steps and is_last(result, result.steps[-1]):
         return result
     loads = {name: _field(result.summary, name) for name in result.summary if name not in result.state}
@@ -59,7 +59,7 @@ def kept_states(result: Result) -> Result:
 
 
 def thinned(result: Result, states: int) -> Result:
-    """A result with at most that many of its states in `steps`, evenly, the last one among them."""
+    """A result with at most `states` of its states in `steps`, evenly spaced, including the last one."""
     if len(result.steps) <= states:
         return result
     thinner = copy.copy(result)
@@ -68,31 +68,30 @@ def thinned(result: Result, states: int) -> Result:
 
 
 def evenly(size: int, most: int) -> np.ndarray:
-    """Indices of at most that many of a number of things, evenly, the first and the last among them."""
+    """At most `most` indices below `size`, evenly spaced, including the first and the last."""
     return np.unique(np.linspace(0, size - 1, min(size, most)).round().astype(int))
 
 
 def with_states_between(result: Result, states: int, progress: Progress = iter) -> LoadHistory:
-    """The load history of a result with about that many states, from its case solved again with targets on the way.
+    """The load history of a result with about `states` states, from its case solved again with intermediate targets.
 
-    Where that cannot be done, or leads elsewhere, the states that the result keeps, with a note that says why; a note also
-    tells when the case does not end where the result does, to within AGREEMENT of the largest traction of all states: one that
-    ends unloaded is no other for that. `progress` goes over the targets.
+    If that fails, or ends in another state, the states saved in the result, with a note that says why. There is also a note if
+    the last states differ by more than AGREEMENT times the largest traction of all states. `progress` wraps the targets.
     """
     kept = kept_states(result)
     try:
         again = _solved_again(result, states, progress)
     except (MfvError, ValueError) as error:
-        return LoadHistory(thinned(kept, states), f"only states that the file keeps: {error}")
+        return LoadHistory(thinned(kept, states), f"only the states saved in the file are shown: {error}")
     difference = _difference_of_ends(result, again, [*kept.steps, *again.steps])
-    elsewhere = f"solved again, the case ends elsewhere: tractions differ by {difference:.1e} of the largest"
+    elsewhere = f"the case solved again ends in a different state: tractions differ by {difference:.1e} of the largest"
     if not difference <= LIKENESS:
-        return LoadHistory(thinned(kept, states), f"only states that the file keeps: {elsewhere}")
+        return LoadHistory(thinned(kept, states), f"only the states saved in the file are shown: {elsewhere}")
     return LoadHistory(again, "" if difference <= AGREEMENT else elsewhere)
 
 
 def _difference_of_ends(result: Result, again: Result, states: Sequence[Group]) -> float:
-    """The largest difference of a traction at the ends of two results, in parts of the largest one in any of the states."""
+    """The largest difference of a traction between the last states, relative to the largest one of all states."""
     ends = compare(result, again)
     difference = ends.largest_difference * max(max(traction.first, traction.second) for traction in ends.tractions)
     largest = max(float(np.max(np.abs(state[name]))) for state in states for name in ("pressure", "shear"))
@@ -100,16 +99,16 @@ def _difference_of_ends(result: Result, again: Result, states: Sequence[Group]) 
 
 
 def _solved_again(result: Result, states: int, progress: Progress) -> Result:
-    """The result of a case solved again, with states on the way. Raises MfvError, ValueError."""
+    """The result of a case solved again with intermediate states. Raises MfvError, ValueError."""
     if result.attributes["algorithm"] != "mfv":
-        raise ValueError("the conventional algorithm goes by load steps, which more states would change")
+        raise ValueError("the conventional algorithm depends on the load steps, which additional states would change")
     parts = list(_parts(result))
     if result.outcome != "complete" and parts:
         reached = {name: float(result.summary[name]) for name in parts[-1].targets}
         parts[-1] = parts[-1]._replace(reached=reached)
     divisions = states // max(len(parts), 1)
     if divisions < 2:
-        raise ValueError(f"{len(parts)} straight parts of the load history want {2 * len(parts)} states at least")
+        raise ValueError(f"{len(parts)} load segments need at least {2 * len(parts)} states")
     divided = [(part, division / divisions) for part in parts for division in range(1, divisions + 1)]
     began: dict[int, dict[str, float]] = {}
     with case_of(result, keeping_states=True) as case:
@@ -126,8 +125,8 @@ def _solved_again(result: Result, states: int, progress: Progress) -> Result:
 
 
 def _loads_at(share: float, part: Part, start: dict[str, float], ends: dict[str, float]) -> dict[str, float]:
-    """The loads at a share of a part. A part that ended early is divided up to where it ended; the last of its divisions
-    leads to its targets, for it to end early again."""
+    """The loads at a fraction of a segment. A segment that ended early is divided up to its end; the last division has the
+    targets of the segment, so that it ends early again."""
     if share == 1.0:
         return {name: ends[name] for name in part.targets}
     shown = part.reached or ends
@@ -135,7 +134,7 @@ def _loads_at(share: float, part: Part, start: dict[str, float], ends: dict[str,
 
 
 def _parts(result: Result) -> Iterator[Part]:
-    """The straight parts of the load history that a result has gone through, and the one where it ended early."""
+    """The load segments of a result, including the one that ended early."""
     steps = [values for name, values in groups(result.attributes["input"]) if name == "step"]
     done = int(result.summary.steps_done)
     normal_force = 0.0
@@ -152,7 +151,7 @@ def _parts(result: Result) -> Iterator[Part]:
 
 
 def _reversals(result: Result, number: int, step: dict[str, Any], is_done: bool) -> int:
-    """How many straight parts of a step a result has gone through, the one where it ended early among them."""
+    """Number of load segments of a step in a result, including the one that ended early."""
     cycles = step.get("cycles", 0)
     if cycles == 0:
         return 1
@@ -160,7 +159,7 @@ def _reversals(result: Result, number: int, step: dict[str, Any], is_done: bool)
     if not is_done:
         return kept + 1
     if kept == 0 and "steady_tolerance" in step:
-        raise ValueError(f"step {number} ended when it was steady, and no state tells after how many cycles")
+        raise ValueError(f"step {number} ended at a steady state, and the file does not contain the number of cycles")
     return kept or 2 * cycles
 
 

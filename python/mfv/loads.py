@@ -1,4 +1,4 @@
-"""The motions of the upper body; what a case tells of its loads and motions, and how far a run is."""
+"""The motions of the upper body, the loads of a case, the progress of a run."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from typing import NamedTuple, TypedDict
 
 
 class Motion(NamedTuple):
-    """A motion of the upper body, and the force that works on it: the names that keys, fields and attributes have."""
+    """A motion of the upper body and its conjugate force: the names of keys, fields and attributes."""
 
     displacement: str
     force: str
@@ -40,16 +40,16 @@ class Loads(NamedTuple):
     contact_nodes: int
     stick_nodes: int
     slip_nodes: int
-    events: int  #: loads so far at which nodes changed their status
+    events: int  #: number of loads so far at which nodes changed their status
     linear_solves: int  #: so far
 
 
 class Progress(NamedTuple):
-    """What an observer is told after every increment of the load."""
+    """The progress of a run, after a load increment."""
 
     fraction: float  #: of this load segment
-    segment: int  #: number of this part, from 1
-    segments: int  #: how many there are
+    segment: int  #: number of this load segment, from 1
+    segments: int  #: number of load segments
     contact_nodes: int
     stick_nodes: int
     normal_force: float  #: these as of Loads
@@ -61,5 +61,5 @@ class Progress(NamedTuple):
 
     @property
     def done(self) -> float:
-        """Part of the whole load history that is done."""
+        """Completed fraction of the whole load history."""
         return (self.segment - 1 + self.fraction) / max(self.segments, 1)

@@ -1,4 +1,4 @@
-"""A picture of a contact of several patches, as of rough profiles: all of them, the one that bears most, and the gap between them."""
+"""A picture of a contact with several patches, such as that of a rough profile: all patches, the one with the largest load, the gap."""
 
 from __future__ import annotations
 
@@ -14,9 +14,9 @@ from .views import friction_limits, has_friction
 
 #: Size of the picture and of a row, inch.
 WIDTH, ROW = 10.8, 2.4
-#: Neighbourhood that is shown of the patch in the column of its own, in parts of its length.
+#: Margin on either side of the patch in the narrow column, relative to its length.
 AROUND = 0.35
-#: Patches that are numbered; of more, numbers would cover each other.
+#: The largest number of patches that are numbered; more numbers would overlap.
 MOST_NUMBERS = 20
 
 
@@ -40,8 +40,8 @@ def _touching_nodes(state: Group) -> list[tuple[int, int]]:
 
 
 def figure(result: Result, step: int | None = None) -> Figure:
-    """Rows for pressure, shear traction (with friction) and gap; a wide column for all patches, a narrow one for the patch that bears
-    most. See `plot.figure`."""
+    """Rows for pressure, shear traction (with friction) and gap; a wide column for all patches, a narrow one for the patch with the
+    largest load. See `plot.figure`."""
     state = result.at(step)
     patches = patches_of(result, state)
     panels = [_pressure, _shear, _gap] if has_friction(result) else [_pressure, _gap]
@@ -55,14 +55,14 @@ def figure(result: Result, step: int | None = None) -> Figure:
             row[1].set_ylabel("")
         _frame(result, patches, chosen, axes)
         axes[0, 0].set_title(f"{len(patches)} patches")
-        axes[0, 1].set_title(f"patch {chosen + 1}, which bears most")
+        axes[0, 1].set_title(f"patch {chosen + 1} (largest load)")
         picture.suptitle(plot._heading(result, step), fontsize=12, parse_math=False)
         plot._add_legend(picture, plot._caption(result, step), lines_first=False)
     return picture
 
 
 def _largest(result: Result, state: Group) -> int:
-    """Index of the patch that bears most."""
+    """Index of the patch with the largest load."""
     forces = result.mesh.width * state.pressure
     return int(np.argmax([np.sum(forces[first : last + 1]) for first, last in _touching_nodes(state)]))
 

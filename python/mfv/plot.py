@@ -25,15 +25,35 @@ from .result import Group, Result, counts, is_last
 from .stress import NAMES, StressField, grid, stored
 from .views import contact, friction_limits, has_friction, has_last_normal_force, heights, is_named, limit_of_friction
 
-#: Colours from Okabe and Ito, told apart by the colour-blind too.
+#: Colours from Okabe and Ito, distinguishable with colour blindness.
 NUMBERS, CLOSED_FORM, SURFACE, MARKS = "#0072B2", "#D55E00", "#009E73", "#000000"
 STICK, RIGHT, LEFT, WITHOUT_FRICTION = "#DCEBF5", "#FBE3B4", "#EBD3E1", "#EEEEEE"
 ZONES: dict[int, dict[str, Any]] = {
     NodeStatus.STICK: {"label": "stick", "facecolor": STICK, "edgecolor": "none"},
-    NodeStatus.SLIP_RIGHT: {"label": "slip to the right", "facecolor": RIGHT, "edgecolor": "#C9A24B", "hatch": "///"},
-    NodeStatus.SLIP_LEFT: {"label": "slip to the left", "facecolor": LEFT, "edgecolor": "#B98AA6", "hatch": "\\\\\\"},
-    NodeStatus.CREEP_RIGHT: {"label": "creep to the right", "facecolor": STICK, "edgecolor": "#9FC3DA", "hatch": "//"},
-    NodeStatus.CREEP_LEFT: {"label": "creep to the left", "facecolor": STICK, "edgecolor": "#9FC3DA", "hatch": "\\\\"},
+    NodeStatus.SLIP_RIGHT: {
+        "label": "lower surface slips to the right",
+        "facecolor": RIGHT,
+        "edgecolor": "#C9A24B",
+        "hatch": "///",
+    },
+    NodeStatus.SLIP_LEFT: {
+        "label": "lower surface slips to the left",
+        "facecolor": LEFT,
+        "edgecolor": "#B98AA6",
+        "hatch": "\\\\\\",
+    },
+    NodeStatus.CREEP_RIGHT: {
+        "label": "lower surface creeps to the right",
+        "facecolor": STICK,
+        "edgecolor": "#9FC3DA",
+        "hatch": "//",
+    },
+    NodeStatus.CREEP_LEFT: {
+        "label": "lower surface creeps to the left",
+        "facecolor": STICK,
+        "edgecolor": "#9FC3DA",
+        "hatch": "\\\\",
+    },
     NodeStatus.FRICTIONLESS: {"label": "frictionless contact", "facecolor": WITHOUT_FRICTION, "edgecolor": "none"},
 }
 
@@ -69,28 +89,31 @@ STRESS_LABELS = {
     "principal_angle": r"direction of $\sigma_1$",
 }
 
-#: Pictures on which the largest tension along the surface is marked; what the axes of stresses can be.
+#: Stresses with a mark at the largest tension along the surface; kinds of axes.
 TENSIONS = ("sigma_xx", "sigma_thetatheta", "principal_1")
 AXES = ("normalised", "physical")
 
-#: Sizes of a panel with its labels in inch; letters of the caption in an inch.
-PANEL_WIDTH, PANEL_HEIGHT, LETTERS_PER_INCH = 3.6, 3.3, 19
+#: Size of a panel with its labels in inch.
+PANEL_WIDTH, PANEL_HEIGHT = 3.6, 3.3
+
+#: Letters of the caption per inch; width of the key of a legend entry, in letters.
+LETTERS_PER_INCH, KEY_LETTERS = 19, 9
 
 #: Step ends at one place of a load-displacement curve that are all named; of more, the first and the last.
 NAMED_TOGETHER = 4
 
 
-#: What draws a result, or one of its states, into axes.
+#: A function that draws a result, or one of its states, into axes.
 Panel = Callable[[Result, "Axes | None", "int | None"], Axes]
 
 
 def figure(result: Result, step: int | None = None) -> Figure:
-    """A picture of a result: pressure; shear traction, or the surfaces without friction; load-displacement curve of the
-    tangential force, with cycles also without its linear part, which hides the loop, or, without a force, of the moment; or,
-    where the bodies have rolled, how they creep.
+    """A picture of a result: pressure; shear traction, or without friction the deformed surfaces; tangential force over shift,
+    with cycles also over the non-linear shift, or, without tangential force, moment over rotation; after rolling, sliding over
+    rolled distance.
 
-    `step`: draw the state in `result.steps[step - 1]` not the last one. Raises ValueError where there is none. A contact of
-    several patches has a picture of its own: all patches, the one that bears most, and the gap.
+    `step`: draw `result.steps[step - 1]`, not the last state. Raises ValueError if it does not exist. For a contact with
+    several patches the panels show all patches, the patch with the largest load, and the gap.
     """
     if _loads(result, step).get("patches", 1) > 1:
         from . import patches_figure  # here: it takes its panels from this module
@@ -109,12 +132,12 @@ def figure(result: Result, step: int | None = None) -> Figure:
 
 
 def cycles_figure(result: Result) -> Figure:
-    """A picture of the cycles of a result: hysteresis loop; its non-linear part; where the last cycle dissipates.
+    """A picture of the cycles of a result: hysteresis loop; its non-linear part; dissipation of the last cycle over x.
 
-    Raises ValueError where there are no cycles.
+    Raises ValueError without cycles.
     """
     if not result.cycles:
-        raise ValueError("there are no cycles in this result: a step with cycles=... makes them")
+        raise ValueError("this result has no cycles; give a step cycles=...")
     turns = _turns_in_the_last_cycle(result)
     drawable = [
         (loop, "shift" in result.history and not turns),
@@ -124,7 +147,7 @@ def cycles_figure(result: Result) -> Figure:
     ]
     panels = [panel for panel, is_there in drawable if is_there]
     if not panels:
-        raise ValueError("nothing of the cycles can be drawn: the result has no history, and without friction nothing dissipates")
+        raise ValueError("no cycles to draw: the result has neither a history nor dissipation by friction")
     return _panels_in_a_row(panels, result, None, _cycle_caption(result))
 
 
@@ -137,12 +160,12 @@ def _panels_in_a_row(panels: Sequence[Panel], result: Result, step: int | None, 
             panel(result, ax, step)
             ax.set_title(f"({letter})")
         picture.suptitle(_heading(result, step), fontsize=12, parse_math=False)
-        _add_legend(picture, caption, 2 * len(panels))
+        _add_legend(picture, caption)
     return picture
 
 
 def _turns_in_the_last_cycle(result: Result) -> bool:
-    """Whether the moment goes to and fro in the last cycle, and not the tangential force."""
+    """Whether the moment alternates in the last cycle, and the tangential force does not."""
     history = result.history
     if "rotation" not in history:
         return False
@@ -153,13 +176,13 @@ def _turns_in_the_last_cycle(result: Result) -> bool:
 
 
 def _cycle_caption(result: Result) -> str:
-    """How many cycles, what the last one dissipates and how much it still changes."""
+    """Number of cycles, dissipation of the last one, and its change of the tractions."""
     seen, unit = result.observables, result.observables.unit("cycle_dissipation")
     parts = [
         f"{result.cycles.cycle.size} cycles",
-        f"the last dissipates {seen.cycle_dissipation:.4g}{f' {unit}' if is_named(unit) else ''}",
+        f"the last cycle dissipates {seen.cycle_dissipation:.4g}{f' {unit}' if is_named(unit) else ''}",
         f"loss factor {seen.loss_factor:.3g}" if "loss_factor" in seen else "",
-        f"tractions change by {seen.cycle_change:.1e} over it",
+        f"change of the tractions over it {seen.cycle_change:.1e}",
     ]
     return " \N{MIDDLE DOT} ".join(part for part in parts if part)
 
@@ -169,11 +192,11 @@ def stress_figure(
 ) -> Figure:
     """A picture of a stress inside a body: contours over the largest pressure, axes over the contact half-width.
 
-    `name`: one of `mfv.stress.NAMES`. `axes`: 'physical' for stresses and lengths as they are. What mfv_stress has put into the file is
-    drawn, else the stresses are computed, which needs the library. Raises ValueError for an unknown name, step or kind of axes.
+    `name`: one of `mfv.stress.NAMES`. `axes`: 'physical' for stresses and lengths in their units. Stresses that mfv_stress has written into the
+    file are drawn; otherwise they are computed, which needs the library. Raises ValueError for an unknown name, step or kind of axes.
     """
     if name not in NAMES:
-        raise ValueError(f"there is no stress {name}; there is {', '.join(NAMES)}")
+        raise ValueError(f"unknown stress {name}; choose from {', '.join(NAMES)}")
     field = stored(result, body=body, step=step) or grid(result, body=body, step=step)
     if np.isnan(field[name]).all():
         raise ValueError(f"{name} is not defined in a half-plane")
@@ -183,7 +206,7 @@ def stress_figure(
         ax = stress_contours(field, picture.subplots(), name, colour_bar=True, axes=axes, units=units)
         heading = _heading(result, step)
         ax.set_title(f"{heading}: {body} body" if heading else f"{body} body", fontsize=12, parse_math=False)
-        picture.supxlabel(_scales(result, field), fontsize=9, color="0.35", parse_math=False)
+        picture.supxlabel(_scales(result, field), fontsize=9, color="0.35")
     return picture
 
 
@@ -196,15 +219,17 @@ def _stress_size(field: StressField) -> tuple[float, float]:
 
 
 def _scales(result: Result, field: StressField) -> str:
-    """What pressure and length the picture is drawn over, the largest von Mises stress and tension, in the user's units."""
-    unit, length = (f" {unit}" if is_named(unit) else "" for unit in (result.state.unit("pressure"), result.mesh.unit("x")))
+    """The scales of the picture, the largest von Mises stress and the largest tension, in the user's units."""
+    unit, length = _unit(result.state.unit("pressure")), _unit(result.mesh.unit("x"))
     parts = [
-        f"p0 = {field.largest_pressure:.4g}{unit}",
-        f"a = {field.half_width:.4g}{length}",
+        f"$p_0$ = {field.largest_pressure:.4g}{unit}",
+        f"$a$ = {field.half_width:.4g}{length}",
         f"largest von Mises stress {field.largest.value:.4g}{unit}",
     ]
     if field.tension.value > 0.0:
-        parts[-1] += f"\nlargest tension along the surface {field.tension.value:.4g}{unit} at x = {field.tension.x:.4g}{length}"
+        parts[-1] += (
+            f"\nlargest tension along the surface {field.tension.value:.4g}{unit} at $x$ = {_signed(field.tension.x)}{length}"
+        )
     return " \N{MIDDLE DOT} ".join(parts)
 
 
@@ -246,7 +271,7 @@ def stress_contours(
     if mark is not None and np.isfinite(mark.x):
         place = (mark.x - origin) / length, mark.y / length
         unit = _unit(units[1]) if physical else " $p_0$"
-        at = f"{place[0]:.4g}, {place[1] + 0.0:.3g}" if physical else f"{_rounded(place[0])}, {_rounded(place[1])}"
+        at = f"{_signed(place[0])}, {_signed(place[1])}" if physical else f"{_rounded(place[0])}, {_rounded(place[1])}"
         text = f"{'largest' if name == 'von_mises' else 'largest tension'}: {mark.value / stress:.4g}{unit}"
         _mark_stress(ax, place, f"{text}\nat ({at}){_unit(units[0]) if physical else ' $a$'}", field.body == "upper")
     ax.set_aspect("equal")
@@ -259,7 +284,8 @@ def stress_contours(
         label = f"{STRESS_LABELS[name]} [degrees]" if is_angle else f"{STRESS_LABELS[name]}$/p_0$"
         if physical and not is_angle:
             label = f"{STRESS_LABELS[name]}{f' [{_unit(units[1]).strip()}]' if _unit(units[1]) else ''}"
-        ax.figure.colorbar(contours, ax=ax, label=label, pad=0.02, aspect=25)
+        beside = ax.inset_axes((1.02, 0.0, 0.025, 1.0))  # as high as the axes, which keep their aspect
+        ax.figure.colorbar(contours, cax=beside, label=label)
     return ax
 
 
@@ -304,11 +330,16 @@ def _unit(unit: str) -> str:
 
 def _rounded(value: float) -> str:
     """Two decimals, without a minus before zero."""
-    return f"{round(value, 2) + 0.0:.2f}"
+    return f"{round(value, 2) + 0.0:.2f}".replace("-", "\N{MINUS SIGN}")
+
+
+def _signed(value: float) -> str:
+    """Four digits, with a minus sign as on the axes."""
+    return f"{value + 0.0:.4g}".replace("-", "\N{MINUS SIGN}")
 
 
 def pressure(result: Result, ax: Axes | None = None, step: int | None = None) -> Axes:
-    """Pressure over x, with its closed form where one holds."""
+    """Pressure over x, with its closed form if there is one."""
     ax = _axes(ax)
     state = result.at(step)
     _draw_points(ax, result, state, state.pressure)
@@ -321,7 +352,7 @@ def pressure(result: Result, ax: Axes | None = None, step: int | None = None) ->
 
 
 def shear(result: Result, ax: Axes | None = None, step: int | None = None) -> Axes:
-    """Shear traction over x between the limits of friction, stick and slip zones, closed form where one holds."""
+    """Shear traction over x with the friction limits, stick and slip zones, and the closed form if there is one."""
     ax = _axes(ax)
     state = result.at(step)
     _shade_zones(ax, result, state)
@@ -356,7 +387,7 @@ def surfaces(result: Result, ax: Axes | None = None, step: int | None = None) ->
 
 
 def loop(result: Result, ax: Axes | None = None, step: int | None = None) -> Axes:
-    """Tangential force over shift, with the closed form where one holds; step ends are numbered, `step` stands out."""
+    """Tangential force over shift, with the closed form if there is one; step ends are numbered, `step` is bold."""
     ax = _axes(ax)
     history = result.history
     shift, force = history.shift, history.tangential_force
@@ -371,7 +402,7 @@ def loop(result: Result, ax: Axes | None = None, step: int | None = None) -> Axe
 
 
 def nonlinear_loop(result: Result, ax: Axes | None = None, step: int | None = None) -> Axes:
-    """Tangential force over the non-linear part of the shift: what slip adds to a contact where all sticks."""
+    """Tangential force over the non-linear part of the shift, which is due to slip."""
     ax = _axes(ax)
     history = result.history
     ax.plot(history.nonlinear_shift, history.tangential_force, color=NUMBERS, linewidth=0.8)
@@ -385,13 +416,13 @@ def friction_work(result: Result, ax: Axes | None = None, step: int | None = Non
     ax = _axes(ax)
     cycles = result.cycles
     ax.plot(result.mesh.x, cycles.friction_work, color=NUMBERS, linewidth=0.8, **_points(result.mesh.x.size))
-    ax.set_ylabel(_label("dissipated per cycle and surface", "d", cycles.unit("friction_work")))
+    ax.set_ylabel(_label("dissipation per cycle and area", "d", cycles.unit("friction_work")))
     _frame_contact(ax, result, result.at(step))
     return ax
 
 
 def turning(result: Result, ax: Axes | None = None, step: int | None = None) -> Axes:
-    """Moment over rotation; step ends are numbered, `step` stands out."""
+    """Moment over rotation; step ends are numbered, `step` is bold."""
     ax = _axes(ax)
     history = result.history
     points = _points(history.rotation.size)
@@ -401,7 +432,7 @@ def turning(result: Result, ax: Axes | None = None, step: int | None = None) -> 
 
 
 def rolling(result: Result, ax: Axes | None = None, step: int | None = None) -> Axes:
-    """Sliding over the rolled distance, whose slope is the creepage; step ends are numbered, `step` stands out."""
+    """Sliding over the rolled distance, whose slope is the creepage; step ends are numbered, `step` is bold."""
     ax = _axes(ax)
     history = result.history
     ax.plot(history.rolled, history.slid, color=NUMBERS, linewidth=0.8, **_points(len(history.slid)), label="computed")
@@ -422,10 +453,10 @@ def _finished_curve(
 
 
 def _axes(ax: Axes | None) -> Axes:
-    """The axes to draw into: new ones, of a figure of pyplot, where none are given."""
+    """The given axes, or those of a new figure of pyplot."""
     if ax is not None:
         return ax
-    from matplotlib import pyplot  # here: it looks for a display, which pictures in files do not need
+    from matplotlib import pyplot  # here, since it needs a display
 
     with matplotlib.rc_context(STYLE):
         _, made = pyplot.subplots(figsize=(PANEL_WIDTH, PANEL_HEIGHT), layout="constrained")
@@ -438,7 +469,7 @@ def _loads(result: Result, step: int | None) -> Group:
 
 
 def _is_sheared(result: Result) -> bool:
-    """Whether the load history has a tangential force to speak of."""
+    """Whether the load history has a tangential force above round-off."""
     if not has_friction(result) or not result.history:
         return False
     negligible = 1.0e-9 * np.max(np.abs(result.history.normal_force))
@@ -456,7 +487,7 @@ def _is_rolled(result: Result) -> bool:
 
 
 def _same_normal_force(result: Result, step: int | None) -> bool:
-    """Whether the closed form of the pressure, which is that of the last state, holds for this one."""
+    """Whether the closed form of the pressure, computed for the last state, also holds for this one."""
     return step is None or (has_last_normal_force(result, result.at(step)) and not _is_rolled(result))
 
 
@@ -478,7 +509,7 @@ def _draw_points(ax: Axes, result: Result, state: Group, values: np.ndarray, lab
 
 
 def _points(number: int) -> dict[str, Any]:
-    """Markers that leave each other room: smaller where there are more."""
+    """Markers, smaller for more points."""
     return {"marker": "o", "markersize": float(np.clip(350.0 / max(number, 1), 1.0, 3.5)), "markeredgewidth": 0.0}
 
 
@@ -501,24 +532,25 @@ def _runs(values: np.ndarray) -> Iterator[tuple[int, int, int]]:
 
 
 def _frame_contact(ax: Axes, result: Result, state: Group) -> None:
-    """Show the contact and a quarter of its length on either side, as far as the mesh goes; else all of it."""
+    """Show the contact and a quarter of its length on either side within the mesh; without contact the whole mesh."""
     ax.set_xlim(contact(result, [state]))
     ax.locator_params(axis="x", nbins=5)
     ax.set_xlabel(_label("position", "x", result.mesh.unit("x")))
 
 
 def _mark_step_ends(ax: Axes, result: Result, step: int | None, across: str, up: str) -> None:
-    """Numbers at the ends of steps and reversals, as in `result.steps`, those at one place together; an early end."""
+    """Number the ends of steps and reversals, as in `result.steps`, coinciding ones together; mark an early end."""
     history = result.history
     curve = np.column_stack((history[across], history[up]))
     curve_size = np.maximum(np.ptp(curve, axis=0), np.finfo(float).tiny)
-    ends = _places(curve[history.event_kind == EventKind.STEP_END], 0.02 * curve_size)
+    ends = _places(curve[history.event_kind == EventKind.STEP_END], 0.03 * curve_size)
     marks = [(place, _enumeration(numbers), "o", step in numbers) for place, numbers in ends]
     marks += [(place, "stopped", "s", False) for place in curve[history.event_kind == EventKind.STOPPED]]
     relative = np.array([place for place, *_ in marks] or np.empty((0, 2))) / curve_size
     middle = np.mean((curve.min(axis=0), curve.max(axis=0)), axis=0) / curve_size
     for number, (place, text, marker, bold) in enumerate(marks):
-        _mark(ax, place, text, marker, bold, _is_labelled_above(relative, number, middle))
+        is_far_right = relative[number, 0] > middle[0] + 0.3
+        _mark(ax, place, text, marker, bold, _is_labelled_above(relative, number, middle), is_far_right)
 
 
 def _is_labelled_above(places: np.ndarray, number: int, middle: np.ndarray) -> bool:
@@ -531,10 +563,12 @@ def _is_labelled_above(places: np.ndarray, number: int, middle: np.ndarray) -> b
     return bool(here[0] >= middle[0])
 
 
-def _mark(ax: Axes, place: np.ndarray, text: str, marker: str, bold: bool, above: bool) -> None:
-    """A mark with its text."""
+def _mark(ax: Axes, place: np.ndarray, text: str, marker: str, bold: bool, above: bool, is_far_right: bool) -> None:
+    """A mark with its text: above and to the left, or below and to the right; long text at the right margin is centred below."""
     width, weight = (1.8, "bold") if bold else (0.8, "normal")
     ha, va, offset = ("right", "bottom", (-5, 5)) if above else ("left", "top", (5, -5))
+    if is_far_right and not above and len(text) > 4:
+        ha, offset = "center", (0, -6)
     ax.plot(*place, marker=marker, markersize=7, markerfacecolor="none", markeredgecolor=MARKS, markeredgewidth=width)
     ax.annotate(text, tuple(place), xytext=offset, textcoords="offset points", ha=ha, va=va, fontsize=9, fontweight=weight)
 
@@ -567,12 +601,15 @@ def _legend_entries(picture: Figure, lines_first: bool = True) -> tuple[list[Art
     return [handles[label] for label in labels], labels
 
 
-def _add_legend(picture: Figure, caption: str, columns: int = 6, lines_first: bool = True) -> None:
+def _add_legend(picture: Figure, caption: str = "", lines_first: bool = True) -> None:
     """One legend below all panels of a picture with a constrained layout, lines before zones, with the caption above it."""
     letters = int(LETTERS_PER_INCH * picture.get_figwidth())
+    handles, labels = _legend_entries(picture, lines_first)
+    rows = -(-sum(len(label) + KEY_LETTERS for label in labels) // letters) or 1
     legend = picture.legend(
-        *_legend_entries(picture, lines_first),
-        ncols=columns,
+        handles,
+        labels,
+        ncols=-(-len(labels) // rows) or 1,
         fontsize=10,
         loc="outside lower center",
         title="\n".join(textwrap.fill(line, letters) for line in caption.splitlines()),
@@ -590,7 +627,7 @@ def _heading(result: Result, step: int | None) -> str:
 
 
 def _caption(result: Result, step: int | None) -> str:
-    """How the run ended unless well, node counts and certificate; below, where the closed forms come from."""
+    """Outcome unless complete, node counts and certificate; below, the sources of the closed forms."""
     parts = [
         f"{result.mesh.x.size} nodes, {counts(_loads(result, step))}",
         f"largest relative residual {result.certificate.largest:.1e}",
@@ -603,7 +640,7 @@ def _caption(result: Result, step: int | None) -> str:
 
 
 def _label(name: str, symbol: str, unit: str) -> str:
-    """Label of an axis; the unit only where the user has named it."""
+    """Label of an axis, with the unit if the user has named it."""
     if not is_named(unit):
         return f"{name} ${symbol}$"
     shown = unit.replace("$", r"\$").replace("^2", "$^2$")

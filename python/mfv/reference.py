@@ -58,7 +58,7 @@ def flat_punch_pressure(x: Number, normal_force: Number, half_width: Number) -> 
 
 @_closed_form
 def spence_stick_ratio(friction_coefficient: Number, beta: Number) -> Array:
-    """Width of the stuck zone over that of the contact under a growing normal force (Spence)."""
+    """Ratio of the widths of stick zone and contact under a growing normal force (Spence)."""
 
 
 @_closed_form
@@ -75,7 +75,7 @@ def spence_flat_punch_shear(
 
 @_closed_form
 def mindlin_stick_ratio(tangential_force: Number, normal_force: Number, friction_coefficient: Number) -> Array:
-    """Width of the stuck zone over that of the contact of a cylinder pressed, then sheared (Cattaneo, Mindlin)."""
+    """Ratio of the widths of stick zone and contact of a cylinder pressed, then sheared (Cattaneo, Mindlin)."""
 
 
 @_closed_form
@@ -120,7 +120,7 @@ def wedge_pressure(x: Number, normal_force: Number, half_width: Number) -> Array
 
 
 def wedge_stick_ratio(tangential_force: Number, normal_force: Number, friction_coefficient: Number) -> Array:
-    """Width of the stuck zone over that of the contact of a wedge pressed, then sheared: 1 - Q/(mu P)."""
+    """Ratio of the widths of stick zone and contact of a wedge pressed, then sheared: 1 - Q/(mu P)."""
     return power_stick_ratio(tangential_force, normal_force, friction_coefficient, 1.0)
 
 
@@ -150,7 +150,7 @@ def power_pressure(x: Number, normal_force: Number, half_width: Number, exponent
 
 @_closed_form
 def power_stick_ratio(tangential_force: Number, normal_force: Number, friction_coefficient: Number, exponent: Number) -> Array:
-    """Width of the stuck zone over that of the contact of such a body pressed, then sheared (Jaeger, Ciavarella)."""
+    """Ratio of the widths of stick zone and contact of such a body pressed, then sheared (Jaeger, Ciavarella)."""
 
 
 @_closed_form
@@ -190,7 +190,7 @@ def rounded_punch_stick_ratio(
     half_width: Number,
     flat_half_width: Number,
 ) -> Array:
-    """Width of the stuck zone over that of the contact of such a punch pressed, then sheared (Jaeger, Ciavarella)."""
+    """Ratio of the widths of stick zone and contact of such a punch pressed, then sheared (Jaeger, Ciavarella)."""
 
 
 @_closed_form

@@ -1,4 +1,4 @@
-"""A result as one web page that needs nothing else: plotly and all data are inside, nothing is loaded from anywhere.
+"""A result as one self-contained web page, with plotly and all data; nothing is loaded from the network.
 
 `page` makes the text of the page. It needs the Python packages plotly and jinja2 (the extra `report`).
 """
@@ -44,18 +44,18 @@ MOST_TICKS = 12
 #: Digits of the numbers in the curves.
 DIGITS = 7
 
-#: How the page names what a node is, and its colour.
+#: Names and colours of the statuses of nodes.
 STATUSES = {
     NodeStatus.OPEN: ("open", "rgba(0,0,0,0)"),
     NodeStatus.STICK: ("stick", "#cfe3f1"),
-    NodeStatus.SLIP_RIGHT: ("slip to the right", "#f8d998"),
-    NodeStatus.SLIP_LEFT: ("slip to the left", "#e6c3d8"),
+    NodeStatus.SLIP_RIGHT: ("lower surface slips to the right", "#f8d998"),
+    NodeStatus.SLIP_LEFT: ("lower surface slips to the left", "#e6c3d8"),
     NodeStatus.FRICTIONLESS: ("frictionless contact", "#e2e4e6"),
-    NodeStatus.CREEP_RIGHT: ("creep to the right", "#b5d6e6"),
-    NodeStatus.CREEP_LEFT: ("creep to the left", "#c3cdec"),
+    NodeStatus.CREEP_RIGHT: ("lower surface creeps to the right", "#b5d6e6"),
+    NodeStatus.CREEP_LEFT: ("lower surface creeps to the left", "#c3cdec"),
 }
 
-#: Key numbers of the page: group, name, what it is called. Those that a result is without are left out.
+#: Key numbers of the page: group, name, label. Those that a result does not have are omitted.
 KEY_NUMBERS = (
     ("summary", "normal_force", "normal force P"),
     ("summary", "tangential_force", "tangential force Q"),
@@ -74,7 +74,7 @@ KEY_NUMBERS = (
     ("certificate", "largest", "largest relative residual"),
 )
 
-#: Those that say nothing where there is no friction.
+#: Key numbers that are meaningless without friction.
 OF_FRICTION = ("tangential_force", "shift", "edge_stick_ratio", "peak_shear", "dissipation")
 
 #: Columns of the table of cycles.
@@ -100,7 +100,7 @@ POINTS = {"mode": "lines+markers", "line": {**NUMBERS, "width": 0.75}, "marker":
 
 
 def page(result: Result, source: str, history: LoadHistory | None = None) -> str:
-    """The page of a result. `source`: what the file is called; `history`: states to show in place of those that it keeps."""
+    """The page of a result. `source`: name of the file; `history`: states to show in place of the saved ones."""
     states, note = history or LoadHistory(kept_states(result), "")
     shown = thinned(states, MOST_STATES)
     limits = contact(shown)
@@ -152,9 +152,9 @@ def _in_view(result: Result, limits: tuple[float, float]) -> slice:
 
 
 def _state(result: Result, number: int, inside: slice, curve: Curve, is_kept: bool) -> dict[str, Any]:
-    """What the slider changes: the curves of a state, by figure and trace, the point on the curve, and words.
+    """The data of a state for the slider: curves by figure and trace, the point on the curve, and text.
 
-    `is_kept`: whether it is one of the file's, with a step and a reversal of its own.
+    `is_kept`: whether the state is from the file, with a step and a reversal.
     """
     state = result.steps[number]
     pressures: dict[str, Any] = {"pressure": _list(state.pressure[inside])}
@@ -183,7 +183,7 @@ def _state(result: Result, number: int, inside: slice, curve: Curve, is_kept: bo
 
 
 def _words(result: Result, state: Group, number: int, is_kept: bool) -> str:
-    """A state in words: its number, its loads, what its nodes do."""
+    """Description of a state: its number, its loads, its node counts."""
     place = f"state {number + 1} of {len(result.steps)}"
     if is_kept and "step" in state:
         place += f" (step {state.step}, reversal {state.reversal})"
@@ -192,7 +192,7 @@ def _words(result: Result, state: Group, number: int, is_kept: bool) -> str:
 
 
 def _traction_figures(result: Result, inside: slice) -> dict[str, Any]:
-    """Pressure, and shear traction or surfaces, without the values, which are those of the state that the slider is at."""
+    """Pressure, and shear traction or surfaces, without values; the slider sets them."""
     x = _list(result.mesh.x[inside])
     across = _axis("position", "x", result.mesh.unit("x"))
     largest = max(float(state.pressure.max()) for state in result.steps) or 1.0
@@ -212,7 +212,7 @@ def _traction_figures(result: Result, inside: slice) -> dict[str, Any]:
 
 
 def _shear_figure(result: Result, inside: slice, x: Sequence[Any], across: dict[str, Any]) -> go.Figure:
-    """Shear traction between the limits of friction, stick and slip zones behind them."""
+    """Shear traction with the friction limits and stick and slip zones."""
     limits = friction_limits(result)
     bound = max(
         [float(np.max(np.abs(state.shear))) for state in result.steps]
@@ -232,7 +232,7 @@ def _shear_figure(result: Result, inside: slice, x: Sequence[Any], across: dict[
 
 
 def _curve_figure(result: Result, curve: Curve) -> dict[str, Any]:
-    """Load over displacement, and the point that the slider moves, which comes last."""
+    """Load over displacement, and the moving point of the slider as the last trace."""
     units = (result.summary.unit(name) for name in (curve.across, curve.up))
     figure = _figure(*(_axis(*label, unit) for label, unit in zip((curve.across_label, curve.up_label), units)))
     across, up = curve.values(result)
@@ -248,7 +248,7 @@ def _curve_figure(result: Result, curve: Curve) -> dict[str, Any]:
 
 
 def _map_figure(result: Result, inside: slice) -> dict[str, Any]:
-    """What every node is in every state."""
+    """The status of every node in every state."""
     statuses = np.array([state.status[inside] for state in result.steps])
     ticks = {"dtick": 1} if len(result.steps) <= MOST_TICKS else {}
     figure = _figure(_axis("position", "x", result.mesh.unit("x")), {"title": {"text": "state"}, **ticks})
@@ -292,7 +292,7 @@ def _history_figures(result: Result) -> dict[str, Any]:
 
 
 def _cycle_figures(result: Result, inside: slice) -> dict[str, Any]:
-    """Dissipation of every cycle, and where the last one dissipates."""
+    """Dissipation of every cycle, and of the last one over x."""
     cycles = result.cycles
     if not cycles:
         return {}
@@ -301,7 +301,7 @@ def _cycle_figures(result: Result, inside: slice) -> dict[str, Any]:
     figure.add_scatter(x=cycles.cycle.tolist(), y=_list(cycles.dissipation), name="dissipation", mode="lines+markers", line=NUMBERS)
     figures = {"cycles": figure}
     if "friction_work" in cycles:
-        label = _axis("dissipated per surface", "", cycles.unit("friction_work"))
+        label = _axis("dissipation per cycle and area", "", cycles.unit("friction_work"))
         work = _figure(_axis("position", "x", result.mesh.unit("x")), label)
         x, values = _list(result.mesh.x[inside]), _list(cycles.friction_work[inside])
         work.add_scatter(x=x, y=values, name="friction work", **POINTS)
@@ -325,7 +325,7 @@ def _figure(across: dict[str, Any], up: dict[str, Any]) -> go.Figure:
 
 
 def _axis(name: str, symbol: str, unit: str, limits: Sequence[float] | None = None) -> dict[str, Any]:
-    """Title, and where given the range, of an axis; the unit only where the user has named it."""
+    """Title of an axis, with the unit if the user has named it, and its range if given."""
     shown = f" [{_unit(unit)}]" if is_named(unit) else ""
     title = f"{name} <i>{symbol}</i>{shown}" if symbol else f"{name}{shown}"
     axis: dict[str, Any] = {"title": {"text": title}}
@@ -348,20 +348,20 @@ def _status_colours() -> dict[str, Any]:
 
 
 def _edges(result: Result, inside: slice) -> list[float]:
-    """Where the surface of one node ends and that of the next begins."""
+    """The boundaries between the intervals of the nodes."""
     x, half = result.mesh.x[inside], 0.5 * result.mesh.width[inside]
     return [*(x - half).tolist(), float(x[-1] + half[-1])]
 
 
 def _key_numbers(result: Result) -> list[dict[str, str]]:
-    """What a reader looks for first: name, value with unit, error bar, definition."""
+    """The key numbers: name, value with unit, error bar, definition."""
     found = []
-    left_out: tuple[str, ...] = () if has_friction(result) else OF_FRICTION
+    omitted: tuple[str, ...] = () if has_friction(result) else OF_FRICTION
     if result.summary.get("patches", 1) == 1:
-        left_out += ("contact_length", "patches")  # what is a half-width is not told twice
+        omitted += ("contact_length", "patches")  # with one patch equivalent to the half-width
     for group_name, name, shown in KEY_NUMBERS:
         group: Group = getattr(result, group_name)
-        if name in group and name not in left_out and not math.isnan(group[name]):
+        if name in group and name not in omitted and not math.isnan(group[name]):
             bar = result.error_estimate.get(f"{_ESTIMATED.get(name, name)}_error")
             found.append(
                 {
@@ -406,23 +406,23 @@ def _cycle_table(result: Result) -> dict[str, Any]:
 
 
 def _with_unit(group: Group, name: str) -> str:
-    """A number with its unit where the user has named one."""
+    """A number with its unit if the user has named one."""
     unit = group.unit(name)
     return f"{_number(group[name])}{f' {_unit(unit)}' if is_named(unit) else ''}"
 
 
 def _unit(unit: str) -> str:
-    """A unit for a reader; nothing for that of a pure number."""
+    """A unit for display; empty for a pure number."""
     return _html.unit(unit).replace("^2", "²").replace("^3", "³")
 
 
 def _number(value: Any) -> str:
-    """A number for a reader."""
+    """A number for display."""
     return "none" if math.isnan(value) else f"{value + 0:.6g}".replace("-", "\N{MINUS SIGN}")
 
 
 def _list(values: Any) -> list[float | None]:
-    """Numbers for the page; what is not finite is left out."""
+    """Numbers for the page; None for those that are not finite."""
     return [_rounded(value) for value in np.asarray(values, dtype=float).tolist()]
 
 

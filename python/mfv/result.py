@@ -1,4 +1,4 @@
-"""Results: what a run gives and what a result file holds."""
+"""Results of runs and of result files."""
 
 from __future__ import annotations
 
@@ -18,13 +18,13 @@ if TYPE_CHECKING:
     from .scene import Scene
 
 Values = Any
-"""What a quantity is: an array of float64 or int32, or one such number."""
+"""Values of a quantity: an array of float64 or int32, or one such number."""
 
 #: Groups and texts that every result has.
 GROUPS = ("mesh", "scene", "state", "summary", "certificate")
 TEXTS = ("mfv_version", "outcome", "message", "input")
 
-#: Groups that a result can be without; they are then empty.
+#: Optional groups of a result; empty if absent.
 OPTIONAL_GROUPS = ("history", "reference", "error_estimate", "sensitivity", "observables", "cycles", "patches")
 
 #: Groups with coordinates of their own; elsewhere coordinates are repeated.
@@ -36,7 +36,7 @@ COORDINATES = {
     "patches": ("patch",),
 }
 
-#: Where mfv_stress puts its groups.
+#: The group of the stresses of mfv_stress.
 STRESS = "stress/"
 
 #: The dimension along which `Result.to_xarray` stacks the steps.
@@ -44,7 +44,7 @@ STATE = "state"
 
 
 class Field(NamedTuple):
-    """One quantity. `dimensions`: what its values run along, such as ("x",); () for a number."""
+    """One quantity. `dimensions`: names of its dimensions, such as ("x",); () for a number."""
 
     values: Values
     unit: str
@@ -53,18 +53,18 @@ class Field(NamedTuple):
 
 
 class Group(Mapping[str, Values]):
-    """Named quantities, as attributes and items: `group.pressure` is `group["pressure"]`; `in` tells what is there.
+    """Named quantities, as attributes and items: `group.pressure` is `group["pressure"]`; `in` tests for a name.
 
-    What the quantities run along can be had in the same way, such as `result.state.x`, but is listed in its own group only.
+    Coordinates are available in the same way, such as `result.state.x`, but are listed only in their own group.
     """
 
     def __init__(self, fields: Mapping[str, Field], coordinates: Mapping[str, Field] | None = None) -> None:
-        """`coordinates`: what quantities run along, by name, where it is not among the fields itself."""
+        """`coordinates`: the coordinates of the quantities by name, unless they are among the fields."""
         self._fields = dict(fields)
         self._coordinates = coordinates or {}
 
     def _along(self) -> set[str]:
-        """Names of what the quantities run along."""
+        """Names of the coordinates."""
         return {name for field in self._fields.values() for name in field.dimensions if name in self._coordinates}
 
     def _field(self, name: str) -> Field:
@@ -80,15 +80,15 @@ class Group(Mapping[str, Values]):
             raise AttributeError(name)
         if name in self:
             return self[name]
-        raise AttributeError(f"there is no '{name}' here; there is {', '.join(self) or 'nothing'}")
+        raise AttributeError(f"no quantity '{name}'; there are {', '.join(self) or 'none'}")
 
     def __setattr__(self, name: str, value: object) -> None:
         if not name.startswith("_") and name in self:
-            raise AttributeError(f"'{name}' is a quantity of the result and cannot be set; its values can be copied")
+            raise AttributeError(f"'{name}' is a quantity of the result and cannot be set; copy its values instead")
         super().__setattr__(name, value)
 
     def __eq__(self, other: object) -> bool:
-        """Whether the same quantities have the same values; NaN is the same as NaN."""
+        """Whether all quantities have equal values; NaN equals NaN."""
         if not isinstance(other, Group):
             return NotImplemented
         return self.keys() == other.keys() and all(np.array_equal(self[name], other[name], equal_nan=True) for name in self)
@@ -123,14 +123,14 @@ class Group(Mapping[str, Values]):
         return self._field(name).unit
 
     def description(self, name: str) -> str:
-        """What a quantity is, in words."""
+        """Description of a quantity."""
         return self._field(name).description
 
 
 class Result:
     """A result: groups of quantities as attributes, `steps` with the state at the end of every step and reversal.
 
-    `stresses` has what mfv_stress has put into the file, by state and body: `stresses["last/lower"]`.
+    `stresses`: the stresses that mfv_stress has written into the file, by state and body: `stresses["last/lower"]`.
     `attributes` are the texts of the result: title, outcome, message, input, ...
     """
 
@@ -157,8 +157,8 @@ class Result:
         attributes: Mapping[str, str],
         source: Scene | None = None,
     ) -> None:
-        """`groups` by path, those of the steps as steps/0001 and so on. `source`: the scene that was run, where the input among
-        the attributes does not have all of it."""
+        """`groups` by path, those of the steps as steps/0001 and so on. `source`: the scene, if it has arrays, which the input
+        among the attributes does not contain."""
         coordinates = {name: groups[path][name] for path, names in COORDINATES.items() if path in groups for name in names}
         steps = sorted((path for path in groups if path.startswith("steps/")), key=lambda path: int(path.split("/")[1]))
         self.steps = [Group(groups[path], coordinates) for path in steps]
@@ -173,25 +173,25 @@ class Result:
 
     @property
     def outcome(self) -> str:
-        """How the run ended, in words: 'complete', 'gross sliding', ..."""
+        """Outcome of the run: 'complete', 'gross sliding', ..."""
         return self.attributes["outcome"]
 
     @property
     def message(self) -> str:
-        """What was reached, or why not."""
+        """What was reached, or why the run ended early."""
         return self.attributes["message"]
 
     @property
     def title(self) -> str:
-        """Title of the scene, empty where it has none."""
+        """Title of the scene, or an empty text."""
         return self.attributes.get("title", "")
 
     def at(self, step: int | None = None) -> Group:
-        """The last state, or `steps[step - 1]`. Raises ValueError where there is none."""
+        """The last state, or `steps[step - 1]`. Raises ValueError if it does not exist."""
         if step is None:
             return self.state
         if not 1 <= step <= len(self.steps):
-            raise ValueError(f"there is no state {step}: the result has {len(self.steps)} in steps")
+            raise ValueError(f"no state {step}: the result has {len(self.steps)} in steps")
         return self.steps[step - 1]
 
     def to_xarray(self) -> dict[str, xarray.Dataset]:
@@ -232,12 +232,12 @@ class Result:
 
 
 def kept(result: Result) -> str:
-    """What a result keeps of the load history, in words."""
+    """The numbers of states and of history records, as text."""
     return f"{len(result.steps)} states in steps, {len(result.history.get('record', ()))} records in history"
 
 
 def counts(loads: Group) -> str:
-    """The node counts of a state in words."""
+    """The node counts of a state, as text."""
     text = f"{loads.contact_nodes} in contact"
     if loads.stick_nodes + loads.slip_nodes > 0:
         text += f" ({loads.stick_nodes} stuck, {loads.slip_nodes} slipping)"
@@ -253,37 +253,37 @@ def read(path: str | os.PathLike[str]) -> Result:
     """The result in a file. Raises OSError, NotAResult."""
     path = os.fspath(path)
     if os.path.exists(path) and not os.path.isfile(path) and not os.path.isdir(path):
-        raise NotAResult(None, f"{path}: not a result file of MFV, but a pipe or a device")
-    with open(path, "rb"):  # a missing file and the like are Python's to report
+        raise NotAResult(None, f"{path}: not a result file of MFV; it is a pipe or a device")
+    with open(path, "rb"):  # raises OSError for a missing or unreadable file
         pass
     if not h5py.is_hdf5(path):
-        raise NotAResult(None, f"{path}: not a result file of MFV (not even HDF5)")
+        raise NotAResult(None, f"{path}: not a result file of MFV; it is not an HDF5 file")
     try:
         with h5py.File(path, "r") as file:
             is_ours = "mfv_version" in file.attrs
             groups = _groups(file) if is_ours else {}
             texts = {name: str(value) for name, value in file.attrs.items()} if is_ours else {}
-    except Exception as error:  # of every kind: h5py and numpy meet what is damaged wherever it is
-        raise NotAResult(None, f"{path}: not a result file of MFV, or damaged: {error}") from error
+    except Exception as error:  # h5py and numpy raise exceptions of many types for a damaged file
+        raise NotAResult(None, f"{path}: damaged, or not a result file of MFV: {error}") from error
     if not is_ours:
-        raise NotAResult(None, f"{path}: not a result file of MFV, though it is HDF5")
+        raise NotAResult(None, f"{path}: an HDF5 file, but not a result file of MFV")
     missing = [f"the group {name}" for name in GROUPS if name not in groups]
     missing += [f"the attribute {name}" for name in TEXTS if name not in texts]
     if missing:
-        raise NotAResult(None, f"{path}: not a result file of MFV: it is without {', '.join(missing)}")
+        raise NotAResult(None, f"{path}: not a result file of MFV; missing: {', '.join(missing)}")
     return Result(groups, texts)
 
 
 def _values_of(dataset: h5py.Dataset) -> Values:
-    """The values of a dataset. Raises ValueError where it says that it is larger than what the file holds can be: no memory is
-    taken for what is not there. (Deflate makes at most 1032 bytes of one; a value can come from one byte.)"""
+    """The values of a dataset. Raises ValueError if its size exceeds what the file can contain, before memory is allocated.
+    (Deflate compresses at most 1032 bytes to one.)"""
     if dataset.nbytes > 2**20 and dataset.size > 1032 * dataset.id.get_storage_size():
-        raise ValueError(f"{dataset.name} has fewer values in the file than its size says")
+        raise ValueError(f"{dataset.name} has fewer values than its size")
     return dataset[()]
 
 
 def _groups(file: h5py.File) -> dict[str, dict[str, Field]]:
-    """All groups that have datasets, by path. Coordinates are in groups of their own alone, not where they are repeated."""
+    """All groups with datasets, by path, without repeated coordinates."""
     groups: dict[str, dict[str, Field]] = {}
 
     def add(group: h5py.Group) -> None:
@@ -306,7 +306,7 @@ def _field(dataset: h5py.Dataset) -> Field:
 
 
 def _dataset(fields: Mapping[str, Field], coordinates: Mapping[str, Field]) -> xarray.Dataset:
-    """Fields with those coordinates that they run along."""
+    """Fields with their coordinates."""
     import xarray
 
     known = {**coordinates, **fields}

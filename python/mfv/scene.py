@@ -1,7 +1,7 @@
 """Scenes: bodies, mesh, friction, steps and settings as Python objects.
 
-Every class has the keys of a group of docs/namelist.md, by their names; `None` leaves a key out. What is allowed is for the
-library to say: its messages come as exceptions when a case is made of the scene.
+Every class has the keys of a group of docs/namelist.md, by their names; `None` omits a key. The library checks the values: its
+messages are raised as exceptions when a case is made of the scene.
 """
 
 from __future__ import annotations
@@ -35,7 +35,7 @@ else:
         return lambda decorator: decorator
 
 
-#: A coefficient of friction: one, or one a node.
+#: A coefficient of friction: one value, or one per node.
 Coefficient = Union[float, Sequence[float], NDArray[np.float64]]
 
 #: Arrays in place of a file: datasets by name.
@@ -52,7 +52,7 @@ def _keywords_only(cls: type[_Class]) -> type[_Class]:
 
 
 class KeyGroup:
-    """What the groups of a scene share: keys that can be left out, comparison by value, no attributes by mistake."""
+    """Base of the groups of a scene: optional keys, comparison by value, no unknown attributes."""
 
     #: Fields that are not keys of the namelist.
     _not_keys: ClassVar[tuple[str, ...]] = ()
@@ -64,17 +64,17 @@ class KeyGroup:
 
     @classmethod
     def _names(cls) -> list[str]:
-        """Names of the keys and of what else there is; a subclass of a group has those of the group."""
+        """Names of the keys and of the other fields; a subclass of a group has those of the group."""
         group = next(kind for kind in cls.__mro__ if KeyGroup in kind.__bases__)
         return [name for name in group.__annotations__ if not name.startswith("_")]
 
     def keys(self) -> dict[str, Any]:
-        """The keys that are given, with their values."""
+        """The given keys with their values."""
         values = {name: getattr(self, name) for name in self.key_names()}
         return {name: value for name, value in values.items() if value is not None}
 
     def _everything(self) -> dict[str, Any]:
-        """Keys and what else is given."""
+        """The given keys and other fields."""
         values = {name: getattr(self, name) for name in self._names()}
         return {name: value for name, value in values.items() if value is not None}
 
@@ -157,12 +157,12 @@ class Body(KeyGroup):
 
     @classmethod
     def half_plane(cls, **elastic: Unpack[Elastic]) -> Body:
-        """Flat and without end. Elastic: `shear_modulus` or `youngs_modulus` [force/length^2], and `poisson_ratio`."""
+        """A half-plane. Elastic: `shear_modulus` or `youngs_modulus` [force/length^2], and `poisson_ratio`."""
         return cls(shape="half_plane", **elastic)
 
     @classmethod
     def disk(cls, radius: float, **others: Unpack[Round]) -> Body:
-        """A solid disk of a radius [length]; a force on it is balanced in its centre."""
+        """A solid disk of a radius [length]; its load acts at its centre."""
         return cls(shape="disk", radius=radius, **others)
 
     @classmethod
@@ -194,7 +194,7 @@ class Body(KeyGroup):
     def profile(cls, x: ArrayLike, height: ArrayLike, **others: Unpack[OfProfile]) -> Body:
         """A nearly flat surface through points: positions `x`, increasing, and how far it recedes from the other body [length].
 
-        A `height_scale` below 0 is for heights that are counted outwards, as those of a stylus.
+        A negative `height_scale` is for heights that are positive outwards, such as those of a stylus.
         """
         return cls(shape="profile", data={"x": _numbers(x, "x"), "height": _numbers(height, "height")}, **others)
 
@@ -210,9 +210,9 @@ class Body(KeyGroup):
     ) -> Body:
         """An elastic body by the compliance or the stiffness of its n surface nodes at `x`, increasing [length].
 
-        `compliance`: (n, n), or (2n, 2n) with friction: displacements by nodal forces per unit thickness, the normal
-        components of all nodes before the tangential ones; `stiffness`: the other way round. `gap` (n): how far the surface
-        recedes; `width` (n): surface that belongs to each node. See docs/namelist.md for signs.
+        `compliance`: (n, n), or (2n, 2n) with friction: displacements due to nodal forces per unit thickness, the normal
+        components of all nodes before the tangential ones; `stiffness`: its inverse. `gap` (n): distance by which the surface
+        recedes; `width` (n): length of the surface that belongs to each node. See docs/namelist.md for signs.
         """
         arrays = {"x": x, "gap": gap, "width": width, "compliance": compliance, "stiffness": stiffness}
         return cls(shape="matrix", data={name: _numbers(values, name) for name, values in arrays.items() if values is not None})
@@ -247,13 +247,13 @@ class Friction(KeyGroup):
 
     @classmethod
     def coulomb(cls, mu: Coefficient, *, x: ArrayLike | None = None) -> Friction:
-        """A node sticks below mu p and slips at mu p. `mu`: one value, one a node, or with `x` one a position: linear between
-        them, constant beyond."""
+        """A node sticks below mu p and slips at mu p. `mu`: one value, one per node, or with `x` one per position: linear between
+        positions, constant beyond."""
         return cls(law="coulomb", **_coefficients(x, mu=mu))
 
     @classmethod
     def static_kinetic(cls, mu_static: Coefficient, mu_kinetic: Coefficient, *, x: ArrayLike | None = None) -> Friction:
-        """It sticks up to mu_static p and slips at mu_kinetic p; results depend on the mesh. Coefficients as in `coulomb`."""
+        """A node sticks up to mu_static p and slips at mu_kinetic p; results depend on the mesh. Coefficients as in `coulomb`."""
         return cls(law="static_kinetic", **_coefficients(x, mu_static=mu_static, mu_kinetic=mu_kinetic))
 
     @classmethod
@@ -264,13 +264,13 @@ class Friction(KeyGroup):
 
     @classmethod
     def dahl(cls, mu: Coefficient, stiffness: float, *, exponent: float | None = None, x: ArrayLike | None = None) -> Friction:
-        """Bristles of a `stiffness` [force/length^3] give way before mu p is reached."""
+        """Bristles of a `stiffness` [force/length^3] yield before mu p is reached."""
         return cls(law="dahl", stiffness=stiffness, exponent=exponent, **_coefficients(x, mu=mu))
 
 
 @_keywords_only
 class Step(KeyGroup):
-    """One step of the load history: the keys of &step. Targets are reached linearly; what is not named stays as it is."""
+    """One step of the load history: the keys of &step. Targets are reached linearly; loads without a target are constant."""
 
     normal_force: float | None = None
     approach: float | None = None
@@ -286,7 +286,7 @@ class Step(KeyGroup):
 
 @_keywords_only
 class Solver(KeyGroup):
-    """How it is solved: the keys of &solver."""
+    """The solver: the keys of &solver."""
 
     algorithm: Literal["mfv", "conventional"] | None = None
     stepping: Literal["event", "nominal", "leap"] | None = None
@@ -301,7 +301,7 @@ class Solver(KeyGroup):
 
 @_keywords_only
 class Output(KeyGroup):
-    """What is kept: the keys of &output."""
+    """The output: the keys of &output."""
 
     file: str | os.PathLike[str] | None = None
     history: Literal["events", "steps", "none"] | None = None
@@ -312,7 +312,7 @@ class Output(KeyGroup):
 
 
 class Scene(KeyGroup):
-    """Two bodies, how they rub and how they are loaded; with the keys of &scene. `lower` is below, `upper` above."""
+    """Two bodies with their friction and load history, and the keys of &scene. `lower` is below, `upper` above."""
 
     lower: Body
     upper: Body
@@ -347,8 +347,8 @@ class Scene(KeyGroup):
         force_unit: str | None = None,
         name: str = "scene",
     ) -> None:
-        """`name`: what messages call the scene; files that it names are looked for beside that path. Raises TypeError where a
-        part is not of its class."""
+        """`name`: the name of the scene in messages; paths of files are relative to its directory. Raises TypeError for an
+        argument of the wrong class."""
         self.lower = lower
         self.upper = upper
         self.friction = friction
@@ -371,10 +371,10 @@ class Scene(KeyGroup):
 
     @classmethod
     def from_text(cls, text: str, name: str = "text") -> Scene:
-        """The scene of a namelist text; `name` as for a new one. Raises InputError where the library refuses the text."""
+        """The scene of a namelist text; `name` as for a new one. Raises InputError for an invalid text."""
         from .case import Case
 
-        Case.from_text(text, name).close()  # refused here, where messages can name the line
+        Case.from_text(text, name).close()  # checked here, so that messages can name the line
         with _scene_handle(text, name) as handle:
             return cls._of_groups(groups(_text_of_scene(handle)), name)
 
@@ -389,17 +389,17 @@ class Scene(KeyGroup):
         return cls(lower, upper, steps=steps, name=name, **settings, **single.get("scene", {}))
 
     def text(self) -> str:
-        """The scene as a namelist text. Arrays are not in it: `file` names them ('lower body', for one). Raises InputError."""
+        """The scene as a namelist text, without arrays: `file` names them, such as 'lower body'. Raises InputError."""
         with self._handle() as handle:
             return _text_of_scene(handle)
 
     @property
     def has_arrays(self) -> bool:
-        """Whether arrays are part of it, which its text has not."""
+        """Whether the scene has arrays, which its text does not contain."""
         return any(getattr(part, "data", None) is not None for part in (self.lower, self.upper, self.friction))
 
     def contact(self) -> Case:
-        """A case of this scene, to be led step by step. Raises InputError."""
+        """A case of this scene, to advance step by step. Raises InputError."""
         from .case import Case
 
         return Case(self)
@@ -425,13 +425,13 @@ class Scene(KeyGroup):
         return _html.table(rows, self.title or "Scene")
 
     def _parts(self) -> list[tuple[str, KeyGroup]]:
-        """The groups of the namelist with their numbers, but &scene."""
+        """The groups of the namelist with their numbers, without &scene."""
         parts: list[tuple[str, KeyGroup]] = [("body(1)", self.lower), ("body(2)", self.upper)]
         parts += [(name, getattr(self, name)) for name in _SINGLE if getattr(self, name) is not None]
         return parts + [(f"step({number})", step) for number, step in enumerate(self.steps, start=1)]
 
     def _check_parts(self) -> None:
-        """Raises TypeError where a part is not of its class."""
+        """Raises TypeError for an attribute of the wrong class."""
         for name in ("lower", "upper"):
             _check_kind(name, getattr(self, name), Body)
         for name, kind in _SINGLE.items():
@@ -442,7 +442,7 @@ class Scene(KeyGroup):
 
     @contextlib.contextmanager
     def _handle(self) -> Iterator[c_void_p]:
-        """The library's own scene with all keys and arrays, while in use. Raises TypeError, InputError."""
+        """A scene of the library with all keys and arrays, freed afterwards. Raises TypeError, InputError."""
         self._check_parts()
         with _scene_handle("", self.name) as handle:
             statuses = _set_keys(handle, "scene", self.keys())
@@ -452,17 +452,17 @@ class Scene(KeyGroup):
                     file = keys.setdefault("file" if isinstance(part, Body) else "mu_file", _NAMES_OF_DATA[group])
                     statuses += [_set_data(handle, file, dataset, values) for dataset, values in data.items()]
                 if isinstance(part, Step):
-                    keys = keys or {"friction": True}  # its default: the library has to see a step in which nothing is named
+                    keys = keys or {"friction": True}  # the default; a step needs a key to exist
                 statuses += _set_keys(handle, group, keys)
-            if any(statuses):  # mfv_create tells of the first call that failed
+            if any(statuses):  # mfv_create reports the first failure
                 created("mfv_create", handle)
             yield handle
 
 
-#: Groups that come at most once, but &scene.
+#: Groups that occur at most once, without &scene.
 _SINGLE: dict[str, type[KeyGroup]] = {"mesh": Mesh, "friction": Friction, "solver": Solver, "output": Output}
 
-#: What arrays are called where they have no name.
+#: Default names of arrays.
 _USUAL: dict[type[KeyGroup], str] = {
     Body: "Body.disk(0.25, rigid=True)",
     Mesh: "Mesh(nodes=101, half_width=0.012)",
@@ -475,18 +475,17 @@ _NAMES_OF_DATA = {"body(1)": "lower body", "body(2)": "upper body", "friction": 
 
 
 def _check_kind(name: str, part: Any, kind: type[KeyGroup]) -> None:
-    """Raises TypeError where a part of a scene is not of its class."""
+    """Raises TypeError if an attribute of a scene is of the wrong class."""
     if not isinstance(part, kind):
         raise TypeError(f"{name} of a Scene must be a mfv.{kind.__name__}, such as {_USUAL[kind]}, not {part!r}")
 
 
 def _numbers(values: ArrayLike, name: str = "an array") -> NDArray[np.float64]:
-    """Numbers as the library takes them; not copied where they are so already. Raises TypeError, which names them, for complex
-    ones and those of which some are masked."""
+    """Numbers as a contiguous array of float64, copied only if necessary. Raises TypeError for complex or masked numbers."""
     if np.iscomplexobj(values):
-        raise TypeError(f"{name}: real numbers are wanted, not complex ones")
+        raise TypeError(f"{name}: must be real numbers, not complex")
     if np.ma.is_masked(values):
-        raise TypeError(f"{name}: an array without masked values is wanted")
+        raise TypeError(f"{name}: must be an array without masked values")
     return np.ascontiguousarray(values, dtype=np.float64)
 
 
@@ -498,7 +497,7 @@ def _coefficients(x: ArrayLike | None, **coefficients: Coefficient) -> dict[str,
 
 
 def _same(one: Any, other: Any) -> bool:
-    """Whether two values are equal, arrays and tables of them by their items."""
+    """Whether two values are equal; arrays are compared by element."""
     if isinstance(one, Mapping) and isinstance(other, Mapping):
         return one.keys() == other.keys() and all(_same(one[name], other[name]) for name in one)
     if isinstance(one, KeyGroup) or isinstance(other, KeyGroup):
@@ -526,7 +525,7 @@ def created(function: str, *arguments: bytes | c_void_p) -> c_void_p:
 
 @contextlib.contextmanager
 def _scene_handle(text: str, name: str) -> Iterator[c_void_p]:
-    """The library's scene of a text, while in use. Raises InputError."""
+    """A scene of the library from a text, freed afterwards. Raises InputError."""
     handle = created("mfv_scene_from_text", text_for(text), text_for(name))
     try:
         yield handle
@@ -540,7 +539,7 @@ def _text_of_scene(handle: c_void_p) -> str:
 
 
 def _set_keys(handle: c_void_p, group: str, keys: Mapping[str, Any]) -> list[int]:
-    """Give keys their values; return the statuses. Raises TypeError."""
+    """Set keys; return the statuses. Raises TypeError."""
     return [_set_key(handle, f"{group}%{name}", value) for name, value in keys.items()]
 
 
@@ -559,15 +558,15 @@ def _set_key(handle: c_void_p, key: str, value: Any) -> int:
         values = _numbers(np.atleast_1d(value), key)
         status = library().mfv_scene_set_reals(handle, name, real_pointer(values), values.size)
     else:
-        raise TypeError(f"{key}: a text, a truth value, a number or an array is wanted, not {value!r}")
+        raise TypeError(f"{key}: must be a text, a truth value, a number or an array, not {value!r}")
     return status
 
 
 def _set_data(handle: c_void_p, file: str | os.PathLike[str], dataset: str, values: ArrayLike) -> int:
-    """Give the library an array in place of one in a file; return the status. Raises ValueError."""
+    """Pass an array to the library in place of one in a file; return the status. Raises ValueError."""
     array = _numbers(values, f"{os.fspath(file)}: {dataset}")
     if array.ndim not in (1, 2) or array.size == 0:
-        raise ValueError(f"{os.fspath(file)}: {dataset} must have values in one dimension or two, not the shape {array.shape}")
+        raise ValueError(f"{os.fspath(file)}: {dataset} must have one or two dimensions, not the shape {array.shape}")
     rows, columns = array.shape if array.ndim == 2 else (array.size, 1)
     status: int = library().mfv_scene_set_data(handle, text_for(file), text_for(dataset), rows, columns, real_pointer(array))
     return status

@@ -53,7 +53,7 @@ class StressField:
     y: Array
     values: dict[str, Array]
     #: Half the length of the loaded surface, its middle, the largest pressure, the largest von Mises stress, the largest tension along
-    #: the surface (NaN where it is singular; its place is NaN where there is none).
+    #: the surface (NaN if it is singular; its place is NaN without tension).
     half_width: float
     middle: float
     largest_pressure: float
@@ -68,10 +68,11 @@ def stress(result: Result, x: ArrayLike, y: ArrayLike, *, body: str = "lower", s
     """Stresses at the points (x, y), lengths, y up from the contact; NaN outside the body.
 
     `body`: 'lower' or 'upper'. `step`: the state in `result.steps[step - 1]`, not the last one. `x` and `y` are broadcast.
-    Raises ValueError for an unknown body or step and for a result from a file whose scene had arrays in memory, BadArgument for a body without an inside (rigid, or a matrix).
+    Raises ValueError for an unknown body or step and for a result from a file whose scene had arrays in memory, BadArgument for a body
+    without stresses (rigid, or a matrix).
     """
     if body not in BODIES:
-        raise ValueError(f"the body must be 'lower' or 'upper', not '{body}'")
+        raise ValueError(f"body must be 'lower' or 'upper', not '{body}'")
     across, up = (np.ascontiguousarray(values, dtype=np.float64) for values in np.broadcast_arrays(x, y))
     state = result.at(step)
     arc = _arc(result)
@@ -115,12 +116,12 @@ def grid(
     """Stresses on a grid `width` contact half-widths to either side of the contact and `depth` below the surface, shape
     (down, across).
 
-    Otherwise as `stress`. Raises ValueError where there is no load.
+    Otherwise as `stress`. Raises ValueError without load.
     """
     left, right = _loaded_surface(result, step)
     half = 0.5 * (right - left)
     if half == 0.0:
-        raise ValueError("there is no load in this state")
+        raise ValueError("no load in this state")
     x = 0.5 * (left + right) + half * np.linspace(-width, width, across)
     across_grid, below = np.meshgrid(x, half * np.linspace(0.0, depth, down))
     inside = surface(result, body, across_grid) - below
@@ -128,7 +129,7 @@ def grid(
 
 
 def stored(result: Result, *, body: str = "lower", step: int | None = None) -> StressField | None:
-    """The grid that mfv_stress has put into the file for this state and body, None where there is none."""
+    """The grid that mfv_stress has written into the file for this state and body, or None."""
     group = result.stresses.get(f"{'last' if step is None else f'{step:04d}'}/{body}")
     if group is None or "tresca" not in group:
         return None
@@ -161,7 +162,7 @@ def _arc(result: Result) -> Array:
 
 
 def _loaded_surface(result: Result, step: int | None) -> tuple[float, float]:
-    """Ends of the loaded surface, from edges between nodes where they are known; both 0 where there is no load."""
+    """Ends of the loaded surface, from interpolated edges if available; both 0 without load."""
     state = result.at(step)
     loaded = (state.pressure != 0.0) | (state.shear != 0.0)
     if not loaded.any():

@@ -1,7 +1,7 @@
-"""Commented cases to begin with: the templates of `python -m mfv new`.
+"""Commented cases: the templates of `python -m mfv new`.
 
-`names` tells which there are, `write` writes one with the files that it needs. The comments come from the catalogues of keys: of cases
-that in templates/keys.md, which is what mfv_run --keys prints.
+`names` lists them, `write` writes one with the files that it needs. The comments are the descriptions of the keys in
+templates/keys.md, the output of mfv_run --keys.
 """
 
 from __future__ import annotations
@@ -21,25 +21,25 @@ import numpy as np
 from .studies.namelist import keys_in_markdown
 
 #: Files that a template needs beside itself.
-COMPANIONS = {"profile": ("profile.txt",), "matrix": ("compliance.h5",), "study": ("cylinder.nml",)}
+EXTRA_FILES = {"profile": ("profile.txt",), "matrix": ("compliance.h5",), "study": ("cylinder.nml",)}
 
-#: The half-plane of compliance.h5: shear modulus, Poisson's ratio, where its displacements are measured from, nodes on either side.
+#: The half-plane of compliance.h5: shear modulus, Poisson's ratio, datum of the displacements, half-width and number of nodes.
 SHEAR_MODULUS, POISSON_RATIO, DATUM, HALF_WIDTH, NODES = 1.0, 0.3, 0.25, 0.0127, 81
 
-#: Width of a comment, and what stands before it.
+#: Width of a comment, and its indent.
 WIDTH, INDENT = 100, "   ! "
 
 _FOLDER = files(__package__) / "templates"
 
 
 def names() -> dict[str, str]:
-    """The templates, and what each is, in a line."""
+    """The templates, each with a description."""
     found = sorted(Path(entry.name).stem for entry in _FOLDER.iterdir() if entry.name.endswith(".nml"))
     return {name: text(name).splitlines()[0].removeprefix("! ") for name in found}
 
 
 def text(name: str) -> str:
-    """The text of a template, with the meaning of every key above it where it comes for the first time."""
+    """The text of a template, with the meaning of every key above its first occurrence."""
     group, lines, told = "", [], set()
     for line in (_FOLDER / f"{name}.nml").read_text(encoding="utf-8").splitlines():
         starts, key = re.match(r"&(\w+)", line), re.match(r" +(?:! )?(\w+) = ", line)
@@ -54,7 +54,7 @@ def text(name: str) -> str:
 
 @functools.cache
 def _meanings() -> dict[tuple[str, str], str]:
-    """What keys.md (mfv_run --keys) and the keys of studies say of every key, by group and key."""
+    """The meanings of the keys of cases (keys.md) and of studies, by group and key."""
     found = {}
     group, columns = "", [""]
     for line in ((_FOLDER / "keys.md").read_text(encoding="utf-8") + keys_in_markdown()).splitlines():
@@ -77,21 +77,21 @@ def is_study(name: str) -> bool:
 
 
 def write(name: str, path: Path, written: Callable[[Path], Any], overwrite: bool = False) -> list[Path]:
-    """Write a template to `path` and what it needs beside it; returns the files written.
+    """Write a template to `path` and the files that it needs beside it; return the files written.
 
-    `written(path)` is a context with a path to write to that becomes `path` when all is well. A file beside it that is the
-    same already is left alone. Raises ValueError for an unknown template, FileExistsError for a file that would be
+    `written(path)` is a context with a temporary path, renamed to `path` on success. An identical file beside it is not written
+    again. Raises ValueError for an unknown template, FileExistsError for a file that would be
     overwritten; then nothing is written.
     """
     if name not in names():
-        raise ValueError(f"there is no template {name}; there is {', '.join(names())}")
-    wanted = {path.with_name(companion): companion for companion in COMPANIONS.get(name, ()) if path.name != companion}
-    if len(wanted) < len(COMPANIONS.get(name, ())):
-        raise ValueError(f"{path}: another file of this template has that name; give another with -o")
+        raise ValueError(f"unknown template {name}; choose from {', '.join(names())}")
+    wanted = {path.with_name(extra): extra for extra in EXTRA_FILES.get(name, ()) if path.name != extra}
+    if len(wanted) < len(EXTRA_FILES.get(name, ())):
+        raise ValueError(f"{path}: another file of this template has this name; choose another with -o")
     targets = {path: f"{name}.nml", **{place: c for place, c in wanted.items() if not _is_there(place, c)}}
     for place in targets:
         if place.exists() and not overwrite:
-            raise FileExistsError(f"{place}: exists already; --force overwrites it, -o NAME.nml writes elsewhere")
+            raise FileExistsError(f"{place}: exists; overwrite it with --force, or choose another name with -o NAME.nml")
     for place, source in reversed(targets.items()):
         with written(place) as part:
             part.write_bytes(_content(source, place))
@@ -99,15 +99,15 @@ def write(name: str, path: Path, written: Callable[[Path], Any], overwrite: bool
 
 
 def _content(source: str, place: Path) -> bytes:
-    """What a file of a template has in it; the commands in its comments name the place."""
+    """The contents of a file of a template; the commands in its comments have the file's name."""
     if source in _MADE:
         return _MADE[source]()
     return text(source.removesuffix(".nml")).replace("FILE", place.stem).encode()
 
 
-def _is_there(place: Path, companion: str) -> bool:
-    """Whether a file that a template needs is there already, the same."""
-    return companion != "compliance.h5" and place.is_file() and place.read_bytes() == _content(companion, place)
+def _is_there(place: Path, name: str) -> bool:
+    """Whether an identical file that a template needs exists."""
+    return name != "compliance.h5" and place.is_file() and place.read_bytes() == _content(name, place)
 
 
 def _profile() -> bytes:
@@ -126,12 +126,12 @@ def _matrix() -> bytes:
     direct = -(1.0 - POISSON_RATIO) / (np.pi * SHEAR_MODULUS) * logarithm
     coupling = (1.0 - 2.0 * POISSON_RATIO) / (4.0 * SHEAR_MODULUS) * np.sign(distance)
     memory = io.BytesIO()
-    with h5py.File(memory, "w") as file:  # HDF5 does not come back from a full disk: it is kept away from disks
+    with h5py.File(memory, "w") as file:  # in memory, since HDF5 can hang on a full disk
         file["x"] = x
         file["width"] = np.full(NODES, interval)
         file["compliance"] = np.block([[direct, coupling], [-coupling, direct]])
     return memory.getvalue()
 
 
-#: Files of templates that are not in the folder, but made.
+#: Files of templates that are computed.
 _MADE = {"profile.txt": _profile, "compliance.h5": _matrix}

@@ -1,4 +1,4 @@
-"""What pictures, animations and pages show of a result: which load over which displacement, which part of the surface.
+"""Views of a result for pictures, animations and pages: the load-displacement curve, the visible part of the surface.
 
 Nothing here draws; `mfv.plot`, `mfv.animate`, `mfv.report` and `mfv.comparison_figure` do.
 """
@@ -41,7 +41,7 @@ LOADS = (("P", "normal_force"), ("Q", "tangential_force"), ("M", "moment"))
 
 
 def curve_of(result: Result) -> Curve:
-    """The load that tells most: the tangential force, else the moment, else the normal force."""
+    """The most informative curve: of the tangential force, else of the moment, else of the normal force."""
     states = result.steps or kept_states(result).steps
 
     def moves(name: str) -> bool:
@@ -54,9 +54,9 @@ def curve_of(result: Result) -> Curve:
 
 
 def contact(result: Result, states: Sequence[Group] = ()) -> tuple[float, float]:
-    """All that is in contact in any of the states, and a quarter of its length on either side, as far as the mesh goes.
+    """The range of x in contact in any of the states, with a quarter of its length on either side within the mesh.
 
-    `states`: by default those of the result. Without contact it is all of the mesh.
+    `states`: by default those of the result. Without contact: the whole mesh.
     """
     states = states or result.steps or kept_states(result).steps
     touched = np.any([state.status != NodeStatus.OPEN for state in states], axis=0)
@@ -74,7 +74,7 @@ def statuses(result: Result) -> np.ndarray:
 
 
 def has_friction(result: Result) -> bool:
-    """Whether the tangential problem was solved; slip is not a number where it was not."""
+    """Whether the tangential problem was solved; otherwise slip is NaN."""
     return not bool(np.isnan(result.state.slip).all())
 
 
@@ -89,7 +89,7 @@ def friction_limits(result: Result) -> list[tuple[str, np.ndarray]]:
 
 
 def limit_of_friction(coefficient: np.ndarray, state: Group) -> np.ndarray:
-    """The shear traction that friction can bear at the nodes in contact."""
+    """The friction limit at the nodes in contact."""
     return np.where(state.status != NodeStatus.OPEN, coefficient * state.pressure, np.nan)
 
 
@@ -101,7 +101,7 @@ def heights(result: Result, state: Group) -> tuple[np.ndarray, np.ndarray]:
 
 
 def has_last_normal_force(result: Result, state: Group) -> bool:
-    """Whether the normal force is that of the last state, for which the closed form of the pressure holds."""
+    """Whether the normal force equals that of the last state, for which the closed form of the pressure holds."""
     return bool(np.isclose(state.normal_force, result.summary.normal_force, rtol=1.0e-9, atol=0.0))
 
 

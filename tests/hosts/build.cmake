@@ -1,4 +1,4 @@
-# Copies examples/hosts, as a user would, and builds the copy on the installed tree that consumer/run.cmake leaves.
+# Copies examples/hosts, as a user would, and builds the copy with the installed tree of consumer/run.cmake.
 # Variables: SOURCE_DIR, TREE, WORK_DIR, C, Fortran (compilers).
 file(REMOVE_RECURSE ${WORK_DIR})
 file(COPY ${SOURCE_DIR}/examples/hosts DESTINATION ${WORK_DIR})

@@ -58,11 +58,11 @@ def test_a_result_is_no_different_from_itself(tmp_path: Path, capsys: pytest.Cap
     assert all(number.relative_difference == 0.0 or np.isnan(number.first) for number in same.numbers)
     assert len(same.numbers) > 40
     assert main(["compare", str(tmp_path / "a.h5"), str(tmp_path / "a.h5"), "--no-picture", "--tolerance", "0"]) == 0
-    assert "keys of the inputs that differ: none" in capsys.readouterr().out
+    assert "different input keys: none" in capsys.readouterr().out
     assert sorted(path.name for path in tmp_path.iterdir()) == ["a.h5"]
 
 
-def test_what_differs_is_told(tmp_path: Path) -> None:
+def test_differences_are_reported(tmp_path: Path) -> None:
     first, second = solved(tmp_path / "a.h5"), solved(tmp_path / "b.h5", coupling="full")
     found = compare(first, second)
     assert ("coupling", "goodman", "full") in found.settings
@@ -152,7 +152,7 @@ def test_only_a_difference_ends_with_1(tmp_path: Path, capsys: pytest.CaptureFix
         file["state/pressure"] = [0.0]
     arguments = ["compare", str(tmp_path / "a.h5"), str(tmp_path / "a.h5"), "--no-picture", "--tolerance", "1e-3"]
     assert main(arguments) == 2
-    assert "it is without the group mesh, the group scene, the group summary" in capsys.readouterr().err
+    assert "missing: the group mesh, the group scene, the group summary" in capsys.readouterr().err
     (tmp_path / "a.h5").unlink()
     solved(tmp_path / "a.h5")
     monkeypatch.setattr("mfv.compare.compare", lambda *_: 1 // 0)
@@ -160,7 +160,7 @@ def test_only_a_difference_ends_with_1(tmp_path: Path, capsys: pytest.CaptureFix
     assert "ZeroDivisionError" in capsys.readouterr().err
 
 
-# --- where commands write ---
+# --- output files of commands ---
 
 
 def test_results_are_not_overwritten_by_what_is_drawn_of_them(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
@@ -172,21 +172,24 @@ def test_results_are_not_overwritten_by_what_is_drawn_of_them(tmp_path: Path, ca
     before = {path.name: path.read_bytes() for path in tmp_path.iterdir()}
     first, other = str(tmp_path / "a.h5"), str(tmp_path / "b.png")
     for arguments, complaint in (
-        (["plot", first, "-o", first], f"{first}: the name of what is written must end with .png or "),
-        (["plot", other], f"{other}: is what is read"),
-        (["plot", first, "-o", other], f"{other}: is HDF5"),
-        (["plot", first, "-o", str(tmp_path / "out")], f"{tmp_path / 'out'}: the name of what"),
+        (["plot", first, "-o", first], f"{first}: the file name must end with .png or "),
+        (["plot", other], f"{other}: is the input file"),
+        (["plot", first, "-o", other], f"{other}: is an HDF5 file, not overwritten"),
+        (["plot", first, "-o", str(tmp_path / "out")], f"{tmp_path / 'out'}: the file name must end with"),
         (["plot", first, "-o", str(tmp_path)], f"{tmp_path}: is a directory"),
         (["plot", first, "-o", ""], "such as a.png"),
-        (["plot", first, "-o", str(tmp_path / "no" / "x.png")], f"{tmp_path / 'no' / 'x.png'}: there is no directory"),
-        (["plot", first, "--body", "upper"], "give --stress NAME too"),
-        (["plot", first, "--cycles", "--step", "1"], "give one of them"),
-        (["report", first, "-o", first], f"{first}: the name of what is written must end with .html or .htm"),
-        (["animate", first, "--kept", "-o", first], f"{first}: the name of what"),
-        (["new", "--force", "-o", first], f"{first}: the name of what"),
-        (["study", study, "-o", first], f"{first}: is HDF5"),
-        (["study", study, "-o", other], f"{other}: the name of what is written must end with .nc or .h5 or .csv"),
-        (["study", study, "--case", "25"], f"{study}: there is no case 25; there are 24"),
+        (
+            ["plot", first, "-o", str(tmp_path / "no" / "x.png")],
+            f"{tmp_path / 'no' / 'x.png'}: {tmp_path / 'no'} does not exist or is not a directory",
+        ),
+        (["plot", first, "--body", "upper"], "add --stress NAME"),
+        (["plot", first, "--cycles", "--step", "1"], "remove one of them"),
+        (["report", first, "-o", first], f"{first}: the file name must end with .html or .htm"),
+        (["animate", first, "--kept", "-o", first], f"{first}: the file name must end with"),
+        (["new", "--force", "-o", first], f"{first}: the file name must end with"),
+        (["study", study, "-o", first], f"{first}: is an HDF5 file, not overwritten"),
+        (["study", study, "-o", other], f"{other}: the file name must end with .nc or .h5 or .csv"),
+        (["study", study, "--case", "25"], f"{study}: no case 25; the cases are numbered from 1 to 24"),
     ):
         assert main(arguments) == 2, arguments
         printed = capsys.readouterr()
@@ -197,7 +200,7 @@ def test_results_are_not_overwritten_by_what_is_drawn_of_them(tmp_path: Path, ca
     assert (tmp_path / "A.PNG").read_bytes()[1:4] == b"PNG" and (tmp_path / "A.GIF").read_bytes()[:3] == b"GIF"
 
 
-# --- states between those that a result keeps ---
+# --- states between those saved in a result ---
 
 PROJECT = Path(__file__).resolve().parents[2]
 EXAMPLES = PROJECT / "examples"
@@ -239,18 +242,18 @@ def test_an_early_end_is_the_end_of_the_states() -> None:
 
 def test_another_end_is_told_and_so_is_what_cannot_be_solved_again() -> None:
     # Dahl's friction is solved to a tolerance of an increment, of which more states make more.
-    assert "ends elsewhere" in with_states_between(mfv.run(EXAMPLES / "dahl.nml"), 20).note
+    assert "ends in a different state" in with_states_between(mfv.run(EXAMPLES / "dahl.nml"), 20).note
     result = mfv.run(text=SHEARED.format(**{**MINDLIN, "title": ""}))
-    assert "want 8 states at least" in with_states_between(result, 7).note
+    assert "need at least 8 states" in with_states_between(result, 7).note
     result.attributes["input"] = result.attributes["input"].replace("shift", "").replace("disk", "disc")
     again, note = with_states_between(result, 40)
     assert "disc" in note and again.steps == result.steps
-    # A host that leads the contact itself has other states than the steps of the text.
+    # A host that advances the contact itself has other states than the steps of the text.
     with mfv.Case.from_text(SHEARED.format(**{**MINDLIN, "title": ""})) as case:
         case.advance(normal_force=1.0e-3)
         led = case.result()
     again, note = with_states_between(led, 40)
-    assert "ends elsewhere" in note and len(again.steps) == 1
+    assert "ends in a different state" in note and len(again.steps) == 1
     without = mfv.run(text=SHEARED.format(**{**MINDLIN, "title": ""}) + "&output states='none' /\n")
     assert without.steps == [] and len(with_states_between(without, 8).result.steps) == 8
     steady = SHEARED.replace("cycles=1", "cycles=9, steady_tolerance=1e-6") + "&output states='none' /\n"
@@ -400,7 +403,7 @@ def test_comments_of_templates_are_those_of_the_catalogue() -> None:
     assert (Path(template.__file__).parent / "templates/keys.md").read_text() == printed, "mfv_run --keys > keys.md"
     text = template.text("study")
     assert "   ! number of equal intervals; nodes are their centres (a whole number from 1 to" in template.text("cylinder")
-    assert "(a number above 0, in length)\n" in template.text("matrix") and "'linear' by\n   ! default)" in text
+    assert "(a number above 0, in length)\n" in template.text("matrix") and "('linear' or 'log', 'linear' by default)\n" in text
     for key in ("key", "values", "factor"):  # a comment above the first one alone
         place = text.index(f"   {key} = ")
         assert text[:place].splitlines()[-1].startswith("   ! ")
@@ -429,7 +432,7 @@ def test_nothing_is_overwritten_unless_told(tmp_path: Path, capsys: pytest.Captu
     (tmp_path / "compliance.h5").write_text("mine\n")
     arguments = ["new", "matrix", "-o", str(tmp_path / "case.nml")]
     assert main(arguments) == 2
-    assert f"{tmp_path / 'compliance.h5'}: exists already" in capsys.readouterr().err
+    assert f"{tmp_path / 'compliance.h5'}: exists" in capsys.readouterr().err
     assert (tmp_path / "compliance.h5").read_text() == "mine\n" and len(list(tmp_path.iterdir())) == 1
     assert main([*arguments, "--force"]) == 0
     assert (tmp_path / "compliance.h5").read_bytes().startswith(b"\x89HDF")
@@ -437,7 +440,7 @@ def test_nothing_is_overwritten_unless_told(tmp_path: Path, capsys: pytest.Captu
     for template_name in ("cylinder", "study"):
         assert main(["new", template_name, "-o", str(tmp_path / f"{template_name}.nml")]) == 0
     assert main(["new", "study", "-o", str(tmp_path / "cylinder.nml")]) == 2
-    assert "give another" in capsys.readouterr().err
+    assert "choose another" in capsys.readouterr().err
 
 
 def test_new_lists_templates_and_names_what_it_does_not_have(
@@ -447,7 +450,7 @@ def test_new_lists_templates_and_names_what_it_does_not_have(
     assert main(["new", "--list"]) == 0
     assert [line.split()[0] for line in capsys.readouterr().out.splitlines()] == list(template.names())
     assert main(["new", "cube"]) == 2
-    assert "there is no template cube; there is cylinder, " in capsys.readouterr().err
+    assert "unknown template cube; choose from cylinder, " in capsys.readouterr().err
     assert main(["new"]) == 0
     assert [path.name for path in tmp_path.iterdir()] == ["cylinder.nml"]
 
@@ -459,3 +462,61 @@ def test_every_command_teaches(command: str, capsys: pytest.CaptureFixture[str])
     assert caught.value.code == 0
     printed = capsys.readouterr().out
     assert f"python -m mfv {command}" in printed.split("examples:")[1] and len(printed) > 400
+
+
+# --- the overview, and completion in the shell ---
+
+
+def test_without_arguments_there_is_an_overview(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main([]) == 0
+    shown = capsys.readouterr()
+    assert shown.err == "" and len(shown.out.splitlines()) < 24
+    for line in ("usage: python -m mfv COMMAND", "  new ", "  study ", "first steps:", "  mfv_run cylinder.nml"):
+        assert line in shown.out
+
+
+def test_new_takes_the_name_of_a_file(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
+    monkeypatch.chdir(tmp_path)
+    assert main(["new", "mine.nml"]) == main(["new", "weakening.nml"]) == 0
+    assert "solve it: mfv_run mine.nml" in capsys.readouterr().out
+    assert Path("mine.nml").read_text() == template.text("cylinder").replace("FILE", "mine")
+    assert Path("weakening.nml").read_text() == template.text("weakening").replace("FILE", "weakening")
+    assert main(["new", "mine.nml"]) == 2 and main(["new", "a.nml", "-o", "b.nml"]) == 2
+    complaints = capsys.readouterr().err
+    assert "mine.nml: exists; overwrite it with --force" in complaints
+    assert "write 'python -m mfv new cylinder -o b.nml'" in complaints
+
+
+@pytest.mark.parametrize(
+    ("line", "expected"),
+    [
+        ("mfv ", {"new", "plot", "info", "compare", "animate", "report", "study"}),
+        ("mfv an", {"animate"}),
+        ("mfv plot --st", {"--step", "--stress"}),
+        ("mfv new two", {"two_cylinders"}),
+        ("mfv plot --stress von", {"von_mises"}),
+        ("mfv plot --body ", {"lower", "upper"}),
+        ("mfv plot a", {"a.h5"}),
+        ("mfv compare a.h5 b", {"b.h5"}),
+        ("mfv study s", {"s.nml"}),
+    ],
+)
+def test_completion_in_the_shell(line: str, expected: set[str], tmp_path: Path) -> None:
+    """The protocol of argcomplete: the shell sets the line and the cursor, and reads the words from file descriptor 8."""
+    for name in ("a.h5", "a.png", "b.h5", "b.txt", "s.nml", "s.txt"):
+        (tmp_path / name).touch()
+    of_shell = {"_ARGCOMPLETE": "1", "_ARGCOMPLETE_SHELL": "bash", "_ARGCOMPLETE_IFS": "\n", "COMP_LINE": line, "COMP_TYPE": "9"}
+    environment = {**os.environ, **of_shell, "COMP_POINT": str(len(line))}
+    script = '"$0" -m mfv 8>words 9>/dev/null'
+    subprocess.run(["bash", "-c", script, sys.executable], cwd=tmp_path, env=environment, check=True, capture_output=True)
+    assert {word.strip() for word in (tmp_path / "words").read_text().split("\n")} - {"-h", "--help", "--version"} == expected
+
+
+def test_completion_needs_no_argcomplete(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
+    from mfv.commands import completion
+
+    monkeypatch.setattr(completion, "IS_COMPLETING", True)
+    monkeypatch.setitem(sys.modules, "argcomplete", None)
+    monkeypatch.setitem(sys.modules, "argcomplete.completers", None)
+    assert main(["new", "--list"]) == 0
+    assert "two_cylinders" in capsys.readouterr().out

@@ -1,4 +1,4 @@
-"""The notebooks of examples/notebooks: each is executed as it is, and prints what it shows."""
+"""The notebooks of examples/notebooks: each is executed, and its outputs are the stored ones."""
 
 from __future__ import annotations
 

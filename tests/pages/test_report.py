@@ -1,4 +1,4 @@
-"""Pages of python -m mfv report, looked at in a real browser without a window (Debian's chromium, led by playwright)."""
+"""Pages of python -m mfv report, shown in a headless browser (Debian's chromium, controlled by playwright)."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ from mfv.load_history import kept_states
 
 EXAMPLES = Path(__file__).resolve().parents[2] / "examples"
 
-#: The browser: what MFV_CHROMIUM says, else the first of the usual names on the PATH.
+#: The browser: MFV_CHROMIUM if set, else the first of the usual names on the PATH.
 CHROMIUM = os.environ.get("MFV_CHROMIUM") or next(
     filter(None, map(shutil.which, ("chromium", "chromium-browser", "google-chrome"))), None
 )
@@ -53,7 +53,7 @@ DAHL = SHEARED.replace("law='coulomb', mu=0.7", "law='dahl', mu=0.7, stiffness=1
 
 
 class Page:
-    """A page in the browser, and what it said and asked for."""
+    """A page in the browser, its console messages and its requests."""
 
     def __init__(self, browser, path: Path, **settings) -> None:
         self.complaints: list[str] = []
@@ -101,7 +101,7 @@ class Page:
         )
 
     def places(self, selector: str) -> list[list[int]]:
-        """Left, top, right and bottom of what a selector finds, in a picture of the page."""
+        """Left, top, right and bottom of the element of a selector, in a picture of the page."""
         return self.tab.evaluate(
             """(selector) => [...document.querySelectorAll(selector)].map((part) => part.getBoundingClientRect())
                 .map((place) => [place.left, place.top + scrollY, place.right, place.bottom + scrollY].map(Math.round))""",
@@ -194,7 +194,7 @@ def test_the_slider_leads_through_the_states(browser: object, tmp_path: Path) ->
         seen.append(page.drawn("shear"))
     assert seen[0] != seen[1] != seen[2]
     np.testing.assert_array_equal(page.curve("map", "status", "z"), [state.status[shown] for state in steps])
-    # By keyboard; playing goes on by itself, and comes round.
+    # By keyboard; playing continues by itself, and repeats.
     page.tab.focus("#state")
     page.tab.keyboard.press("ArrowLeft")
     page.wait_for_state(2)

@@ -1,4 +1,4 @@
-"""The documents: links that lead somewhere, and references that leave nothing out. scripts/docs.sh builds the site."""
+"""The documents: valid links and complete references. scripts/docs.sh builds the site."""
 
 import importlib
 import re
@@ -40,10 +40,10 @@ def test_broken_links_of_a_document_are_named(tmp_path, site):
     broken, web = check_links.check(check_links.read_markdown([tmp_path / "one.md", tmp_path / "other.md"]))
     assert web == {"https://example.org/"}
     assert [line.removeprefix(f"{tmp_path}/one.md: ") for line in broken] == [
-        "nowhere.png: there is no such file",
+        "nowhere.png: no such file",
         "other.md#no-heading: there is no such place in other.md",
         "#there: there is no such place in one.md",
-        "gone.md: there is no such file",
+        "gone.md: no such file",
     ]
 
 
@@ -54,7 +54,7 @@ def test_broken_links_of_a_site_are_named(tmp_path):
     (tmp_path / "index.html").write_text("".join(f'<a href="{link}">x</a>' for link in links) + '<img src="gone.png">')
     checked = subprocess.run([sys.executable, CHECKER, tmp_path], capture_output=True, text=True)
     assert checked.returncode == 1
-    assert "index.html#new: there is no such place" in checked.stderr and "gone.png: there is no such file" in checked.stderr
+    assert "index.html#new: there is no such place" in checked.stderr and "gone.png: no such file" in checked.stderr
     assert len(checked.stderr.splitlines()) == 2
     assert "not fetched: https://example.org" in checked.stdout and "2 pages, 6 links, 1 addresses" in checked.stdout
 

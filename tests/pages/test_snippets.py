@@ -1,4 +1,4 @@
-"""What the pages print: every case runs as printed, every command too, and what a page shows of their output is what they give.
+"""Snippets of the pages: every case and command runs as printed, and the printed output is the actual one.
 
 A page is read from top to bottom in one folder, which has the examples. A namelist block with bodies becomes case.nml (a block with
 `&sweep` study.nml) and is run; a block without bodies is put into the last case of the page, its steps behind those of the case.
@@ -78,7 +78,7 @@ class Reader:
             self.compare(line, place)
 
     def run(self, command: str, place: str) -> None:
-        """Run it and keep what it prints. The page has to show the message of what fails."""
+        """Run it and save its output. The page must show the message of a failure."""
         if self.fresh:
             self.printed = []
             self.fresh = False

@@ -1,4 +1,4 @@
-"""Files that Python's commands write: the old one or the new one, whatever fails; tests/cli/test_files.py has the programs."""
+"""Files that Python's commands write: the old or the new one is complete after any failure; tests/cli/test_files.py has the programs."""
 
 from __future__ import annotations
 

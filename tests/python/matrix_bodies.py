@@ -1,4 +1,4 @@
-"""Half-planes as matrices, for the tests: what MFV has in closed form, on meshes of the tests' own."""
+"""Half-planes as matrix bodies, for comparison with the closed-form half-planes of MFV."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ def half_plane(x: Array, width: Array, shear_modulus: float, poisson_ratio: floa
 
 
 def graded(inner: int, interval: float, growth: float, outer: tuple[int, int]) -> tuple[Array, Array]:
-    """Places and widths: `inner` equal ones about 0, growing outwards by `growth` from one to the next, so many on either side."""
+    """Places and widths: `inner` equal ones about 0, growing outwards by `growth` from one to the next, this many on either side."""
     left, right = (interval * growth ** np.arange(1.0, number + 1) for number in outer)
     width = np.concatenate((left[::-1], np.full(inner, interval), right))
     ends = np.concatenate(([0.0], np.cumsum(width))) - left.sum() - 0.5 * inner * interval

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 
 class Rolling(NamedTuple):
-    """What steady rolling comes to: creepage; parts of the contact that stick; half-width; positions and tractions."""
+    """Limit of steady rolling: creepage; parts of the contact that stick; half-width; positions and tractions."""
 
     creepage: float
     stick_ratio: float
@@ -28,7 +28,7 @@ class Rolling(NamedTuple):
 def steady_rolling(
     modulus: float, beta: float, curvature: float, mu: float, normal_force: float, tangential_force: float, intervals: int = 201
 ) -> Rolling:
-    """Steady rolling to the right; raises RuntimeError where the active sets do not settle."""
+    """Steady rolling to the right; raises RuntimeError if the active sets do not converge."""
     half = 1.25 * np.sqrt(4.0 * normal_force / (np.pi * modulus * curvature))
     step = 2.0 * half / intervals
     x = (np.arange(intervals) + 0.5) * step - half

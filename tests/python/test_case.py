@@ -1,4 +1,4 @@
-"""Cases led from Python: increments, loads, tangent, kept states, trials, observers, interrupts, arrays of the caller's."""
+"""Cases advanced from Python: increments, loads, tangent, saved states, trials, observers, interrupts, arrays of the caller."""
 
 from __future__ import annotations
 
@@ -27,14 +27,14 @@ SHEARED = PRESS, mfv.Step(tangential_force=2.8e-4), mfv.Step(tangential_force=-1
 
 @pytest.fixture
 def pressed() -> mfv.Case:
-    """The cylinder, pressed, where states can be gone to in any order."""
+    """The pressed cylinder; states can be restored in any order."""
     case = cylinder(output=NOTHING_KEPT).contact()
     case.advance(normal_force=1.0e-3, friction=False, check=True)
     return case
 
 
 def tractions(case: mfv.Case) -> bytes:
-    """Everything that a state has at the nodes, to the bit."""
+    """All fields of a state at the nodes, bit-identical."""
     return b"".join(np.asarray(case[f"state/{name}"]).tobytes() for name in ("pressure", "shear", "slip", "status"))
 
 
@@ -120,7 +120,7 @@ def test_a_tangent_of_a_wrong_size_is_refused(pressed: mfv.Case) -> None:
         pressed.tangent(motions=7)
 
 
-# --- kept states, trials, copies ---
+# --- saved states, trials, copies ---
 
 
 def test_states_can_be_gone_to_in_any_order(pressed: mfv.Case) -> None:
@@ -277,7 +277,7 @@ def test_a_callback_must_not_use_its_case(pressed: mfv.Case) -> None:
     ):
         state = pressed.save()
         pressed.observe(lambda _, use=use: use())
-        with pytest.raises(RuntimeError, match="must not use the case that calls it"):
+        with pytest.raises(RuntimeError, match="must not use its case"):
             pressed.advance(tangential_force=1.0e-4)
         pressed.observe(None)
         pressed.restore(state)
@@ -353,8 +353,8 @@ def test_arguments_of_a_wrong_kind_are_named(pressed: mfv.Case) -> None:
     for call, message in (
         (lambda: pressed.advance(normal_force="1"), "must be numbers, not normal_force='1'"),
         (lambda: pressed.advance(shift=1e-5, steady_tolerance="no"), "steady_tolerance='no'"),
-        (lambda: pressed.observe(5), "observe takes what can be called .* not 5"),
-        (lambda: pressed.values("state/pressure", out=[0.0]), "out must be a numpy array to be filled, not list"),
+        (lambda: pressed.observe(5), "observe takes a function of the progress, or None, not 5"),
+        (lambda: pressed.values("state/pressure", out=[0.0]), "out must be a numpy array, not list"),
     ):
         with pytest.raises(TypeError, match=message):
             call()

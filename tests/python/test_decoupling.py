@@ -1,6 +1,6 @@
-"""The study of elastic decoupling, quick: its report is whole, and what it finds of the dissertation's chapter 6 holds.
+"""The quick study of elastic decoupling: its report is complete, and the statements of the dissertation's chapter 6 hold.
 
-75 nodes in contact unless told; tolerances are what such a mesh leaves open (numbers of finer ones: examples/decoupling).
+75 nodes in contact by default; tolerances are the discretisation errors of this mesh (finer ones: examples/decoupling).
 """
 
 from __future__ import annotations
@@ -36,7 +36,7 @@ def folder(tmp_path_factory) -> Path:
 
 
 def table(folder: Path, name: str) -> np.ndarray:
-    """The table of a study, from what was kept of its cases."""
+    """The table of a study, from its saved cases."""
     study = read_study(folder / f"{name}.nml")
     return frame_of(study.so_far(folder / f"{name}.sqlite")).to_records(index=False)
 
@@ -57,7 +57,7 @@ def by_coupling(folder: Path, name: str) -> list[np.ndarray]:
 
 
 class Balanced(HTMLParser):
-    """Tells whether every element is closed where it should be."""
+    """Whether every element is closed correctly."""
 
     EMPTY = ("meta", "img")
 
@@ -131,7 +131,7 @@ def test_dissipation_has_no_dimensions(folder):
 
 
 def test_goodman_dissipates_as_if_decoupled(folder):
-    """The pressures are the same and the slip is led by the lateral force (section 6.4)."""
+    """The pressures are equal and the lateral force governs the slip (section 6.4)."""
     for name in ("lateral_force", "friction", "ratios", "mismatch"):
         _, goodman, none = by_coupling(folder, name)
         assert goodman["cycle_dissipation"] == pytest.approx(none["cycle_dissipation"], rel=1e-9)
@@ -153,7 +153,7 @@ def test_decouplings_over_predict(folder):
 
 
 def test_decoupled_dissipation_is_that_of_mindlin(folder):
-    """Two disks that are alike against the closed form, 150 nodes in contact."""
+    """Two equal disks against the closed form, 150 nodes in contact."""
     finest = rows(table(folder, "mindlin"), nodes_of_mesh=195)
     finest = finest[finest["force_ratio"] > 0.2]
     compliance, force, mu, radius = 0.7 / 77e9, finest["normal_force"], 0.7, 2.0
@@ -181,7 +181,7 @@ def test_stick_ratios(folder):
 
 
 def test_errors_of_tractions(folder):
-    """Pressure to 23 %, shear of full decoupling from 100 %, all the same near gross sliding (section 6.4)."""
+    """Pressure to 23 %, shear of full decoupling from 100 %, nearly equal near gross sliding (section 6.4)."""
     _, goodman, none = by_coupling(folder, "lateral_force")
     assert goodman["pressure_error_reversal"].max() == pytest.approx(0.225, abs=0.01)
     assert none["shear_error_loading"].max() == pytest.approx(1.0, abs=0.02)
@@ -235,7 +235,7 @@ def test_a_quick_study_has_no_remarks(folder):
 
 
 def test_small_forces_slip_nothing(folder):
-    """beta = 0.5, mu = 0.7: after some cycles of Q = 0.05 mu P nothing dissipates any more (frictional shakedown)."""
+    """beta = 0.5, mu = 0.7: dissipation ceases after some cycles of Q = 0.05 mu P (frictional shakedown)."""
     whole = rows(table(folder, "shakedown"), beta=0.5, force_ratio=0.05)
     full, none = (rows(whole, coupling=coupling)["dissipation_number"] for coupling in ("full", "none"))
     assert (np.abs(full) < 1e-4 * none).all()

@@ -105,7 +105,7 @@ def test_memory_elsewhere(digests: dict[str, str]) -> None:
 
 
 def test_decimal_comma(digests: dict[str, str], tmp_path: Path) -> None:
-    """The host has called setlocale: numbers are read and written with points all the same."""
+    """The host has called setlocale: numbers are nevertheless read and written with decimal points."""
     source, name = tmp_path / "source", "comma"
     source.write_text('LC_NUMERIC\ndecimal_point "<U002C>"\nthousands_sep "<U002E>"\ngrouping 3;3\nEND LC_NUMERIC\n')
     if not shutil.which("localedef"):

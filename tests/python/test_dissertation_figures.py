@@ -89,7 +89,7 @@ def test_static_and_kinetic_friction_is_symmetric_in_the_mindlin_problem() -> No
 
 
 def test_cycle_is_steady_at_once_and_mirrored_up_to_a_node() -> None:
-    """Sub-figures 12 and 20 are the ends of steps 11 and 18; the last step goes round once more."""
+    """Sub-figures 12 and 20 are the ends of steps 11 and 18; the last step repeats the cycle."""
     result = solved(18)
     left, right, *again = (result.steps[i].shear for i in (10, 17, -2, -1))
     for state, repeated in zip((left, right), again):

@@ -111,7 +111,7 @@ def test_finer_surface_is_better(tmp_path):
 
 
 def test_program(tmp_path, monkeypatch, capsys):
-    """Table, picture and kept files."""
+    """Table, picture and saved files."""
     picture, kept = tmp_path / "picture.png", tmp_path / "kept"
     arguments = [EXAMPLE.name, "--surface-nodes", "21", "-o", str(picture), "--keep", str(kept)]
     monkeypatch.setattr("sys.argv", arguments)

@@ -84,7 +84,7 @@ def test_a_mass_braked_by_friction_turns_where_the_energy_says(host: ModuleType)
     free = host.ring_down(host.contact(mu), 0.8 * mu * weight, 1.0, 5)
 
     def work(reached: float, left: float) -> float:
-        """Work of the force from turn to turn on the way that Masing's rule gives, by parts: nothing is left of it."""
+        """Work of the force between turning points by Masing's rule, integrated by parts: it vanishes."""
         way = [2.0 * shift(0.5 * (left - force), mu, weight) for force in (-reached, left)]
         area = quad(lambda force: 2.0 * shift(0.5 * (left - force), mu, weight), -reached, left, epsabs=0.0, epsrel=1e-8)
         return area[0] - reached * way[0] - left * way[1]

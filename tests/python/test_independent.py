@@ -56,7 +56,7 @@ def bounded(matrix, offset, low, high, total, side):
 
 
 def incremental(gap, direct, by_shear, by_pressure, mu, dx, legs, steps) -> list[State]:
-    """States at the ends of the legs (P, Q) of a load history, each taken in so many implicit load steps."""
+    """States at the ends of the legs (P, Q) of a load history, each divided into this many implicit load steps."""
     zero, infinite = 0 * gap, gap + np.inf
     shear, slip, contact, dissipation, start = zero, zero, np.zeros(gap.size, int), 0.0, np.zeros(2)
     states = []
@@ -198,7 +198,7 @@ def test_two_nodes_by_hand(mu: float) -> None:
 
 
 def michell(nodes: int, step: float, nu: float, hole: bool, terms: int = 20000) -> np.ndarray:
-    """Displacement into a body, times G/R, by a unit pressure on the angle `step`, at so many distances: Michell's
+    """Displacement into a body, times G/R, by a unit pressure on the angle `step`, at this many distances: Michell's
     series, and of n = 1 what is no translation, the part without u_theta (dissertation tables 4.2, 4.3, E.1).
     """
     n, kappa, a = np.arange(2, terms), 3 - 4 * nu, step / 2

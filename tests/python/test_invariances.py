@@ -127,7 +127,7 @@ def contact(seed: int, **changes: Any) -> Contact:
 
 
 def scale_of(name: str, half_width: float) -> float:
-    """Natural size of what can be zero by symmetry."""
+    """Scale of quantities that can be zero by symmetry."""
     if name in POSITIONS or other_side(name) != name:
         return half_width
     return 1.0 if name.startswith(("patch_shift", "stick_ratio", "edge_stick")) else 0.0
@@ -364,7 +364,7 @@ def test_a_matrix_of_a_half_plane_is_the_half_plane(coupling: str) -> None:
     matrix = compliance_of_a_half_plane(x, width, 1.3, 0.25, 2.0)
     keys = {"coupling": coupling, "friction": mfv.Friction(**case.friction), "steps": list(case.steps())}
     body = mfv.Body.matrix(x, compliance=matrix, width=width)
-    # The power with which the pressure goes to zero under slip is known of materials, and estimated from a matrix.
+    # The exponent of the pressure at the edge under slip is known for materials, and estimated for a matrix.
     found = differences(
         case.run(),
         mfv.Scene(body, mfv.Body(**case.upper), **keys).run(),
@@ -387,7 +387,7 @@ def test_cycles_are_explicit_steps(seed: int) -> None:
     there, back = last.tangential_force, press_to.tangential_force
     explicit = [*before, press_to, *(mfv.Step(tangential_force=force) for force in (there, back, there, back))]
     cycles, steps = case.run(), case.run(steps=explicit)
-    # Only a step with cycles has what is said of cycles.
+    # Only a step with cycles has observables of cycles.
     ending = {f"{group}/{name}" for group in ("state", "summary") for name in getattr(steps, group)}
     assert ending & differences(cycles, steps, common=True).keys() == set()
 

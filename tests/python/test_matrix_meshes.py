@@ -84,7 +84,7 @@ def test_a_skew_mesh_does_not_shift_a_symmetric_patch(growth: float) -> None:
 
 
 def test_stick_ratio_of_unequal_widths_is_one_of_lengths() -> None:
-    """Numbers of nodes say nothing of lengths where widths differ."""
+    """Node counts do not give lengths if widths differ."""
     x, width = skew(81, H, 1.05)
     result = solved(half_plane(x, width, 1.0, 0.3, 1.0), "none", steps=(mfv.Step(normal_force=P, friction=False), STEPS[1]))
     status, touching = result.state.status, result.state.status != mfv.NodeStatus.OPEN

@@ -86,7 +86,7 @@ def test_a_callback_cannot_use_or_close_its_case_but_another(case: mfv.Case) -> 
 
     def uses(progress: mfv.Progress) -> None:
         for use in (case.run, case.save, case.copy, case.close, case.result, case.fields, case.tangent, lambda: case.loads):
-            with pytest.raises(RuntimeError, match="must not use the case"):
+            with pytest.raises(RuntimeError, match="must not use its case"):
                 use()
         with mfv.Case.from_text(TEXT) as other:
             told.append(other.run())
@@ -185,7 +185,7 @@ def test_wrong_names_and_numbers(case: mfv.Case) -> None:
 
 def test_cases_and_states_cannot_be_pickled(case: mfv.Case) -> None:
     for held in (case, case.save()):
-        with pytest.raises(TypeError, match="lives in this process"):
+        with pytest.raises(TypeError, match="belongs to this process"):
             pickle.dumps(held)
     scene = mfv.Scene.from_text(TEXT)
     assert pickle.loads(pickle.dumps(scene)).run().outcome == "complete"

@@ -1,4 +1,4 @@
-"""Contacts of several patches: what each bears, and what must not matter on random scenes, compared in all that is read off."""
+"""Contacts of several patches: the load of each, and invariances of all observables on random scenes."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ import mfv
 
 SEEDS = range(5)
 
-#: What the work was, and what round-off is all of.
+#: Counters and round-off, which may differ.
 WORK = ("leaps", "linear_solves", "events", "largest_residual", "cycle_change", "change", "steps_done", "step", "record")
 
 #: What changes its sign when right and left are exchanged; edges, which are exchanged too; and with the direction of the force.

@@ -165,7 +165,7 @@ PANELS: dict[str, tuple[str, str, str]] = {
     "surfaces": ("pressed", "position $x$", "height $y$"),
     "loop": ("cycled", "shift $U$ [mm]", "tangential force $Q$ [N/mm]"),
     "nonlinear_loop": ("cycled", "non-linear shift $U - Q/k$ [mm]", "tangential force $Q$ [N/mm]"),
-    "friction_work": ("cycled", "position $x$ [mm]", "dissipated per cycle and surface $d$ [N/mm]"),
+    "friction_work": ("cycled", "position $x$ [mm]", "dissipation per cycle and area $d$ [N/mm]"),
     "turning": ("pressed", r"rotation $\varphi$ [rad]", "moment $M$"),
     "rolling": ("pressed", "rolled distance $s$", r"sliding $U + h\varphi$"),
 }
@@ -226,7 +226,7 @@ def test_contours_of_stresses_take_an_axes_or_make_one(cycled: mfv.Result) -> No
     assert len(ax.figure.axes) == 1 and ax.collections
     made = mfv.plot.stress_contours(field, colour_bar=True)
     try:
-        assert made.figure.axes[1].get_ylabel() == r"$\sigma_\mathrm{vM}$$/p_0$"
+        assert made.child_axes[0].get_ylabel() == r"$\sigma_\mathrm{vM}$$/p_0$"
     finally:
         pyplot.close(made.figure)
 

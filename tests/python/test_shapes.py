@@ -160,7 +160,7 @@ def test_meshes_grow_under_named_shapes() -> None:
 
 
 def test_parabolas_have_no_end() -> None:
-    """A rigid disk of the radius 1 with gap='parabolic': the contact goes on beyond |x| = 1, as Hertz's does."""
+    """A rigid disk of the radius 1 with gap='parabolic': the contact extends beyond |x| = 1, as in Hertz theory."""
     lower = mfv.Body.half_plane(youngs_modulus=1.0, poisson_ratio=0.0)
     for force in (0.785, 1.1):
         press = [mfv.Step(normal_force=force)]

@@ -1,4 +1,4 @@
-"""Every executor gives the same bits, and loses nothing when a worker dies."""
+"""All executors give bit-identical results, and lose nothing when a worker dies."""
 
 import concurrent.futures
 import os
@@ -108,7 +108,7 @@ def die(jobs):
 
 
 def test_a_worker_process_is_killed(study, tmp_path, monkeypatch):
-    """The study is given up with what is solved kept, and goes on."""
+    """The study ends with its solved cases saved, and can be continued."""
     folder, table = study
     kept = {"reference": "full", "executor": "processes", "workers": 1, "store": tmp_path / "cases.sqlite"}
     monkeypatch.setattr("mfv.studies.executors.solve", die)
@@ -137,7 +137,7 @@ def test_blas_is_left_as_it_was(study):
 
 def test_names_of_executors(study, tmp_path):
     folder, _ = study
-    with pytest.raises(ValueError, match="there is no executor 'thread'; there are threads, processes, mpi, dask, dask:ADDRESS"):
+    with pytest.raises(ValueError, match="unknown executor 'thread'; choose from threads, processes, mpi, dask, dask:ADDRESS"):
         mfv.study(folder / "base.nml", AXES, executor="thread")
     with pytest.raises(ValueError, match="workers must be 1 or more, not 0"):
         mfv.study(folder / "base.nml", AXES, workers=0)
@@ -145,4 +145,4 @@ def test_names_of_executors(study, tmp_path):
         mfv.study(folder / "base.nml", AXES, executor=pool, workers=2)
     write(tmp_path)
     done = run("study.nml", "--executor", "treads", cwd=tmp_path)
-    assert done.returncode == 2 and "there is no executor 'treads'" in done.stderr
+    assert done.returncode == 2 and "unknown executor 'treads'" in done.stderr

@@ -1,4 +1,4 @@
-"""mfv.study: what is varied, what comes out, what is compared, in one process."""
+"""mfv.study: axes, results and references, in one process."""
 
 import math
 
@@ -200,7 +200,7 @@ def test_fields_and_observables_on_request(study):
     result = mfv.run(text=mfv.Study(folder / "base.nml", axes).text(4))
     np.testing.assert_array_equal(table["state_pressure"][1, 1], result.state.pressure)
     np.testing.assert_array_equal(table["mesh_x"][1, 1], result.mesh.x)
-    with pytest.raises(mfv.errors.InputError, match="there is no observable 'shiftt'; there are normal_force"):
+    with pytest.raises(mfv.errors.InputError, match="unknown observable 'shiftt'; choose from normal_force"):
         mfv.study(folder / "base.nml", axes, observables=["shiftt"])
     early = mfv.study(folder / "base.nml", {"friction%mu": [0.2]}, fields=["cycles/dissipation"])
     assert "cycles_dissipation" not in early and early["status"] != 0
@@ -216,7 +216,7 @@ def test_zipped_axes_and_tables_of_cases(study):
         solved = mfv.study(folder / "base.nml", table)
         assert dict(solved.sizes) == {"row": 2} and list(solved["case"]) == [1, 2]
         np.testing.assert_array_equal(solved["shift"], zipped["shift"])
-    with pytest.raises(mfv.errors.InputError, match="mesh%nodes has 1 values, friction%mu has 2"):
+    with pytest.raises(mfv.errors.InputError, match="mesh%nodes has 1 values, but friction%mu has 2"):
         mfv.study(folder / "base.nml", {"pair": {"friction%mu": [0.5, 0.7], "mesh%nodes": [11]}})
     for wrong in (3, [3], [{"a": 1}, {"b": 2}], {"friction%mu": 0.5}, {"friction%mu": "0.5"}):
         with pytest.raises(TypeError):
@@ -250,7 +250,7 @@ def test_a_function_with_keys_and_other_units(study):
         base.length_unit = point["unit"]
         return base
 
-    with pytest.raises(mfv.errors.InputError, match="case 2 \\(unit='m'\\): the scene names other units than that of case 1"):
+    with pytest.raises(mfv.errors.InputError, match="case 2 \\(unit='m'\\): the units of the scene differ from those of case 1"):
         mfv.study(scene, {"unit": ["mm", "m"]})
 
 
@@ -268,7 +268,7 @@ def test_values_that_are_lists_paths_and_arrays(study, tmp_path):
         (tmp_path / "mu.txt").write_text(f"-1 {edge}\n1 0.7\n")
         found.append(mfv.study(tmp_path / "base.nml", axes, store=tmp_path / "s.sqlite")["cycle_dissipation"].item())
     assert found[0] != found[1]
-    with pytest.raises(mfv.errors.InputError, match="is varied already"):
+    with pytest.raises(mfv.errors.InputError, match="is already varied"):
         mfv.Study(folder / "base.nml", {"body(2)%radius": [0.2], "Body(02)%Radius": [0.3]})
 
 
@@ -276,13 +276,13 @@ def test_what_is_no_study(study):
     folder, _ = study
     base = folder / "base.nml"
     for axes, kind, words in (
-        ({3: [1]}, TypeError, "a key of the case is wanted, such as 'friction%mu', not 3"),
-        ({"a": mfv.Axis([], [1])}, mfv.errors.InputError, "there are no keys"),
-        ({"a": mfv.Axis("friction%mu", "full")}, TypeError, "a: a list of values"),
-        ({"a": mfv.Axis("friction%mu", [0.3], 2)}, TypeError, "a: a list of values"),
-        ({"a": mfv.Axis([3], [0.3])}, TypeError, "a key of the case is wanted"),
-        ({"a": mfv.Axis("friction%mu", [[0.3]], [2])}, mfv.errors.InputError, "is no number"),
-        ({"p": {}}, mfv.errors.InputError, "p: there are no axes"),
+        ({3: [1]}, TypeError, "must be a key of the case such as 'friction%mu', not 3"),
+        ({"a": mfv.Axis([], [1])}, mfv.errors.InputError, "no keys given"),
+        ({"a": mfv.Axis("friction%mu", "full")}, TypeError, "a: must be a list of values"),
+        ({"a": mfv.Axis("friction%mu", [0.3], 2)}, TypeError, "a: must be a list of values"),
+        ({"a": mfv.Axis([3], [0.3])}, TypeError, "must be a key of the case"),
+        ({"a": mfv.Axis("friction%mu", [[0.3]], [2])}, mfv.errors.InputError, "is not a number"),
+        ({"p": {}}, mfv.errors.InputError, "p: no axes given"),
         ({"a/b": {"friction%mu": [0.5]}}, mfv.errors.InputError, "a name must be a text"),
         ({"case": {"friction%mu": [0.5]}}, mfv.errors.InputError, "case: this name is taken"),
         (pandas.DataFrame(), mfv.errors.InputError, "must have rows"),
@@ -294,11 +294,11 @@ def test_what_is_no_study(study):
     for wrong in ({"executor": None}, {"executor": 4}, {"reference": ["full"]}):
         with pytest.raises((TypeError, mfv.errors.InputError)):
             mfv.study(base, {"scene%coupling": ["full"]}, **wrong)
-    with pytest.raises(mfv.errors.InputError, match="there is no base case"):
+    with pytest.raises(mfv.errors.InputError, match="no base case given"):
         mfv.study([])
     with pytest.raises(mfv.errors.InputError, match="two bases have the name"):
         mfv.study([base, base])
-    with pytest.raises(mfv.errors.InputError, match="every study has a column state_pressure"):
+    with pytest.raises(mfv.errors.InputError, match="state_pressure is a column of every study"):
         mfv.study(base, {"state_pressure": mfv.Axis("friction%mu", [0.5])}, fields="state/pressure")
     with pytest.warns(UserWarning, match="no case has the field 'state/presure'"):
         mfv.study(base, fields="state/presure")
@@ -311,7 +311,7 @@ def test_several_bases(study, tmp_path):
     table = mfv.study([folder / "base.nml", tmp_path / "other.nml"], {"friction%mu": [0.5, 0.7]})
     assert dict(table.sizes) == {"base": 2, "friction%mu": 2} and table["nodes"].values.tolist() == [[21, 21], [15, 15]]
     (tmp_path / "metres.nml").write_text(BASE.format(nodes=15, cycles=1).replace("'mm'", "'m'"))
-    with pytest.raises(mfv.errors.InputError, match="metres.nml names other units than .*base.nml"):
+    with pytest.raises(mfv.errors.InputError, match="metres.nml: the units .* differ from those of .*base.nml"):
         mfv.Study([folder / "base.nml", tmp_path / "metres.nml"])
     alone = mfv.study(folder / "base.nml")
     assert dict(alone.sizes) == {"row": 1} and alone["outcome"] == "complete"
@@ -349,24 +349,24 @@ def test_dundurs_beta_keeps_the_mutual_compliance(study):
         ({"frictoin%mu": [1]}, "unknown group; did you mean friction?"),
         ({"mu": [1]}, "'mu': must be 'group%key', 'group\\(number\\)%key' or 'dundurs_beta'"),
         ({"step%shift": [1]}, "which &step\\?"),
-        ({"step(4)%shift": [1]}, "there is no &step 4 in .*base.nml, which has 3"),
-        ({"output%file": ["a"]}, "the study names its files itself"),
+        ({"step(4)%shift": [1]}, "no &step 4 in .*base.nml, which has 3"),
+        ({"output%file": ["a"]}, "the study names the result files"),
         (
             {"friction%mu": [0.3, -0.7]},
             "case 2 \\(base=.*, friction%mu=-0.7\\): .*base.nml:6: &friction mu=-0.7: must be a number at least 0",
         ),
         ({"scene%coupling": ["gudman"]}, "must be 'full', 'goodman' or 'none'"),
-        ({"shift": mfv.Axis("friction%mu", [0.3])}, "every study has a column shift; give another name"),
+        ({"shift": mfv.Axis("friction%mu", [0.3])}, "shift is a column of every study; choose another name"),
         (
             {"a/b": mfv.Axis("friction%mu", [0.3])},
-            "a name must be a text that is not empty, does not begin or end with a blank, and has no /",
+            "a name must be a non-empty text without / and without blanks at either end",
         ),
-        ({"a": mfv.Axis("friction%mu", [0.3], [1, -1])}, "must have one value a key, 1, not 2"),
-        ({"a": mfv.Axis("scene%coupling", ["full"], [2])}, "'full' is no number, and cannot be multiplied by 2"),
-        ({"a": mfv.Axis("friction%mu", [1e300], [1e300])}, "1e\\+300 times 1e\\+300 is too large for a number"),
-        ({"friction%mu": []}, "there are no values"),
-        ({"friction%mu": [0.5], "b": mfv.Axis("friction%mu", [0.5])}, "'friction%mu': is varied already"),
-        ({"step(2)%shift": [1e-4], "step(2)%force_ratio": [0.5]}, "'step\\(2\\)%force_ratio': is varied already"),
+        ({"a": mfv.Axis("friction%mu", [0.3], [1, -1])}, "must have one value per key \\(1\\), not 2"),
+        ({"a": mfv.Axis("scene%coupling", ["full"], [2])}, "'full' is not a number and cannot be multiplied by 2"),
+        ({"a": mfv.Axis("friction%mu", [1e300], [1e300])}, "1e\\+300 times 1e\\+300 overflows"),
+        ({"friction%mu": []}, "no values given"),
+        ({"friction%mu": [0.5], "b": mfv.Axis("friction%mu", [0.5])}, "'friction%mu' is already varied"),
+        ({"step(2)%shift": [1e-4], "step(2)%force_ratio": [0.5]}, "'step\\(2\\)%force_ratio' is already varied"),
         ({"dundurs_beta": [0.1], "body(2)%rigid": [False]}, "cannot be varied in one study"),
     ],
 )

@@ -41,12 +41,12 @@ def read(path):
 
 
 def bytes_kept(folder):
-    """Size of what is being kept: SQLite's log grows with every case."""
+    """Size of the saved cases: SQLite's log grows with every case."""
     return sum(path.stat().st_size for path in folder.glob("study.sqlite*") if not path.name.endswith("-shm"))
 
 
 def wait_for_growth(folder, size, process):
-    """Wait until more than this is kept; false where the process ended first."""
+    """Wait until more than this is saved; false if the process ended first."""
     while process.poll() is None:
         try:
             if bytes_kept(folder) > size:
@@ -89,7 +89,7 @@ def test_comma_separated_values(study, tmp_path):
 def test_cases_are_listed_and_printed(tmp_path):
     write(tmp_path)
     done = run("study.nml", "--list", cwd=tmp_path)
-    assert done.returncode == COMPLETE and f"study.nml is valid: {CASES} cases, into study.nc" in done.stdout
+    assert done.returncode == COMPLETE and f"study.nml is valid: {CASES} cases, to be written to study.nc" in done.stdout
     assert "case 2: base='base.nml', friction%mu=0.3, Q=0.0001, scene%coupling='goodman'" in done.stdout
     done = run("study.nml", "--case", 5, cwd=tmp_path)
     (tmp_path / "case.nml").write_text(done.stdout)
@@ -98,7 +98,7 @@ def test_cases_are_listed_and_printed(tmp_path):
         shift = result["observables/shift"][()]
     assert shift == read_study(tmp_path / "study.nml").run()["shift"].values.ravel()[4]
     done = run("study.nml", "--case", 99, cwd=tmp_path)
-    assert done.returncode == INPUT and "there is no case 99; there are 18, numbered from 1" in done.stderr
+    assert done.returncode == INPUT and "no case 99; the cases are numbered from 1 to 18" in done.stderr
     assert run("--keys", cwd=tmp_path).stdout.strip() in (ROOT / "docs/studies.md").read_text()
 
 
@@ -114,39 +114,39 @@ def test_a_case_is_printed_though_others_cannot_be_used(tmp_path):
     [
         (("friction%mu", "friction%my"), 2, "&vary 1 key='friction%my': 'friction%my': unknown key of &friction; did you mean mu?"),
         (("friction%mu", "frictoin%mu"), 2, "unknown group; did you mean friction?"),
-        (("step(2)", "step(4)"), 3, "there is no &step 4 in base.nml, which has 3"),
+        (("step(2)", "step(4)"), 3, "no &step 4 in base.nml, which has 3"),
         (("values=0.3, 0.7", "values=0.3, -0.7"), 2, "&friction mu=-0.7: must be a number at least 0"),
         (("'goodman', 'none'", "'gudman', 'none'"), 4, "&scene coupling='gudman': must be 'full', 'goodman' or 'none'"),
         (("base='base.nml'", "base='bass.nml'"), 1, "&sweep base='bass.nml': bass.nml cannot be read: No such file or directory"),
-        (("base='base.nml'", "base=''"), 1, "&sweep base='': the name of a file is empty"),
+        (("base='base.nml'", "base=''"), 1, "&sweep base='': empty file name"),
         (("base='base.nml', ", ""), 1, "&sweep: needs base"),
         (("&vary key='friction", "&very key='friction"), 2, "&very: unknown group; did you mean &vary?"),
         (("spacing='log'", "spacing='logg'"), 3, "&vary 2 spacing='logg': must be 'linear' or 'log'"),
         (("spacing='log'", "spaicng='log'"), 3, "&vary spaicng: unknown key; did you mean spacing?"),
-        (("spacing='log'", "count=4"), 3, "count: comes twice"),
-        (("from=1e-4", "from=-1e-4"), 3, "needs from and to above 0, or both below"),
+        (("spacing='log'", "count=4"), 3, "count: given twice"),
+        (("from=1e-4", "from=-1e-4"), 3, "needs from and to of the same sign"),
         (("count=3, ", ""), 3, "needs values=..., or from, to and count; count is missing"),
         (("count=3", "count=0"), 3, "&vary 2 count=0: must be a whole number from 1 to 100000"),
         (("count=3", "count=2.5"), 3, "&vary 2 count=2.5: must be a whole number"),
-        (("count=3", "values=1e-4"), 3, "values is there too; give values, or from, to and count"),
+        (("count=3", "values=1e-4"), 3, "values is also given; give either values, or from, to and count"),
         (
             ("'full', 'goodman', 'none'", "'goodman', 'none'"),
             1,
-            "reference='full': needs a &vary of key='scene%coupling' alone with 'full'",
+            "reference='full': needs a &vary with the single key='scene%coupling' and 'full'",
         ),
         (
             ("reference='full'", "reference='mesh%nodes=11'"),
             1,
-            "needs a &vary of key='mesh%nodes' alone with '11' among its values",
+            "needs a &vary with the single key='mesh%nodes' and '11' among its values",
         ),
-        (("name='Q'", "name='outcome'"), 3, "&vary 2 name='outcome': every study has a column outcome"),
-        (("name='Q'", "name='friction%mu'"), 3, "another axis has the name friction%mu"),
+        (("name='Q'", "name='outcome'"), 3, "&vary 2 name='outcome': outcome is a column of every study"),
+        (("name='Q'", "name='friction%mu'"), 3, "friction%mu is the name of another axis"),
         (("name='Q'", "name=3"), 3, "&vary 2 name=3: must be a text between quotes"),
-        (("factor=1, -1", "factor=1"), 3, "must have one value a key, 2, not 1"),
+        (("factor=1, -1", "factor=1"), 3, "must have one value per key (2), not 1"),
         (("factor=1, -1", "factor='a', 'b'"), 3, "&vary 2 factor='a', 'b': must be a number"),
         (("reference='full'", "combine='paired'"), 1, "&vary 2 has 3 values, &vary 1 has 2"),
-        (("reference='full' /", "reference='full' /\n&sweep base='base.nml' /"), 2, "&sweep: comes twice"),
-        (("key='friction%mu', ", ""), 2, "&vary 1: needs key"),
+        (("reference='full' /", "reference='full' /\n&sweep base='base.nml' /"), 2, "&sweep: given twice"),
+        (("key='friction%mu', ", ""), 2, "&vary 1: key missing"),
         (("values=0.3, 0.7", "values=0.3, 'a'"), 2, "friction%mu='a'"),
         (("values=0.3, 0.7 /", "values=0.3, 0.7"), 3, "&vary (line 2) has no / at its end"),
     ],
@@ -234,7 +234,7 @@ def test_several_bases_pairs_and_whole_numbers(tmp_path):
     done = run("study.nml", cwd=tmp_path)
     assert (
         done.returncode == INPUT
-        and "&vary 1 count=3: 11.5 and 12 both become 12, for mesh%nodes takes whole numbers" in done.stderr
+        and "&vary 1 count=3: 11.5 and 12 both become 12, since mesh%nodes takes whole numbers" in done.stderr
     )
 
 
@@ -300,7 +300,10 @@ def test_interrupted(executor, number, tmp_path):
     process.send_signal(number)
     _, said = process.communicate(timeout=60)
     assert process.returncode == INTERRUPTED
-    assert said.splitlines() == ["mfv: solved cases are kept in study.sqlite; the same command goes on", "mfv: interrupted"], said
+    assert said.splitlines() == [
+        "mfv: solved cases are saved in study.sqlite; repeat the command to continue",
+        "mfv: interrupted",
+    ], said
     there = cases_kept(tmp_path)
     assert 0 < there < cases and not (tmp_path / "study.nc").exists()
     for options, words in (
@@ -334,22 +337,19 @@ def test_two_at_once(tmp_path):
     write(tmp_path)
     with contextlib.closing(Store(tmp_path / "study.sqlite")):
         done = run("study.nml", cwd=tmp_path)
-    assert (
-        done.returncode == INPUT
-        and "study.sqlite: solved cases cannot be kept here: another study is at work with it" in done.stderr
-    )
+    assert done.returncode == INPUT and "study.sqlite: cannot save solved cases: another study is using it" in done.stderr
 
 
 def limited(size):
-    """Files can have so many bytes in a process begun with this: a disk that is full."""
+    """Limit the size of files of a process, to simulate a full disk."""
     return lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (size, size))
 
 
 def test_a_full_disk(tmp_path):
-    """It is said, what is there stays, and the same command goes on."""
+    """There is a message, saved cases stay, and the same command continues."""
     cases = long_study(tmp_path)
     done = run("study.nml", "--workers", 2, cwd=tmp_path, preexec_fn=limited(80_000))
-    assert done.returncode == INPUT and "study.sqlite: solved cases cannot be kept here: " in done.stderr, done.stderr
+    assert done.returncode == INPUT and "study.sqlite: cannot save solved cases: " in done.stderr, done.stderr
     there = cases_kept(tmp_path)
     assert 0 < there < cases and not (tmp_path / "study.nc").exists()
     assert run("study.nml", cwd=tmp_path).returncode == COMPLETE and cases_kept(tmp_path) == cases
@@ -367,7 +367,7 @@ def test_other_files_are_not_replaced(tmp_path, capsys, monkeypatch):
     for name, words in (
         ("study.h5", "is HDF5, perhaps a result, and is not overwritten"),
         ("study.nml", "must end with .nc or .h5 or .csv"),
-        ("no/study.nc", "there is no directory no"),
+        ("no/study.nc", "no does not exist or is not a directory"),
     ):
         for option in ([], ["--again"], ["--list"]):
             assert main(["study", "study.nml", "-o", name, *option]) == INPUT

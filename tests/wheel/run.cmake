@@ -1,5 +1,5 @@
-# Makes the wheel, installs it into an environment of its own and tests it there, with nothing else on the PATH. What the package
-# depends on (numpy, h5py, ...) is that of build/venv. Variables: SOURCE_DIR, WORK_DIR, PYTHON.
+# Makes the wheel, installs it into a separate environment and tests it there, with nothing else on the PATH. The dependencies
+# (numpy, h5py, ...) are those of build/venv. Variables: SOURCE_DIR, WORK_DIR, PYTHON.
 include(${CMAKE_CURRENT_LIST_DIR}/../support/steps.cmake)
 file(REMOVE_RECURSE ${WORK_DIR})
 step(sh ${SOURCE_DIR}/scripts/wheel.sh)

@@ -17,7 +17,7 @@ from mfv import _library
 
 EXAMPLES = Path(__file__).resolve().parents[2] / "examples"
 PROGRAMS = ("mfv_run", "mfv_conventional", "mfv_stress")
-#: What every Linux has that a wheel may be installed on (the policies of manylinux).
+#: Libraries of every Linux on which a wheel may be installed (the policies of manylinux).
 BASE = re.compile(r"(linux-vdso|ld-linux\S*|lib(c|m|mvec|dl|pthread|rt|resolv|util|gcc_s|stdc\+\+|z))\.so")
 SITE = Path(mfv.__file__).resolve().parents[1]
 
@@ -79,9 +79,10 @@ def test_files_of_the_package_are_there(tmp_path):
     subprocess.run(["mfv_run", "cylinder.nml"], cwd=tmp_path, capture_output=True, check=True)
     subprocess.run([sys.executable, "-m", "mfv", "report", "cylinder.h5"], cwd=tmp_path, capture_output=True, check=True)
     assert "<html" in (tmp_path / "cylinder.html").read_text()[:1000]
+    assert "usage: mfv COMMAND" in subprocess.run(["mfv"], capture_output=True, text=True, check=True).stdout
 
 
-def test_licences_of_what_is_bundled():
+def test_licences_of_bundled_libraries():
     (info,) = SITE.glob("mfv-*.dist-info")
     metadata = (info / "METADATA").read_text()
     assert "License-Expression: BSD-3-Clause AND GPL-3.0-or-later\n" in metadata

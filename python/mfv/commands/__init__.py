@@ -1,4 +1,4 @@
-"""The command line of the package, `python -m mfv COMMAND`: one module a command."""
+"""The command line of the package, `python -m mfv COMMAND`: one module for each command."""
 
 from __future__ import annotations
 
@@ -6,14 +6,16 @@ import argparse
 import os
 import sys
 import traceback
+from pathlib import Path
 
 from .. import __version__
 from .._packages import how_to_install
 from ..errors import MfvError
 from . import animate, compare, info, new, plot, report, study
+from .completion import complete
 
-UNUSABLE = 2  # exit code, as that of mfv_run for input that cannot be used
-INTERRUPTED = 130  # exit code after Ctrl-C, as that of mfv_run
+UNUSABLE = 2  # exit code for unusable input, the same as that of mfv_run
+INTERRUPTED = 130  # exit code after Ctrl-C, the same as that of mfv_run
 
 COMMANDS = (new, plot, info, compare, animate, report, study)
 
@@ -21,26 +23,31 @@ EXAMPLES = """\
 examples:
   python -m mfv new                         write a commented case, cylinder.nml
   mfv_run examples/mindlin.nml              write mindlin.h5
-  python -m mfv info mindlin.h5             what is in it
+  python -m mfv info mindlin.h5             print its contents
   python -m mfv plot mindlin.h5             draw mindlin.png
-  python -m mfv compare goodman.h5 full.h5  two results side by side
-  python -m mfv animate mindlin.h5          the load history as mindlin.gif
-  python -m mfv report mindlin.h5           a web page of it, mindlin.html
+  python -m mfv compare goodman.h5 full.h5  compare two results
+  python -m mfv animate mindlin.h5          animate the load history, mindlin.gif
+  python -m mfv report mindlin.h5           write a web page, mindlin.html
   python -m mfv study study.nml -o study.csv
-                                            solve many cases, into one table
+                                            solve many cases, write one table
 
-python -m mfv COMMAND --help tells more about each.
+'python -m mfv COMMAND --help' explains each command.
 """
 
 
 def main(arguments: list[str] | None = None) -> int:
     """Run the command line; return the exit code."""
-    options = _parser().parse_args(arguments)
+    parser = _parser()
+    complete(parser)
+    if not (sys.argv[1:] if arguments is None else arguments):
+        print(_overview())
+        return 0
+    options = parser.parse_args(arguments)
     try:
         code: int = options.command(options) or 0
         _finish_output()
         return code
-    except BrokenPipeError:  # whoever read the output has had enough
+    except BrokenPipeError:  # the reader of the output has closed it, such as head
         _give_up_output()
         return UNUSABLE
     except (MfvError, OSError, ValueError) as error:
@@ -49,7 +56,7 @@ def main(arguments: list[str] | None = None) -> int:
         return UNUSABLE
     except ModuleNotFoundError as error:
         package = str(error.name)
-        print(f"mfv: this needs the Python package {package}, which is not there: {how_to_install(package)}", file=sys.stderr)
+        print(f"mfv: the Python package {package} is not installed: {how_to_install(package)}", file=sys.stderr)
         return UNUSABLE
     except Exception:
         traceback.print_exc()
@@ -59,10 +66,26 @@ def main(arguments: list[str] | None = None) -> int:
         return INTERRUPTED
 
 
+def _program() -> str:
+    """How the user calls this program."""
+    return "mfv" if Path(sys.argv[0]).stem == "mfv" else "python -m mfv"
+
+
+def _overview() -> str:
+    """The commands, a line each, and how to begin."""
+    mfv = _program()
+    lines = [f"mfv {__version__}: two-dimensional frictional elastic contact", "", f"usage: {mfv} COMMAND ...", ""]
+    lines += [f"  {module.NAME:10}{module.HELP}" for module in COMMANDS]
+    steps = (f"{mfv} new cylinder.nml", "mfv_run cylinder.nml", f"{mfv} plot cylinder.h5")
+    meanings = ("write a commented case", "solve it, write cylinder.h5", "draw cylinder.png")
+    lines += ["", "first steps:", *(f"  {step:34}{meaning}" for step, meaning in zip(steps, meanings))]
+    return "\n".join([*lines, "", f"'{mfv} COMMAND --help' explains each command."])
+
+
 def _parser() -> argparse.ArgumentParser:
     parser = argparse.ArgumentParser(
-        prog="python -m mfv",
-        description="Begin a case, look at result files of mfv_run, solve many cases that differ in some values.",
+        prog=_program(),
+        description="Write a case, inspect the result files of mfv_run, solve many cases that differ in some values.",
         epilog=EXAMPLES,
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
@@ -82,7 +105,7 @@ def _parser() -> argparse.ArgumentParser:
 
 
 def _finish_output() -> None:
-    """Print what is still to be printed. Raises OSError, BrokenPipeError where somebody has had enough of it."""
+    """Flush standard output. Raises OSError; BrokenPipeError if its reader has closed it."""
     try:
         if sys.stdout is not None:
             sys.stdout.flush()
@@ -93,7 +116,7 @@ def _finish_output() -> None:
 
 
 def _give_up_output() -> None:
-    """What could not be printed is not tried again when the interpreter ends, which would have its own words and exit code."""
+    """Discard unprinted output, so that the interpreter does not try again at exit with its own message and exit code."""
     if sys.stdout is not None:
         try:
             sys.stdout.flush()
@@ -102,7 +125,7 @@ def _give_up_output() -> None:
 
 
 def _with_file(message: str, options: argparse.Namespace) -> str:
-    """A message that names the file it is about: the one that was read, unless it names one of those given already."""
+    """A message with the name of the input file, unless it names one of the command's files already."""
     values = (getattr(options, name, None) for name in ("file", "other", "output"))
     given = [str(value) for value in values if value]
     if not given or any(name in message for name in given):

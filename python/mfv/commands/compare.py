@@ -1,43 +1,42 @@
-"""python -m mfv compare: two results side by side."""
+"""python -m mfv compare: compare two results."""
 
 from __future__ import annotations
 
 import argparse
-from pathlib import Path
 
 from .._files import PICTURES, target, written
 from ..result import read
-from .shared import add_output
+from .shared import add_output, add_result
 
-NAME, HELP = "compare", "two results side by side"
+NAME, HELP = "compare", "compare two results: differences and a picture"
 
 DESCRIPTION = """\
-Draw two results side by side and over each other: pressure, shear traction with stick and slip zones, and tangential
-force over shift; and print what differs: settings, keys of the inputs, the numbers of summary, observables and
-certificate with their relative differences, and the tractions. The last line is the number to judge by: the largest
-difference of a traction in parts of the largest traction. Tractions on different meshes are interpolated linearly.
+Print the differences of two results: settings, input keys, the numbers of summary, observables and certificate with their
+relative differences, and the tractions. Draw them side by side and superposed: pressure, shear traction with stick and
+slip zones, tangential force over shift. The last line is the overall measure: the largest difference of a traction
+divided by the largest traction. Tractions on different meshes are interpolated linearly.
 """
 
 EXAMPLES = """\
 examples:
-  python -m mfv compare goodman.h5 full.h5  print what differs, draw goodman_full.png
+  python -m mfv compare goodman.h5 full.h5  print the differences, draw goodman_full.png
   python -m mfv compare coarse.h5 fine.h5 -o mesh.pdf
   python -m mfv compare yesterday.h5 today.h5 --no-picture --tolerance 1e-9
-                                            exit code 1 when the tractions differ by more
+                                            exit code 1 if the tractions differ by more
 """
 
 DIFFERENT = 1  # exit code, with --tolerance
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """What the command takes."""
-    parser.add_argument("file", type=Path, metavar="FIRST.h5", help="result file")
-    parser.add_argument("other", type=Path, metavar="SECOND.h5", help="result file")
-    add_output(parser, "PICTURE", "png, pdf, svg or eps; else FIRST_SECOND.png beside the first file")
-    parser.add_argument("--no-picture", action="store_true", help="draw nothing")
-    parser.add_argument("--step", type=int, metavar="N", help="the states in steps/000N in place of the last ones")
+    """Add the arguments of the command."""
+    add_result(parser, "file", "FIRST.h5")
+    add_result(parser, "other", "SECOND.h5")
+    add_output(parser, "PICTURE", "png, pdf, svg or eps (default: FIRST_SECOND.png beside the first file)")
+    parser.add_argument("--no-picture", action="store_true", help="print only")
+    parser.add_argument("--step", type=int, metavar="N", help="compare state N (group steps/000N); the last states by default")
     parser.add_argument(
-        "--tolerance", type=float, metavar="PART", help="end with code 1 when the tractions differ by more than this"
+        "--tolerance", type=float, metavar="RATIO", help="exit with code 1 if the largest difference of the tractions exceeds this"
     )
 
 

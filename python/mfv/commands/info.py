@@ -1,4 +1,4 @@
-"""python -m mfv info: what is in a result, or in the table of a study, in words and numbers."""
+"""python -m mfv info: print the contents of a result or of the table of a study."""
 
 from __future__ import annotations
 
@@ -11,34 +11,36 @@ import numpy as np
 from .._html import unit
 from ..result import Group, Result, kept, read
 from ..studies.plan import is_table
+from .completion import complete_files
 
 if TYPE_CHECKING:
     import xarray
 
-NAME, HELP = "info", "print what is in a result or in the table of a study"
+NAME, HELP = "info", "print the contents of a result or of the table of a study"
 
 DESCRIPTION = """\
-Print what is in a result, in words and numbers: how the run ended, its settings, loads and counts at the end, what is
-read off the load history, the certificate, error bars and the sources of closed forms where there are any. Of the table of
-a study: the columns with their values, units and meanings.
+Print the contents of a result: outcome, settings, loads and node counts at the end, observables of the load history,
+certificate, error estimates and sources of closed forms if there are any. For the table of a study: its columns with
+values, units and meanings.
 """
 
 EXAMPLES = """\
 examples:
-  python -m mfv info mindlin.h5             what is in it
-  python -m mfv info study.nc               the columns of the table
+  python -m mfv info mindlin.h5             a result
+  python -m mfv info study.nc               columns of a table
 """
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """What the command takes."""
-    parser.add_argument("file", type=Path, metavar="RESULT.h5", help="result file, or table of a study (.nc)")
+    """Add the arguments of the command."""
+    file = parser.add_argument("file", type=Path, metavar="RESULT.h5", help="result file, or table of a study (.nc)")
+    complete_files(file, "h5", "nc")
 
 
 def run(options: argparse.Namespace) -> None:
     """Print. Raises OSError, NotAResult."""
     if is_table(options.file):
-        import xarray  # here: results are read without it
+        import xarray  # here, since results are read without it
 
         with xarray.open_dataset(options.file, engine="h5netcdf") as table:
             print(columns_of(table))
@@ -47,7 +49,7 @@ def run(options: argparse.Namespace) -> None:
 
 
 def columns_of(table: xarray.Dataset) -> str:
-    """The axes and columns of a study's table, one a line: values, unit, meaning."""
+    """The axes and columns of a study's table, one per line: values, unit, meaning."""
     named = [*(table[name] for name in table.coords), *table.data_vars.values()]
     lines = []
     for one in named:
@@ -58,7 +60,7 @@ def columns_of(table: xarray.Dataset) -> str:
 
 
 def _values(values: np.ndarray) -> str:
-    """What an array holds: a few texts, or from where to where its numbers go."""
+    """The values of an array: its text or the number of texts, or the range of its numbers."""
     if values.dtype.kind not in "biuf":
         different = sorted(set(map(str, values.flat)))
         return different[0][:32] if len(different) == 1 else f"{len(different)} different"
@@ -70,7 +72,7 @@ def _values(values: np.ndarray) -> str:
 
 
 def description(result: Result) -> str:
-    """A result in words and numbers, the input aside."""
+    """All numbers of a result and their meanings, without the input."""
     attributes = [f"{name:20}{value}" for name, value in result.attributes.items() if name != "input"]
     sources = [f"{name:20}{result.reference.description(name)}" for name in result.reference]
     groups = {name: getattr(result, name) for name in ("summary", "observables", "certificate", "sensitivity")}
@@ -85,12 +87,12 @@ def description(result: Result) -> str:
 
 
 def _lines(group: Group) -> list[str]:
-    """The scalars of a group, one a line."""
+    """The scalars of a group, one per line."""
     return [f"  {name:26}{group[name]:<14.6g}{unit(group.unit(name)):16}{group.description(name)}" for name in group]
 
 
 def _bars(estimate: Group) -> list[str]:
-    """The quantities of an error estimate with their bars, one a line."""
+    """The quantities of an error estimate with their error bars, one per line."""
     names = [name for name in estimate if f"{name}_error" in estimate]
     return [
         f"  {name:26}{estimate[name]:<14.6g}+- {estimate[name + '_error']:<11.2g}{unit(estimate.unit(name)):16}"

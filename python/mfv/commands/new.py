@@ -1,25 +1,29 @@
-"""python -m mfv new: a commented case to begin with."""
+"""python -m mfv new: write a commented case from a template."""
 
 from __future__ import annotations
 
 import argparse
+from collections.abc import Collection
 from pathlib import Path
 
 from .._files import target, written
+from .completion import complete_files, complete_words
 
-NAME, HELP = "new", "a commented case from a template"
+NAME, HELP = "new", "write a commented case from a template"
 
 DESCRIPTION = """\
-Write a case to begin with, from a template: every key that matters, with its meaning as a comment, those that can be
-left out as comments with their values. Each can be solved as it is. Files that a template needs (a profile, a
-matrix, the case of a study) are written beside it. Nothing that is there already is overwritten without --force.
+Write a case from a template. A comment explains each key; optional keys are comments with their default values. Every
+template can be solved as it is. Files that a template needs (a profile, a matrix, the case of a study) are written
+beside it. Existing files are overwritten only with --force.
 """
 
 EXAMPLES = """\
 examples:
   python -m mfv new                         write cylinder.nml
-  python -m mfv new --list                  which templates there are
+  python -m mfv new joint.nml               write the default template to joint.nml
+  python -m mfv new --list                  list the templates
   python -m mfv new pin_in_bore -o joint.nml
+                                            write another template
   mfv_run joint.nml                         solve it
 """
 
@@ -27,22 +31,49 @@ DEFAULT = "cylinder"
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """What the command takes."""
-    parser.add_argument("template", nargs="?", default=DEFAULT, metavar="TEMPLATE", help=f"see --list; {DEFAULT} unless told")
-    parser.add_argument("-o", "--output", type=Path, metavar="CASE.nml", help="else TEMPLATE.nml, here")
-    parser.add_argument("--list", action="store_true", help="print the templates, a line each")
-    parser.add_argument("--force", action="store_true", help="overwrite what is there")
+    """Add the arguments of the command."""
+    chosen = parser.add_argument(
+        "template",
+        nargs="?",
+        default=DEFAULT,
+        metavar="TEMPLATE",
+        help=f"name of a template, see --list ({DEFAULT} by default); a name that ends in .nml is the file to write",
+    )
+    complete_words(chosen, _templates)
+    output = parser.add_argument("-o", "--output", type=Path, metavar="CASE.nml", help="file to write (default: TEMPLATE.nml)")
+    complete_files(output, "nml")
+    parser.add_argument("--list", action="store_true", help="list the templates")
+    parser.add_argument("--force", action="store_true", help="overwrite existing files")
 
 
 def run(options: argparse.Namespace) -> None:
-    """Write, and say how to go on. Raises OSError, ValueError."""
+    """Write the case and print how to solve it. Raises OSError, ValueError."""
     from .. import template
 
     if options.list:
         for name, meaning in template.names().items():
             print(f"{name:18}{meaning}")
         return
-    path = target(options.output, Path(f"{options.template}.nml"), (".nml",), [])
-    for place in template.write(options.template, path, written, options.force):
+    name, path = _template_and_file(options.template, options.output, template.names())
+    path = target(path, Path(f"{name}.nml"), (".nml",), [])
+    for place in template.write(name, path, written, options.force):
         print(place)
-    print(f"solve it: {'python -m mfv study' if template.is_study(options.template) else 'mfv_run'} {path}")
+    print(f"solve it: {'python -m mfv study' if template.is_study(name) else 'mfv_run'} {path}")
+
+
+def _template_and_file(chosen: str, output: Path | None, names: Collection[str]) -> tuple[str, Path | None]:
+    """The template and the file to write. CASE.nml in place of a template: the template of that name, else the default one."""
+    if not chosen.endswith(".nml"):
+        return chosen, output
+    path = Path(chosen)
+    name = path.stem if path.stem in names else DEFAULT
+    if output is not None:
+        raise ValueError(f"'{chosen}' is a file name and -o gives another; write 'python -m mfv new {name} -o {output}'")
+    return name, path
+
+
+def _templates() -> list[str]:
+    """The names of the templates."""
+    from .. import template
+
+    return list(template.names())

@@ -1,21 +1,20 @@
-"""python -m mfv plot: a picture of a result."""
+"""python -m mfv plot: draw a result."""
 
 from __future__ import annotations
 
 import argparse
-from pathlib import Path
 
 from .._files import PICTURES, target, written
 from ..result import read
-from .shared import add_output
+from .completion import complete_words
+from .shared import add_output, add_result
 
 NAME, HELP = "plot", "draw a result"
 
 DESCRIPTION = """\
-Draw a result as a picture of up to three panels: the pressure over x; the shear traction over x with the stick and
-slip zones behind it and the limits of friction around it (without friction: the surfaces of both bodies); the
-tangential force over the shift (where there is a history with a tangential force), with the ends of the steps
-numbered. Points are computed, lines are closed forms where the file has them.
+Draw a result in up to three panels: pressure over x; shear traction over x with stick and slip zones and the friction
+limits (without friction: the deformed surfaces of both bodies); tangential force over shift with numbered step ends
+(if the load history has a tangential force). Points are computed values, lines are closed forms if the file has any.
 """
 
 EXAMPLES = """\
@@ -24,36 +23,39 @@ examples:
   python -m mfv plot mindlin.h5 --stress von_mises
                                             draw the stresses inside the lower body
   python -m mfv plot mindlin.h5 --stress sigma_xx --axes physical
-                                            the same in the units of the case, the largest tension marked
+                                            in the units of the case, with the largest tension
   python -m mfv plot mindlin.h5 -o fig3.pdf --step 2
-                                            draw the state after step 2, for print
+                                            draw the state after step 2 as a PDF
   python -m mfv plot shear_cycles.h5 --cycles
-                                            draw the hysteresis loop and where it dissipates
+                                            draw the hysteresis loop and the dissipation over x
 """
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """What the command takes."""
-    parser.add_argument("file", type=Path, metavar="RESULT.h5", help="result file")
-    where = "png, pdf, svg or eps; else RESULT.png, or RESULT_NAME_BODY.png for a stress, beside the file"
+    """Add the arguments of the command."""
+    add_result(parser)
+    where = "png, pdf, svg or eps (default: RESULT.png, for a stress RESULT_NAME_BODY.png, beside the file)"
     add_output(parser, "PICTURE", where)
-    parser.add_argument("--step", type=int, metavar="N", help="the state in the file's group steps/000N in place of the last")
+    parser.add_argument(
+        "--step", type=int, metavar="N", help="draw state N of the file (group steps/000N); the last state by default"
+    )
     kind = parser.add_mutually_exclusive_group()
-    kind.add_argument(
+    stress = kind.add_argument(
         "--stress",
         metavar="NAME",
-        help="contours of a stress inside a body in place of the panels: von_mises, tresca, principal_1, sigma_xx, ...",
+        help="draw contours of a stress inside a body: von_mises, tresca, principal_1, sigma_xx, ...",
     )
+    complete_words(stress, _stresses)
     kind.add_argument(
         "--cycles",
         action="store_true",
-        help="the cycles in place of the panels: hysteresis loop, its non-linear part, where the last one dissipates",
+        help="draw the cycles: hysteresis loop, its non-linear part, dissipation of the last cycle over x",
     )
-    parser.add_argument("--body", choices=("lower", "upper"), help="which body, with --stress; lower by default")
+    parser.add_argument("--body", choices=("lower", "upper"), help="with --stress: inside which body (lower by default)")
     parser.add_argument(
         "--axes",
         choices=("normalised", "physical"),
-        help="with --stress: over the largest pressure and the contact half-width (normalised, the default), or as they are (physical)",
+        help="with --stress: divided by the largest pressure and the contact half-width (normalised, the default), or in units (physical)",
     )
 
 
@@ -62,11 +64,11 @@ def run(options: argparse.Namespace) -> None:
     from .. import plot  # here, so that info does not load matplotlib
 
     if options.body is not None and options.stress is None:
-        raise ValueError("--body says inside which body a stress is drawn: give --stress NAME too")
+        raise ValueError("--body has no effect without --stress; add --stress NAME or remove --body")
     if options.axes is not None and options.stress is None:
-        raise ValueError("--axes says how a stress is drawn: give --stress NAME too")
+        raise ValueError("--axes has no effect without --stress; add --stress NAME or remove --axes")
     if options.step is not None and options.cycles:
-        raise ValueError("--step chooses a state, which --cycles does not draw: give one of them")
+        raise ValueError("--step has no effect with --cycles; remove one of them")
     body = options.body or "lower"
     result = read(options.file)
     name = f"{options.file.stem}_{options.stress}_{body}" if options.stress else options.file.stem
@@ -82,3 +84,10 @@ def run(options: argparse.Namespace) -> None:
     with written(output) as part:
         picture.savefig(part, dpi=200)
     print(output)
+
+
+def _stresses() -> tuple[str, ...]:
+    """The names of the stresses."""
+    from ..stress import NAMES
+
+    return NAMES

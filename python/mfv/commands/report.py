@@ -1,4 +1,4 @@
-"""python -m mfv report: a result as one web page."""
+"""python -m mfv report: write a result as one web page."""
 
 from __future__ import annotations
 
@@ -7,34 +7,36 @@ from pathlib import Path
 
 from .._files import target, written
 from ..result import read
-from .shared import at_least, solved_between
+from .shared import add_result, at_least, solved_between
 
-NAME, HELP = "report", "a result as one web page"
+NAME, HELP = "report", "write a result as one web page"
 
 DESCRIPTION = """\
-Write a result as one web page to be opened in any browser: outcome and key numbers, pressure and shear traction with
-stick and slip zones over the load history (a slider), the curve of load over displacement, the stick map, the history,
-the cycles, the certificate, all numbers, the input. The file holds everything, about 5 MB of it the plotting library;
-nothing is loaded from anywhere. It can be printed. Needs the Python packages plotly and jinja2.
+Write a result as one web page for any browser: outcome and key numbers, pressure and shear traction with stick and slip
+zones over the load history (a slider), load over displacement, stick map, history, cycles, certificate, all numbers,
+input. The file is complete (the plotting library takes about 5 MB) and loads nothing from the network. It can be
+printed. Needs the Python packages plotly and jinja2.
 """
 
 EXAMPLES = """\
 examples:
   python -m mfv report mindlin.h5           write mindlin.html
   python -m mfv report mindlin.h5 --states 60 -o report.html
-                                            with states between those that the file keeps
+                                            with states between those saved in the file
 """
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """What the command takes."""
-    parser.add_argument("file", type=Path, metavar="RESULT.h5", help="result file")
-    parser.add_argument("-o", "--output", type=Path, metavar="PAGE.html", help="else RESULT.html beside the file")
+    """Add the arguments of the command."""
+    add_result(parser)
+    parser.add_argument(
+        "-o", "--output", type=Path, metavar="PAGE.html", help="file to write (default: RESULT.html beside the file)"
+    )
     parser.add_argument(
         "--states",
         type=at_least(2),
         metavar="N",
-        help="about N states on the slider, from the case solved again, in place of those that the file keeps",
+        help="solve the case again for about N states on the slider; by default those saved in the file",
     )
 
 

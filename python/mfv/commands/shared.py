@@ -1,4 +1,4 @@
-"""What several commands take and do."""
+"""Arguments and functions that several commands share."""
 
 from __future__ import annotations
 
@@ -9,10 +9,11 @@ from pathlib import Path
 
 from ..load_history import LoadHistory, with_states_between
 from ..result import Result
+from .completion import complete_files
 
 
 def at_least(least: int) -> Callable[[str], int]:
-    """What reads a whole number that is not below `least`, for argparse."""
+    """A type for argparse: a whole number of at least `least`."""
 
     def whole_number(text: str) -> int:
         try:
@@ -20,20 +21,24 @@ def at_least(least: int) -> Callable[[str], int]:
         except ValueError:
             value = least - 1
         if value < least:
-            raise argparse.ArgumentTypeError(f"a whole number of at least {least} is wanted, not '{text}'")
+            raise argparse.ArgumentTypeError(f"must be a whole number of at least {least}, not '{text}'")
         return value
 
     return whole_number
 
 
 def add_output(parser: argparse.ArgumentParser, metavar: str, meaning: str) -> None:
-    """The option that says where to write."""
+    """Add the option for the file to write."""
     parser.add_argument("-o", "--output", type=Path, metavar=metavar, help=meaning)
 
 
+def add_result(parser: argparse.ArgumentParser, name: str = "file", metavar: str = "RESULT.h5") -> None:
+    """Add the argument for a result file."""
+    complete_files(parser.add_argument(name, type=Path, metavar=metavar, help="result file"), "h5")
+
+
 def solved_between(options: argparse.Namespace, result: Result, states: int) -> LoadHistory:
-    """About so many states of the load history of `options.file`; the way there is shown on a terminal, what there is to say of
-    them goes to the standard error."""
+    """About `states` states of the load history of `options.file`, with a progress bar on a terminal and notes on standard error."""
     from tqdm import tqdm
 
     history = with_states_between(result, states, lambda targets: tqdm(targets, desc="solving", unit="state", disable=None))

@@ -1,4 +1,4 @@
-"""python -m mfv study: many cases that differ in some values."""
+"""python -m mfv study: solve many cases that differ in some values."""
 
 from __future__ import annotations
 
@@ -12,6 +12,7 @@ from .._files import target
 from ..studies.executors import NAMES
 from ..studies.namelist import check_study, keys_in_markdown, read_study
 from ..studies.plan import SUFFIXES, Study, is_table
+from .completion import complete_files, complete_words
 from .shared import add_output, at_least
 
 if TYPE_CHECKING:
@@ -21,8 +22,8 @@ NAME, HELP = "study", "solve many cases that differ in some values"
 
 DESCRIPTION = """\
 Solve many cases that differ in some values, and write one table: dissipation, stiffness, stick ratios, shift of the
-contact, peak tractions, outcome of each. What is varied in which case a text says; this is a whole one, of 3 x 10 x 3 cases
-of examples/mindlin.nml:
+contact, peak tractions, outcome of each. A namelist file defines the study. This one has 3 x 10 x 3 cases of
+examples/mindlin.nml:
 
   &sweep base='mindlin.nml' /
   &vary  key='friction%mu', values=0.3, 0.5, 0.7 /
@@ -30,47 +31,51 @@ of examples/mindlin.nml:
          from=0.5e-4, to=2.5e-4, count=10, name='Q' /
   &vary  key='scene%coupling', values='full', 'goodman', 'none' /
 
-Keys in one &vary move together, here forth and back; the last &vary runs fastest. Solved cases are kept beside the table, in
-TABLE.sqlite: after Ctrl-C, or worse, the same command goes on where it was, and when values are added only the new cases are
-solved. docs/studies.md has more.
+Keys of one &vary change together, here forward and back; the last &vary changes fastest. Solved cases are saved beside
+the table, in TABLE.sqlite: after an interruption the same command continues, and after values are added only the new
+cases are solved. See docs/studies.md.
 """
 
 EXAMPLES = """\
 examples:
-  python -m mfv study study.nml --list               is it valid, which cases are there
-  python -m mfv study study.nml                      all processors of this machine, into study.nc
-  python -m mfv study study.nml -o study.csv         one row a case, for a spreadsheet
-  python -m mfv study study.nml --case 17 > 17.nml   case 17 by itself, for mfv_run
+  python -m mfv study study.nml --list               check it and list its cases
+  python -m mfv study study.nml                      solve it on all processors, write study.nc
+  python -m mfv study study.nml -o study.csv         one row per case, for a spreadsheet
+  python -m mfv study study.nml --case 17 > 17.nml   print case 17 for mfv_run
   mpiexec -n 64 python -m mpi4py.futures -m mfv study study.nml --executor mpi
 """
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """Describe the options."""
-    parser.add_argument("file", type=Path, metavar="STUDY.nml", nargs="?", help="text of the study")
+    """Add the arguments of the command."""
+    file = parser.add_argument("file", type=Path, metavar="STUDY.nml", nargs="?", help="namelist file of the study")
+    complete_files(file, "nml")
     add_output(parser, "FILE", "table to write: .nc or .h5 (NetCDF), .csv (default: STUDY.nc)")
-    parser.add_argument(
+    executor = parser.add_argument(
         "--executor",
         default="threads",
         metavar="NAME",
-        help=f"{', '.join(NAMES)}, or dask:ADDRESS of a cluster (threads)",
+        help=f"{', '.join(NAMES)}, or dask:ADDRESS of a cluster (threads by default)",
     )
-    parser.add_argument("--workers", type=at_least(1), metavar="N", help="cases at a time (as many as processors)")
+    complete_words(executor, lambda: NAMES)
+    parser.add_argument(
+        "--workers", type=at_least(1), metavar="N", help="number of cases at a time (default: number of processors)"
+    )
     either = parser.add_mutually_exclusive_group()
-    either.add_argument("--again", action="store_true", help="solve all cases, those that are there already as well")
-    either.add_argument("--so-far", action="store_true", help="solve nothing: write the table of the cases that are there")
-    parser.add_argument("--list", action="store_true", help="say which cases there are; nothing is solved or written")
+    either.add_argument("--again", action="store_true", help="solve all cases again")
+    either.add_argument("--so-far", action="store_true", help="solve nothing; write the table of the cases solved so far")
+    parser.add_argument("--list", action="store_true", help="check the study and list its cases; nothing is solved or written")
     parser.add_argument("--case", type=at_least(1), metavar="N", help="print case N, from 1, as a case for mfv_run")
     parser.add_argument("--keys", action="store_true", help="print every group and key of a study, as tables in Markdown")
 
 
 def run(options: argparse.Namespace) -> int | None:
-    """Carry the command out."""
+    """Print, list or solve. Raises OSError, ValueError."""
     if options.keys:
         print(keys_in_markdown())
         return None
     if options.file is None:
-        raise ValueError("the text of a study is missing, STUDY.nml")
+        raise ValueError("no study given; write 'python -m mfv study STUDY.nml'")
     study = read_study(options.file)
     if options.case is not None:
         print(study.text(options.case), end="")
@@ -79,7 +84,7 @@ def run(options: argparse.Namespace) -> int | None:
         check_study(study)
     output = _output(study, options)
     if options.list:
-        print(f"{options.file} is valid: {len(study)} cases, into {output}")
+        print(f"{options.file} is valid: {len(study)} cases, to be written to {output}")
         for number in range(1, len(study) + 1):
             print(f"case {number}: {study.describe(number)}")
         return None
@@ -87,7 +92,7 @@ def run(options: argparse.Namespace) -> int | None:
 
 
 def _solve(study: Study, output: Path, options: argparse.Namespace) -> int | None:
-    from ..studies.dataset import write  # here: it imports xarray
+    from ..studies.dataset import write  # here, since it imports xarray
 
     kept = output.with_suffix(".sqlite")
     if study.keeps_results:
@@ -101,16 +106,16 @@ def _solve(study: Study, output: Path, options: argparse.Namespace) -> int | Non
                     executor=options.executor, workers=options.workers, store=kept, again=options.again, progress=True
                 )
         except KeyboardInterrupt:
-            print(f"mfv: solved cases are kept in {kept}; the same command goes on", file=sys.stderr)
+            print(f"mfv: solved cases are saved in {kept}; repeat the command to continue", file=sys.stderr)
             raise
     write(table, output)
     print(f"{output}: {_counted(table)}")
-    _print_what_could_not_begin(study, table)
+    _print_refused(study, table)
     return None
 
 
 def _output(study: Study, options: argparse.Namespace) -> Path:
-    """Where the table goes. Raises OSError, ValueError where it cannot, or where there is something that is no study."""
+    """The file of the table. Raises OSError, ValueError if it cannot be written or is a file other than a study's table."""
     usual = Path(study.file) if study.file else Path(options.file.stem + ".nc")
     path: Path = usual if options.output is None else options.output
     if path.suffix.lower() in SUFFIXES[:-1] and is_table(path):
@@ -119,7 +124,7 @@ def _output(study: Study, options: argparse.Namespace) -> Path:
 
 
 class _terminated_like_interrupted:
-    """SIGTERM, by which queues announce the end, does what Ctrl-C does."""
+    """Treat SIGTERM, which batch systems send before the end of a job, like Ctrl-C."""
 
     def __enter__(self) -> None:
         self._before = signal.signal(signal.SIGTERM, signal.default_int_handler)
@@ -129,18 +134,18 @@ class _terminated_like_interrupted:
 
 
 def _counted(table: xarray.Dataset) -> str:
-    """How many cases ended how."""
-    told = [
+    """The number of cases of every outcome."""
+    outcomes = [
         f"{count} {name.removeprefix('cases_').replace('_', ' ')}"
         for name, count in table.attrs.items()
         if name.startswith("cases_") and name != "cases_done"
     ]
     missing = table.attrs["cases"] - table.attrs["cases_done"]
-    return f"{table.attrs['cases']} cases: {', '.join([*told, *([f'{missing} not solved'] if missing else [])])}"
+    return f"{table.attrs['cases']} cases: {', '.join([*outcomes, *([f'{missing} not solved'] if missing else [])])}"
 
 
-def _print_what_could_not_begin(study: Study, table: xarray.Dataset) -> None:
-    """The first cases whose values do not go together, with their messages."""
+def _print_refused(study: Study, table: xarray.Dataset) -> None:
+    """Print the first cases with input errors, with their messages."""
     shown, several = zip(table["outcome"].values.flat, table["message"].values.flat), 5
     refused = [(number, why) for number, (outcome, why) in enumerate(shown, start=1) if outcome == "input error"]
     for number, why in refused[:several]:

@@ -1,6 +1,6 @@
 """Parameter studies: many cases that differ in some values, solved by any executor, as one xarray.Dataset.
 
-`study` solves them; a `Study` can be looked at first: its cases, their texts, whether they are valid.
+`study` solves them; with a `Study` the cases can be listed and checked first.
 """
 
 from __future__ import annotations

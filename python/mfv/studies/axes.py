@@ -1,4 +1,4 @@
-"""What a study varies: keys of the case, axes with their values, one or several along a dimension."""
+"""Axes of a study: keys of the case and their values, one or several axes along a dimension."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ OF_MATERIALS = ("shear_modulus", "youngs_modulus", "poisson_ratio", "rigid")
 
 @dataclass(frozen=True)
 class Axis:
-    """Values of one key of the case, or of several that move together, each times the factor of its key.
+    """Values of one key of the case, or of several that change together, each multiplied by the factor of its key.
 
     `keys`: such as 'friction%mu', or ['step(2)%force_ratio', 'step(3)%force_ratio'] with `factors` [1, -1].
     """
@@ -48,58 +48,60 @@ class Coordinate:
         self.values = [_plain(value) for value in values]
         self.factors = (1,) * len(self.keys) if factors is None else tuple(factors)
         if len(self.factors) != len(self.keys):
-            raise fault(f"{name}: must have one value a key, {len(self.keys)}, not {len(self.factors)}", 0, "factor")
+            raise fault(f"{name}: must have one value per key ({len(self.keys)}), not {len(self.factors)}", 0, "factor")
         if not self.values:
-            raise fault(f"{name}: there are no values", 0, "values")
+            raise fault(f"{name}: no values given", 0, "values")
         check_name(name)
         for factor in self.factors:
             if factor != 1:
                 self._check_products(factor)
 
     def settings(self, place: int) -> list[tuple[str, Any]]:
-        """The keys with what each becomes at a place, from 0."""
+        """The keys and their values at a place, from 0."""
         value = self.values[place]
         return [(key, value if factor == 1 else value * factor) for key, factor in zip(self.keys, self.factors)]
 
     def _check_products(self, factor: float) -> None:
         for value in self.values:
             if isinstance(value, bool) or not isinstance(value, (int, float)):
-                raise fault(f"{as_written(value)} is no number, and cannot be multiplied by {factor:g}", 0, "factor")
+                raise fault(f"{as_written(value)} is not a number and cannot be multiplied by {factor:g}", 0, "factor")
             if not math.isfinite(float(value) * factor):
-                raise fault(f"{as_written(value)} times {factor:g} is too large for a number", 0, "factor")
+                raise fault(f"{as_written(value)} times {factor:g} overflows", 0, "factor")
 
 
 class Dimension:
-    """A dimension of the study: one axis, or several that move together along it."""
+    """A dimension of the study: one axis, or several that change together."""
 
     def __init__(self, name: str, coordinates: Sequence[Coordinate]) -> None:
-        """Raises InputError where there are no axes, or where they do not have the same number of values."""
+        """Raises InputError without axes, or for axes of different lengths."""
         check_name(name)
         self.name = name
         self.coordinates = list(coordinates)
         if not self.coordinates:
-            raise input_error(f"{name}: there are no axes")
+            raise input_error(f"{name}: no axes given")
         for other in self.coordinates[1:]:
             if len(other.values) != len(self):
                 first = self.coordinates[0]
-                raise input_error(f"{other.name} has {len(other.values)} values, {first.name} has {len(self)}: they are paired")
+                raise input_error(
+                    f"{other.name} has {len(other.values)} values, but {first.name} has {len(self)}; paired axes need equal numbers"
+                )
 
     def __len__(self) -> int:
         return len(self.coordinates[0].values)
 
 
 def check_name(name: Any) -> None:
-    """Raises InputError for what cannot be the name of an axis or a dimension in a dataset and its file."""
+    """Raises InputError for an invalid name of an axis or a dimension."""
     if not isinstance(name, str) or not name or name != name.strip() or "/" in name:
         raise fault(
-            f"{name!r}: a name must be a text that is not empty, does not begin or end with a blank, and has no /",
+            f"{name!r}: a name must be a non-empty text without / and without blanks at either end",
             0,
             "name",
         )
 
 
 def as_written(value: Any) -> str:
-    """A value as a namelist has it."""
+    """A value as written in a namelist."""
     if isinstance(value, bool):
         return ".true." if value else ".false."
     if isinstance(value, list):
@@ -108,9 +110,9 @@ def as_written(value: Any) -> str:
 
 
 def _in_one_form(key: Any) -> str:
-    """A key in small letters, its number without zeros before it, so that keys that are the same are equal. Raises TypeError."""
+    """A key in lower case, its number without leading zeros, so that equivalent keys are equal. Raises TypeError."""
     if not isinstance(key, str):
-        raise TypeError(f"a key of the case is wanted, such as 'friction%mu', not {key!r}")
+        raise TypeError(f"must be a key of the case such as 'friction%mu', not {key!r}")
     return re.sub(r"\(0+(?=\d)", "(", key.lower())
 
 
@@ -122,7 +124,7 @@ def _plain(value: Any) -> Any:
 
 
 def dimensions_of(axes: Any, *, are_keys: bool = True) -> list[Dimension]:
-    """The dimensions of what `study` takes as axes. `are_keys`: whether a name without an Axis is that of a key.
+    """The dimensions from the axes of `study`. `are_keys`: whether a name without an Axis is a key.
 
     Raises InputError, TypeError.
     """
@@ -145,7 +147,7 @@ def _coordinate(name: str, values: Any, are_keys: bool) -> Coordinate:
         return Coordinate(name, [name] if are_keys else [], _listed(name, values))
     keys = [values.keys] if isinstance(values.keys, str) else list(values.keys)
     if not keys:
-        raise fault(f"{name}: there are no keys", 0, "key")
+        raise fault(f"{name}: no keys given", 0, "key")
     factors = None if values.factors is None else _listed(name, values.factors)
     return Coordinate(name, keys, _listed(name, values.values), factors)
 
@@ -153,7 +155,7 @@ def _coordinate(name: str, values: Any, are_keys: bool) -> Coordinate:
 def _listed(name: str, values: Any) -> list[Any]:
     """Values as a list. Raises TypeError for a single one."""
     if isinstance(values, (str, Mapping)) or not isinstance(values, Iterable):
-        raise TypeError(f"{name}: a list of values or a mfv.Axis is wanted, not {values!r}")
+        raise TypeError(f"{name}: must be a list of values or a mfv.Axis, not {values!r}")
     return list(values)
 
 
@@ -161,20 +163,20 @@ def _columns_of_table(table: Any) -> dict[str, list[Any]]:
     """The columns of a table of cases: a pandas.DataFrame, or a list with a mapping for each case. Raises TypeError."""
     if hasattr(table, "columns"):
         if len(set(table.columns)) < len(table.columns) or len(table) == 0:
-            raise input_error("a table of cases must have rows, and columns with names of their own")
+            raise input_error("a table of cases must have rows and unique column names")
         return {str(name): list(table[name]) for name in table.columns}
     rows = _listed("a table of cases", table)
     if not rows or not all(isinstance(row, Mapping) and row.keys() == rows[0].keys() for row in rows):
-        raise TypeError("a table of cases is a pandas.DataFrame, or a list of mappings, one a case, with the same keys")
+        raise TypeError("a table of cases must be a pandas.DataFrame or a list of mappings with equal keys, one per case")
     return {str(name): [row[name] for row in rows] for name in rows[0]}
 
 
 def fault_of_key(key: str) -> str:
-    """Why something is no key of a case, in the words of the library, or not for a study to set; empty where it is."""
+    """Why a study cannot set a key, as a message of the library; empty if it can."""
     if key == DUNDURS_BETA:
         return ""
     if key == "output%file":
-        return "'output%file': the study names its files itself"
+        return "'output%file': cannot be varied; the study names the result files"
     if key_info(key) is None:
         with _scene_handle("", "key") as handle:
             _set_key(handle, key, 0)
@@ -187,17 +189,15 @@ def fault_of_key(key: str) -> str:
 
 
 def fault_of_pair(one: str, other: str) -> str:
-    """Why a study cannot vary two keys; empty where it can."""
+    """Why a study cannot vary both keys; empty if it can."""
     for beta, key in ((one, other), (other, one)):
         if beta == DUNDURS_BETA and key.partition("%")[2] in OF_MATERIALS:
-            return (
-                f"'{key}' and '{DUNDURS_BETA}' cannot be varied in one study: {DUNDURS_BETA} decides the materials of both bodies"
-            )
-    return f"'{other}': is varied already" if one == other or _stands_for(one, other) else ""
+            return f"'{key}' and '{DUNDURS_BETA}' cannot be varied in one study: {DUNDURS_BETA} sets the materials of both bodies"
+    return f"'{other}' is already varied" if one == other or _stands_for(one, other) else ""
 
 
 def _stands_for(one: str, other: str) -> bool:
-    """Whether one key takes the place of another, as the library sees it."""
+    """Whether one key is an alternative to another, according to the library."""
     if DUNDURS_BETA in (one, other) or one.partition("%")[0] != other.partition("%")[0]:
         return False
     with _scene_handle("", "keys") as handle:
@@ -208,7 +208,7 @@ def _stands_for(one: str, other: str) -> bool:
 
 
 def numbered_group(key: str) -> tuple[str, int | None]:
-    """Group of a key, and its number where it has one."""
+    """Group of a key, and its number if it has one."""
     group, _, _ = key.partition("%")
     name, bracket, number = group.partition("(")
     return name, int(number.rstrip(")")) if bracket else None

@@ -1,4 +1,4 @@
-"""What the cases of a study begin with: scenes and files of namelists, the files that these name, their units."""
+"""Base cases of a study: scenes and namelist files, the files that these name, their units."""
 
 from __future__ import annotations
 
@@ -20,22 +20,22 @@ Given = Union[Scene, str, "os.PathLike[str]", Base]
 
 
 def text_of_file(path: str | os.PathLike[str]) -> str:
-    """The text of a regular file; what is no UTF-8 is for the library to refuse. Raises OSError."""
-    if os.path.exists(path) and not os.path.isfile(path):  # a pipe may keep one waiting, a device may have no end
-        raise OSError(errno.EINVAL, f"{os.fspath(path)}: is no file of text")
+    """The text of a regular file; the library rejects invalid UTF-8. Raises OSError."""
+    if os.path.exists(path) and not os.path.isfile(path):  # reading a pipe or a device may not end
+        raise OSError(errno.EINVAL, f"{os.fspath(path)}: not a regular file")
     content = Path(path).read_bytes()
     if b"\0" in content:
-        raise OSError(errno.EINVAL, f"{os.fspath(path)}: is no text, but has a null character in it")
+        raise OSError(errno.EINVAL, f"{os.fspath(path)}: not a text file; it contains a null character")
     return os.fsdecode(content)
 
 
 def base_of(given: Given) -> Base:
-    """What a case begins with. Raises OSError, InputError, TypeError."""
+    """A base case. Raises OSError, InputError, TypeError."""
     if isinstance(given, Base):
         return given
     if not isinstance(given, Scene):
         if not isinstance(given, (str, os.PathLike)):
-            raise TypeError(f"a mfv.Scene, or the path of a case, is wanted, not {given!r}")
+            raise TypeError(f"must be a mfv.Scene or the path of a case, not {given!r}")
         name = os.fspath(given)
         return Base(text_of_file(name), name, folder=os.path.dirname(name))
     data = []
@@ -47,9 +47,9 @@ def base_of(given: Given) -> Base:
 
 
 def whole_paths(base: Base) -> dict[str, str]:
-    """The whole paths of the files that a base names, for workers to find from wherever they are. Raises InputError."""
+    """The absolute paths of the files that a base names, for workers in other directories. Raises InputError."""
     text = base_text(base)
-    if "file" not in text:  # reading the keys takes longer than a small case: functions make a base for every case
+    if "file" not in text:  # reading the keys takes longer than a small case
         return {}
     named = keys_of_text(text)
     in_memory = {file for file, _, _ in base.data}
@@ -61,7 +61,7 @@ def whole_paths(base: Base) -> dict[str, str]:
 
 
 def absolute(file: Any, base: Base) -> Any:
-    """The whole path of a file that a case names."""
+    """The absolute path of a file that a case names."""
     return os.path.join(os.path.abspath(base.folder), file) if isinstance(file, str) and file else file
 
 
@@ -72,6 +72,6 @@ def units_of(base: Base) -> dict[str, str]:
 
 
 def counts_of_groups(base: Base) -> dict[str, int]:
-    """How many groups of each name a base has. Raises InputError."""
+    """The number of groups of each name in a base. Raises InputError."""
     names = [name for name, _ in groups(base_text(base))]
     return {name: names.count(name) for name in names}

@@ -1,4 +1,4 @@
-"""One case of a study, from its values to what is kept of it. This is what executors run, in this process or in another."""
+"""One case of a study, from its values to its saved results. Executors run it, in this process or in another."""
 
 from __future__ import annotations
 
@@ -26,14 +26,14 @@ from ..scene import _scene_handle, _set_data, _set_key, _text_of_scene, created
 #: Stands for the materials of both bodies; see mfv_scene_set_real in the header.
 DUNDURS_BETA = "dundurs_beta"
 
-#: Whole numbers that are kept of each case, with what they are.
+#: Whole numbers that are saved for each case, and their meanings.
 COUNTS = {
-    "steps_done": "steps of the load history that were reached",
+    "steps_done": "completed steps of the load history",
     "events": "loads at which nodes changed their status",
     "linear_solves": "linear solves",
 }
 
-#: Moments of the load history at which cases are compared, and the tractions that are.
+#: Points of the load history at which cases are compared, and the tractions.
 MOMENTS, TRACTIONS = ("loading", "reversal", "return"), ("pressure", "shear")
 
 #: Fields that a comparison needs, those of the mesh first.
@@ -48,7 +48,7 @@ _NAN = float("nan")
 
 @dataclass(frozen=True)
 class Base:
-    """What a case begins with: a namelist text, what messages call it, arrays in place of files, where the files are."""
+    """A base case: a namelist text, its name in messages, arrays in place of files, the paths of files."""
 
     text: str
     name: str
@@ -58,7 +58,7 @@ class Base:
 
 @dataclass(frozen=True)
 class Job:
-    """A case to be solved: its base, keys with their values, and what is wanted besides the observables."""
+    """A case to be solved: its base, keys with their values, and the requested fields."""
 
     base: Base
     settings: tuple[tuple[str, Any], ...]
@@ -69,9 +69,9 @@ class Job:
 
 @dataclass
 class Solved:
-    """What is kept of a case: a status, its message, counts, numbers, and arrays by the path of their field.
+    """The saved results of a case: status, message, counts, numbers, and arrays by the path of their field.
 
-    `about`: what each field runs along (as of mfv.result.Field), its unit and description.
+    `about`: the dimension of each field (as of mfv.result.Field), its unit and description.
     """
 
     status: int
@@ -95,7 +95,7 @@ def observables() -> dict[str, tuple[str, str]]:
 
 
 def key_info(key: str) -> tuple[bool, str, str] | None:
-    """Whether a key takes whole numbers, its unit and description; None for what is no key."""
+    """Whether a key takes whole numbers, its unit and description; None for an unknown key."""
     is_integer, unit, description = c_int(), text_buffer(), text_buffer()
     status = library().mfv_key_info(text_for(key), byref(is_integer), unit, len(unit), description, len(description))
     return (bool(is_integer.value), text_of(unit), text_of(description)) if status == 0 else None
@@ -103,11 +103,11 @@ def key_info(key: str) -> tuple[bool, str, str] | None:
 
 @contextlib.contextmanager
 def scene_handle(base: Base, settings: Sequence[tuple[str, Any]]) -> Iterator[c_void_p]:
-    """The library's scene of a base with keys set, while in use. What is wrong with them `mfv_create` tells. Raises InputError."""
+    """A scene of the library from a base with keys set, freed afterwards; `mfv_create` reports errors in them. Raises InputError."""
     with _scene_handle(base.text, base.name) as handle:
         for file, dataset, values in base.data:
             _set_data(handle, file, dataset, values)
-        # Dundurs' parameter comes last: it needs a whole scene.
+        # Dundurs' parameter is last, since it needs a complete scene.
         for key, value in sorted(settings, key=lambda setting: setting[0] == DUNDURS_BETA):
             if key != DUNDURS_BETA:
                 library().mfv_scene_make_room(handle, text_for(key))
@@ -116,7 +116,7 @@ def scene_handle(base: Base, settings: Sequence[tuple[str, Any]]) -> Iterator[c_
 
 
 def base_text(base: Base) -> str:
-    """The text of a base as the library writes it: without comments, however it was written. Raises InputError."""
+    """The text of a base in the format of the library, without comments. Raises InputError."""
     with _scene_handle(base.text, base.name) as handle:
         return _text_of_scene(handle)
 
@@ -128,19 +128,19 @@ def case_text(base: Base, settings: Sequence[tuple[str, Any]]) -> str:
 
 
 def check(base: Base, settings: Sequence[tuple[str, Any]]) -> None:
-    """Raises InputError where the case is not a valid one."""
+    """Raises InputError for an invalid case."""
     with scene_handle(base, settings) as handle, _reading(base, settings):
         library().mfv_free(byref(created("mfv_create", handle)))
 
 
 def digest(job: Job, base_digest: str) -> str:
-    """A name for all that decides what is kept of a case: the base, the values, files that they name, the version."""
+    """A hash of everything that determines the results of a case: the base, the values, the contents of files, the version."""
     kept = (library_version(), tuple(observables()), base_digest, _contents(job.settings), job.fields, job.compared)
     return hashlib.sha256(repr(kept).encode()).hexdigest()
 
 
 def digest_of_base(base: Base, settings: Sequence[tuple[str, Any]]) -> str:
-    """A name for a base with its arrays and the settings that all its cases share. Raises InputError."""
+    """A hash of a base with its arrays and the settings that all its cases share. Raises InputError."""
     told = hashlib.sha256(base_text(base).encode())
     for file, dataset, values in base.data:
         told.update(repr((file, dataset, np.shape(values))).encode() + np.ascontiguousarray(values, dtype=float).tobytes())
@@ -149,7 +149,7 @@ def digest_of_base(base: Base, settings: Sequence[tuple[str, Any]]) -> str:
 
 
 def _contents(settings: Sequence[tuple[str, Any]]) -> list[tuple[str, Any]]:
-    """Keys with their values, and with what is in the files that these name."""
+    """Keys with their values, and with the contents of the files that these name."""
     return [(key, _content(value) if key in FILE_KEYS and isinstance(value, str) else value) for key, value in settings]
 
 
@@ -159,7 +159,7 @@ def _content_as_of(path: str, changed: int, size: int) -> str:
 
 
 def _content(path: str) -> str:
-    """What a file has in it, which is what counts; its name where it is not there."""
+    """The contents of a file; its name if it does not exist."""
     try:
         status = os.stat(path)
         return _content_as_of(path, status.st_mtime_ns, status.st_size)
@@ -168,12 +168,12 @@ def _content(path: str) -> str:
 
 
 def solve(jobs: Sequence[Job]) -> tuple[float, list[Solved | None]]:
-    """Solve cases in a process that is there for this, as `solve_here` does.
+    """Solve cases in a worker process, as `solve_here` does.
 
-    BLAS gets one thread, for good, so that all processes give the same bits.
+    BLAS is limited to one thread, so that results are bit-identical in all processes.
     """
     _one_blas_thread()
-    observables()  # the library is there before the time is taken
+    observables()  # load the library before the time is measured
     return solve_here(None, jobs)
 
 
@@ -188,7 +188,7 @@ def solve_here(stop: c_int | None, jobs: Sequence[Job]) -> tuple[float, list[Sol
 
 
 def solve_unless(stop: c_int | None, job: Job) -> Solved | None:
-    """Solve a case; None when `stop` has been set meanwhile. Raises FileError where its result cannot be written."""
+    """Solve a case; None if `stop` has been set meanwhile. Raises FileError if its result cannot be written."""
     try:
         with scene_handle(job.base, job.settings) as scene, _reading(job.base, job.settings):
             handle = created("mfv_create", scene)
@@ -207,14 +207,14 @@ def solve_unless(stop: c_int | None, job: Job) -> Solved | None:
 
 
 def _reading(base: Base, settings: Sequence[tuple[str, Any]]) -> contextlib.AbstractContextManager[Any]:
-    """What to hold while a case is created: HDF5, with which files of matrices are read, is not made for threads."""
+    """The lock while a case is created: HDF5, which reads matrix files, is not thread-safe."""
     has_matrix = "matrix" in base.text.lower() or any(str(value).lower() == "matrix" for _, value in settings)
     return writing if has_matrix else contextlib.nullcontext()
 
 
 def _kept(case: Case, status: int, job: Job) -> Solved:
-    """What is kept of a case that has been run."""
-    # The library keeps the group that was looked at last: what is of one group comes together.
+    """The saved results of a case after its run."""
+    # The library caches the last group, so fields of one group are read together.
     counts = {name: int(case[f"summary/{name}"]) for name in COUNTS}
     solved = Solved(status, case._library_message(), counts, _real(case, b"summary/largest_residual"))
     solved.observables = [_real(case, path) for path in _observable_paths()]
@@ -237,13 +237,13 @@ def _observable_paths() -> list[bytes]:
 
 
 def _real(case: Case, path: bytes) -> float:
-    """A number; NaN where the case does not have it."""
+    """A number; NaN if the case does not have it."""
     value = c_double(_NAN)
     return value.value if library().mfv_copy_real(case._handle, path, byref(value), 1) == 0 else _NAN
 
 
 def _field(case: Case, path: str) -> Field | None:
-    """A field, where the case has it."""
+    """A field, if the case has it."""
     try:
         return case._field(path)
     except errors.BadArgument:
@@ -254,5 +254,5 @@ def _field(case: Case, path: str) -> Field | None:
 def _one_blas_thread() -> None:
     import threadpoolctl
 
-    library()  # threadpoolctl sees what has been loaded
+    library()  # threadpoolctl only sees loaded libraries
     threadpoolctl.threadpool_limits(1, user_api="blas")

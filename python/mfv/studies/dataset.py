@@ -28,19 +28,19 @@ if TYPE_CHECKING:
 #: Outcome of a case that has not been solved, and its status.
 NOT_SOLVED, NO_STATUS = "not solved", -1
 
-#: Dimensions of fields by what they run along.
+#: Dimensions of fields in the dataset.
 DIMENSIONS = {"x": "node", "record": "record", "companion_nodes": "companion_node", "cycle": "cycle", "patch": "patch"}
 
-#: Types of columns by those of their values; numbers are float.
+#: Types of columns by the types of their values; numbers are float.
 COLUMN_TYPES = {str: object, int: np.int32}
 
 _NAN = float("nan")
 
 
 def dataset_of(study: Study, keys: Sequence[str], solved: Sequence[Solved | None]) -> xarray.Dataset:
-    """The dataset of a study from what is kept of its cases, in their order; None where a case has not been solved.
+    """The dataset of a study from the saved results of its cases, in their order; None for an unsolved case.
 
-    `keys`: their names, after which their result files are called.
+    `keys`: the hashes of the cases, which name their result files.
     """
     units = study.units
     dimensions = [dimension.name for dimension in study.dimensions]
@@ -64,7 +64,7 @@ def dataset_of(study: Study, keys: Sequence[str], solved: Sequence[Solved | None
 
 
 def frame_of(table: xarray.Dataset) -> pandas.DataFrame:
-    """The dataset as a data frame, one row a case, without fields; logical values as 0 and 1."""
+    """The dataset as a data frame, one row per case, without fields; logical values as 0 and 1."""
     dimensions = table["case"].dims
     columns = [name for name in table.data_vars if table[name].dims == dimensions]
     coordinates = [name for name in table.coords if set(table[name].dims) <= set(dimensions)]
@@ -75,9 +75,9 @@ def frame_of(table: xarray.Dataset) -> pandas.DataFrame:
 
 
 def write(table: xarray.Dataset, path: str | os.PathLike[str]) -> None:
-    """Write a dataset: as NetCDF (.nc, .h5), or one row a case as comma-separated values (.csv). Raises OSError."""
+    """Write a dataset: as NetCDF (.nc, .h5), or as comma-separated values with one row per case (.csv). Raises OSError."""
     is_csv = Path(path).suffix.lower() == ".csv"
-    # HDF5 does not come back from a full disk: it is kept away from disks.
+    # HDF5 can hang on a full disk, so the file is made in memory.
     content = frame_of(table).to_csv(index=False).encode() if is_csv else bytes(table.to_netcdf(engine="h5netcdf"))
     try:
         with written(Path(path)) as part:
@@ -95,12 +95,12 @@ def _columns(study: Study, keys: Sequence[str], solved: Sequence[Solved | None])
             "outcome",
             [outcome_of(one.status) if one.status >= 0 else NOT_SOLVED for one in there],
             "1",
-            "how the case ended",
+            "outcome of the case",
         ),
-        ("status", [one.status for one in there], "1", "the same as a code, 0 for complete (mfv_status.def)"),
-        ("message", [one.message for one in there], "1", "the same in words"),
+        ("status", [one.status for one in there], "1", "code of the outcome, 0 for complete (mfv_status.def)"),
+        ("message", [one.message for one in there], "1", "message of the outcome"),
     ]
-    for name, meaning in {**COUNTS, "nodes": "nodes of the mesh"}.items():
+    for name, meaning in {**COUNTS, "nodes": "number of mesh nodes"}.items():
         columns.append((name, [one.counts[name] for one in there], "1", meaning))
     residuals = [one.largest_residual for one in there]
     columns.append(("largest_residual", residuals, "1", "largest relative residual of the certificate"))
@@ -122,19 +122,17 @@ def _errors(study: Study, solved: Sequence[Solved]) -> list[tuple[str, list[Any]
     columns: list[tuple[str, list[Any], str, str]] = []
     for moment in MOMENTS:
         for traction, words in zip(TRACTIONS, ("pressures", "shear tractions")):
-            meaning = (
-                f"L1 difference of the {words} from those of the reference, relative to them, at the moment {moment} (eq. 6.6)"
-            )
+            meaning = f"L1 difference of the {words} from the reference, relative to the reference, at the point {moment} of the load history (eq. 6.6)"
             values = [_traction_error(one, reference, moment, traction) for one, reference in pairs]
             columns.append((f"{traction}_error_{moment}", values, "1", meaning))
     ratios = [_dissipation_ratio(one, reference) for one, reference in pairs]
-    columns.append(("dissipation_ratio", ratios, "1", "cycle_dissipation over that of the reference"))
+    columns.append(("dissipation_ratio", ratios, "1", "cycle_dissipation divided by that of the reference"))
     return columns
 
 
 def _traction_error(one: Solved, reference: Solved, moment: str, traction: str) -> float:
-    """Sum of the sizes of the differences over that of the reference (eq. 6.6). NaN where there is no such moment, where the
-    reference has no such traction, or where, but for the beginning of the cycles, these are not the same number of cycles."""
+    """Sum of the absolute differences divided by that of the reference (eq. 6.6). NaN if either case does not reach this point, if
+    the traction of the reference is zero, or, except at the beginning of the cycles, if the numbers of cycles differ."""
     path = f"moments/{moment}/{traction}"
     if path not in one.arrays or path not in reference.arrays or not (moment == "loading" or _has_same_cycles(one, reference)):
         return _NAN
@@ -144,10 +142,10 @@ def _traction_error(one: Solved, reference: Solved, moment: str, traction: str) 
 
 
 def _side_by_side(one: Solved, reference: Solved, path: str) -> tuple[NDArray[Any], NDArray[Any]]:
-    """The forces of a traction in two cases on the same pieces of surface.
+    """The nodal forces of a traction in two cases on common intervals of the surface.
 
-    Meshes of one interval about one middle: on the intervals of their nodes, none beyond the ends of the narrower mesh. Others:
-    around the nodes of both, with tractions linear between nodes, none beyond the ends.
+    Meshes with equal intervals and centres: their common intervals, zero beyond the narrower mesh. Others: intervals around the
+    nodes of both meshes, with tractions linear between nodes and zero beyond the ends.
     """
     here, there = one.arrays[path], reference.arrays[path]
     interval, other = one.arrays["mesh/interval"][0], reference.arrays["mesh/interval"][0]
@@ -161,7 +159,7 @@ def _side_by_side(one: Solved, reference: Solved, path: str) -> tuple[NDArray[An
 
 
 def _widened(values: NDArray[Any], size: int) -> NDArray[Any]:
-    """Values with zeros on either side."""
+    """Values padded with zeros on both sides."""
     return values if values.size == size else np.pad(values, (size - values.size) // 2)
 
 
@@ -171,7 +169,7 @@ def _place(observable: str) -> int:
 
 
 def _has_same_cycles(one: Solved, other: Solved) -> bool:
-    """Whether two cases have the same number of whole cycles; not where one of them has none."""
+    """Whether two cases have the same number of complete cycles, at least one."""
     here, there = (solved.observables[_place("cycles")] for solved in (one, other))
     return math.isfinite(here) and here == there
 
@@ -183,7 +181,7 @@ def _dissipation_ratio(one: Solved, reference: Solved) -> float:
 
 
 def _fields(study: Study, solved: Sequence[Solved | None]) -> dict[str, Any]:
-    """The fields that were asked for, where any case has them: NaN beyond the values of a case. Along nodes, mesh_x tells where."""
+    """The requested fields that any case has, padded with NaN. mesh_x has the positions of fields at nodes."""
     fields: dict[str, Any] = {}
     dimensions = [dimension.name for dimension in study.dimensions]
     longest: dict[str, int] = {}
@@ -208,7 +206,7 @@ def _fields(study: Study, solved: Sequence[Solved | None]) -> dict[str, Any]:
 
 
 def _described(coordinate: Coordinate, units: dict[str, str]) -> tuple[Any, dict[str, str]]:
-    """The values of an axis as an array, and what they are."""
+    """The values of an axis as an array, and their attributes."""
     array = _as_array(coordinate.values)
     if coordinate.name == "base":
         return array, {"long_name": "base case"}
@@ -226,7 +224,7 @@ def _described(coordinate: Coordinate, units: dict[str, str]) -> tuple[Any, dict
 
 
 def _as_array(values: Sequence[Any]) -> NDArray[Any]:
-    """The values of an axis as an array: numbers, texts, or, of what is neither, such as lists, numbers from 1."""
+    """The values of an axis as an array: numbers, texts, or, for others such as lists, their numbers from 1."""
     if all(isinstance(value, (bool, int, float)) for value in values):
         return np.array(values)
     if all(isinstance(value, (str, bool, int, float)) for value in values):
@@ -240,7 +238,7 @@ def _labelled(unit: str, units: dict[str, str]) -> str:
 
 
 def _attributes(study: Study, solved: Sequence[Solved | None], units: dict[str, str]) -> dict[str, Any]:
-    """What is said of the whole dataset."""
+    """The attributes of the whole dataset."""
     outcomes = Counter(outcome_of(one.status) for one in solved if one is not None)
     attributes: dict[str, Any] = {"title": TITLE, "mfv_version": library_version()}
     if study.input:

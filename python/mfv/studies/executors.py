@@ -1,4 +1,4 @@
-"""Executors by name, and the loop that hands cases to one of them."""
+"""Executors by name, and the loop that submits cases to one of them."""
 
 from __future__ import annotations
 
@@ -18,17 +18,17 @@ from typing import Any
 from .._library import library
 from .cases import Job, Solved, solve, solve_here
 
-#: Names of executors; 'dask:ADDRESS' is a cluster that is running already.
+#: Names of executors; 'dask:ADDRESS' is a running cluster.
 NAMES = ("threads", "processes", "mpi", "dask")
 
-#: How long the first case is waited for, and how long a task of several cases may last [seconds]; how many tasks there are at least.
+#: Longest wait for the first case and longest duration of a task [seconds]; smallest number of tasks.
 LONGEST_WAIT, LONGEST_TASK, LEAST_TASKS = 1.0, 0.25, 64
 
 
 def solve_all(jobs: Mapping[str, Job], executor: str | Executor, workers: int | None, keep: Callable[[str, Solved], None]) -> None:
-    """Solve cases by an executor, and tell `keep` of each under its name, here, as it comes in.
+    """Solve cases with an executor, and call `keep` in this process with the hash and the results of each.
 
-    What goes wrong here or there is raised once what can be stopped has been; what was told of before has been told of.
+    Errors are raised after the remaining tasks have been stopped; results saved before stay saved.
     """
     with opened(executor, workers) as pool, contextlib.ExitStack() as stack:
         stop = c_int(0)
@@ -53,8 +53,8 @@ def solve_all(jobs: Mapping[str, Job], executor: str | Executor, workers: int | 
 
 
 def _cut(names: list[str], tasks: Mapping[Future[Any], Any], one_by_one: bool) -> Iterator[list[str]]:
-    """The names of cases task by task. What an executor does with a task may take as long as a short case: the first case tells how
-    long they are, and tasks last up to a quarter of a second. There are 64 tasks or more, for all workers to have some."""
+    """The hashes of the cases of every task. The overhead of a task may exceed a short case: the duration of the first case is
+    measured, and tasks last up to a quarter of a second. There are at least 64 tasks, to balance the workers."""
     size = 1
     if names and not one_by_one:
         yield names[:1]
@@ -67,27 +67,27 @@ def _cut(names: list[str], tasks: Mapping[Future[Any], Any], one_by_one: bool) -
 
 
 def check(executor: Any, workers: int | None) -> None:
-    """Raises TypeError for what is no executor, ValueError for an unknown name, or a number of workers that cannot be."""
+    """Raises TypeError for an object other than an executor, ValueError for an unknown name or an invalid number of workers."""
     if isinstance(executor, Executor):
         if workers is not None:
-            raise ValueError("an Executor of your own has its own number of workers: leave workers= out")
+            raise ValueError("workers= has no effect with an Executor object; remove it")
         return
     if not isinstance(executor, str):
-        raise TypeError(f"an executor is a concurrent.futures.Executor or the name of one, not {executor!r}")
+        raise TypeError(f"executor must be a concurrent.futures.Executor or a name, not {executor!r}")
     name, _, address = executor.partition(":")
     if name not in NAMES or (address and name != "dask"):
-        raise ValueError(f"there is no executor '{executor}'; there are {', '.join(NAMES)}, dask:ADDRESS")
+        raise ValueError(f"unknown executor '{executor}'; choose from {', '.join(NAMES)}, dask:ADDRESS")
     if workers is not None and (workers < 1 or address):
         raise ValueError(
-            "a running cluster has its own number of workers" if address else f"workers must be 1 or more, not {workers}"
+            "workers has no effect with a running cluster; remove it" if address else f"workers must be 1 or more, not {workers}"
         )
 
 
 @contextlib.contextmanager
 def opened(executor: str | Executor, workers: int | None) -> Iterator[Executor]:
-    """An executor of a name, closed in the end, or one that the caller has, which stays open.
+    """An executor by name, closed at the end, or one of the caller, which stays open.
 
-    Raises ModuleNotFoundError where the package of the name is not there.
+    Raises ModuleNotFoundError if its package is not installed.
     """
     if isinstance(executor, Executor):
         yield executor
@@ -119,13 +119,13 @@ def opened(executor: str | Executor, workers: int | None) -> Iterator[Executor]:
 
 
 def processors() -> int:
-    """Processors that this process may use."""
+    """Number of processors that this process may use."""
     return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 
 
 @contextlib.contextmanager
 def _processes(workers: int) -> Iterator[Executor]:
-    """Processes that begin anew, and do not wait for what they are at when the study is given up."""
+    """Spawned processes, which are ended at once when the study is interrupted."""
     method = "forkserver" if "forkserver" in multiprocessing.get_all_start_methods() else "spawn"
     context: Any = multiprocessing.get_context(method)
     with ProcessPoolExecutor(workers, context, _belong_to_the_study) as pool:
@@ -140,7 +140,7 @@ def _processes(workers: int) -> Iterator[Executor]:
 
 
 def _belong_to_the_study() -> None:
-    """Leave interrupts to the study, and end with it, whatever ends it."""
+    """Ignore Ctrl-C, which the study handles, and end with the study."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     threading.Thread(target=_end_with_the_study, daemon=True).start()
 
@@ -153,8 +153,8 @@ def _end_with_the_study() -> None:
 
 
 def _one_blas_thread_meanwhile() -> Any:
-    """BLAS has one thread in this process: the threads of the study have the processors, and all studies the same bits."""
+    """Limit BLAS to one thread in this process: the study uses the processors, and its results are bit-identical."""
     import threadpoolctl
 
-    library()  # threadpoolctl sees what has been loaded
+    library()  # threadpoolctl only sees loaded libraries
     return threadpoolctl.threadpool_limits(1, user_api="blas")

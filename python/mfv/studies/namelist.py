@@ -1,4 +1,4 @@
-"""A study as a namelist text: &sweep with &vary, and what is wrong with it, by file, line, group, key and value."""
+"""A study as a namelist text (&sweep and &vary), with errors by file, line, group, key and value."""
 
 from __future__ import annotations
 
@@ -20,13 +20,13 @@ from .bases import text_of_file, whole_paths
 from .cases import DUNDURS_BETA, Base, check, key_info
 from .plan import Study
 
-#: Values that one axis can have, and cases that a study can have.
+#: The largest numbers of values of an axis and of cases of a study.
 MOST_VALUES, MOST_CASES = 100_000, 10_000_000
 
 
 @dataclass(frozen=True)
 class Key:
-    """A key: what its values are, its default, and what it means."""
+    """A key: its kind of values, its default, and its meaning."""
 
     kind: str
     default: str
@@ -37,32 +37,32 @@ class Key:
 #: Every group and key of a study.
 KEYS: dict[str, dict[str, Key]] = {
     "sweep": {
-        "base": Key("text", "", "case file, or several of them, that the values are put into; beside the study; needed", True),
-        "file": Key("text", "", "file of the table (.nc, .h5 or .csv), unless -o names one; else the name of the study with .nc"),
+        "base": Key("text", "", "case file or files to vary, relative to the directory of the study; required", True),
+        "file": Key("text", "", "file of the table (.nc, .h5 or .csv); the option -o overrides it; if omitted: the name of the study with .nc"),
         "combine": Key(
             "all paired", "all", "all combinations of the values, those of the last &vary fastest; or paired: the first of "
             "each, the second of each, ..."
         ),
         "states": Key(
-            "none all", "none", "all: the result file of every case is kept too, in the folder of the table with .cases in "
+            "none all", "none", "all: the result file of every case is also saved, in the folder of the table with .cases in "
             "place of its suffix"
         ),
         "reference": Key(
-            "text", "none", "'full': every case is compared with the one of full coupling that is the same otherwise; "
-            "'KEY=VALUE', such as 'mesh%nodes=1001': with that one; needs a &vary of the key with this value"
+            "text", "none", "'full': every case is compared with the case that differs only in having full coupling; "
+            "'KEY=VALUE', such as 'mesh%nodes=1001': with the case of this value; needs a &vary of the key with this value"
         ),
     },
     "vary": {
         "key": Key(
-            "text", "", "key of the case, such as 'friction%mu' or 'step(2)%normal_force', or several that move together; "
-            "'dundurs_beta': the materials of both bodies; needed", True
+            "text", "", "key of the case, such as 'friction%mu' or 'step(2)%normal_force', or several that change together; "
+            "'dundurs_beta': the materials of both bodies; required", True
         ),
-        "factor": Key("number", "", "what the value is multiplied by, one for each key; if omitted: 1", True),
+        "factor": Key("number", "", "factor of the value, one for each key; if omitted: 1", True),
         "values": Key("any", "", "the values, in the unit of the key", True),
-        "from": Key("number", "", "in place of values: the first of a row of numbers"),
+        "from": Key("number", "", "in place of values: the first of a sequence of numbers"),
         "to": Key("number", "", "its last"),
-        "count": Key("whole", "", f"how many there are, from 1 to {MOST_VALUES}"),
-        "spacing": Key("linear log", "linear", "whether neighbours have the same distance or the same ratio"),
+        "count": Key("whole", "", f"number of values, from 1 to {MOST_VALUES}"),
+        "spacing": Key("linear log", "linear", "constant difference or constant ratio of neighbours"),
         "name": Key("text", "", "name of the column in the table; if omitted: the first key as written"),
     },
 }  # fmt: skip
@@ -71,7 +71,7 @@ _KINDS = {
     "text": "a text between quotes",
     "number": "a number",
     "whole": "a whole number",
-    "any": "what the varied key takes",
+    "any": "as for the varied key",
 }
 
 
@@ -93,7 +93,7 @@ def keys_in_markdown() -> str:
     """Every group and key, as tables."""
     lines = []
     for group, keys in KEYS.items():
-        lines += [f"### &{group}{' (may come more than once)' if group == 'vary' else ''}", ""]
+        lines += [f"### &{group}{' (may occur several times)' if group == 'vary' else ''}", ""]
         lines += ["| key | value | default | meaning |", "| --- | --- | --- | --- |"]
         for name, key in keys.items():
             value = _wanted(key) if not key.is_list else f"{_wanted(key)}, or several"
@@ -103,7 +103,7 @@ def keys_in_markdown() -> str:
 
 
 def _wanted(key: Key) -> str:
-    """What a key takes, in words."""
+    """The kind of values of a key, as text."""
     return _KINDS.get(key.kind) or " or ".join(f"'{word}'" for word in key.kind.split())
 
 
@@ -119,12 +119,12 @@ class _Group:
 
 
 class _Reader:
-    """A text on its way to a study."""
+    """The parser of a study."""
 
     def __init__(self, source: str, text: str) -> None:
         """Raises InputError."""
         self.source, self.text = source, text
-        with _scene_handle(text, source) as handle:  # the library says what is wrong with it as a namelist
+        with _scene_handle(text, source) as handle:  # the library reports syntax errors
             canonical = _text_of_scene(handle)
         try:
             parsed = groups(canonical)
@@ -155,7 +155,7 @@ class _Reader:
         return study
 
     def pass_on(self, error: errors.MfvError, *, several_bases: bool) -> NoReturn:
-        """Raise an error of a study again with its place in the text."""
+        """Raise an error of a study again, with its line in the text."""
         axis, part = error.where or (-1, "")
         axis -= several_bases
         varied = self._varied()
@@ -176,7 +176,7 @@ class _Reader:
         raise input_error(f"{self.source}:{line}: {why}" if line else f"{self.source}: {why}")
 
     def _complain(self, group: _Group, key: str, why: str, number: int = 0) -> NoReturn:
-        """Raise an error about a key of a group, or about the group where it does not have the key."""
+        """Raise an error about a key of a group, or about the group if it does not have the key."""
         name = f"&{group.name} {number}" if number else f"&{group.name}"
         if key in group.values:
             name += f" {key}={', '.join(map(as_written, group.values[key]))}"
@@ -190,7 +190,7 @@ class _Reader:
                 if key not in KEYS[group.name]:
                     self._fail(group.lines[key], f"&{group.name} {key}: unknown key{_suggestion(key, KEYS[group.name])}")
             if group.twice:
-                self._fail(group.lines[group.twice[0]], f"&{group.name} {group.twice[0]}: comes twice")
+                self._fail(group.lines[group.twice[0]], f"&{group.name} {group.twice[0]}: given twice")
             number = self._varied().index(group) + 1 if group.name == "vary" else 0
             for key, values in group.values.items():
                 why = _fault_of_values(KEYS[group.name][key], values)
@@ -198,14 +198,14 @@ class _Reader:
                     self._complain(group, key, why, number)
         if self._names().count("sweep") != 1:
             lines = [group.line for group in self.groups if group.name == "sweep"]
-            self._fail(lines[-1] if lines else 0, "&sweep: comes twice" if lines else "&sweep: the group is missing")
+            self._fail(lines[-1] if lines else 0, "&sweep: given twice" if lines else "&sweep: group missing")
 
     def _base(self, sweep: _Group, name: str) -> Base:
-        """A base case, which must be a valid one by itself."""
+        """A base case, which must be valid."""
         path = Path(self.source).parent / name
         try:
             if not name:
-                raise input_error("the name of a file is empty")
+                raise input_error("empty file name")
             base = Base(text_of_file(path), name, folder=str(path.parent))
             check(base, list(whole_paths(base).items()))
             return base
@@ -218,12 +218,12 @@ class _Reader:
         """The axis of one &vary."""
         keys = group.values.get("key", [])
         if not keys:
-            self._fail(group.line, f"&vary {number}: needs key")
+            self._fail(group.line, f"&vary {number}: key missing")
         name = group.values.get("name", keys)[0]
         row = [key for key in ("from", "to", "count") if key in group.values]
         if "values" in group.values:
             if row:
-                self._complain(group, row[0], "values is there too; give values, or from, to and count", number)
+                self._complain(group, row[0], "values is also given; give either values, or from, to and count", number)
             values = group.values["values"]
         elif len(row) == 3:
             values = self._row(number, group, keys)
@@ -237,13 +237,13 @@ class _Reader:
             self._complain(group, error.where[1], error.message.removeprefix(f"{name}: "), number)
 
     def _row(self, number: int, group: _Group, keys: Sequence[str]) -> list[Any]:
-        """A row of numbers, whole ones where every key takes such; then no two may become one."""
+        """A sequence of numbers, rounded to distinct whole ones if every key takes whole numbers."""
         first, last, count = (group.values[key][0] for key in ("from", "to", "count"))
         if not 1 <= count <= MOST_VALUES:
             self._complain(group, "count", f"must be a whole number from 1 to {MOST_VALUES}", number)
         is_log = group.values.get("spacing") == ["log"]
         if is_log and not first * last > 0:
-            self._complain(group, "spacing", "needs from and to above 0, or both below", number)
+            self._complain(group, "spacing", "needs from and to of the same sign", number)
         parts = [place / max(count - 1, 1) for place in range(count)]
         row = [first * (last / first) ** part if is_log else first + part * (last - first) for part in parts]
         if count > 1:
@@ -254,7 +254,9 @@ class _Reader:
             for place, (before, after) in enumerate(zip(whole, whole[1:])):
                 if before == after:
                     both = f"{row[place]:g} and {row[place + 1]:g} both become {after}"
-                    self._complain(group, "count", f"{both}, for {keys[0]} takes whole numbers; give fewer, or values=...", number)
+                    self._complain(
+                        group, "count", f"{both}, since {keys[0]} takes whole numbers; reduce count, or give values=...", number
+                    )
             return whole
         return [float(value) for value in row]
 
@@ -272,7 +274,7 @@ class _Reader:
         if written == "none":
             return
         if is_paired:
-            why = "needs combine='all': among pairs there is no case that is the same otherwise"
+            why = "needs combine='all'; with pairs no other case differs in this key alone"
             self._complain(sweep, "reference", why)
         name, _, value = written.rpartition("=") if "=" in written else ("scene%coupling", "", written)
         axis = next((axis for axis in study.coordinates if name == axis.name or name.lower() in axis.keys[:1]), None)
@@ -280,7 +282,7 @@ class _Reader:
         try:
             study.set_reference({axis.name if axis else name: values[0] if values else value})
         except errors.InputError:
-            why = f"needs a &vary of key='{name}' alone with '{value}' among its values"
+            why = f"needs a &vary with the single key='{name}' and '{value}' among its values"
             self._complain(sweep, "reference", why)
 
 
@@ -293,11 +295,11 @@ def _is_number(text: str, number: Any) -> bool:
 
 
 def _fault_of_values(key: Key, values: Sequence[Any]) -> str:
-    """What is wrong with the values of a key; empty where nothing is."""
+    """The error in the values of a key; empty if they are valid."""
     if len(values) > 1 and not key.is_list:
         return "must be one value"
     if any(value is None or isinstance(value, complex) for value in values):
-        return "must have values between all commas"
+        return "a value is missing between commas"
     if any(isinstance(value, float) and not math.isfinite(value) for value in values):
         return "must be finite"
     words = key.kind.split()
@@ -312,9 +314,9 @@ def _fault_of_values(key: Key, values: Sequence[Any]) -> str:
 
 
 def _suggestion(word: str, known: Sequence[str] | dict[str, Any], before: str = "") -> str:
-    """The known word that is nearest, as a question; else all of them."""
+    """The nearest known word as a question, else all of them."""
     near = difflib.get_close_matches(word, list(known), n=1)
-    return f"; did you mean {before}{near[0]}?" if near else f"; there are {', '.join(known)}"
+    return f"; did you mean {before}{near[0]}?" if near else f"; choose from {', '.join(known)}"
 
 
 def _placed(text: str, parsed: Sequence[tuple[str, dict[str, Any]]]) -> list[_Group]:

@@ -1,4 +1,4 @@
-"""A study: its bases, its dimensions, and the cases that come out, numbered from 1."""
+"""A study: its bases, its dimensions, and its cases, numbered from 1."""
 
 from __future__ import annotations
 
@@ -37,17 +37,17 @@ from .store import Store
 if TYPE_CHECKING:
     import xarray
 
-#: Names of the columns that every study has, and of dimensions of fields: not for axes.
+#: Columns of every study and dimensions of fields; axes cannot have these names.
 TAKEN = ("case", "base", "outcome", "status", "message", "steps_done", "events", "linear_solves", "nodes", "largest_residual",
          "row", "node", "record", "cycle", "patch", "companion_node", "result_file")  # fmt: skip
 
-#: What the table of a study says it is.
+#: Title of the table of a study.
 TITLE = "Study over cases of frictional contact"
 
 #: Suffixes of files that it can be written to: NetCDF, and comma-separated values.
 SUFFIXES = (".nc", ".h5", ".csv")
 
-#: Of long rows of numbers this many are tried before the start, spread over them.
+#: Number of values of an axis that are checked before the start.
 TRIED = 200
 
 
@@ -65,13 +65,13 @@ def study(
     again: bool = False,
     progress: bool = False,
 ) -> xarray.Dataset:
-    """Solve many cases that differ in some values; see `Study` for what they are and `Study.run` for how they are solved."""
+    """Solve many cases that differ in some values; for the arguments see `Study` and `Study.run`."""
     planned = Study(base, axes, observables=observables, fields=fields, reference=reference, results=results)
     return planned.run(executor=executor, workers=workers, store=store, again=again, progress=progress)
 
 
 class Study:
-    """Cases that differ in some values: what is varied, and what is wanted of each case."""
+    """Cases that differ in some values: the varied keys, and the requested results."""
 
     def __init__(
         self,
@@ -83,15 +83,15 @@ class Study:
         reference: str | Mapping[str, Any] | None = None,
         results: str | os.PathLike[str] | None = None,
     ) -> None:
-        """`base`: a Scene or the path of a case; several of them, which are the first axis, 'base'; or a function that makes a
-        Scene of a point, a dict with the value of every axis.
+        """`base`: a Scene or the path of a case; several of them, which become the first axis, 'base'; or a function that returns
+        a Scene for a dict with the value of every axis.
 
-        `axes`: by name, the values of a key of the case ('friction%mu'), an Axis of keys that move together, or a mapping of
-        such, which are zipped along one dimension. All combinations are solved, the last axis fastest. Or a table of cases:
+        `axes`: by name, the values of a key of the case ('friction%mu'), an Axis of keys that change together, or a mapping of
+        these, which are zipped along one dimension. All combinations are solved, the last axis fastest. Or a table of cases:
         a pandas.DataFrame, or a list of mappings, with a column for each key. A key takes the place of those that it is an
         alternative to (shift that of tangential_force). 'dundurs_beta' varies the materials of both bodies.
 
-        `observables`: names of those that the dataset is to have; by default all. `fields`: paths of fields of each case, such
+        `observables`: names of the observables in the dataset; by default all. `fields`: paths of fields of each case, such
         as 'state/pressure'. `reference`: 'full', or an axis with one of its values, {'mesh%nodes': 1001}: the tractions of
         each case are compared with those of the case that is the same but for this. `results`: a folder for the result file
         of every case. Raises InputError for keys, names and factors that cannot be; OSError for a base that cannot be read.
@@ -99,7 +99,7 @@ class Study:
         self.makes_scenes: Callable[[dict[str, Any]], Scene] | None = base if callable(base) else None
         given = [] if callable(base) else [base] if isinstance(base, (Scene, str, os.PathLike, Base)) else list(base)
         if self.makes_scenes is None and not given:
-            raise input_error("there is no base case")
+            raise input_error("no base case given")
         self.bases = [base_of(one) for one in given]
         self._shared = [whole_paths(one) for one in self.bases]
         self._check_bases()
@@ -111,17 +111,17 @@ class Study:
         if not self.dimensions:
             self.dimensions = [Dimension("row", [Coordinate("row", (), [0])])]
         self.observables = None if observables is None else _names(observables)
-        #: Paths of the wanted fields, with the positions of nodes for those who want a field along them.
+        #: Paths of the requested fields, with the positions of nodes if a field needs them.
         self.wanted_fields = tuple(dict.fromkeys([*_names(fields), "mesh/x"])) if fields else ()
-        #: Folder of result files, and the folder that their paths in the dataset are relative to (None: they are as given).
+        #: Folder of result files, and the folder to which their paths in the dataset are relative (None: as given).
         self.results = None if results is None else Path(results)
         self.results_from: Path | None = None
-        #: The text that the study was read from, and its file; where its table is to go, and whether it wants results, as it says.
+        #: The text of the study and its file; the file of its table, and whether it saves result files.
         self.input, self.input_file, self.file, self.keeps_results = "", "", "", False
         self._is_checked = False
         self._check_names()
         self._check_keys()
-        #: Dimension and place of what cases are compared with.
+        #: Dimension and place of the reference.
         self.reference: tuple[int, int] | None = None
         if reference is not None:
             self.set_reference(reference)
@@ -155,7 +155,7 @@ class Study:
         }
 
     def describe(self, number: int) -> str:
-        """The values of case `number` in words: base='hole.nml', friction%mu=0.3."""
+        """The values of case `number` as text: base='hole.nml', friction%mu=0.3."""
         point = self.point(number)
         if len(self.bases) == 1:
             point = {"base": self.bases[0].name, **point}
@@ -185,9 +185,9 @@ class Study:
         return Job(base, tuple({**shared, **named}.items()), self.wanted_fields, self.reference is not None)
 
     def check(self) -> None:
-        """Try every base, and every value with the first values of the others (of long rows some of them).
+        """Check every base, and every value with the first values of the others (only some values of long axes).
 
-        Raises InputError, which names case and values, where one cannot be used.
+        Raises InputError, which names case and values, for an invalid one.
         """
         if self.makes_scenes is not None or self._is_checked:
             return
@@ -207,18 +207,18 @@ class Study:
         again: bool = False,
         progress: bool = False,
     ) -> xarray.Dataset:
-        """Solve the cases, and return the dataset. What is wrong with keys and values is said before (see `check`).
+        """Solve the cases, and return the dataset. Keys and values are checked before (see `check`).
 
         `executor`: 'threads' of this process, 'processes', 'mpi' (mpi4py.futures), 'dask' (a cluster on this machine, or
         'dask:ADDRESS'), or any concurrent.futures.Executor. `workers`: how many; by default the number of processors.
-        `store`: an SQLite file in which solved cases are kept: what it has is not solved again, whatever ended the run before.
-        `again`: forget what the store has first. `progress`: show a bar on a terminal or in a notebook, by tqdm.
-        A case that cannot be begun, or that ends early, is in the dataset with its outcome and message.
+        `store`: an SQLite file for solved cases; cases in it are not solved again.
+        `again`: empty the store first. `progress`: show a progress bar (tqdm).
+        An invalid case, or one that ends early, is in the dataset with its outcome and message.
         Raises InputError, FileError, and what an executor raises; KeyboardInterrupt within an increment with threads.
         """
-        from tqdm.auto import tqdm  # here: it looks whether this is a notebook
+        from tqdm.auto import tqdm  # here, since it checks whether this is a notebook
 
-        from .dataset import dataset_of  # here: it imports xarray
+        from .dataset import dataset_of  # here, since it imports xarray
 
         executors.check(executor, workers)
         self.check()
@@ -248,23 +248,23 @@ class Study:
             return dataset_of(self, names, [solved.get(name) for name in names])
 
     def so_far(self, store: str | os.PathLike[str]) -> xarray.Dataset:
-        """The dataset of the cases that a store has; the others have the outcome 'not solved'. Raises FileError, OSError."""
-        from .dataset import dataset_of  # here: it imports xarray
+        """The dataset of the cases in a store; the others have the outcome 'not solved'. Raises FileError, OSError."""
+        from .dataset import dataset_of  # here, since it imports xarray
 
         if not os.path.isfile(store):
-            raise FileNotFoundError(errno.ENOENT, "there is no file of solved cases", os.fspath(store))
+            raise FileNotFoundError(errno.ENOENT, "no file of solved cases", os.fspath(store))
         with contextlib.closing(Store(store)) as kept:
             names, _, solved = self._cases(kept)
         return dataset_of(self, names, [solved.get(name) for name in names])
 
     def _cases(self, store: Store | None) -> tuple[list[str], dict[str, Job], dict[str, Solved]]:
-        """The names of the cases in order, their jobs, and what a store has of them."""
+        """The hashes of the cases in order, their jobs, and their saved results."""
         named = list(self._named_jobs())
         jobs = dict(named)
         return [name for name, _ in named], jobs, {} if store is None else store.read(jobs.keys())
 
     def _named_jobs(self) -> Iterator[tuple[str, Job]]:
-        """The jobs of all cases with their names; cases that are the same have one."""
+        """The jobs of all cases by hash; equal cases share one."""
         digests = [digest_of_base(base, list(shared.items())) for base, shared in zip(self.bases, self._shared)]
         for number in range(1, len(self) + 1):
             job = self.job(number)
@@ -280,9 +280,9 @@ class Study:
             )
 
     def _places(self, number: int) -> tuple[int, ...]:
-        """Where case `number` is along each dimension. Raises ValueError."""
+        """The place of case `number` along each dimension. Raises ValueError."""
         if not 1 <= number <= len(self):
-            raise ValueError(f"there is no case {number}; there are {len(self)}, numbered from 1")
+            raise ValueError(f"no case {number}; the cases are numbered from 1 to {len(self)}")
         return tuple(int(place) for place in np.unravel_index(number - 1, self.shape))
 
     def _number(self, places: Sequence[int]) -> int:
@@ -306,47 +306,47 @@ class Study:
             raise fault(f"case {number} ({self.describe(number)}): {error.message}", first, "values") from None
 
     def _check_made(self, number: int, base: Base) -> None:
-        """Raises InputError where a scene that was made has other units than the first."""
+        """Raises InputError if a scene has other units than the first."""
         if number == 1:
             self.units = units_of(base)
         elif units_of(base) != self.units:
-            raise input_error(f"case {number} ({self.describe(number)}): the scene names other units than that of case 1")
+            raise input_error(f"case {number} ({self.describe(number)}): the units of the scene differ from those of case 1")
 
     def _check_bases(self) -> None:
-        """Raises InputError where bases have one name, or name other units than the first."""
+        """Raises InputError if bases have equal names, or other units than the first."""
         names = [base.name for base in self.bases]
         twice = next((name for name in names if names.count(name) > 1), None)
         if twice is not None:
-            raise input_error(f"two bases have the name {twice}; give them names of their own (Scene(..., name=...))")
+            raise input_error(f"two bases have the name {twice}; give them different names (Scene(..., name=...))")
         for base in self.bases[1:]:
             if units_of(base) != units_of(self.bases[0]):
                 first = self.bases[0].name
                 raise input_error(
-                    f"{base.name} names other units than {first} (length_unit, force_unit); one study has one system of units"
+                    f"{base.name}: the units (length_unit, force_unit) differ from those of {first}; a study needs one system of units"
                 )
 
     def _check_names(self) -> None:
-        """Raises InputError for names that are taken, or come twice."""
+        """Raises InputError for reserved and repeated names."""
         seen: set[str] = set()
         taken = {*TAKEN, *observables(), *(path.replace("/", "_") for path in self.wanted_fields)}
         for place, coordinate in enumerate(self.coordinates):
             name = coordinate.name
             is_ours = name in ("base", "row") and not coordinate.keys
             if not is_ours and (name in taken or "_error_" in name or name == "dissipation_ratio"):
-                raise fault(f"every study has a column {name}; give another name", place, "name")
+                raise fault(f"{name} is a column of every study; choose another name", place, "name")
             if name in seen:
-                raise fault(f"another axis has the name {name}; give another one", place, "name")
+                raise fault(f"{name} is the name of another axis; choose another name", place, "name")
             seen.add(name)
         for dimension in self.dimensions:
             is_alone = [dimension.name] == [coordinate.name for coordinate in dimension.coordinates]
             if not is_alone and dimension.name != "row" and dimension.name in taken | seen:
-                raise input_error(f"{dimension.name}: this name is taken; give the zipped axes another one")
+                raise input_error(f"{dimension.name}: this name is already in use; give the zipped axes another name")
         unknown = [name for name in self.observables or () if name not in observables()]
         if unknown:
-            raise input_error(f"there is no observable {unknown[0]!r}; there are {', '.join(observables())}")
+            raise input_error(f"unknown observable {unknown[0]!r}; choose from {', '.join(observables())}")
 
     def _check_keys(self) -> None:
-        """Raises InputError for keys that are none, that no base has a group for, or that are varied already."""
+        """Raises InputError for keys that are unknown, have no group in a base, or are already varied."""
         counts = [counts_of_groups(base) for base in self.bases]
         seen: list[str] = []
         for place, coordinate in enumerate(self.coordinates):
@@ -359,19 +359,19 @@ class Study:
                 seen.append(key)
 
     def _missing_group(self, key: str, counts: Sequence[dict[str, int]]) -> str:
-        """What is wrong with the number in a key; empty where nothing is."""
+        """The error in the number of a key; empty if it is valid."""
         group, number = numbered_group(key)
         for base, count in zip(self.bases, counts):
             there = count.get(group, 0)
             if number is not None and not 1 <= number <= there:
-                return f"'{key}': there is no &{group} {number} in {base.name}, which has {there}"
+                return f"'{key}': no &{group} {number} in {base.name}, which has {there}"
         return ""
 
     def set_reference(self, reference: str | Mapping[str, Any]) -> None:
-        """What cases are compared with: see `Study`. Raises InputError."""
+        """The reference of the cases: see `Study`. Raises InputError."""
         wanted = {"scene%coupling": reference} if isinstance(reference, str) else reference
         if not isinstance(wanted, Mapping) or len(wanted) != 1:
-            raise input_error("reference: one axis with one of its values is wanted, such as {'scene%coupling': 'full'}")
+            raise input_error("reference: must be one axis with one of its values, such as {'scene%coupling': 'full'}")
         ((name, value),) = wanted.items()
         for along, dimension in enumerate(self.dimensions):
             (first, *others) = dimension.coordinates
@@ -379,7 +379,7 @@ class Study:
                 self.reference = along, first.values.index(value)
                 return
         raise input_error(
-            f"reference={as_written(value)}: needs an axis of '{name}' alone with {as_written(value)} among its values"
+            f"reference={as_written(value)}: needs an axis with the single key '{name}' and {as_written(value)} among its values"
         )
 
 
@@ -389,7 +389,7 @@ def _names(names: str | Iterable[str]) -> list[str]:
 
 
 def result_name(key: str) -> str:
-    """Name of the result file of a case: another case has another one, whatever its number."""
+    """Name of the result file of a case, unique and independent of its number."""
     return f"{key[:16]}.h5"
 
 
@@ -402,7 +402,7 @@ def is_table(path: Path) -> bool:
 
 
 def _tried(length: int) -> Iterable[int]:
-    """Places along a dimension that are tried."""
+    """Places along a dimension that are checked."""
     if length <= 5 * TRIED:
         return range(length)
     return sorted({round(place) for place in np.linspace(0, length - 1, TRIED + 2)})

@@ -1,4 +1,4 @@
-"""Solved cases in an SQLite file, so that a study goes on where it was after any end."""
+"""Solved cases in an SQLite file, so that a study can continue after an interruption."""
 
 from __future__ import annotations
 
@@ -13,52 +13,52 @@ import numpy as np
 from .. import errors
 from .cases import Solved
 
-#: "MFVS": what SQLite's application_id says of a file that this module has made.
+#: "MFVS", the application_id of SQLite files of this module.
 APPLICATION = 0x4D465653
 
 
 class Store:
-    """Solved cases by their names (mfv.studies.cases.digest), one row each: `key`, `solved` (JSON), `arrays` (the real numbers of
-    all fields one after another, least byte first; `sizes` in `solved` tells how many each has).
+    """Solved cases by their hashes (mfv.studies.cases.digest), one row each: `key`, `solved` (JSON), `arrays` (the real numbers of
+    all fields one after another, little-endian; `sizes` in `solved` has the number of values of each).
 
-    The process that has it open is the only one that reads and writes it.
+    Only one process can open the file.
     """
 
     def __init__(self, path: str | os.PathLike[str]) -> None:
-        """Raises FileError where the file cannot be used, is another program's, or is in use."""
+        """Raises FileError if the file cannot be used, belongs to another program, or is in use."""
         self.path = os.fspath(path)
         with self._named_in_errors():
             self._connection = sqlite3.connect(self.path, isolation_level=None, timeout=0.0)
             self._open()
 
     def close(self) -> None:
-        """Let others use the file."""
+        """Close the file."""
         self._connection.close()
 
     def read(self, keys: Collection[str]) -> dict[str, Solved]:
-        """Those of the cases with these names that are there. Raises FileError."""
+        """The saved ones of the cases with these hashes. Raises FileError."""
         with self._named_in_errors():
             rows = self._connection.execute("SELECT key, solved, arrays FROM cases")
             return {key: _solved(text, arrays) for key, text, arrays in rows if key in keys}
 
     def write(self, key: str, solved: Solved) -> None:
-        """Keep a case: it is there whatever becomes of this process. Raises FileError, on a full disk for one."""
+        """Save a case permanently. Raises FileError, for example on a full disk."""
         row = key, _text(solved), _bytes(solved)
         with self._named_in_errors():
             self._connection.execute("INSERT OR REPLACE INTO cases VALUES (?, ?, ?)", row)
 
     def clear(self) -> None:
-        """Forget all cases. Raises FileError."""
+        """Delete all cases. Raises FileError."""
         with self._named_in_errors():
             self._connection.execute("DELETE FROM cases")
 
     def _open(self) -> None:
-        """One process alone, and a log that a kill leaves whole."""
+        """Open exclusively, with a write-ahead log that survives a kill."""
         execute = self._connection.execute
         execute("PRAGMA locking_mode = EXCLUSIVE")
         application = execute("PRAGMA application_id").fetchone()[0]
         if application != APPLICATION and execute("SELECT count(*) FROM sqlite_master").fetchone()[0]:
-            raise sqlite3.DatabaseError("this is the file of another program, and is left as it is")
+            raise sqlite3.DatabaseError("it belongs to another program; not changed")
         execute("PRAGMA journal_mode = WAL")
         execute("PRAGMA synchronous = NORMAL")
         execute("BEGIN IMMEDIATE")
@@ -68,16 +68,16 @@ class Store:
 
     @contextlib.contextmanager
     def _named_in_errors(self) -> Iterator[None]:
-        """Raises FileError, which names the file, for what SQLite raises and for rows that cannot be read."""
+        """Raises FileError, which names the file, for errors of SQLite and damaged rows."""
         try:
             yield
         except (sqlite3.Error, ValueError, KeyError) as error:
-            why = "another study is at work with it" if "locked" in str(error) else error
-            raise errors.file_error(f"{self.path}: solved cases cannot be kept here: {why}") from None
+            why = "another study is using it" if "locked" in str(error) else error
+            raise errors.file_error(f"{self.path}: cannot save solved cases: {why}") from None
 
 
 def _text(solved: Solved) -> str:
-    """What is kept but the arrays."""
+    """The saved results without the arrays."""
     kept = {name: value for name, value in vars(solved).items() if name != "arrays"}
     kept["sizes"] = {path: values.size for path, values in solved.arrays.items()}
     return json.dumps(kept)
