@@ -131,12 +131,12 @@ contains
       class(interior_type), intent(in) :: self
       real(wp), intent(in) :: x, y
       real(wp) :: from_pole(2)
-      real(wp), parameter :: round_off = 4.0_wp*epsilon(1.0_wp)
+      real(wp), parameter :: tolerance = 4.0_wp*epsilon(1.0_wp)
 
       if (self%body%circular()) then
          from_pole = radii_from_pole(self, x, y)
          associate (beyond => 2.0_wp*from_pole(1) + sum(from_pole**2))
-            contains_point = merge(beyond <= round_off, beyond >= -round_off, self%body%shape == shape_disk)
+            contains_point = merge(beyond <= tolerance, beyond >= -tolerance, self%body%shape == shape_disk)
          end associate
       else
          contains_point = self%side*y <= 0.0_wp

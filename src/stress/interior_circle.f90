@@ -120,7 +120,7 @@ contains
       real(wp), intent(in) :: from_pole(2)
       real(wp) :: stress(3)
       complex(wp), parameter :: i = (0.0_wp, 1.0_wp)
-      real(wp), parameter :: round_off = 8.0_wp*epsilon(1.0_wp)
+      real(wp), parameter :: tolerance = 8.0_wp*epsilon(1.0_wp)
       complex(wp) :: zeta, z, plus, minus, slope, integral(2), derivative(2), potential, potential_slope, rest, force
       real(wp) :: beyond, kelvin
       integer :: j
@@ -128,7 +128,7 @@ contains
       zeta = cmplx(from_pole(1), from_pole(2), wp)
       z = 1.0_wp + zeta
       beyond = 2.0_wp*real(zeta, wp) + abs(zeta)**2
-      if (abs(beyond) <= round_off*(2.0_wp*abs(real(zeta, wp)) + abs(zeta)**2)) beyond = 0.0_wp
+      if (abs(beyond) <= tolerance*(2.0_wp*abs(real(zeta, wp)) + abs(zeta)**2)) beyond = 0.0_wp
       plus = 0.0_wp
       minus = 0.0_wp
       slope = 0.0_wp

@@ -337,7 +337,7 @@ contains
       type(patch_type), intent(in) :: patch
       type(zone_type), intent(in) :: zone
       real(wp), intent(inout) :: values(:)
-      real(wp), parameter :: round_off = 1.0e-9_wp
+      real(wp), parameter :: tolerance = 1.0e-9_wp
       integer, allocatable :: nodes(:)
       real(wp) :: distance
       integer :: i, side
@@ -345,7 +345,7 @@ contains
       do side = 1, 2
          if (.not. (zone%rooted(side) .and. zone%known(side))) cycle
          nodes = pack([(i, i=1, size(values))], zone%contains_place(patch%arc) .or. &
-                      (abs(patch%arc - zone%edge(side)) < 0.5_wp*patch%width .and. abs(values) > round_off*maxval(abs(values))))
+                      (abs(patch%arc - zone%edge(side)) < 0.5_wp*patch%width .and. abs(values) > tolerance*maxval(abs(values))))
          if (side == 2) nodes = nodes(size(nodes):1:-1)
          distance = (2*side - 3)*(zone%edge(side) - patch%arc(nodes(1)))/patch%width(nodes(1))
          nodes = nodes(2:)

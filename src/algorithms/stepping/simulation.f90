@@ -18,7 +18,7 @@ module mfv_simulation
    use mfv_node_status, only: event_none, event_step_end, event_stopped
    use mfv_observer, only: observer_type
    use mfv_scene
-   use mfv_slip_zones, only: leg_start_type, slip_record_type
+   use mfv_slip_zones, only: segment_start_type, slip_record_type
    use mfv_status, only: MFV_COMPLETE
    use mfv_straight, only: lead_straight
    use mfv_strings, only: to_text
@@ -90,7 +90,7 @@ module mfv_simulation
       type(load_type) :: there(motion_count), back(motion_count)
       type(cycle_type) :: cycle
       type(segment_type) :: segment
-      type(leg_start_type) :: start
+      type(segment_start_type) :: start
    end type leg_type
 
    !> The start of a segment, from which an interrupted run continues: the contact, the records of the load history so far, the work
@@ -510,7 +510,7 @@ contains
             call lead_straight(self%contact, self%leg%segment, observer, error)
          end if
       end associate
-      call self%slip%add_leg(self%contact%model, self%leg%start, self%contact%state, self%contact%slip_zone_nodes, &
+      call self%slip%add_segment(self%contact%model, self%leg%start, self%contact%state, self%contact%slip_zone_nodes, &
                              self%contact%system%noise)
       self%load%control = targets%control
       self%load%value = targets%value
@@ -536,7 +536,7 @@ contains
          segment%segments = segments
       end associate
       associate (state => self%contact%state)
-         self%leg%start = leg_start_type(state%dissipation, state%fields%force, state%fields%shear)
+         self%leg%start = segment_start_type(state%dissipation, state%fields%force, state%fields%shear)
       end associate
       call self%contact%await_increment()
    end subroutine begin_segment

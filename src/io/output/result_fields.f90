@@ -619,7 +619,7 @@ contains
       call add_loads(list, simulation, state)
       call list%add('steps_done', simulation%steps_done, 'steps reached')
       call list%add('events', simulation%contact%events, 'loads at which nodes changed their status')
-      call list%add('leaps', simulation%contact%certificate%leaps, 'large increments of the load history, without looking for '// &
+      call list%add('leaps', simulation%contact%certificate%large_increments, 'large increments of the load history, without looking for '// &
                     'events')
       if (simulation%contact%model%scene%method%stepping == stepping_leap) then
          call list%add('increment_traction_error', simulation%contact%certificate%increment_traction_error, '1', &
@@ -643,7 +643,7 @@ contains
          call list%add('largest', certificate%largest(), '1', 'largest of the residuals below')
          call list%add('increments', certificate%increments, 'increments that were checked')
          do kind = 1, residual_count
-            if (certificate%claimed(kind)) call list%add(trim(residual_names(kind)), certificate%residual(kind), '1', &
+            if (certificate%applies(kind)) call list%add(trim(residual_names(kind)), certificate%residual(kind), '1', &
                                                          trim(residual_descriptions(kind))// &
                                                          ', relative, largest over all increments')
          end do
@@ -676,7 +676,7 @@ contains
 
       call find_zone_edges(simulation%contact%model, simulation%contact%state, edges)
       call list%add('nodes', estimate%nodes, 'intervals of the mesh, as &mesh nodes counts them')
-      call list%add('companion_nodes', estimate%companion_nodes, along_companions, 'intervals of the coarser meshes')
+      call list%add('companion_nodes', estimate%coarser_nodes, along_companions, 'intervals of the coarser meshes')
       associate (bar => estimate%bar)
          if (edges%patches > 1) then
             length = bar(quantity_half_width)
@@ -723,7 +723,7 @@ contains
                     'no limit, NaN where slip zones with too few nodes do not resolve it')
       call list%add(name//'_order', bar%order, '1', 'observed order of convergence, from 1 to 2 (negative: there is no limit; '// &
                     'NaN: not resolved): '//meaning)
-      call list%add(name//'_companions', bar%companions, along_companions, unit, 'on the coarser meshes: '//meaning)
+      call list%add(name//'_companions', bar%coarser_values, along_companions, unit, 'on the coarser meshes: '//meaning)
    end subroutine add_bar
 
    !> Some of the motions and their forces (shape (values, motion_count)), first the forces.
