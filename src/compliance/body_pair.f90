@@ -1,12 +1,12 @@
-!> The compliance of two bodies in contact: what the contact algorithms work with.
+!> Compliance of two bodies in contact, for the contact algorithms.
 !>
-!> The upper body is the mirror image of a lower one: its tractions are p and, reversed, tau. With w and u from either
-!> body's own compliance the gap closes by w1 + w2 and the slip is u1 - u2, so that
+!> The upper body is the mirror image of a lower one, with the tractions p and -tau. With w and u from the compliance of each
+!> body the gap closes by w1 + w2 and the slip is u1 - u2, so that
 !>
 !>     C_wp = C1_wp + C2_wp,  C_wt = C1_wt - C2_wt,  C_up = C1_up - C2_up,  C_ut = C1_ut + C2_ut.
 !>
-!> A rigid body has no part in it. Bodies of equal signature (same shape and material) do not couple: C_wt and C_up, the
-!> differences, are then left out of the pair, but not of either body's own displacements.
+!> A rigid body contributes nothing. Bodies of equal signature (shape and material) do not couple: C_wt and C_up of the pair
+!> vanish and do not exist, but the bodies' own blocks do.
 module mfv_body_pair
    use mfv_compliance
    use mfv_kinds, only: wp
@@ -16,7 +16,7 @@ module mfv_body_pair
 
    integer, parameter :: part_lower = 1, part_upper = 2
 
-   !> A body of the pair; not allocated: rigid.
+   !> A body of the pair; unallocated if rigid.
    type :: part_type
       class(compliance_type), allocatable :: compliance
    end type part_type
@@ -36,8 +36,8 @@ module mfv_body_pair
 
 contains
 
-   !> Pair of a lower and an upper body, on the same intervals; not allocated: rigid. At least one is elastic. Both are
-   !> moved into the pair.
+   !> Pair of a lower and an upper body on the same intervals; unallocated if rigid. At least one is elastic. Both are moved
+   !> into the pair.
    subroutine new_body_pair(lower, upper, self)
       class(compliance_type), allocatable, intent(inout) :: lower, upper
       type(body_pair_type), intent(out) :: self
@@ -64,7 +64,7 @@ contains
       self%elastic_block([block_wt, block_up]) = .false.
    end subroutine new_body_pair
 
-   !> Whether anything is left of the coupling blocks.
+   !> Whether coupling blocks remain.
    pure logical function couples(self)
       type(body_pair_type), intent(in) :: self
       real(wp) :: signature(4, 2)
@@ -139,8 +139,8 @@ contains
       if (.not. self%has_block(block_up)) part(:, block_up) = 0.0_wp
    end subroutine parts
 
-   !> Surface displacements of one body, into it and to the right, length, under the tractions on the lower body; zero
-   !> for a rigid one. Shapes (nodes).
+   !> Surface displacements of one body, into it and to the right, length, by the tractions on the lower body; zero for a
+   !> rigid one. Shapes (nodes).
    subroutine part_displacements(self, part, pressure, shear, normal, tangential)
       class(body_pair_type), intent(in) :: self
       integer, intent(in) :: part

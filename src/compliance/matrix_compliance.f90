@@ -1,8 +1,8 @@
-!> A body given by its compliance or stiffness matrix: the route for finite-element users.
+!> A body given by its compliance or stiffness matrix, for example from finite elements.
 !>
-!> The user's matrices relate nodal forces to nodal displacements of the surface nodes, force/length to length per unit
-!> thickness; rows and columns run over the normal components of all nodes (into the body), then, where shear is to be
-!> carried, over the tangential ones (to the right).
+!> The matrices relate nodal forces and nodal displacements of the surface nodes, force/length and length per unit thickness.
+!> Rows and columns: normal components of all nodes (into the body) and, for problems with shear, all tangential ones (to the
+!> right).
 module mfv_matrix_compliance
    use, intrinsic :: ieee_arithmetic, only: ieee_is_finite
    use mfv_compliance
@@ -25,14 +25,14 @@ module mfv_matrix_compliance
       procedure :: parts
    end type matrix_compliance_type
 
-   !> Matrices that differ from their transpose by more than this part of their largest entry are not symmetric.
+   !> Relative tolerance of the symmetry check.
    real(wp), parameter :: symmetry_tolerance = 1.0e-8_wp
 
 contains
 
-   !> Compliance of `compliance`, displacements by nodal forces, checked by check_compliance; shape (n, n) or (2n, 2n).
-   !> `width`: length of the surface that belongs to each node, shape (n); a traction on it makes a nodal force.
-   !> `tangential`: whether friction can act; it takes the larger matrix.
+   !> Compliance by `compliance`, displacements by nodal forces, checked by check_compliance; shape (n, n) or (2n, 2n).
+   !> `width`: surface length of each node, shape (n); traction times width is the nodal force. `tangential`: friction can
+   !> act; it requires the larger matrix.
    type(matrix_compliance_type) function new_matrix_compliance(compliance, width, coupling, tangential) result(self)
       real(wp), intent(in) :: compliance(:, :), width(:)
       integer, intent(in) :: coupling
@@ -51,8 +51,7 @@ contains
       self%block_values = size(self%matrix)
    end function new_matrix_compliance
 
-   !> What is wrong with a matrix of nodal compliances or stiffnesses for `nodes` nodes: error MFV_INPUT_ERROR.
-   !> `name`: what to call it.
+   !> Check a matrix of nodal compliances or stiffnesses for `nodes` nodes, called `name` in messages. Error MFV_INPUT_ERROR.
    subroutine check_compliance(matrix, nodes, name, error)
       real(wp), intent(in) :: matrix(:, :)
       integer, intent(in) :: nodes
@@ -94,8 +93,8 @@ contains
       end do
    end subroutine check_compliance
 
-   !> Inverse of a symmetric stiffness (any shape (m, m)). Error MFV_INPUT_ERROR where it is not positive definite: a body
-   !> that can still move as a whole, for one.
+   !> Inverse of a symmetric stiffness (shape (m, m)). Error MFV_INPUT_ERROR if it is not positive definite, for example
+   !> because of rigid-body motions.
    subroutine inverse_of(stiffness, compliance, error)
       real(wp), intent(in) :: stiffness(:, :)
       real(wp), allocatable, intent(out) :: compliance(:, :)
@@ -116,7 +115,7 @@ contains
       end do
    end subroutine inverse_of
 
-   !> See mfv_compliance: the nodes of a matrix are what they are.
+   !> See mfv_compliance: the nodes of a matrix are fixed.
    subroutine resize(self, nodes)
       class(matrix_compliance_type), intent(inout) :: self
       integer, intent(in) :: nodes
@@ -124,7 +123,7 @@ contains
       self%nodes = min(nodes, self%nodes)
    end subroutine resize
 
-   !> Where a block begins: rows and columns before it.
+   !> Rows and columns before a block.
    pure function origin(self, block)
       class(matrix_compliance_type), intent(in) :: self
       integer, intent(in) :: block
@@ -146,7 +145,7 @@ contains
       matrix = self%matrix(before(1) + rows, before(2) + columns)
    end subroutine entries
 
-   !> See mfv_compliance; only what is loaded is looked at.
+   !> See mfv_compliance; only loaded columns are used.
    subroutine parts(self, pressure, shear, part)
       class(matrix_compliance_type), intent(in) :: self
       real(wp), intent(in) :: pressure(:), shear(:)

@@ -35,7 +35,7 @@ module mfv_observables
                                     'half the length of the contact at the end, from edges between nodes, where it is one patch'), &
            row_type('contact_length', 'length', 'length of the contact at the end, of all its patches, from edges between nodes'), &
                                 row_type('patches', '1', 'contact patches at the end, with open nodes between them'), &
-         row_type('contact_centre', 'length', 'middle between the outermost edges at the end, arc length from the origin of x'), &
+           row_type('contact_centre', 'length', 'middle between the outermost edges at the end, arc length from the origin of x'), &
           row_type('stick_ratio', '1', 'length of the stick zones over that of the contact at the end, from edges between nodes'), &
                                 row_type('peak_pressure', 'force/length^2', 'largest pressure at the end'), &
                                 row_type('peak_shear', 'force/length^2', 'largest size of the shear traction at the end'), &
@@ -43,7 +43,7 @@ module mfv_observables
                                 row_type('cycle_dissipation', 'force', 'energy dissipated in the last cycle, per unit thickness'), &
                          row_type('first_cycle_dissipation', 'force', 'energy dissipated in the first cycle, per unit thickness'), &
               row_type('cycle_change', '1', 'largest change of a traction over the last cycle, relative to the largest traction'), &
-                    row_type('force_amplitude', 'force/length', 'half the range of the tangential force in the last cycle'), &
+                          row_type('force_amplitude', 'force/length', 'half the range of the tangential force in the last cycle'), &
                                 row_type('shift_amplitude', 'length', 'half the range of the shift in the last cycle'), &
                   row_type('tangential_stiffness', 'force/length^2', 'tangential force over shift right after the last reversal'), &
                   row_type('secant_stiffness', 'force/length^2', 'tangential force over shift from end to end of the last cycle'), &

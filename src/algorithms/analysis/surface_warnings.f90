@@ -37,8 +37,8 @@ contains
       if (body%shape /= shape_power .or. body%exponent > 1.0_wp) return
       angle = atan(body%coefficient)*180.0_wp/pi
       if (angle > largest_angle) call add_text(warnings, 'the flanks of the '//name//' body rise by '//to_text(angle, 3)// &
-                                          ' degrees; the half-plane compliance is inaccurate beyond '// &
-                                          to_text(largest_angle, 2)//' degrees')
+                                               ' degrees; the half-plane compliance is inaccurate beyond '// &
+                                               to_text(largest_angle, 2)//' degrees')
 
    contains
 

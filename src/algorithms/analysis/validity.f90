@@ -51,7 +51,7 @@ contains
       call check_order(simulation%contact%model%scene%lower, warnings)
       call check_rotation(simulation, warnings)
       largest = simulation%contact%certificate%largest()
-      if (largest > good) call add_text(warnings, 'the largest residual in the certificate is '//to_text(largest, 2)//  &
+      if (largest > good) call add_text(warnings, 'the largest residual in the certificate is '//to_text(largest, 2)// &
                                         ', well above rounding errors: results may be inaccurate; see the certificate')
    end subroutine validity_warnings
 

@@ -262,7 +262,7 @@ contains
 
       power = 0.5_wp
       if (slips(state%status(node)) .and. state%fields%pressure(node) > 0.0_wp) &
-         power = 0.5_wp + side*lean(model, node, state%fields%shear(node)/state%fields%pressure(node))
+         power = 0.5_wp + side*exponent_shift(model, node, state%fields%shear(node)/state%fields%pressure(node))
    end function contact_power
 
    !> Edge of a stick zone on `side` (-1 left, 1 right), arc length from the origin of x: where the shear traction reaches the
@@ -300,7 +300,7 @@ contains
          ! One node may stick or slip: the edge must not depend on that.
          last = last - side
       end if
-      power = 0.5_wp - side*lean(model, next, direction*model%kinetic_friction(next))
+      power = 0.5_wp - side*exponent_shift(model, next, direction*model%kinetic_friction(next))
       samples = sampled(model, lack, last, other)
       if (.not. model%compliance%elastic_block(block_wt)) samples%is_regular = has_known_error(model, last, samples%number)
       edge = model%arc(last) + side*model%width(last)*distance_of_lack(samples, power)
@@ -411,18 +411,18 @@ contains
 
    !> Deviation of the exponent from 1/2 where nodes near `node` slip with shear traction over pressure `ratio`: nonzero with
    !> full coupling only, between -1/2 and 1/2.
-   real(wp) function lean(model, node, ratio)
+   real(wp) function exponent_shift(model, node, ratio)
       type(contact_model_type), intent(in) :: model
       integer, intent(in) :: node
       real(wp), intent(in) :: ratio
       real(wp) :: beta
 
-      lean = 0.0_wp
+      exponent_shift = 0.0_wp
       if (.not. model%compliance%elastic_block(block_wt)) return
       beta = model%scene%dundurs_beta()
       if (model%scene%lower%shape == shape_matrix) beta = local_beta(model, node)
-      lean = root_shift(beta*ratio)
-   end function lean
+      exponent_shift = root_shift(beta*ratio)
+   end function exponent_shift
 
    !> Dundurs' beta of bodies given by a matrix, from the entries about a node. Next to a force P, w is -A ln(r) P/pi; next to
    !> a force Q it jumps from -B Q to B Q; beta = 2 B/A as for half-planes (A the sum of (kappa + 1)/(4 G), B the difference
@@ -549,15 +549,15 @@ contains
       real(wp), intent(out) :: distance
       logical, intent(out) :: found
       real(wp), dimension(size(t)) :: line, parabola
-      real(wp) :: mean, slope, bend, lean
+      real(wp) :: mean, slope, bend, skewness
 
       line = t - sum(t)/size(t)
-      lean = sum(line**3)/sum(line**2)
-      parabola = line**2 - lean*line - sum(line**2)/size(t)
+      skewness = sum(line**3)/sum(line**2)
+      parabola = line**2 - skewness*line - sum(line**2)/size(t)
       mean = sum(values)/size(t)
       slope = sum(line*values)/sum(line**2)
       bend = sum(parabola*values)/sum(parabola**2)
-      call find_zero(mean + slope*line(1) + bend*parabola(1), slope + bend*(2.0_wp*line(1) - lean), bend, t(1), distance, found)
+      call find_zero(mean + slope*line(1) + bend*parabola(1), slope + bend*(2.0_wp*line(1) - skewness), bend, t(1), distance, found)
    end subroutine find_zero_of_many
 
    !> Zero nearest to the edge of the parabola near + slope*t + bend*t^2, t intervals inwards from a point `inwards` of the

@@ -511,7 +511,7 @@ contains
          end if
       end associate
       call self%slip%add_segment(self%contact%model, self%leg%start, self%contact%state, self%contact%slip_zone_nodes, &
-                             self%contact%system%noise)
+                                 self%contact%system%noise)
       self%load%control = targets%control
       self%load%value = targets%value
       if (self%keep_history /= history_none) &

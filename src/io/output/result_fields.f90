@@ -619,8 +619,8 @@ contains
       call add_loads(list, simulation, state)
       call list%add('steps_done', simulation%steps_done, 'steps reached')
       call list%add('events', simulation%contact%events, 'loads at which nodes changed their status')
-      call list%add('leaps', simulation%contact%certificate%large_increments, 'large increments of the load history, without looking for '// &
-                    'events')
+      call list%add('leaps', simulation%contact%certificate%large_increments, &
+                    'large increments of the load history, without looking for events')
       if (simulation%contact%model%scene%method%stepping == stepping_leap) then
          call list%add('increment_traction_error', simulation%contact%certificate%increment_traction_error, '1', &
                        "stepping='leap': largest estimated error of the tractions by large increments, in parts of the "// &
@@ -682,7 +682,7 @@ contains
             length = bar(quantity_half_width)
             length%value = 2.0_wp*length%value
             length%error = 2.0_wp*length%error
-            length%companions = 2.0_wp*length%companions
+            length%coarser_values = 2.0_wp*length%coarser_values
             call add_bar(list, length, 'contact_length', 'length', 'length of all intervals in contact')
          else
             call add_bar(list, bar(quantity_half_width), 'contact_half_width', 'length', 'half the length of all intervals in '// &
