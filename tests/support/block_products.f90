@@ -1,4 +1,4 @@
-!> Products of single blocks of a compliance.
+!> Products of single compliance blocks.
 module block_products
    use mfv_compliance, only: block_up, block_wp, compliance_type
    use mfv_kinds, only: wp

@@ -106,7 +106,7 @@ contains
             estimate%status = simulation%outcome
             estimate%message = 'the run did not complete'
          else if (.not. has_coarser_meshes(scene)) then
-            estimate%message = "the mesh of a body with shape='matrix' cannot be changed"
+            estimate%message = "a body with shape='matrix' has no coarser mesh"
          else if (simulation%way%steps /= size(scene%steps)) then
             estimate%message = 'load steps were applied that are not in the case'
          else if (simulation%contact%state%contact_nodes() < 2*fewest_contact_nodes) then
