@@ -54,7 +54,7 @@ module mfv_circle
    contains
       procedure :: resize
       procedure :: entries
-      procedure :: parts
+      procedure :: products
       procedure :: signature
    end type circle_type
 
@@ -245,17 +245,17 @@ contains
 
    !> See mfv_compliance: tractions are rotated to polar components, multiplied by the Toeplitz kernels, and displacements
    !> rotated back.
-   subroutine parts(self, pressure, shear, part)
+   subroutine products(self, pressure, shear, by_block)
       class(circle_type), intent(in) :: self
       real(wp), intent(in) :: pressure(:), shear(:)
-      real(wp), intent(out) :: part(:, :)
+      real(wp), intent(out) :: by_block(:, :)
 
-      part = 0.0_wp
-      call multiply(self, .true., pressure, part(:, block_wp), part(:, block_up))
-      if (self%has_block(block_ut)) call multiply(self, .false., shear, part(:, block_wt), part(:, block_ut))
-      if (.not. self%has_block(block_wt)) part(:, block_wt) = 0.0_wp
-      if (.not. self%has_block(block_up)) part(:, block_up) = 0.0_wp
-   end subroutine parts
+      by_block = 0.0_wp
+      call multiply(self, .true., pressure, by_block(:, block_wp), by_block(:, block_up))
+      if (self%has_block(block_ut)) call multiply(self, .false., shear, by_block(:, block_wt), by_block(:, block_ut))
+      if (.not. self%has_block(block_wt)) by_block(:, block_wt) = 0.0_wp
+      if (.not. self%has_block(block_up)) by_block(:, block_up) = 0.0_wp
+   end subroutine products
 
    !> w and u by a normal (`by_pressure`) or a shear traction, shapes (nodes).
    subroutine multiply(self, by_pressure, traction, normal, tangential)

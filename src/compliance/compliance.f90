@@ -35,7 +35,7 @@ module mfv_compliance
    contains
       procedure(resize_interface), deferred :: resize
       procedure(entries_interface), deferred :: entries
-      procedure(parts_interface), deferred :: parts
+      procedure(products_interface), deferred :: products
       procedure :: displacements
       procedure :: signature
       procedure :: choose_blocks
@@ -60,14 +60,14 @@ module mfv_compliance
          real(wp), intent(out) :: matrix(:, :)
       end subroutine entries_interface
 
-      !> `part(:, block)`: product of each block with `pressure` or `shear`, force/length^2, shape (nodes): displacements,
+      !> `by_block(:, block)`: product of each block with `pressure` or `shear`, force/length^2, shape (nodes): displacements,
       !> length; zero for blocks that do not exist. Cost of order n log n if the kernel depends on the distance only.
-      subroutine parts_interface(self, pressure, shear, part)
+      subroutine products_interface(self, pressure, shear, by_block)
          import :: compliance_type, wp
          class(compliance_type), intent(in) :: self
          real(wp), intent(in) :: pressure(:), shear(:)
-         real(wp), intent(out) :: part(:, :)
-      end subroutine parts_interface
+         real(wp), intent(out) :: by_block(:, :)
+      end subroutine products_interface
    end interface
 
 contains
@@ -78,11 +78,11 @@ contains
       class(compliance_type), intent(in) :: self
       real(wp), intent(in) :: pressure(:), shear(:)
       real(wp), intent(out) :: normal(:), tangential(:)
-      real(wp) :: part(size(pressure), 4)
+      real(wp) :: by_block(size(pressure), 4)
 
-      call self%parts(pressure, shear, part)
-      normal = part(:, block_wp) + part(:, block_wt)
-      tangential = part(:, block_ut) + part(:, block_up)
+      call self%products(pressure, shear, by_block)
+      normal = by_block(:, block_wp) + by_block(:, block_wt)
+      tangential = by_block(:, block_ut) + by_block(:, block_up)
    end subroutine displacements
 
    !> Constants of the coupling blocks: two bodies with equal signatures do not couple. Zero without coupling; huge by

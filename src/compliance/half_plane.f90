@@ -34,7 +34,7 @@ module mfv_half_plane
    contains
       procedure :: resize
       procedure :: entries
-      procedure :: parts
+      procedure :: products
       procedure :: signature
    end type half_plane_type
 
@@ -102,17 +102,17 @@ contains
    end subroutine entries
 
    !> See mfv_compliance; the cross blocks, constant on either side of the diagonal, are evaluated by running sums.
-   subroutine parts(self, pressure, shear, part)
+   subroutine products(self, pressure, shear, by_block)
       class(half_plane_type), intent(in) :: self
       real(wp), intent(in) :: pressure(:), shear(:)
-      real(wp), intent(out) :: part(:, :)
+      real(wp), intent(out) :: by_block(:, :)
 
-      part(:, [block_wt, block_up]) = 0.0_wp
-      call self%operator%multiply(pressure, part(:, block_wp), shear, part(:, block_ut))
-      if (self%has_block(block_wt)) call multiply_steps(self%cross, shear, part(:, block_wt))
-      if (self%has_block(block_up)) call multiply_steps(-self%cross, pressure, part(:, block_up))
-      if (.not. self%has_block(block_ut)) part(:, block_ut) = 0.0_wp
-   end subroutine parts
+      by_block(:, [block_wt, block_up]) = 0.0_wp
+      call self%operator%multiply(pressure, by_block(:, block_wp), shear, by_block(:, block_ut))
+      if (self%has_block(block_wt)) call multiply_steps(self%cross, shear, by_block(:, block_wt))
+      if (self%has_block(block_up)) call multiply_steps(-self%cross, pressure, by_block(:, block_up))
+      if (.not. self%has_block(block_ut)) by_block(:, block_ut) = 0.0_wp
+   end subroutine products
 
    !> displacement(i) = cross (sum of tractions left of i - sum right of i).
    pure subroutine multiply_steps(cross, traction, displacement)

@@ -1,10 +1,10 @@
 !> Bodies given by a matrix, from datasets of any source:
 !>
 !>     x           (n)             positions of the surface nodes, increasing
-!> gap         (n), optional   initial distance of the surface from y = 0
-!> width       (n), optional   surface length of each node; default: between the midpoints to its neighbours
+!>     gap         (n), optional   initial distance of the surface from y = 0
+!>     width       (n), optional   surface length of each node; default: between the midpoints to its neighbours
 !>     compliance  (n, n) or (2n, 2n): displacements by nodal forces; or
-!> stiffness   its inverse: nodal forces by displacements, the other nodes condensed out
+!>     stiffness   its inverse: nodal forces by displacements, the other nodes condensed out
 !>
 !> Rows and columns: normal components (into the body), then tangential ones (to the right).
 module mfv_matrix_body

@@ -22,7 +22,7 @@ module mfv_matrix_compliance
    contains
       procedure :: resize
       procedure :: entries
-      procedure :: parts
+      procedure :: products
    end type matrix_compliance_type
 
    !> Relative tolerance of the symmetry check.
@@ -59,7 +59,7 @@ contains
       type(error_type), allocatable, intent(out) :: error
       real(wp), allocatable :: factor(:, :)
       real(wp) :: difference
-      integer :: info, part, place(2)
+      integer :: info, block, place(2)
 
       if (size(matrix, 1) /= size(matrix, 2) .or. (size(matrix, 1) /= nodes .and. size(matrix, 1) /= 2*nodes)) then
          call set_error(error, MFV_INPUT_ERROR, name//' has the shape '//to_text(size(matrix, 1))//' x '// &
@@ -82,13 +82,13 @@ contains
                         to_text(matrix(place(2), place(1))))
          return
       end if
-      do part = 1, size(matrix, 1)/nodes
-         factor = matrix((part - 1)*nodes + 1:part*nodes, (part - 1)*nodes + 1:part*nodes)
+      do block = 1, size(matrix, 1)/nodes
+         factor = matrix((block - 1)*nodes + 1:block*nodes, (block - 1)*nodes + 1:block*nodes)
          call dpotrf('L', nodes, factor, nodes, info)
          if (info == 0) cycle
          call set_error(error, MFV_INPUT_ERROR, name//' is not positive definite in its '// &
-                        trim(merge('normal    ', 'tangential', part == 1))//' part (rows and columns '// &
-                        to_text((part - 1)*nodes + 1)//' to '//to_text(part*nodes)//'; found at row '//to_text(max(info, 1))//')')
+                        trim(merge('normal    ', 'tangential', block == 1))//' part (rows and columns '// &
+                        to_text((block - 1)*nodes + 1)//' to '//to_text(block*nodes)//'; found at row '//to_text(max(info, 1))//')')
          return
       end do
    end subroutine check_compliance
@@ -146,23 +146,23 @@ contains
    end subroutine entries
 
    !> See mfv_compliance; only loaded columns are used.
-   subroutine parts(self, pressure, shear, part)
+   subroutine products(self, pressure, shear, by_block)
       class(matrix_compliance_type), intent(in) :: self
       real(wp), intent(in) :: pressure(:), shear(:)
-      real(wp), intent(out) :: part(:, :)
+      real(wp), intent(out) :: by_block(:, :)
       real(wp) :: traction(self%nodes)
       integer :: before(2), block, j
 
-      part = 0.0_wp
+      by_block = 0.0_wp
       do block = 1, 4
          if (.not. self%has_block(block)) cycle
          before = origin(self, block)
          traction = merge(pressure, shear, before(2) == 0)
          do j = 1, self%nodes
             if (.not. abs(traction(j)) > 0.0_wp) cycle
-            part(:, block) = part(:, block) + traction(j)*self%matrix(before(1) + 1:before(1) + self%nodes, before(2) + j)
+            by_block(:, block) = by_block(:, block) + traction(j)*self%matrix(before(1) + 1:before(1) + self%nodes, before(2) + j)
          end do
       end do
-   end subroutine parts
+   end subroutine products
 
 end module mfv_matrix_compliance

@@ -20,13 +20,13 @@ contains
    !> Poisson's ratio in plane strain, 0 in plane stress.
    elemental real(wp) function hertz_axis_von_mises(depth, out_of_plane) result(von_mises)
       real(wp), intent(in) :: depth, out_of_plane
-      real(wp) :: along, down, across, root
+      real(wp) :: tangential, down, across, root
 
       root = sqrt(1.0_wp + depth**2)
-      along = -((1.0_wp + 2.0_wp*depth**2)/root - 2.0_wp*depth)
+      tangential = -((1.0_wp + 2.0_wp*depth**2)/root - 2.0_wp*depth)
       down = -1.0_wp/root
-      across = out_of_plane*(along + down)
-      von_mises = sqrt(0.5_wp*((along - down)**2 + (down - across)**2 + (across - along)**2))
+      across = out_of_plane*(tangential + down)
+      von_mises = sqrt(0.5_wp*((tangential - down)**2 + (down - across)**2 + (across - tangential)**2))
    end function hertz_axis_von_mises
 
    !> Largest von Mises stress on the axis over p0, and its depth over the half-width.

@@ -512,18 +512,18 @@ contains
       real(wp), intent(in) :: longest
       real(wp), allocatable :: knots(:)
       real(wp), allocatable :: roots(:), points(:)
-      logical :: kept(size(patch%arc))
+      logical :: is_knot(size(patch%arc))
       !> Nodes nearer to an edge, in intervals, are not used as ends; edges at interval ends are half an interval away.
       real(wp), parameter :: apart = 0.4_wp
       integer :: i
 
       roots = [stick_edges(patch), pack(patch%contact%edge, patch%contact%rooted)]
       points = [patch%contact%edge(1), stick_edges(patch), patch%contact%edge(2)]
-      do i = 1, size(kept)
-         kept(i) = all(abs(patch%arc(i) - points) > apart*patch%width(i)) .and. &
+      do i = 1, size(is_knot)
+         is_knot(i) = all(abs(patch%arc(i) - points) > apart*patch%width(i)) .and. &
                    patch%contact%contains_place(patch%arc(i))
       end do
-      points = merged(points, pack(patch%arc, kept))
+      points = merged(points, pack(patch%arc, is_knot))
       knots = points(:1)
       do i = 2, size(points)
          if (points(i) > knots(size(knots))) &

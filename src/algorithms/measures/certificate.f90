@@ -170,13 +170,13 @@ contains
       class(certificate_type), intent(inout) :: self
       type(contact_model_type), intent(in) :: model
       type(contact_fields_type), intent(in) :: fields
-      real(wp) :: part(size(fields%pressure), 4)
+      real(wp) :: by_block(size(fields%pressure), 4)
       real(wp), dimension(size(fields%pressure)) :: rigid_normal, rigid_tangential
       real(wp) :: pressure_force, shear_force, normal_rest, tangential_rest
       integer :: i
 
       ! Sum of magnitudes by pressure and by shear, which may cancel.
-      call model%compliance%parts(fields%pressure, fields%shear, part)
+      call model%compliance%products(fields%pressure, fields%shear, by_block)
       rigid_normal = 0.0_wp
       rigid_tangential = 0.0_wp
       if (model%has_rigid_parts()) then
@@ -189,13 +189,13 @@ contains
       tangential_rest = 0.0_wp
       do i = 1, size(fields%pressure)
          self%traction = max(self%traction, abs(fields%pressure(i)), abs(fields%shear(i)))
-         self%normal = max(self%normal, abs(part(i, block_wp)), abs(part(i, block_wt)))
-         self%tangential = max(self%tangential, abs(part(i, block_up)), abs(part(i, block_ut)), abs(rigid_tangential(i)))
+         self%normal = max(self%normal, abs(by_block(i, block_wp)), abs(by_block(i, block_wt)))
+         self%tangential = max(self%tangential, abs(by_block(i, block_up)), abs(by_block(i, block_ut)), abs(rigid_tangential(i)))
          pressure_force = pressure_force + model%width(i)*abs(fields%pressure(i))
          shear_force = shear_force + model%width(i)*abs(fields%shear(i))
-         normal_rest = largest_or_nan(normal_rest, fields%normal(i) + rigid_normal(i) - part(i, block_wp) - part(i, block_wt))
-         tangential_rest = largest_or_nan(tangential_rest, fields%tangential(i) + rigid_tangential(i) - part(i, block_up) &
-                                          - part(i, block_ut))
+       normal_rest = largest_or_nan(normal_rest, fields%normal(i) + rigid_normal(i) - by_block(i, block_wp) - by_block(i, block_wt))
+         tangential_rest = largest_or_nan(tangential_rest, fields%tangential(i) + rigid_tangential(i) - by_block(i, block_up) &
+                                          - by_block(i, block_ut))
       end do
       self%tangential = max(self%tangential, model%grip*self%normal, abs(fields%motion(motion_shift)))
       self%force(motion_approach) = max(self%force(motion_approach), abs(fields%force(motion_approach)), pressure_force)

@@ -3,7 +3,7 @@
 module mfv_result_fields
    use, intrinsic :: ieee_arithmetic, only: ieee_is_nan, ieee_positive_inf, ieee_quiet_nan, ieee_value
    use mfv_body, only: body_type, shape_names
-   use mfv_body_pair, only: part_lower, part_upper
+   use mfv_body_pair, only: lower_body, upper_body
    use mfv_case, only: case_type
    use mfv_certificate, only: residual_count, residual_descriptions, residual_names
    use mfv_closed_form, only: closed_form_of, closed_form_type
@@ -312,7 +312,7 @@ contains
          end do
          do i = 1, size(bodies)
             bytes = 0
-            if (pair%deforms(i)) bytes = int(pair%part(i)%compliance%bytes())
+            if (pair%deforms(i)) bytes = int(pair%body(i)%compliance%bytes())
             call list%add(bodies(i)//'_bytes', bytes, 'bytes of the '//bodies(i)//" body's kernels or matrix")
          end do
       end associate
@@ -372,17 +372,17 @@ contains
       type(contact_state_type), intent(in) :: state
       real(wp), dimension(simulation%contact%model%nodes()) :: normal, tangential
       character(*), parameter :: prefix(2) = [character(6) :: '', 'upper_'], body(2) = [character(5) :: 'lower', 'upper']
-      integer :: part
+      integer :: side
 
-      do part = part_lower, part_upper
+      do side = lower_body, upper_body
          associate (pair => simulation%contact%model%compliance)
-            if (.not. pair%deforms(part)) cycle
-            call pair%part_displacements(part, state%fields%pressure, state%fields%shear, normal, tangential)
+            if (.not. pair%deforms(side)) cycle
+            call pair%body_displacements(side, state%fields%pressure, state%fields%shear, normal, tangential)
          end associate
-         call list%add(trim(prefix(part))//'normal_displacement', normal, along_nodes, 'length', 'displacement w of the '// &
-                       body(part)//' surface into its body')
-         call list%add(trim(prefix(part))//'tangential_displacement', modelled(simulation, tangential), along_nodes, 'length', &
-                       'displacement u of the '//body(part)//' surface to the right (not modelled without friction)')
+         call list%add(trim(prefix(side))//'normal_displacement', normal, along_nodes, 'length', 'displacement w of the '// &
+                       body(side)//' surface into its body')
+         call list%add(trim(prefix(side))//'tangential_displacement', modelled(simulation, tangential), along_nodes, 'length', &
+                       'displacement u of the '//body(side)//' surface to the right (not modelled without friction)')
       end do
    end subroutine add_displacements
 

@@ -150,7 +150,7 @@ contains
       do i = 1, size(bodies)
          words = words//', '//bodies(i)//' body '
          if (model%compliance%deforms(i)) then
-            words = words//to_text(int(model%compliance%part(i)%compliance%bytes()))//' bytes'
+            words = words//to_text(int(model%compliance%body(i)%compliance%bytes()))//' bytes'
          else
             words = words//'rigid'
          end if
