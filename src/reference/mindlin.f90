@@ -94,12 +94,12 @@ contains
    pure real(wp) function stick_half_width(self, tangential_force)
       class(mindlin_history_type), intent(in) :: self
       real(wp), intent(in) :: tangential_force
-      real(wp) :: part
+      real(wp) :: fraction
 
-      part = max(1.0_wp - abs(tangential_force)/(self%friction_coefficient*self%normal_force), 0.0_wp)
+      fraction = max(1.0_wp - abs(tangential_force)/(self%friction_coefficient*self%normal_force), 0.0_wp)
       stick_half_width = 0.0_wp
-      if (part > 0.0_wp) stick_half_width = min(self%indenter%half_width(part*self%indenter%force(self%half_width)), &
-                                                self%half_width)
+      if (fraction > 0.0_wp) stick_half_width = min(self%indenter%half_width(fraction*self%indenter%force(self%half_width)), &
+                                                    self%half_width)
    end function stick_half_width
 
    !> Shear traction at x (length), force/length^2. Equation 3.8 (whose second line misprints sqrt(1 - x^2/b^2)) on first

@@ -93,7 +93,7 @@ contains
       subroutine check_interpolation()
          real(wp), parameter :: matters = 0.02_wp, further = 1.5_wp
          real(wp), allocatable :: x(:), departure(:), spacing(:)
-         real(wp) :: part
+         real(wp) :: share
 
          x = pack(simulation%contact%model%x, contact)
          departure = abs(body%from_polyline(x))
@@ -101,18 +101,18 @@ contains
          if (maxval(spacing) <= further*simulation%contact%model%interval()) return
          associate (model => simulation%contact%model, pressure => simulation%contact%state%fields%pressure)
             if (model%scene%modulus() > 0.0_wp .and. maxval(pressure) > 0.0_wp) then
-               part = pi*model%scene%modulus()*maxval(departure/spacing)/maxval(pressure)
+               share = pi*model%scene%modulus()*maxval(departure/spacing)/maxval(pressure)
             else
-               part = maxval(departure)/max(maxval(pack(model%initial_gap, contact)) - minval(pack(model%initial_gap, contact)), &
-                                            tiny(1.0_wp))
+               share = maxval(departure)/max(maxval(pack(model%initial_gap, contact)) - minval(pack(model%initial_gap, contact)), &
+                                             tiny(1.0_wp))
             end if
          end associate
-         if (part < matters) return
+         if (share < matters) return
          if (body%interpolation == interpolation_linear .and. corners_under(body, x) <= 2) return
          call add_text(warnings, 'the profile of the '//name//' body is coarser than the mesh: its points are up to '// &
                        to_text(maxval(spacing), 3)//' apart in the contact. Straight lines and a smooth curve through them '// &
                        'differ by up to '//to_text(maxval(departure), 3)//', which changes the pressure by about '// &
-                       to_text(100.0_wp*part, 2)//' % of its peak: give more points, or '//trim(advice_for(body%interpolation)))
+                       to_text(100.0_wp*share, 2)//' % of its peak: give more points, or '//trim(advice_for(body%interpolation)))
       end subroutine check_interpolation
    end subroutine warn_of_surface
 

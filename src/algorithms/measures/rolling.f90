@@ -33,7 +33,7 @@ contains
       class(rolling_type), intent(inout) :: self
       real(wp), intent(in) :: interval, rolled(2), slid(2)
       logical, intent(in) :: forces_stay
-      real(wp) :: ends, last, part
+      real(wp) :: ends, last, fraction
       integer :: direction, i
 
       direction = 0
@@ -47,9 +47,9 @@ contains
       last = aint_down(direction*rolled(2)/interval)
       ends = last - aint_down(direction*rolled(1)/interval)
       do i = nint(min(ends, real(intervals + 1, wp))) - 1, 0, -1
-         part = ((last - i)*direction*interval - rolled(1))/(rolled(2) - rolled(1))
+         fraction = ((last - i)*direction*interval - rolled(1))/(rolled(2) - rolled(1))
          self%slid(2:) = self%slid(:intervals)
-         self%slid(1) = slid(1) + part*(slid(2) - slid(1))
+         self%slid(1) = slid(1) + fraction*(slid(2) - slid(1))
          self%passed = min(self%passed + 1, intervals + 1)
       end do
    end subroutine follow

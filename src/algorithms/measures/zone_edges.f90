@@ -342,16 +342,16 @@ contains
       real(wp), intent(in) :: power
       integer, parameter :: short = 8, steepness = 4
       real(wp), parameter :: clearly = 2.0_wp
-      real(wp) :: steady, grown, part
+      real(wp) :: steady, grown, weight
 
       steady = bend(straightened(samples, power))
       grown = clearly*bend(straightened(samples, power + 1.0_wp))
-      part = 0.0_wp
-      if (min(steady, grown) < unknown_bend) part = min(max((samples%zone - short)/real(short, wp), 0.0_wp), 1.0_wp) &
-                                                    *steady**steepness/(steady**steepness + grown**steepness)
+      weight = 0.0_wp
+      if (min(steady, grown) < unknown_bend) weight = min(max((samples%zone - short)/real(short, wp), 0.0_wp), 1.0_wp) &
+                                                      *steady**steepness/(steady**steepness + grown**steepness)
       distance = 0.0_wp
-      if (part < 1.0_wp) distance = (1.0_wp - part)*refined_distance(straightened(samples, power))
-      if (part > 0.0_wp) distance = distance + part*distance_to_zero(straightened(samples, power + 1.0_wp), .true.)
+      if (weight < 1.0_wp) distance = (1.0_wp - weight)*refined_distance(straightened(samples, power))
+      if (weight > 0.0_wp) distance = distance + weight*distance_to_zero(straightened(samples, power + 1.0_wp), .true.)
    end function distance_of_lack
 
    !> Deviation of the second to fourth value from a straight line, relative to their change; `unknown_bend` for fewer or
