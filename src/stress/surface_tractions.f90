@@ -521,7 +521,7 @@ contains
       points = [patch%contact%edge(1), stick_edges(patch), patch%contact%edge(2)]
       do i = 1, size(is_knot)
          is_knot(i) = all(abs(patch%arc(i) - points) > apart*patch%width(i)) .and. &
-                   patch%contact%contains_place(patch%arc(i))
+                      patch%contact%contains_place(patch%arc(i))
       end do
       points = merged(points, pack(patch%arc, is_knot))
       knots = points(:1)
