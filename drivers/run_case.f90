@@ -5,7 +5,7 @@ module mfv_run_case
    use mfv_command_line, only: end_program, fail
    use mfv_contact, only: contact_type, read_contact
    use mfv_error, only: error_type
-   use mfv_features, only: has_hdf5, hdf5_is_left_out
+   use mfv_features, only: has_hdf5, no_hdf5_message
    use mfv_interrupts, only: catch_interrupts
    use mfv_kinds, only: wp
    use mfv_one_thread, only: use_one_thread
@@ -49,7 +49,7 @@ contains
       call contact%summarize(seconds_now() - started, text)
       call print_text(text)
       if (.not. has_hdf5) then
-         call print_line('result              not written: '//hdf5_is_left_out)
+         call print_line('result              not written: '//no_hdf5_message)
       else if (contact%is_unfinished()) then
          call print_line('result              '//contact%checkpoint_path//' (unfinished; --resume continues)')
       else

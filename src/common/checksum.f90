@@ -1,17 +1,16 @@
-!> The checksum CRC-64 of ECMA-182 (reflected, as in the program xz): tells whether bytes are the same as before, and whether
-!> what was written is what is read.
+!> The checksum CRC-64 of ECMA-182 (reflected, as in xz), for detecting changed or corrupted bytes.
 module mfv_checksum
    use, intrinsic :: iso_fortran_env, only: int8, int64
    implicit none
    private
    public :: add_to_checksum, add_text_to_checksum
 
-   !> The polynomial, its lowest power first: C96C5795D7870F42 in hexadecimal digits.
+   !> The polynomial, lowest power first: C96C5795D7870F42 in hexadecimal.
    integer(int64), parameter :: polynomial = ior(shiftl(int(z'C96C5795', int64), 32), int(z'D7870F42', int64))
 
 contains
 
-   !> From the checksum of what came before to that with these bytes after it; it begins with 0.
+   !> Update a checksum by the bytes that follow; its initial value is 0.
    pure subroutine add_to_checksum(bytes, checksum)
       integer(int8), intent(in) :: bytes(:)
       integer(int64), intent(inout) :: checksum
@@ -31,7 +30,7 @@ contains
       checksum = not(rest)
    end subroutine add_to_checksum
 
-   !> The same for a text, with its length: two texts in a row are not their sum.
+   !> The same for a text and its length, so that the split between two texts matters.
    pure subroutine add_text_to_checksum(text, checksum)
       character(*), intent(in) :: text
       integer(int64), intent(inout) :: checksum

@@ -8,7 +8,7 @@ module mfv_clock
 
 contains
 
-   !> Wall-clock time in seconds, from any origin.
+   !> Wall-clock time in seconds, with an arbitrary origin.
    real(wp) function seconds_now()
       integer(int64) :: count, rate
 

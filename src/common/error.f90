@@ -5,7 +5,7 @@ module mfv_error
    private
    public :: error_type, set_error
 
-   !> What went wrong: a status of `mfv_status` and a message for a person.
+   !> An error: a status of `mfv_status` and a message for the user.
    type :: error_type
       integer :: status = 0
       character(:), allocatable :: message

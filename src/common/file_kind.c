@@ -1,9 +1,9 @@
-/* What kind of file a path leads to. In C because the layout of struct stat is the system's own. */
+/* Kind of file at a path. In C because the layout of struct stat depends on the system. */
 #define _XOPEN_SOURCE 700
 #include <sys/stat.h>
 
-/* 0: a regular file; 1: a directory; 2: something else, such as a pipe or a device; 3: that cannot be told, because nothing is
-   there or a directory on the way cannot be searched. */
+/* 0: a regular file; 1: a directory; 2: something else, such as a pipe or a device; 3: unknown, because it does not exist or a
+   directory of the path cannot be searched. */
 int mfv_file_kind(const char *path) {
   struct stat found;
   if (stat(path, &found) != 0) return 3;

@@ -1,8 +1,8 @@
 !> Fourier sums and transforms through FFTW.
 !>
-!> FFTW's planner is not safe in several threads, its execution is. Plans are therefore made under a mutex and kept: they
-!> are constant once made, belong to a size and to no data, and serve all objects and threads. This cache is the only
-!> thing in the library that outlives an object. When it is full, plans are made and thrown away.
+!> FFTW's planner is not thread-safe, its execution is. Plans are made under a mutex and cached: they are constant, depend on
+!> a size only, and serve all objects and threads. This cache is the only global state of the library. When it is full, plans
+!> are made for one use.
 module mfv_fourier
    use, intrinsic :: iso_c_binding
    use mfv_kinds, only: pi, wp
@@ -13,11 +13,11 @@ module mfv_fourier
 
    include 'fftw3.f03'
 
-   !> Directions of transforms: from coefficients to real values, and those of complex_transform, exp(-2 pi i j k/N) and
-   !> exp(2 pi i j k/N).
+   !> Directions of transforms: from coefficients to real values; complex_transform with exp(-2 pi i j k/N) and exp(2 pi i j
+   !> k/N).
    integer, parameter :: to_values = 1, forward = 2, backward = 3
    integer, parameter :: most_plans = 256
-   !> The boundary, bytes, at which an array is aligned.
+   !> Alignment of arrays, bytes.
    integer(c_intptr_t), parameter :: boundary = 16
 
    type :: plan_type
@@ -26,7 +26,7 @@ module mfv_fourier
       type(c_ptr) :: plan = c_null_ptr
    end type plan_type
 
-   !> Factors between transforms of real values and of half as many complex ones.
+   !> Factors between a real transform and the complex one of half the length.
    type :: turns_type
       integer :: half = 0
       complex(wp), pointer, contiguous :: turns(:) => null()
@@ -36,7 +36,7 @@ module mfv_fourier
    type(turns_type) :: all_turns(most_plans)
    integer :: plan_count = 0, turn_count = 0
 
-   !> Storage of a pthread_mutex_t, which is ready for use when it is zero; 40 bytes on Linux, 64 on macOS.
+   !> Storage of a pthread_mutex_t, initialised by zeros; 40 bytes on Linux, 64 on macOS.
    integer(c_long), target :: mutex(16) = 0
 
    interface
@@ -62,46 +62,46 @@ contains
       complex(wp), intent(inout) :: coefficients(:)
       real(wp), intent(out) :: values(:)
       type(c_ptr) :: plan
-      logical :: kept
+      logical :: is_cached
       integer :: n
 
       n = size(values)
       ! FFTW adds the mirror image of every coefficient but the first and, for even N, the last.
       coefficients(2:(n + 1)/2) = 0.5_wp*coefficients(2:(n + 1)/2)
-      call get_plan(n, to_values, plan, kept, .false.)
+      call get_plan(n, to_values, plan, is_cached, .false.)
       call fftw_execute_dft_c2r(plan, coefficients, values)
-      if (.not. kept) call throw_away(plan)
+      if (.not. is_cached) call discard(plan)
    end subroutine fourier_sum
 
    !> `transformed(k+1)` = sum over j = 0 to N-1 of values(j+1) exp(-/+ 2 pi i j k/N), N = size(values) = size(transformed);
-   !> `direction`: forward (-) or backward (+). There and back multiplies by N. `values` is used as work space.
+   !> `direction`: forward (-) or backward (+). Both in turn multiply by N. `values` is used as work space.
    subroutine complex_transform(direction, values, transformed)
       integer, intent(in) :: direction
       complex(wp), intent(inout), contiguous, target :: values(:)
       complex(wp), intent(out), contiguous, target :: transformed(:)
       type(c_ptr) :: plan
-      logical :: kept
+      logical :: is_cached
 
-      call get_plan(size(values), direction, plan, kept, is_aligned(c_loc(values)) .and. is_aligned(c_loc(transformed)))
+      call get_plan(size(values), direction, plan, is_cached, is_aligned(c_loc(values)) .and. is_aligned(c_loc(transformed)))
       call fftw_execute_dft(plan, values, transformed)
-      if (.not. kept) call throw_away(plan)
+      if (.not. is_cached) call discard(plan)
    end subroutine complex_transform
 
    !> `spectrum(m+1)` = sum over k of values(k+1) exp(-2 pi i m k/N), m = 0 to N/2; N = size(values), even, size(spectrum) =
-   !> N/2 + 1. By a complex transform of half the length (even values real, odd ones imaginary), whose plan is made in a tenth
-   !> of the time that FFTW takes over one for real values. `values` is used as work space.
+   !> N/2 + 1. By a complex transform of half the length (even values real, odd ones imaginary), which FFTW plans ten times
+   !> faster than a real one. `values` is used as work space.
    subroutine real_transform(values, spectrum)
       real(wp), intent(inout), contiguous, target :: values(:)
       complex(wp), intent(out), contiguous, target :: spectrum(:)
       complex(wp), pointer, contiguous :: turns(:), pairs(:)
       real(wp) :: even(2), odd(2), sums(2), differences(2)
-      logical :: kept
+      logical :: is_cached
       integer :: k, l, half
 
       half = size(values)/2
       call c_f_pointer(c_loc(values), pairs, [half])
       call complex_transform(forward, pairs, spectrum(:half))
-      call get_turns(half, turns, kept)
+      call get_turns(half, turns, is_cached)
       spectrum(half + 1) = real(spectrum(1), wp) - aimag(spectrum(1))
       spectrum(1) = real(spectrum(1), wp) + aimag(spectrum(1))
       do k = 2, half/2 + 1
@@ -114,7 +114,7 @@ contains
          spectrum(k) = cmplx(even(1) + odd(1), even(2) + odd(2), wp)
          spectrum(l) = cmplx(even(1) - odd(1), odd(2) - even(2), wp)
       end do
-      if (.not. kept) deallocate (turns)
+      if (.not. is_cached) deallocate (turns)
    end subroutine real_transform
 
    !> N times the values of which `spectrum` is the real_transform; N = size(values), even, size(spectrum) = N/2 + 1. `spectrum`
@@ -124,11 +124,11 @@ contains
       real(wp), intent(out), contiguous, target :: values(:)
       complex(wp), pointer, contiguous :: turns(:), pairs(:)
       real(wp) :: even(2), odd(2), sums(2), differences(2), first, last
-      logical :: kept
+      logical :: is_cached
       integer :: k, l, half
 
       half = size(values)/2
-      call get_turns(half, turns, kept)
+      call get_turns(half, turns, is_cached)
       first = real(spectrum(1), wp)
       last = real(spectrum(half + 1), wp)
       spectrum(1) = cmplx(first + last, first - last, wp)
@@ -144,18 +144,18 @@ contains
       end do
       call c_f_pointer(c_loc(values), pairs, [half])
       call complex_transform(backward, spectrum(:half), pairs)
-      if (.not. kept) deallocate (turns)
+      if (.not. is_cached) deallocate (turns)
    end subroutine back_transform
 
-   !> Whether an address is on a boundary that vector instructions want.
+   !> Whether an address is aligned for vector instructions.
    logical function is_aligned(address)
       type(c_ptr), intent(in) :: address
 
       is_aligned = modulo(transfer(address, boundary), boundary) == 0
    end function is_aligned
 
-   !> The smallest length, not less than `at_least` nor than 16, that is 1, 5 or 15 times a power of 2: transforms of many
-   !> lengths then need few plans, and FFTW is slower at 3 and 9 times a power than at the next longer one.
+   !> Smallest length, at least `at_least` and 16, that is 1, 5 or 15 times a power of 2: few plans serve many lengths, and 3
+   !> and 9 times a power are slower in FFTW than the next longer one.
    pure integer function fast_length(at_least)
       integer, intent(in) :: at_least
       integer, parameter :: odd(3) = [1, 5, 15]
@@ -180,19 +180,19 @@ contains
       code = pthread_mutex_unlock(c_loc(mutex))
    end function plans_kept
 
-   !> A plan for a size and a direction. `kept`: whether it stays in the cache. `aligned`: whether its arrays begin on a
-   !> boundary of 16 bytes.
-   subroutine get_plan(size, direction, plan, kept, aligned)
+   !> Get a plan for a size and a direction. `is_cached`: it must not be destroyed. `aligned`: its arrays are aligned to 16
+   !> bytes.
+   subroutine get_plan(size, direction, plan, is_cached, aligned)
       integer, intent(in) :: size, direction
       type(c_ptr), intent(out) :: plan
-      logical, intent(out) :: kept
+      logical, intent(out) :: is_cached
       logical, intent(in) :: aligned
       integer(c_int) :: code
       integer :: i
 
       code = pthread_mutex_lock(c_loc(mutex))
       plan = c_null_ptr
-      kept = .true.
+      is_cached = .true.
       do i = 1, plan_count
          if (plans(i)%size /= size .or. plans(i)%direction /= direction .or. (plans(i)%aligned .neqv. aligned)) cycle
          plan = plans(i)%plan
@@ -200,8 +200,8 @@ contains
       end do
       if (.not. c_associated(plan)) then
          plan = new_plan(size, direction, aligned)
-         kept = plan_count < most_plans
-         if (kept) then
+         is_cached = plan_count < most_plans
+         if (is_cached) then
             plan_count = plan_count + 1
             plans(plan_count) = plan_type(size, direction, aligned, plan)
          end if
@@ -209,17 +209,17 @@ contains
       code = pthread_mutex_unlock(c_loc(mutex))
    end subroutine get_plan
 
-   !> The factors -i exp(-pi i k/half), k = 1 to half/2. `kept`: whether they stay in the cache.
-   subroutine get_turns(half, turns, kept)
+   !> The factors -i exp(-pi i k/half), k = 1 to half/2. `is_cached`: they must not be deallocated.
+   subroutine get_turns(half, turns, is_cached)
       integer, intent(in) :: half
       complex(wp), pointer, contiguous, intent(out) :: turns(:)
-      logical, intent(out) :: kept
+      logical, intent(out) :: is_cached
       integer(c_int) :: code
       integer :: i, k
 
       code = pthread_mutex_lock(c_loc(mutex))
       turns => null()
-      kept = .true.
+      is_cached = .true.
       do i = 1, turn_count
          if (all_turns(i)%half == half) turns => all_turns(i)%turns
       end do
@@ -228,8 +228,8 @@ contains
          do k = 1, half/2
             turns(k) = -cmplx(sin(pi*k/half), cos(pi*k/half), wp)
          end do
-         kept = turn_count < most_plans
-         if (kept) then
+         is_cached = turn_count < most_plans
+         if (is_cached) then
             turn_count = turn_count + 1
             all_turns(turn_count) = turns_type(half, turns)
          end if
@@ -237,7 +237,7 @@ contains
       code = pthread_mutex_unlock(c_loc(mutex))
    end subroutine get_turns
 
-   !> A plan that measures nothing.
+   !> A plan without measurements of speed.
    function new_plan(size, direction, aligned) result(plan)
       integer, intent(in) :: size, direction
       logical, intent(in) :: aligned
@@ -258,13 +258,13 @@ contains
       end if
    end function new_plan
 
-   subroutine throw_away(plan)
+   subroutine discard(plan)
       type(c_ptr), intent(in) :: plan
       integer(c_int) :: code
 
       code = pthread_mutex_lock(c_loc(mutex))
       call fftw_destroy_plan(plan)
       code = pthread_mutex_unlock(c_loc(mutex))
-   end subroutine throw_away
+   end subroutine discard
 
 end module mfv_fourier

@@ -1,7 +1,7 @@
-!> Bindings to the parts of the GNU Scientific Library that the project uses.
+!> Bindings to the GNU Scientific Library.
 !>
-!> GSL's default error handler aborts the process and replacing it would change the state of a host program, so
-!> every caller in this project stays inside the domain in which these functions cannot fail.
+!> GSL's default error handler aborts the process, and replacing it would change the state of the host program: callers must
+!> stay inside the domain in which these functions cannot fail.
 module mfv_gsl
    use, intrinsic :: iso_c_binding, only: c_double, c_int, c_ptr, c_funptr, c_size_t
    implicit none
@@ -10,22 +10,21 @@ module mfv_gsl
    !> Precision mode of the elliptic integrals: full double precision.
    integer(c_int), parameter :: GSL_PREC_DOUBLE = 0
 
-   !> A function of one variable with its parameters, as GSL's solvers take it.
+   !> A function of one variable and its parameters, for GSL's solvers.
    type, bind(C) :: gsl_function
       type(c_funptr) :: function
       type(c_ptr) :: params
    end type gsl_function
 
-   !> A function of several variables with its parameters.
+   !> A function of several variables and its parameters.
    type, bind(C) :: gsl_multimin_function
       type(c_funptr) :: f
       integer(c_size_t) :: n
       type(c_ptr) :: params
    end type gsl_multimin_function
 
-   !> Brent's bracketing root solver, linear and Steffen's monotone cubic interpolation, Nelder and Mead's simplex search: constants
-   !> of
-   !> GSL. They must be public here, or the linker would take them for variables of our own.
+   !> Constants of GSL: Brent's root solver, linear and Steffen's monotone cubic interpolation, Nelder and Mead's simplex
+   !> search. Public, or the linker would treat them as variables of this library.
    type(c_ptr), protected, bind(C, name='gsl_root_fsolver_brent') :: gsl_root_fsolver_brent
    type(c_ptr), protected, bind(C, name='gsl_interp_linear') :: gsl_interp_linear
    type(c_ptr), protected, bind(C, name='gsl_interp_steffen') :: gsl_interp_steffen

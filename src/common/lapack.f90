@@ -1,4 +1,4 @@
-!> What the library uses of BLAS and LAPACK (double precision; see the Netlib documents of each).
+!> Interfaces to BLAS and LAPACK (double precision; documented by Netlib).
 module mfv_lapack
    use mfv_kinds, only: wp
    implicit none

@@ -1,4 +1,4 @@
-!> Logarithms of ratios near one, to full relative accuracy (Fortran has no log1p).
+!> Logarithms of ratios near one to full relative accuracy (Fortran has no log1p).
 module mfv_logarithms
    use mfv_kinds, only: wp
    implicit none
@@ -7,7 +7,7 @@ module mfv_logarithms
 
 contains
 
-   !> ln(last/first) of two positive numbers whose difference last - first is known better than by subtraction.
+   !> ln(last/first) of two positive numbers whose difference last - first is known more accurately than by subtraction.
    elemental real(wp) function log_ratio(first, last, difference)
       real(wp), intent(in) :: first, last, difference
 

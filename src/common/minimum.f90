@@ -1,4 +1,4 @@
-!> The minimum of a function of several variables, by GSL's simplex search (Nelder and Mead).
+!> Minimum of a function of several variables, by GSL's simplex search (Nelder and Mead).
 module mfv_minimum
    use, intrinsic :: ieee_arithmetic, only: ieee_is_finite
    use, intrinsic :: iso_c_binding, only: c_double, c_f_pointer, c_funloc, c_loc, c_ptr, c_size_t
@@ -8,7 +8,7 @@ module mfv_minimum
    private
    public :: minimum_near, objective_type
 
-   !> A function to be made small, with what it needs to know.
+   !> An objective function and its data.
    type, abstract :: objective_type
    contains
       procedure(value_interface), deferred :: value
@@ -24,7 +24,7 @@ module mfv_minimum
       end function value_interface
    end interface
 
-   !> What GSL hands back to `evaluate`.
+   !> Parameter of the GSL callback.
    type :: context_type
       class(objective_type), pointer :: objective
       integer :: variables = 0
@@ -32,9 +32,8 @@ module mfv_minimum
 
 contains
 
-   !> A local minimum of an objective near `x`, searched from steps of the sizes `step`, shape of x, until the simplex is 1e-8 of
-   !> its
-   !> first size or after 400 iterations. `x` becomes the place, `value` what the objective has there.
+   !> Local minimum of an objective near `x`, with initial steps `step`, shape of x; stops at 1e-8 of the initial simplex size
+   !> or after 400 iterations. Returns the point in `x` and the objective in `value`.
    subroutine minimum_near(objective, step, x, value)
       class(objective_type), intent(in), target :: objective
       real(wp), intent(in) :: step(:)
@@ -90,7 +89,7 @@ contains
       end do
    end function values_of
 
-   !> The function as GSL calls it, which ends the process where a value is not finite.
+   !> Callback of GSL, which aborts the process if a value is not finite.
    function evaluate_objective(x, params) result(value) bind(C, name='')
       type(c_ptr), value :: x, params
       real(c_double) :: value

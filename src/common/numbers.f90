@@ -1,4 +1,4 @@
-!> Numbers as texts: reading one, writing one, and the sizes that are taken.
+!> Real numbers as text: reading, writing, and the accepted range.
 module mfv_numbers
    use, intrinsic :: ieee_arithmetic, only: ieee_is_finite
    use, intrinsic :: ieee_exceptions, only: ieee_flag_type, ieee_get_flag, ieee_get_halting_mode, ieee_inexact, ieee_overflow, &
@@ -9,13 +9,13 @@ module mfv_numbers
    private
    public :: read_real, write_real, is_reasonable, largest_size, reasonable_sizes
 
-   !> Sizes of reals that are taken, whatever the unit; beyond them squares and products overflow, or vanish.
+   !> Accepted magnitudes, in any unit; outside, squares and products overflow or underflow.
    real(wp), parameter :: smallest_size = 1.0e-100_wp, largest_size = 1.0e100_wp
-   character(*), parameter :: reasonable_sizes = 'a number other than 0 must be of a size from 1e-100 to 1e100'
+   character(*), parameter :: reasonable_sizes = 'numbers other than 0 must have a magnitude from 1e-100 to 1e100'
 
 contains
 
-   !> A finite number such as 3, -0.5, 1e-3 or 2.5D+3. `is_right`: whether the text is one; `value` is 0 where it is not.
+   !> Read a finite number such as 3, -0.5, 1e-3 or 2.5D+3. `is_right`: whether the text is one; otherwise `value` is 0.
    pure subroutine read_real(text, value, is_right)
       character(*), intent(in) :: text
       real(wp), intent(out) :: value
@@ -39,8 +39,8 @@ contains
       if (.not. is_right) value = 0.0_wp
    end subroutine read_real
 
-   !> Whether a text has nothing but the characters of a number, with signs only at its start and after the letter of its exponent.
-   !> Fortran's own reading takes more than anybody means: 2*3 for two numbers, 1.5+3 for 1500.
+   !> Whether a text consists of the characters of a number, with signs only first and after the exponent letter. Fortran's
+   !> own input also accepts 2*3 (two numbers) and 1.5+3 (1500).
    pure logical function is_plain(text)
       character(*), intent(in) :: text
       character(*), parameter :: letters = 'eEdD', signs = '+-'
@@ -52,7 +52,7 @@ contains
       end do
    end function is_plain
 
-   !> The shortest text that is read as this finite number; of 15 digits where these are enough, less the zeros at their end.
+   !> Shortest text that is read as this finite number, without trailing zeros; of 15 digits where these suffice.
    pure subroutine write_real(value, text)
       real(wp), intent(in) :: value
       character(:), allocatable, intent(out) :: text
@@ -68,7 +68,7 @@ contains
       end do
    end subroutine write_real
 
-   !> Whether a real is of a size that is taken.
+   !> Whether a real number is within the accepted range.
    elemental logical function is_reasonable(value)
       real(wp), intent(in) :: value
 

@@ -1,4 +1,4 @@
-!> Roots and quadrature through GSL, with the function given as a plain procedure and its parameters as an array.
+!> Roots and quadrature by GSL, for plain procedures with an array of parameters.
 module mfv_numerics
    use, intrinsic :: iso_c_binding, only: c_double, c_f_pointer, c_funloc, c_int, c_loc, c_ptr, c_size_t
    use mfv_gsl
@@ -16,7 +16,7 @@ module mfv_numerics
       end function parametric_function
    end interface
 
-   !> What GSL hands back to `evaluate`.
+   !> Parameter of the GSL callback.
    type :: context_type
       procedure(parametric_function), pointer, nopass :: f
       real(wp), allocatable :: parameters(:)
@@ -24,8 +24,8 @@ module mfv_numerics
 
 contains
 
-   !> Root of `f(x, parameters)` between `lower` and `upper`, by Brent's method, to round-off.
-   !> An end is returned where the sign does not change: the nearest there is to a root (no error).
+   !> Root of `f(x, parameters)` between `lower` and `upper`, by Brent's method, to machine precision. Without a change of
+   !> sign, the end nearer to a root (no error).
    function root_between(f, parameters, lower, upper) result(root)
       procedure(parametric_function) :: f
       real(wp), intent(in) :: parameters(:), lower, upper
@@ -79,7 +79,7 @@ contains
       call gsl_integration_glfixed_table_free(table)
    end function gauss_legendre
 
-   !> The function as GSL calls it: a module procedure, so that no executable stack is needed.
+   !> Callback of GSL: a module procedure, which needs no executable stack.
    function evaluate(x, params) result(value) bind(C, name='')
       real(c_double), value :: x
       type(c_ptr), value :: params

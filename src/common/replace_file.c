@@ -1,5 +1,5 @@
-/* Replacing a file as a whole: what is written beside it takes its place when it is on the disk. In C because open flags, file
-   modes and errno are the system's own. */
+/* Atomic replacement of a file: a new file is written beside it, flushed to disk and renamed. In C because open flags, file modes
+   and errno depend on the system. */
 #define _XOPEN_SOURCE 700
 #include <errno.h>
 #include <fcntl.h>
@@ -10,12 +10,12 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-/* In place of an errno: what is there is a device, a pipe or the like. */
+/* Instead of an errno: the existing file is a device, a pipe or the like. */
 enum { NOT_REGULAR = -1 };
 
-/* Write bytes where the open file is, all of them: 0, or the errno of what failed. */
+/* Write all bytes to an open file. Returns 0 or an errno. */
 int mfv_write_all(int descriptor, const char *bytes, size_t count) {
-  /* More at once is not written by every system. */
+  /* Some systems write no more at once. */
   const size_t most = 1 << 30;
   ssize_t done;
   while (count > 0) {
@@ -28,8 +28,8 @@ int mfv_write_all(int descriptor, const char *bytes, size_t count) {
   return 0;
 }
 
-/* Make an empty file beside `target` under the name `part`, with the mode of what is there, and as far as the system allows its
-   owner. What is there must be nothing, or a regular file that may be written. 0, or what failed. */
+/* Create an empty file beside `target` with the name `part`, and the mode and, if permitted, the owner of `target`. `target` must not
+   exist or be a writable regular file. Returns 0 or an errno. */
 static int make_part(const char *target, char *part, size_t length, int *descriptor) {
   struct stat old;
   int number = 0, is_there = stat(target, &old) == 0;
@@ -46,13 +46,13 @@ static int make_part(const char *target, char *part, size_t length, int *descrip
   return is_there && fchmod(*descriptor, old.st_mode & 0777) != 0 ? errno : 0;
 }
 
-/* Have the disk take a file, or the entries of a folder. A file system that cannot is no failure. */
+/* Flush a file or a folder to disk. No failure on file systems without support. */
 static int sync_open(int descriptor) {
   if (fsync(descriptor) == 0 || errno == EINVAL || errno == ENOTSUP || errno == ENOSYS) return 0;
   return errno;
 }
 
-/* Have the disk take the entry of `path`, which is then changed. A folder that may be written and not read is no failure. */
+/* Flush the folder of `path`; `path` is modified. No failure for a folder without read permission. */
 static int sync_folder(char *path) {
   int code, descriptor = open(dirname(path), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
   if (descriptor < 0) return 0;
@@ -61,9 +61,9 @@ static int sync_folder(char *path) {
   return code;
 }
 
-/* Replace the file at `path` (that which it names, where it is a symbolic link) by `bytes`; without bytes (null) only make and
-   remove the file that would take its place. 0, or what failed: then the old file is there, or, with `is_in_place`, the new one,
-   whose entry in the folder a power cut could undo. */
+/* Replace the file at `path` (the target of a symbolic link) by `bytes`; without bytes (null) only create and remove the new file.
+   Returns 0 or an errno: then the old file is unchanged or, with `is_in_place`, replaced by the new one, which may be lost in a
+   power cut. */
 int mfv_replace_file(const char *path, const char *bytes, size_t count, int *is_in_place) {
   char *target = realpath(path, NULL), *part;
   size_t length;
@@ -87,7 +87,7 @@ int mfv_replace_file(const char *path, const char *bytes, size_t count, int *is_
   return code;
 }
 
-/* What such a code means, in words. */
+/* Description of such a code. */
 void mfv_describe_error(int code, char *text, size_t length) {
   if (code == NOT_REGULAR)
     snprintf(text, length, "it is no regular file");

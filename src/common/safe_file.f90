@@ -1,8 +1,8 @@
-!> Replacing a file safely: the new one is written beside the old one, brought to the disk, and renamed. Whatever happens, a kill
-!> or a power cut, there is the old file or the new one under the name. A kill leaves PATH.part and a number, which can be deleted.
+!> Safe replacement of a file: the new file is written beside the old one, flushed to disk and renamed. After a kill or power
+!> cut there is the old or the new file. A kill may leave PATH.part and a number, which can be deleted.
 !>
-!> A symbolic link stays one: the file that it names is replaced. The new file has the mode (and owner, where that may be) of the
-!> old one.
+!> A symbolic link is preserved: its target is replaced. The new file has the mode, and if permitted the owner, of the old
+!> one.
 module mfv_safe_file
    use, intrinsic :: iso_c_binding
    use, intrinsic :: iso_fortran_env, only: int8
@@ -47,8 +47,8 @@ module mfv_safe_file
 
 contains
 
-   !> Whether a file could be written at `path`. Error MFV_FILE_ERROR, 'PATH cannot be written: ' and why: no such folder, no
-   !> permission (for the folder, or for a file that is there), a directory, no regular file.
+   !> Check that a file can be written at `path`. Error MFV_FILE_ERROR, 'PATH cannot be written: ' and the reason: missing
+   !> folder, no permission (for folder or existing file), a directory, not a regular file.
    subroutine check_replaceable(path, error)
       character(*), intent(in) :: path
       type(error_type), allocatable, intent(out) :: error
@@ -56,9 +56,8 @@ contains
       call replace(path, error)
    end subroutine check_replaceable
 
-   !> Put these bytes in place of the file at `path`. Error MFV_FILE_ERROR, as of check_replaceable, or a full disk for one: the
-   !> file that was there still is; or, as the message then says, the new one is there and only its entry in the folder is
-   !> perhaps not on the disk.
+   !> Replace the file at `path` by these bytes. Error MFV_FILE_ERROR, as in check_replaceable, or a full disk: the old file
+   !> is unchanged; or, as the message says, the new file exists but may be lost in a power cut.
    subroutine replace_file(path, bytes, error)
       character(*), intent(in) :: path
       integer(int8), intent(in) :: bytes(:)
@@ -67,7 +66,7 @@ contains
       call replace(path, error, bytes)
    end subroutine replace_file
 
-   !> The same; without bytes nothing is replaced.
+   !> The same; without bytes only a check.
    subroutine replace(path, error, bytes)
       character(*), intent(in) :: path
       type(error_type), allocatable, intent(out) :: error
@@ -83,14 +82,14 @@ contains
       if (code == 0) return
       call describe_code(code, why)
       if (is_in_place /= 0) then
-         call set_error(error, MFV_FILE_ERROR, path//' is written, but a power cut could still undo that: its folder cannot '// &
-                        'be brought to the disk: '//why)
+         call set_error(error, MFV_FILE_ERROR, path//' is written, but may be lost in a power cut: its folder cannot '// &
+                        'be flushed to disk: '//why)
       else
          call set_error(error, MFV_FILE_ERROR, path//' cannot be written: '//why)
       end if
    end subroutine replace
 
-   !> Write a text to an open file of the system. `why`: allocated where that failed, in the system's words.
+   !> Write a text to a file descriptor. `why`: the reason of a failure, by the operating system; else unallocated.
    subroutine write_all(descriptor, text, why)
       integer, intent(in) :: descriptor
       character(*), intent(in) :: text
@@ -101,7 +100,7 @@ contains
       if (code /= 0) call describe_code(code, why)
    end subroutine write_all
 
-   !> Delete a file, if it is there.
+   !> Delete a file if it exists.
    subroutine delete_path(path)
       character(*), intent(in) :: path
       integer :: code
@@ -109,7 +108,7 @@ contains
       code = c_remove(path//c_null_char)
    end subroutine delete_path
 
-   !> The words of the system for its error `code`.
+   !> Description of an error `code` by the operating system.
    subroutine describe_code(code, words)
       integer(c_int), intent(in) :: code
       character(:), allocatable, intent(out) :: words

@@ -1,5 +1,5 @@
-!> What a run or a call can end with. Constants and texts come from include/mfv_status.def,
-!> the one list that the C header and the Python package use too.
+!> Status codes of runs and calls. Constants and texts come from include/mfv_status.def, the common list of Fortran, C and
+!> Python.
 module mfv_status
    implicit none
    private
@@ -9,12 +9,12 @@ module mfv_status
 #include "mfv_status.def"
 #undef MFV_STATUS
 
-   !> No text in the list is longer: the compiler warns of one that does not fit.
+   !> Upper limit of the length of the texts: the compiler warns if one does not fit.
    integer, parameter :: longest = 80
 
 contains
 
-   !> Outcome of a status in words, as the result file has it; "unknown status" for a code not in the list.
+   !> Outcome of a status in words, as in the result file; "unknown status" for an unknown code.
    pure function status_outcome(status) result(words)
       integer, intent(in) :: status
       character(len=len_trim(padded_outcome(status))) :: words
@@ -35,7 +35,7 @@ contains
       end select
    end function padded_outcome
 
-   !> One clause that explains a status to a user; "not in the list of statuses" for an unknown code.
+   !> Explanation of a status for users, one clause; "not in the list of statuses" for an unknown code.
    pure function status_explanation(status) result(words)
       integer, intent(in) :: status
       character(len=len_trim(padded_explanation(status))) :: words
@@ -56,7 +56,7 @@ contains
       end select
    end function padded_explanation
 
-   !> Exit code with which the programs end for a status; -1 for an unknown code.
+   !> Exit code of the programs for a status; -1 for an unknown code.
    pure integer function status_exit_code(status) result(exit_value)
       integer, intent(in) :: status
 

@@ -1,8 +1,7 @@
-!> Small text helpers: numbers to text, lower case, C strings, the nearest known name.
+!> Text utilities: numbers as text, lower case, C strings, nearest known name.
 !>
-!> A function here, as everywhere in the library, tells the length of its text beforehand by a specification function, and
-!> a text that cannot be told beforehand comes from a subroutine: gfortran keeps the length of a deferred-length function
-!> result in static memory, where two threads mix them up.
+!> A function in this library specifies the length of its text by a specification function; other texts come from subroutines:
+!> gfortran stores the length of a deferred-length function result in static memory, which is not thread-safe.
 module mfv_strings
    use, intrinsic :: iso_c_binding, only: c_char, c_null_char
    use mfv_kinds, only: wp
@@ -16,24 +15,24 @@ module mfv_strings
       character(:), allocatable :: text
    end type string_type
 
-   !> Shortest readable text of an integer or a real.
+   !> Shortest readable text of an integer or real number.
    interface to_text
       module procedure integer_to_text
       module procedure real_to_text
       module procedure real_to_text_digits
    end interface to_text
 
-   !> Significant digits of a real unless told.
+   !> Default number of significant digits.
    integer, parameter :: usual_digits = 6
-   !> Room for any number.
+   !> Length that any number fits.
    integer, parameter :: longest_number = 48
-   !> Bytes of a text that a message shows.
+   !> Longest text, bytes, that is quoted in a message.
    integer, parameter :: longest_shown = 80
    character(*), parameter :: cut_mark = '...'
 
 contains
 
-   !> A whole number.
+   !> An integer.
    pure function integer_to_text(value) result(text)
       integer, intent(in) :: value
       character(len=len_trim(padded_integer(value))) :: text
@@ -41,7 +40,7 @@ contains
       text = padded_integer(value)
    end function integer_to_text
 
-   !> A whole number, padded with blanks.
+   !> An integer, padded with blanks.
    pure function padded_integer(value) result(text)
       integer, intent(in) :: value
       character(len=longest_number) :: text
@@ -49,7 +48,7 @@ contains
       write (text, '(i0)') value
    end function padded_integer
 
-   !> A real with up to `usual_digits` significant digits.
+   !> A real number with up to `usual_digits` significant digits.
    pure function real_to_text(value) result(text)
       real(wp), intent(in) :: value
       character(len=len_trim(padded_real(value, usual_digits))) :: text
@@ -57,7 +56,7 @@ contains
       text = padded_real(value, usual_digits)
    end function real_to_text
 
-   !> A real with up to `digits` significant digits.
+   !> A real number with up to `digits` significant digits.
    pure function real_to_text_digits(value, digits) result(text)
       real(wp), intent(in) :: value
       integer, intent(in) :: digits
@@ -66,7 +65,7 @@ contains
       text = padded_real(value, digits)
    end function real_to_text_digits
 
-   !> A real with up to `digits` significant digits, without trailing zeros; padded with blanks.
+   !> A real number with up to `digits` significant digits, without trailing zeros; padded with blanks.
    pure function padded_real(value, digits) result(text)
       real(wp), intent(in) :: value
       integer, intent(in) :: digits
@@ -81,7 +80,7 @@ contains
       end if
    end function padded_real
 
-   !> A real in the form 0.25 or -100; padded with blanks.
+   !> A real number in the form 0.25 or -100; padded with blanks.
    pure function without_exponent(value, digits) result(text)
       real(wp), intent(in) :: value
       integer, intent(in) :: digits
@@ -95,7 +94,7 @@ contains
       if (text(1:2) == '-.') text = '-0'//text(2:longest_number - 1)
    end function without_exponent
 
-   !> A real in the form 2.8e-4 or 1e6; NaN and Infinity; padded with blanks.
+   !> A real number in the form 2.8e-4 or 1e6; NaN and Infinity; padded with blanks.
    pure function with_exponent(value, digits) result(text)
       real(wp), intent(in) :: value
       integer, intent(in) :: digits
@@ -114,7 +113,7 @@ contains
       write (text, '(2a,i0)') trim(mantissa), 'e', exponent
    end function with_exponent
 
-   !> Decimals that leave `digits` significant digits of a value of moderate size.
+   !> Decimals for `digits` significant digits of a value of moderate magnitude.
    pure integer function decimals_for(value, digits) result(decimals)
       real(wp), intent(in) :: value
       integer, intent(in) :: digits
@@ -123,7 +122,7 @@ contains
       if (abs(value) > 0.0_wp) decimals = max(digits - 1 - floor(log10(abs(value))), 0)
    end function decimals_for
 
-   !> '2.500' to '2.5', '3.' to '3', '.0' to '0'.
+   !> Remove trailing zeros: '2.500' to '2.5', '3.' to '3', '.0' to '0'.
    pure subroutine cut_trailing_zeros(number)
       character(*), intent(inout) :: number
       integer :: last
@@ -136,7 +135,7 @@ contains
       if (number == '' .or. number == '-') number = '0'
    end subroutine cut_trailing_zeros
 
-   !> `text` with A-Z turned into a-z.
+   !> `text` in lower case.
    pure function lower_case(text) result(lower)
       character(*), intent(in) :: text
       character(len=len(text)) :: lower
@@ -148,7 +147,7 @@ contains
       end do
    end function lower_case
 
-   !> Append `text` to a list of texts. By move_alloc: gfortran leaks the components of arrays that a constructor joins.
+   !> Append `text` to a list of texts. By move_alloc: gfortran leaks the components of concatenated arrays.
    pure subroutine add_text(texts, text)
       type(string_type), allocatable, intent(inout) :: texts(:)
       character(*), intent(in) :: text
@@ -180,14 +179,14 @@ contains
       end do
    end function list_of_words
 
-   !> Whether a word is one of those of a text that are separated by blanks.
+   !> Whether a word is in a list of words separated by blanks.
    pure logical function has_word(words, word)
       character(*), intent(in) :: words, word
 
       has_word = word /= '' .and. index(trim(word), ' ') == 0 .and. index(' '//words//' ', ' '//trim(word)//' ') > 0
    end function has_word
 
-   !> `text` between apostrophes.
+   !> `text` in single quotation marks.
    pure function quoted(text) result(with_quotes)
       character(*), intent(in) :: text
       character(len=len(text) + 2) :: with_quotes
@@ -195,7 +194,7 @@ contains
       with_quotes = "'"//text//"'"
    end function quoted
 
-   !> `text` for a message: cut, between two characters of UTF-8, where it is long.
+   !> `text` for a message: truncated if long, between two UTF-8 characters.
    pure function shortened(text) result(short)
       character(*), intent(in) :: text
       character(len=length_of_shortened(text)) :: short
@@ -220,7 +219,7 @@ contains
       length = length + len(cut_mark)
    end function length_of_shortened
 
-   !> The entry of `names` that is fewest letter changes (Levenshtein) away from `name`; empty when none is near.
+   !> The entry of `names` with the fewest letter changes (Levenshtein) from `name`; empty without a similar one.
    pure subroutine find_nearest_name(name, names, nearest)
       character(*), intent(in) :: name
       type(string_type), intent(in) :: names(:)
@@ -265,7 +264,7 @@ contains
       end do
    end function from_c
 
-   !> Characters before the null.
+   !> Number of characters before the null.
    pure integer function length_of_c(c_text) result(length)
       character(kind=c_char), intent(in) :: c_text(*)
 
@@ -275,7 +274,7 @@ contains
       end do
    end function length_of_c
 
-   !> Copy `text` into a C buffer of `capacity` characters, cut where it does not fit, always null-terminated.
+   !> Copy `text` into a C buffer of `capacity` characters, truncated if necessary, always null-terminated.
    pure subroutine copy_to_c(text, buffer, capacity)
       character(*), intent(in) :: text
       integer, intent(in) :: capacity

@@ -1,7 +1,5 @@
-!> Bodies: their shape near the contact, their material, and the compliance that goes with them.
-!>
-!> The pole of every body is at x = 0, y = 0 before the bodies deform; the lower body is below, the upper one above, each
-!> seen from its own side: `recess` is how far its surface recedes from the common tangent at the pole.
+!> Bodies: shape near the contact, material and compliance. Before deformation they touch at x = 0, y = 0, the lower body
+!> below. `recess` is the distance of a body's surface from the common tangent there.
 module mfv_body
    use, intrinsic :: iso_c_binding, only: c_int, c_null_ptr, c_ptr, c_size_t
    use mfv_circle, only: kernel_exact, new_circle
@@ -25,10 +23,10 @@ module mfv_body
                          shape_wedge = 6, shape_power = 7, shape_profile = 8, shape_matrix = 9
    !> Names of the shapes, in the order of their numbers. A wedge is kept as a power of exponent 1.
    character(*), parameter :: shape_names = 'half_plane disk hole flat_punch rounded_punch wedge power profile matrix'
-   !> What a profile is between its points: straight, as the user says or because the user says nothing, or monotone cubic.
+   !> Interpolation of a profile: linear by default, linear by choice, monotone cubic.
    integer, parameter :: interpolation_unset = 0, interpolation_linear = 1, interpolation_cubic = 2
 
-   !> A body. Lengths unless told.
+   !> A body. Lengths by default.
    type :: body_type
       integer :: shape = shape_half_plane
       logical :: rigid = .true.
@@ -36,23 +34,23 @@ module mfv_body
       type(material_type) :: material = material_type()
       !> Disk and hole: radius R. Rounded punch: radius of its edges.
       real(wp) :: radius = 0.0_wp
-      !> Rounded punch: half-width of its flat part.
+      !> Rounded punch: half-width of its flat.
       real(wp) :: flat_half_width = 0.0_wp
-      !> Power: the surface recedes by coefficient*|x|**exponent; the coefficient is a length^(1 - exponent).
+      !> Power law: recess coefficient*|x|**exponent; the coefficient is a length^(1 - exponent).
       real(wp) :: coefficient = 0.0_wp, exponent = 0.0_wp
-      !> Elastic bodies: distance from the pole at which displacements are measured.
+      !> Elastic bodies: distance from x = 0 to the datum, the surface point where displacements vanish.
       real(wp) :: datum = 0.0_wp
-      !> Elastic bodies: yield strength, force/length^2; 0: not known.
+      !> Elastic bodies: yield strength, force/length^2; 0: unknown.
       real(wp) :: yield_strength = 0.0_wp
       !> Elastic disk and hole: kernel and harmonics, see mfv_circle.
       integer :: kernel = kernel_exact, harmonics = 0
-      !> First and last x at which there is a surface to touch.
+      !> First and last x of the surface.
       real(wp) :: from = -huge(1.0_wp), to = huge(1.0_wp)
-      !> Profile: increasing positions and how far the surface recedes there. Matrix: the nodes and their undeformed recess.
+      !> Profile: increasing positions and the recess there. Matrix: nodes and their initial recess.
       real(wp), allocatable :: position(:), height(:)
       !> Profile: one of interpolation_...
       integer :: interpolation = interpolation_unset
-      !> Matrix: surface that belongs to each node, and displacements by nodal forces.
+      !> Matrix: surface length of each node, and displacements by nodal forces.
       real(wp), allocatable :: width(:), matrix(:, :)
    contains
       procedure :: covers
@@ -68,7 +66,7 @@ module mfv_body
 
 contains
 
-   !> A flat surface without end.
+   !> A flat surface of infinite extent.
    pure type(body_type) function new_half_plane_body() result(body)
       body = body_type(shape=shape_half_plane)
    end function new_half_plane_body
@@ -94,23 +92,23 @@ contains
       body = body_type(shape=shape_flat_punch, from=-half_width, to=half_width)
    end function new_flat_punch
 
-   !> Punch that is flat over |x| < half_width, with edges that recede by (|x| - half_width)^2/(2 edge_radius); lengths.
+   !> Punch that is flat over |x| < half_width; edges with the recess (|x| - half_width)^2/(2 edge_radius); lengths.
    pure type(body_type) function new_rounded_punch(half_width, edge_radius) result(body)
       real(wp), intent(in) :: half_width, edge_radius
 
       body = body_type(shape=shape_rounded_punch, flat_half_width=half_width, radius=edge_radius)
    end function new_rounded_punch
 
-   !> Body that recedes by coefficient*|x|**exponent; the coefficient is a length^(1 - exponent).
+   !> Body with the recess coefficient*|x|**exponent; the coefficient is a length^(1 - exponent).
    pure type(body_type) function new_power(coefficient, exponent) result(body)
       real(wp), intent(in) :: coefficient, exponent
 
       body = body_type(shape=shape_power, coefficient=coefficient, exponent=exponent)
    end function new_power
 
-   !> Profile through the points (position, height), lengths, height the recess. `interpolation`: straight between the points, or
-   !> Steffen's monotone interpolation: no overshoot, flat parts stay flat, corners are rounded. The caller makes sure of at least
-   !> three strictly increasing positions.
+   !> Profile through the points (position, height), lengths; height is the recess. `interpolation`: linear, or Steffen's
+   !> monotone cubic, without overshoot, with rounded corners. At least three strictly increasing positions (checked by the
+   !> caller).
    pure type(body_type) function new_profile(position, height, interpolation) result(body)
       real(wp), intent(in) :: position(:), height(:)
       integer, intent(in), optional :: interpolation
@@ -123,8 +121,8 @@ contains
       body%to = position(size(position))
    end function new_profile
 
-   !> Elastic body of a user's matrix: `position` and `recess` of its surface nodes and the `width` of the surface that
-   !> belongs to each, lengths, shape (n); `matrix`: displacements by nodal forces, see mfv_matrix_compliance.
+   !> Elastic body of a user's matrix: `position` and `recess` of its surface nodes and surface length `width` of each,
+   !> lengths, shape (n); `matrix`: displacements by nodal forces, see mfv_matrix_compliance.
    pure type(body_type) function new_matrix_body(position, recess, width, matrix) result(body)
       real(wp), intent(in) :: position(:), recess(:), width(:), matrix(:, :)
 
@@ -138,9 +136,8 @@ contains
       body%to = position(size(position))
    end function new_matrix_body
 
-   !> Whether the body has a surface at x. `parabolic`: the parabola that stands for a rigid circle has no end. (That for an elastic
-   !> one
-   !> ends with the circle, whose compliance it has.)
+   !> Whether the body has a surface at x. `parabolic`: the parabola of a rigid circle is unlimited; an elastic one ends with
+   !> the circle.
    elemental logical function covers(self, x, parabolic)
       class(body_type), intent(in) :: self
       real(wp), intent(in) :: x
@@ -156,7 +153,7 @@ contains
       circular = self%shape == shape_disk .or. self%shape == shape_hole
    end function circular
 
-   !> Whether the surface is a circle or straight: a profile is neither.
+   !> Whether the surface is a circle or straight.
    pure logical function is_regular(self)
       class(body_type), intent(in) :: self
 
@@ -164,7 +161,7 @@ contains
       if (self%shape == shape_matrix) is_regular = all(abs(self%height) <= 0.0_wp)
    end function is_regular
 
-   !> Curvature at the pole, 1/length: positive for a disk, negative for a hole, 0 for what is flat or has no one value.
+   !> Curvature at x = 0, 1/length: positive for a disk, negative for a hole, 0 if flat or undefined.
    elemental real(wp) function curvature(self)
       class(body_type), intent(in) :: self
 
@@ -173,14 +170,14 @@ contains
       if (self%shape == shape_hole) curvature = -1.0_wp/self%radius
    end function curvature
 
-   !> The largest |x| at which there is a surface, length; enormous for a half-plane.
+   !> Largest |x| of the surface, length; huge for a half-plane.
    pure real(wp) function half_extent(self)
       class(body_type), intent(in) :: self
 
       half_extent = max(abs(self%from), abs(self%to))
    end function half_extent
 
-   !> A length of the shape, with which contacts may be compared; enormous where there is none.
+   !> A characteristic length of the shape; huge without one.
    pure real(wp) function size_of_shape(self)
       class(body_type), intent(in) :: self
 
@@ -188,8 +185,8 @@ contains
       if (self%shape == shape_rounded_punch) size_of_shape = self%flat_half_width + self%radius
    end function size_of_shape
 
-   !> How far the surface recedes from the tangent at the pole (length) at the positions `x`; zero where there is no
-   !> surface (ask `covers`). `parabolic`: x^2/(2R) in place of the circle.
+   !> Distance of the surface from the tangent at x = 0 (length) at the positions `x`; zero outside the surface (see
+   !> `covers`). `parabolic`: x^2/(2R) instead of the circle.
    function recess(self, x, parabolic) result(depth)
       class(body_type), intent(in) :: self
       real(wp), intent(in) :: x(:)
@@ -215,7 +212,7 @@ contains
       end select
    end function recess
 
-   !> C x^n, which does not overflow however far away x >= 0 is.
+   !> C x^n, without overflow for any x >= 0.
    elemental real(wp) function power_of(body, x)
       type(body_type), intent(in) :: body
       real(wp), intent(in) :: x
@@ -234,8 +231,8 @@ contains
       chord = sqrt(max((radius - x)*(radius + x), 0.0_wp))
    end function chord
 
-   !> Undeformed gaps (length) at the positions `x`: the exact shapes, without cancellation where a disk lies in a hole of
-   !> nearly its radius; or, `parabolic`, Hertz's parabolas. Zero where one of the bodies has no surface.
+   !> Initial gaps (length) at the positions `x`: exact shapes, without cancellation for a disk in a hole of nearly its
+   !> radius; or, `parabolic`, Hertz's parabolas. Zero outside a surface.
    function gap_between(lower, upper, x, parabolic) result(gaps)
       type(body_type), intent(in) :: lower, upper
       real(wp), intent(in) :: x(:)
@@ -254,8 +251,8 @@ contains
       where (.not. (lower%covers(x, parabolic) .and. upper%covers(x, parabolic))) gaps = 0.0_wp
    end function gap_between
 
-   !> Gap of a disk in a hole, which touch at the pole. With the chords c = sqrt(R^2 - x^2) the difference of
-   !> x^2/(R + c) has the factor R_hole - R_disk, which is taken out by hand.
+   !> Gap of a disk in a hole that touch at x = 0. With the chords c = sqrt(R^2 - x^2) the difference of x^2/(R + c) contains
+   !> the factor R_hole - R_disk, which is factored out analytically.
    elemental real(wp) function clearance(disk, hole, x, parabolic)
       real(wp), intent(in) :: disk, hole, x
       logical, intent(in) :: parabolic
@@ -273,8 +270,8 @@ contains
                   /((disk + chord_disk)*(hole + chord_hole))
    end function clearance
 
-   !> Undeformed gaps (length) of a disk in a hole, touching at the pole, along the radii of the hole at the angles
-   !> `theta` from the pole; without cancellation. With e = R_hole - R_disk: e (1 - cos) + R_disk - sqrt(R_disk^2 - (e sin)^2).
+   !> Initial gaps (length) of a disk in a hole that touch at theta = 0, along the radii of the hole at the angles `theta`;
+   !> without cancellation. With e = R_hole - R_disk: e (1 - cos) + R_disk - sqrt(R_disk^2 - (e sin)^2).
    pure function radial_gap_between(lower, upper, theta) result(gaps)
       type(body_type), intent(in) :: lower, upper
       real(wp), intent(in) :: theta(:)
@@ -286,10 +283,9 @@ contains
       gaps = 2.0_wp*clearance_of_radii*sin(0.5_wp*theta)**2 + gaps/(disk + sqrt(max(disk**2 - gaps, 0.0_wp)))
    end function radial_gap_between
 
-   !> The compliance of an elastic body with `nodes` intervals of the width `interval` (length); left unallocated for a
-   !> rigid one. `coupling`, `tangential`: see mfv_compliance. `common_radius`: where normals are radial, the radius of the arc on
-   !> which the nodes of both bodies are and to which tractions refer (length); else 0. Other shapes deform as the
-   !> half-planes that they nearly are.
+   !> Compliance of an elastic body with `nodes` intervals of the width `interval` (length); unallocated for a rigid one.
+   !> `coupling`, `tangential`: see mfv_compliance. `common_radius`: with radial normals, radius of the arc with the nodes of
+   !> both bodies, to which tractions refer (length); else 0. Other shapes deform as half-planes.
    subroutine make_compliance(self, nodes, interval, coupling, tangential, common_radius, compliance)
       class(body_type), intent(in) :: self
       integer, intent(in) :: nodes, coupling
@@ -312,9 +308,8 @@ contains
       end select
    end subroutine make_compliance
 
-   !> How far a profile's interpolation and the straight lines between its points are apart at `x` or, straight itself, how far it
-   !> is from
-   !> the monotone cubic interpolation; shape (size(x)), length.
+   !> Distance at `x` between the two interpolations of a profile: linear from the chosen one, or monotone cubic from linear;
+   !> shape (size(x)), length.
    function from_polyline(self, x) result(departure)
       class(body_type), intent(in) :: self
       real(wp), intent(in) :: x(:)

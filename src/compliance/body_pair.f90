@@ -1,34 +1,34 @@
-!> The compliance of two bodies in contact: what the contact algorithms work with.
+!> Compliance of two bodies in contact, for the contact algorithms.
 !>
-!> The upper body is the mirror image of a lower one: its tractions are p and, reversed, tau. With w and u from either
-!> body's own compliance the gap closes by w1 + w2 and the slip is u1 - u2, so that
+!> The upper body is the mirror image of a lower one, with the tractions p and -tau. With w and u from the compliance of each
+!> body the gap closes by w1 + w2 and the slip is u1 - u2, so that
 !>
 !>     C_wp = C1_wp + C2_wp,  C_wt = C1_wt - C2_wt,  C_up = C1_up - C2_up,  C_ut = C1_ut + C2_ut.
 !>
-!> A rigid body has no part in it. Bodies of equal signature (same shape and material) do not couple: C_wt and C_up, the
-!> differences, are then left out of the pair, but not of either body's own displacements.
+!> A rigid body contributes nothing. Bodies of equal signature (shape and material) do not couple: C_wt and C_up of the pair
+!> vanish and do not exist, but the bodies' own blocks do.
 module mfv_body_pair
    use mfv_compliance
    use mfv_kinds, only: wp
    implicit none
    private
-   public :: body_pair_type, new_body_pair, part_lower, part_upper
+   public :: body_pair_type, new_body_pair, lower_body, upper_body
 
-   integer, parameter :: part_lower = 1, part_upper = 2
+   integer, parameter :: lower_body = 1, upper_body = 2
 
-   !> A body of the pair; not allocated: rigid.
-   type :: part_type
+   !> A body of the pair; unallocated if rigid.
+   type :: member_type
       class(compliance_type), allocatable :: compliance
-   end type part_type
+   end type member_type
 
    type, extends(compliance_type) :: body_pair_type
-      type(part_type) :: part(2)
+      type(member_type) :: body(2)
    contains
       procedure :: resize
       procedure :: entries
-      procedure :: parts
+      procedure :: products
       procedure :: deforms
-      procedure :: part_displacements
+      procedure :: body_displacements
    end type body_pair_type
 
    !> Signs of the upper body's blocks.
@@ -36,20 +36,20 @@ module mfv_body_pair
 
 contains
 
-   !> Pair of a lower and an upper body, on the same intervals; not allocated: rigid. At least one is elastic. Both are
-   !> moved into the pair.
+   !> Pair of a lower and an upper body on the same intervals; unallocated if rigid. At least one is elastic. Both are moved
+   !> into the pair.
    subroutine new_body_pair(lower, upper, self)
       class(compliance_type), allocatable, intent(inout) :: lower, upper
       type(body_pair_type), intent(out) :: self
       real(wp) :: flexibility
       integer :: i
 
-      call move_alloc(lower, self%part(part_lower)%compliance)
-      call move_alloc(upper, self%part(part_upper)%compliance)
+      call move_alloc(lower, self%body(lower_body)%compliance)
+      call move_alloc(upper, self%body(upper_body)%compliance)
       flexibility = 0.0_wp
       do i = 1, 2
          if (.not. self%deforms(i)) cycle
-         associate (body => self%part(i)%compliance)
+         associate (body => self%body(i)%compliance)
             self%nodes = body%nodes
             self%interval = body%interval
             self%has_block = self%has_block .or. body%has_block
@@ -64,7 +64,7 @@ contains
       self%elastic_block([block_wt, block_up]) = .false.
    end subroutine new_body_pair
 
-   !> Whether anything is left of the coupling blocks.
+   !> Whether coupling blocks remain.
    pure logical function couples(self)
       type(body_pair_type), intent(in) :: self
       real(wp) :: signature(4, 2)
@@ -72,17 +72,17 @@ contains
 
       signature = 0.0_wp
       do i = 1, 2
-         if (self%deforms(i)) signature(:, i) = self%part(i)%compliance%signature()
+         if (self%deforms(i)) signature(:, i) = self%body(i)%compliance%signature()
       end do
       couples = .not. all(abs(signature(:, 1) - signature(:, 2)) <= 0.0_wp)
    end function couples
 
-   !> Whether the lower (part_lower) or upper (part_upper) body is elastic.
-   pure logical function deforms(self, part)
+   !> Whether the lower (lower_body) or upper (upper_body) body is elastic.
+   pure logical function deforms(self, side)
       class(body_pair_type), intent(in) :: self
-      integer, intent(in) :: part
+      integer, intent(in) :: side
 
-      deforms = allocated(self%part(part)%compliance)
+      deforms = allocated(self%body(side)%compliance)
    end function deforms
 
    !> See mfv_compliance.
@@ -95,8 +95,8 @@ contains
       self%block_values = 0
       do i = 1, 2
          if (.not. self%deforms(i)) cycle
-         call self%part(i)%compliance%resize(nodes)
-         self%block_values = self%block_values + self%part(i)%compliance%block_values
+         call self%body(i)%compliance%resize(nodes)
+         self%block_values = self%block_values + self%body(i)%compliance%block_values
       end do
    end subroutine resize
 
@@ -107,50 +107,50 @@ contains
       real(wp), intent(out) :: matrix(:, :)
       real(wp), allocatable :: upper(:, :)
 
-      if (.not. self%deforms(part_upper)) then
-         call self%part(part_lower)%compliance%entries(block, rows, columns, matrix)
+      if (.not. self%deforms(upper_body)) then
+         call self%body(lower_body)%compliance%entries(block, rows, columns, matrix)
          return
       end if
       matrix = 0.0_wp
-      if (self%deforms(part_lower)) call self%part(part_lower)%compliance%entries(block, rows, columns, matrix)
+      if (self%deforms(lower_body)) call self%body(lower_body)%compliance%entries(block, rows, columns, matrix)
       allocate (upper(size(rows), size(columns)))
-      call self%part(part_upper)%compliance%entries(block, rows, columns, upper)
+      call self%body(upper_body)%compliance%entries(block, rows, columns, upper)
       matrix = matrix + upper_sign(block)*upper
    end subroutine entries
 
    !> See mfv_compliance.
-   subroutine parts(self, pressure, shear, part)
+   subroutine products(self, pressure, shear, by_block)
       class(body_pair_type), intent(in) :: self
       real(wp), intent(in) :: pressure(:), shear(:)
-      real(wp), intent(out) :: part(:, :)
+      real(wp), intent(out) :: by_block(:, :)
       real(wp) :: upper(size(pressure), 4)
       integer :: block
 
-      if (self%deforms(part_lower)) call self%part(part_lower)%compliance%parts(pressure, shear, part)
-      if (self%deforms(part_upper)) then
-         call self%part(part_upper)%compliance%parts(pressure, shear, upper)
+      if (self%deforms(lower_body)) call self%body(lower_body)%compliance%products(pressure, shear, by_block)
+      if (self%deforms(upper_body)) then
+         call self%body(upper_body)%compliance%products(pressure, shear, upper)
          do block = 1, 4
             upper(:, block) = upper_sign(block)*upper(:, block)
          end do
-         if (self%deforms(part_lower)) upper = part + upper
-         part = upper
+         if (self%deforms(lower_body)) upper = by_block + upper
+         by_block = upper
       end if
-      if (.not. self%has_block(block_wt)) part(:, block_wt) = 0.0_wp
-      if (.not. self%has_block(block_up)) part(:, block_up) = 0.0_wp
-   end subroutine parts
+      if (.not. self%has_block(block_wt)) by_block(:, block_wt) = 0.0_wp
+      if (.not. self%has_block(block_up)) by_block(:, block_up) = 0.0_wp
+   end subroutine products
 
-   !> Surface displacements of one body, into it and to the right, length, under the tractions on the lower body; zero
-   !> for a rigid one. Shapes (nodes).
-   subroutine part_displacements(self, part, pressure, shear, normal, tangential)
+   !> Surface displacements of one body, into it and to the right, length, by the tractions on the lower body; zero for a
+   !> rigid one. Shapes (nodes).
+   subroutine body_displacements(self, side, pressure, shear, normal, tangential)
       class(body_pair_type), intent(in) :: self
-      integer, intent(in) :: part
+      integer, intent(in) :: side
       real(wp), intent(in) :: pressure(:), shear(:)
       real(wp), intent(out) :: normal(:), tangential(:)
 
       normal = 0.0_wp
       tangential = 0.0_wp
-      if (.not. self%deforms(part)) return
-      call self%part(part)%compliance%displacements(pressure, merge(shear, -shear, part == part_lower), normal, tangential)
-   end subroutine part_displacements
+      if (.not. self%deforms(side)) return
+      call self%body(side)%compliance%displacements(pressure, merge(shear, -shear, side == lower_body), normal, tangential)
+   end subroutine body_displacements
 
 end module mfv_body_pair

@@ -1,21 +1,20 @@
-!> Compliance of a solid disk or of a hole in an infinite plane under box tractions, around the contact pole at
-!> theta = 0, in Cartesian components: the normal is taken as the vertical at every node (dissertation eq. 4.22); or, where
-!> wanted, in radial ones (eq. 4.21), as conforming contacts need them.
+!> Compliance of a solid disk or of a hole in an infinite plane under box tractions, around the contact at theta = 0. Normals
+!> are vertical at every node (Cartesian components, dissertation eq. 4.22), or radial (eq. 4.21) for conforming contacts.
 !>
-!> The disk has its pole at the top, the hole at the bottom; theta grows to the right in both. With c, s = cos, sin(theta)
+!> theta = 0 is the top of the disk and the bottom of the hole; theta grows to the right in both. With c, s = cos, sin(theta)
 !>
 !>     disk: sigma_rr = -p c + tau s, sigma_rtheta = p s + tau c, w = -u_r c + u_theta s, u = u_r s + u_theta c
 !>     hole: sigma_rr = -p c - tau s, sigma_rtheta = p s - tau c, w =  u_r c - u_theta s, u = u_r s + u_theta c
 !>
-!> (eq. 4.22 is the disk's; the outward normal of the hole's surface points the other way). A disk under a net force is
-!> held by a force in its centre, a hole at infinity; both displacement fields contain a free rigid translation. It is
-!> chosen as for the half-plane: near the pole a concentrated force leaves
-!> (kappa+1)/(4 pi G) ln(D/distance) with the `datum` D, in w under a normal and in u under a tangential force, so that
-!> disk and hole tend to the half-plane, constant and all, as R grows.
+!> (eq. 4.22 is the disk's; the outward normal of the hole's surface has the opposite direction). A disk under a net force is
+!> held by a force at its centre, a hole at infinity; both displacement fields contain a free rigid translation. It is chosen
+!> as for the half-plane: near theta = 0 a concentrated force leaves (kappa+1)/(4 pi G) ln(D/distance) with the `datum` D, in
+!> w under a normal and in u under a tangential force. As R grows, disk and hole tend to the half-plane, including the
+!> constant.
 !>
-!> With radial normals a translation has a part in all four blocks, and so have the displacements that lean with the normals:
-!> neither can be left out of the coupling blocks alone. Without coupling (or with Goodman's) these keep all but what is
-!> proportional to kappa - 1, the coupling of dissimilar materials, which has no translation in it (docs/theory.md).
+!> With radial normals a translation contributes to all four blocks, and so do displacements in the direction of the inclined
+!> normals: neither can be removed from the coupling blocks alone. Without coupling (or with Goodman's) these lack only the
+!> terms proportional to kappa - 1, the coupling of dissimilar materials, which contains no translation (docs/theory.md).
 module mfv_circle
    use mfv_circle_kernels
    use mfv_compliance
@@ -26,9 +25,9 @@ module mfv_circle
    private
    public :: circle_type, new_circle, kernel_exact, kernel_fourier, default_harmonics, circle_intervals
 
-   !> How the kernels are evaluated: in closed form, or as a Fourier series cut after a number of harmonics.
+   !> Evaluation of the kernels: in closed form, or as a truncated Fourier series.
    integer, parameter :: kernel_exact = 1, kernel_fourier = 2
-   !> Harmonics in units of the circle's intervals unless told (dissertation section 4.2.2.1).
+   !> Harmonics per interval of the circle by default (dissertation section 4.2.2.1).
    integer, parameter :: default_harmonics = 4
    integer, parameter :: by_normal = 1, by_shear = 2
 
@@ -42,31 +41,31 @@ module mfv_circle
       real(wp) :: radius = 1.0_wp, datum = 1.0_wp
       integer :: kernel = kernel_exact, harmonics = 0
       type(circle_kernels_type) :: kernels
-      !> Whether normals are along the radius.
+      !> Whether normals are radial.
       logical :: radial = .false.
       !> cos and sin of the angle from the radius to the normal, and from the normal to the vertical, at the nodes.
       real(wp), allocatable :: cosine(:), sine(:), lean_cosine(:), lean_sine(:)
-      !> The cross kernels as far as they are wanted, from distance 0 on, and products with the kernels: by normal and by shear
-      !> traction (by_normal, by_shear).
+      !> The required cross kernels, from distance 0 on, and products with the kernels: by normal and by shear traction
+      !> (by_normal, by_shear).
       real(wp), allocatable :: cross(:, :)
       type(toeplitz_type) :: operator(2)
-      !> Rigid translation by a unit traction on an interval, in w by pressure and in u by shear.
+      !> Rigid translation by a unit traction on an interval: of w by pressure, of u by shear.
       real(wp) :: normal_translation = 0.0_wp, tangential_translation = 0.0_wp
    contains
       procedure :: resize
       procedure :: entries
-      procedure :: parts
+      procedure :: products
       procedure :: signature
    end type circle_type
 
 contains
 
    !> Disk (`body_disk`) or hole (`body_hole`) of the radius `radius` (length) with `nodes` intervals of the arc length
-   !> `interval`, symmetric about the pole. `kernel`: kernel_exact or kernel_fourier; `harmonics`: of the latter, 0 for
-   !> four a interval of the circle, which must then be a whole number of intervals (see circle_intervals). `datum`,
-   !> length: see above. `coupling`, `tangential`: see mfv_compliance. `radial`: normals along the radius, not vertical.
-   !> With nodes at common angles on circles of different radii, `radius` and `interval` are those of the arc to which
-   !> tractions refer, and `datum` is in proportion: forces on an angle displace a circle of any radius alike, but for ln(D/R).
+   !> `interval`, symmetric about theta = 0. `kernel`: kernel_exact or kernel_fourier; `harmonics` of the latter, 0 for four
+   !> per interval; the circle must then consist of whole intervals (circle_intervals). `datum`, length: see above.
+   !> `coupling`, `tangential`: see mfv_compliance. `radial`: radial normals. With nodes at common angles on circles of
+   !> different radii, `radius` and `interval` are those of the arc to which tractions refer, and `datum` is in proportion:
+   !> forces at an angle displace circles of any radius equally, except for ln(D/R).
    function new_circle(body, material, radius, nodes, interval, datum, kernel, harmonics, coupling, tangential, radial) &
       result(self)
       integer, intent(in) :: body, nodes, kernel, harmonics, coupling
@@ -92,15 +91,15 @@ contains
       call self%resize(nodes)
    end function new_circle
 
-   !> How many intervals of the arc length `interval` the circle has, to the nearest whole number; of more than 4e8, 4e8: the
-   !> harmonics, some for each, are counted by an integer too.
+   !> Number of intervals of the arc length `interval` on the circle, rounded; at most 4e8, so that the harmonics are an
+   !> integer too.
    pure integer function circle_intervals(radius, interval)
       real(wp), intent(in) :: radius, interval
 
       circle_intervals = nint(min(2.0_wp*pi*radius/interval, 4.0e8_wp))
    end function circle_intervals
 
-   !> The translations that bring displacements to their datum (docs/theory.md).
+   !> Translations that put displacements to zero at the datum (docs/theory.md).
    subroutine set_translations(self)
       class(circle_type), intent(inout) :: self
       real(wp) :: by_force, kappa
@@ -197,7 +196,7 @@ contains
       end if
    end function cartesian
 
-   !> What a unit translation, down and to the right, is at node i: its normal (`normal`) or tangential component.
+   !> Normal (`normal`) or tangential component at node i of a unit translation, down and to the right.
    pure function components(self, normal, i)
       class(circle_type), intent(in) :: self
       logical, intent(in) :: normal
@@ -244,19 +243,19 @@ contains
       end do
    end subroutine entries
 
-   !> See mfv_compliance: tractions are turned to polar components, multiplied by the Toeplitz kernels, and displacements
-   !> turned back.
-   subroutine parts(self, pressure, shear, part)
+   !> See mfv_compliance: tractions are rotated to polar components, multiplied by the Toeplitz kernels, and displacements
+   !> rotated back.
+   subroutine products(self, pressure, shear, by_block)
       class(circle_type), intent(in) :: self
       real(wp), intent(in) :: pressure(:), shear(:)
-      real(wp), intent(out) :: part(:, :)
+      real(wp), intent(out) :: by_block(:, :)
 
-      part = 0.0_wp
-      call multiply(self, .true., pressure, part(:, block_wp), part(:, block_up))
-      if (self%has_block(block_ut)) call multiply(self, .false., shear, part(:, block_wt), part(:, block_ut))
-      if (.not. self%has_block(block_wt)) part(:, block_wt) = 0.0_wp
-      if (.not. self%has_block(block_up)) part(:, block_up) = 0.0_wp
-   end subroutine parts
+      by_block = 0.0_wp
+      call multiply(self, .true., pressure, by_block(:, block_wp), by_block(:, block_up))
+      if (self%has_block(block_ut)) call multiply(self, .false., shear, by_block(:, block_wt), by_block(:, block_ut))
+      if (.not. self%has_block(block_wt)) by_block(:, block_wt) = 0.0_wp
+      if (.not. self%has_block(block_up)) by_block(:, block_up) = 0.0_wp
+   end subroutine products
 
    !> w and u by a normal (`by_pressure`) or a shear traction, shapes (nodes).
    subroutine multiply(self, by_pressure, traction, normal, tangential)

@@ -1,31 +1,30 @@
-!> Surface displacements of a solid disk and of a hole in an infinite plane under a box traction of the angle `dtheta`
-!> at theta = 0: Michell's solution (dissertation chapter 4, appendices C to E), summed exactly or to a number of
-!> harmonics.
+!> Surface displacements of a solid disk and of a hole in an infinite plane under a box traction of the angle `dtheta` at
+!> theta = 0: Michell's solution (dissertation chapter 4, appendices C to E), summed exactly or to a number of harmonics.
 !>
 !> For a disk under a unit radial traction sigma_rr the series is, with a = dtheta/2,
 !>
 !>     u_r     = R/(2 pi G) sum over n >= 2 of sin(na)/n [kappa/(n+1) + 1/(n-1)] cos(n theta) + the terms n = 0, 1
 !>     u_theta = R/(2 pi G) sum over n >= 2 of sin(na)/n [kappa/(n+1) - 1/(n-1)] sin(n theta) + the term n = 1
 !>
-!> and for a hole kappa and 1 change places and the first series its sign. A unit shear traction sigma_rtheta gives
-!> u_theta like the first (n >= 2) and u_r like the second with its sign changed (Betti). With sin(na) cos(n theta) and
-!> sin(na) sin(n theta) as differences, everything comes from four sums (docs/theory.md), where L(x) = ln|2 sin(x/2)| and
-!> S(x) = (pi - x)/2 on (0, 2 pi):
+!> and for a hole kappa and 1 are exchanged and the first series changes its sign. A unit shear traction sigma_rtheta gives
+!> u_theta as the first series (n >= 2) and u_r as the negative of the second (Betti). With sin(na) cos(n theta) and sin(na)
+!> sin(n theta) as differences, four sums suffice (docs/theory.md), where L(x) = ln|2 sin(x/2)| and S(x) = (pi - x)/2 on (0, 2
+!> pi):
 !>
 !>     sum sin(nx)/(n^2-1)     = sin(x) (1/4 - L)          sum sin(nx)/(n (n^2-1)) = 3/4 sin(x) - (1 - cos x) S
 !>     sum cos(nx)/(n^2-1)     = 1/2 + cos(x)/4 - sin(x) S sum cos(nx)/(n (n^2-1)) = (1 - cos x) L + 3/4 cos(x) - 1/2
 !>
-!> The differences between x = theta + a and theta - a are taken by hand (product rule, addition theorems, atanh for the
-!> logarithms), so that nothing cancels however small dtheta is.
+!> The differences between x = theta + a and theta - a are evaluated analytically (product rule, addition theorems, atanh for
+!> the logarithms), without cancellation for any dtheta.
 !>
-!> The coefficients of u_theta by a radial traction, [(kappa-1) n -+ (kappa+1)]/(n^2-1) for disk and hole, have two parts. In
-!> a disk in a hole the first one is the coupling of dissimilar materials: it cancels where (kappa-1)/G is equal in both. The
-!> second one adds up: normals elsewhere lean against the load, and the displacement in its direction has a part along them.
+!> The coefficients of u_theta by a radial traction, [(kappa-1) n -+ (kappa+1)]/(n^2-1) for disk and hole, have two terms. In
+!> a disk in a hole the first term is the coupling of dissimilar materials: it cancels if (kappa-1)/G is equal in both. The
+!> second term adds up: inclined normals have a component in the direction of the load.
 !>
-!> n = 0 and n = 1 are from Tables 4.2, 4.3 and E.1 with kappa - 1 cancelled by hand, without ln(R), which is a rigid
-!> translation. Misprints that matter: Table 4.3 has B_12 of the hole with the wrong sign (sigma_rr = 0 and
-!> sigma_rtheta = S_1 cos theta ask for -(kappa-1)R sin(a)/((kappa+1) pi)), eq. 4.14 has the wrong sign before
-!> R dtheta/(4 pi G), eq. 4.15 has kappa(n-1)-1+n for kappa(n+1)+n-1.
+!> n = 0 and n = 1 are from Tables 4.2, 4.3 and E.1 with kappa - 1 cancelled analytically, without ln(R), which is a rigid
+!> translation. Misprints with an effect: Table 4.3 has B_12 of the hole with the wrong sign (sigma_rr = 0 and sigma_rtheta =
+!> S_1 cos theta require -(kappa-1)R sin(a)/((kappa+1) pi)), eq. 4.14 has the wrong sign before R dtheta/(4 pi G), eq. 4.15
+!> has kappa(n-1)-1+n for kappa(n+1)+n-1.
 module mfv_circle_kernels
    use mfv_fourier, only: fourier_sum
    use mfv_kinds, only: pi, wp
@@ -45,8 +44,8 @@ module mfv_circle_kernels
 
 contains
 
-   !> The exact kernels at `nodes` distances 0, dtheta, 2 dtheta, ... (at most half the circle, or whole when dtheta
-   !> divides it). `kappa`: Kolosov's constant. Only these entries are computed, however fine the circle is.
+   !> The exact kernels at `nodes` distances 0, dtheta, 2 dtheta, ... (at most half the circle, or all of it if dtheta divides
+   !> it). `kappa`: Kolosov's constant.
    pure type(circle_kernels_type) function exact_kernels(body, kappa, dtheta, nodes) result(kernels)
       integer, intent(in) :: body, nodes
       real(wp), intent(in) :: kappa, dtheta
@@ -65,7 +64,7 @@ contains
       end do
    end function exact_kernels
 
-   !> The part (kappa-1) n/(n^2-1), n >= 2, of the exact cross kernel of a disk or a hole, times G/R, from distance 0 on.
+   !> The term (kappa-1) n/(n^2-1), n >= 2, of the exact cross kernel of a disk or a hole, times G/R, from distance 0 on.
    pure function exact_cross_of_dissimilar(kappa, dtheta, nodes) result(cross)
       integer, intent(in) :: nodes
       real(wp), intent(in) :: kappa, dtheta
@@ -78,7 +77,7 @@ contains
       end do
    end function exact_cross_of_dissimilar
 
-   !> The same with the series cut after `harmonics` terms, see fourier_kernels.
+   !> The same with the series truncated after `harmonics` terms, see fourier_kernels.
    function fourier_cross_of_dissimilar(kappa, circle_nodes, harmonics, nodes) result(cross)
       integer, intent(in) :: circle_nodes, harmonics, nodes
       real(wp), intent(in) :: kappa
@@ -94,8 +93,8 @@ contains
       cross = [(0.5_wp*(sums(i) - sums(modulo(-i, circle_nodes))), i=0, nodes - 1)]
    end function fourier_cross_of_dissimilar
 
-   !> The kernels at `nodes` distances with the series cut after `harmonics` terms, on a circle of `circle_nodes`
-   !> intervals: the coefficients folded onto the circle's nodes and summed by one transform.
+   !> The kernels at `nodes` distances with the series truncated after `harmonics` terms, on a circle of `circle_nodes`
+   !> intervals: aliased coefficients are added and summed by one transform.
    type(circle_kernels_type) function fourier_kernels(body, kappa, circle_nodes, harmonics, nodes) result(kernels)
       integer, intent(in) :: body, circle_nodes, harmonics, nodes
       real(wp), intent(in) :: kappa
@@ -118,8 +117,8 @@ contains
       end do
    end function fourier_kernels
 
-   !> Coefficients of the cosine (u_r) and sine (u_theta) series of a unit radial traction, n >= 2, as mfv_fourier takes
-   !> them: those that the nodes cannot tell apart added up.
+   !> Coefficients of the cosine (u_r) and sine (u_theta) series of a unit radial traction, n >= 2, in the form of
+   !> mfv_fourier: aliased coefficients are added.
    pure function folded_coefficients(body, kappa, circle_nodes, harmonics) result(folded)
       integer, intent(in) :: body, circle_nodes, harmonics
       real(wp), intent(in) :: kappa
@@ -149,8 +148,8 @@ contains
       end do
    end function folded_coefficients
 
-   !> Differences f(theta + a) - f(theta - a) of the four sums, in the order of the head of this file, for theta in [0, 2 pi). `a`:
-   !> half the angle of the box; theta is 0 or at least 2a.
+   !> Differences f(theta + a) - f(theta - a) of the four sums in the head of this file, for theta in [0, 2 pi). `a`: half the
+   !> angle of the box; theta is 0 or at least 2a.
    pure subroutine differences(theta, a, sine_first, sine_second, cosine_first, cosine_second)
       real(wp), intent(in) :: theta, a
       real(wp), intent(out) :: sine_first, sine_second, cosine_first, cosine_second
@@ -167,7 +166,7 @@ contains
       end if
       sin_t = sin(theta)
       cos_t = cos(theta)
-      ! Means and steps of 1 - cos, of L and of S between theta - a and theta + a; S falls by a.
+      ! Means and differences of 1 - cos, of L and of S between theta - a and theta + a; that of S is -a.
       one_minus = 2.0_wp*sin(0.5_wp*theta)**2 + 2.0_wp*cos_t*sin(0.5_wp*a)**2
       log_mean = log(2.0_wp*sin(0.5_wp*theta)) + 0.5_wp*log_of_one_less((sin(0.5_wp*a)/sin(0.5_wp*theta))**2)
       log_step = 2.0_wp*atanh(sin(0.5_wp*a)*cos(0.5_wp*theta)/(cos(0.5_wp*a)*sin(0.5_wp*theta)))

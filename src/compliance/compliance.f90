@@ -1,11 +1,11 @@
-!> What every body's compliance offers to the contact algorithms: entries of the four blocks of
+!> Interface of the compliance of every body: entries of the four blocks of
 !>
 !>     w = C_wp p + C_wt tau,    u = C_up p + C_ut tau        (dissertation eq. 2.1)
 !>
-!> between equally wide surface intervals, and products with them. Only blocks that the scene needs exist:
-!> C_wt only under full coupling, C_up unless there is no coupling, C_ut and C_up only where friction can act. With radial
-!> normals all four exist where friction can act: without coupling C_wt and C_up still have what inclined normals make of
-!> translations and of displacements in the direction of a load (docs/theory.md).
+!> between surface intervals of equal width, and products with them. Only required blocks exist: C_wt only under full
+!> coupling, C_up unless there is no coupling, C_ut and C_up only where friction can act. With radial normals all four exist
+!> where friction can act: even without coupling C_wt and C_up contain the effect of inclined normals on translations and on
+!> displacements in the direction of a load (docs/theory.md).
 module mfv_compliance
    use, intrinsic :: iso_fortran_env, only: int64
    use mfv_kinds, only: wp
@@ -14,8 +14,8 @@ module mfv_compliance
    public :: compliance_type, coupling_full, coupling_goodman, coupling_none
    public :: block_wp, block_wt, block_up, block_ut
 
-   !> Elastic coupling of the normal and the tangential problem: both ways; none of shear on the normal problem
-   !> (Goodman 1962); none at all.
+   !> Elastic coupling of the normal and the tangential problem: full; without the effect of shear on the normal problem
+   !> (Goodman 1962); none.
    integer, parameter :: coupling_full = 1, coupling_goodman = 2, coupling_none = 3
 
    !> The four blocks.
@@ -26,16 +26,16 @@ module mfv_compliance
       integer :: nodes = 0
       !> Width of an interval, length.
       real(wp) :: interval = 0.0_wp
-      !> Stress that scales the blocks: tractions of this size over a length make displacements of that length.
+      !> Stress scale of the blocks: tractions of this size on a length cause displacements of this length.
       real(wp) :: modulus = 1.0_wp
-      !> Which blocks exist; and which would with vertical normals: the elastic coupling is in these only.
+      !> Which blocks exist; and which would with vertical normals: only these contain elastic coupling.
       logical :: has_block(4) = .false., elastic_block(4) = .false.
       !> Reals stored for the blocks that exist.
       integer :: block_values = 0
    contains
       procedure(resize_interface), deferred :: resize
       procedure(entries_interface), deferred :: entries
-      procedure(parts_interface), deferred :: parts
+      procedure(products_interface), deferred :: products
       procedure :: displacements
       procedure :: signature
       procedure :: choose_blocks
@@ -44,15 +44,15 @@ module mfv_compliance
    end type compliance_type
 
    abstract interface
-      !> Change the number of intervals; their width stays.
+      !> Change the number of intervals, not their width.
       subroutine resize_interface(self, nodes)
          import :: compliance_type
          class(compliance_type), intent(inout) :: self
          integer, intent(in) :: nodes
       end subroutine resize_interface
 
-      !> `matrix(i, j)` = displacement at node `rows(i)` by a unit traction on interval `columns(j)`,
-      !> length^3/force. Only for a block that exists.
+      !> `matrix(i, j)`: displacement at node `rows(i)` by a unit traction on interval `columns(j)`, length^3/force. Only for
+      !> existing blocks.
       pure subroutine entries_interface(self, block, rows, columns, matrix)
          import :: compliance_type, wp
          class(compliance_type), intent(in) :: self
@@ -60,34 +60,33 @@ module mfv_compliance
          real(wp), intent(out) :: matrix(:, :)
       end subroutine entries_interface
 
-      !> `part(:, block)`: the product of each block with `pressure` or `shear`, force/length^2, shape (nodes): displacements,
-      !> length. A block that does not exist gives zero. Of the order of n log n operations where the kernel depends on the
-      !> distance only.
-      subroutine parts_interface(self, pressure, shear, part)
+      !> `by_block(:, block)`: product of each block with `pressure` or `shear`, force/length^2, shape (nodes): displacements,
+      !> length; zero for blocks that do not exist. Cost of order n log n if the kernel depends on the distance only.
+      subroutine products_interface(self, pressure, shear, by_block)
          import :: compliance_type, wp
          class(compliance_type), intent(in) :: self
          real(wp), intent(in) :: pressure(:), shear(:)
-         real(wp), intent(out) :: part(:, :)
-      end subroutine parts_interface
+         real(wp), intent(out) :: by_block(:, :)
+      end subroutine products_interface
    end interface
 
 contains
 
-   !> Surface displacements w (into the body) and u (to the right), length, of every node under the tractions
-   !> `pressure` and `shear`, force/length^2, all of shape (nodes).
+   !> Surface displacements w (into the body) and u (to the right), length, of every node by the tractions `pressure` and
+   !> `shear`, force/length^2, all of shape (nodes).
    subroutine displacements(self, pressure, shear, normal, tangential)
       class(compliance_type), intent(in) :: self
       real(wp), intent(in) :: pressure(:), shear(:)
       real(wp), intent(out) :: normal(:), tangential(:)
-      real(wp) :: part(size(pressure), 4)
+      real(wp) :: by_block(size(pressure), 4)
 
-      call self%parts(pressure, shear, part)
-      normal = part(:, block_wp) + part(:, block_wt)
-      tangential = part(:, block_ut) + part(:, block_up)
+      call self%products(pressure, shear, by_block)
+      normal = by_block(:, block_wp) + by_block(:, block_wt)
+      tangential = by_block(:, block_ut) + by_block(:, block_up)
    end subroutine displacements
 
-   !> What the coupling blocks depend on: two bodies with equal signatures pressed together do not couple. Zero where there
-   !> is no coupling; enormous, as here, where nothing is known of it, so that no other body's cancels it.
+   !> Constants of the coupling blocks: two bodies with equal signatures do not couple. Zero without coupling; huge by
+   !> default, which no other body's signature equals.
    pure function signature(self)
       class(compliance_type), intent(in) :: self
       real(wp) :: signature(4)
@@ -95,8 +94,7 @@ contains
       signature = huge(1.0_wp)/max(self%nodes, 1)
    end function signature
 
-   !> Which blocks a scene needs. `tangential`: whether friction can act in it. `radial`: whether normals differ from node to
-   !> node.
+   !> Choose the required blocks. `tangential`: friction can act. `radial`: normals differ from node to node.
    pure subroutine choose_blocks(self, coupling, tangential, radial)
       class(compliance_type), intent(inout) :: self
       integer, intent(in) :: coupling
@@ -112,8 +110,7 @@ contains
       if (radial) self%has_block([block_wt, block_up]) = tangential
    end subroutine choose_blocks
 
-   !> Whether pressure deforms the surface tangentially but shear does not deform it normally (Goodman): the compliance is not
-   !> symmetric.
+   !> Whether pressure causes tangential displacements but shear no normal ones (Goodman): the compliance is not symmetric.
    pure logical function one_way(self)
       class(compliance_type), intent(in) :: self
 

@@ -5,13 +5,13 @@
 !>
 !>     w = (kappa+1)/(4 pi G) h [ 2 ln(D/h) + 2 - log_kernel(x/h) ],    u = -(kappa-1)/(4 G) h step_kernel(x/h)
 !>
-!> and a unit shear the same with w and u exchanged and the sign of the second one changed. A half-plane has no
-!> rigid-body constraint of its own: displacements are measured from the surface point at the distance D (`datum`),
-!> where a concentrated normal force leaves w = 0.
+!> and a unit shear the same with w and u exchanged and the sign of the second one changed. A half-plane has no rigid-body
+!> constraint: displacements are measured from the surface point at the distance D (`datum`), where a concentrated normal
+!> force causes w = 0.
 !>
-!> The print's A.10 carries -A/(2 pi) with A = 2(1-nu^2)/E in front of *squared* logarithms, which is twice too much;
-!> A.1/A.2 and A.11/A.13 disagree about the sign of the coupling terms. The signs here satisfy reciprocity,
-!> C_wt(i,j) = C_up(j,i), and a surface under pressure moves towards it.
+!> Equation A.10 in print has -A/(2 pi) with A = 2(1-nu^2)/E in front of *squared* logarithms, too large by a factor of two;
+!> the signs of the coupling terms in A.1/A.2 and A.11/A.13 contradict each other. The signs here satisfy reciprocity,
+!> C_wt(i,j) = C_up(j,i), and surface points move towards a pressure.
 module mfv_half_plane
    use mfv_compliance
    use mfv_kinds, only: pi, wp
@@ -21,7 +21,7 @@ module mfv_half_plane
    private
    public :: half_plane_type, new_half_plane, log_kernel, step_kernel
 
-   !> Toeplitz blocks: one entry for every distance.
+   !> Toeplitz blocks: one entry per distance.
    type, extends(compliance_type) :: half_plane_type
       private
       type(material_type) :: material
@@ -34,15 +34,14 @@ module mfv_half_plane
    contains
       procedure :: resize
       procedure :: entries
-      procedure :: parts
+      procedure :: products
       procedure :: signature
    end type half_plane_type
 
 contains
 
-   !> Half-plane with `nodes` intervals of width `interval` (length).
-   !> `datum`: distance at which displacements are measured, length. `coupling`: see mfv_compliance.
-   !> `tangential`: whether friction can act in the scene; without it only C_wp is built.
+   !> Half-plane with `nodes` intervals of width `interval` (length). `datum`: distance at which displacements are measured,
+   !> length. `coupling`: see mfv_compliance. `tangential`: friction can act; otherwise only C_wp is built.
    type(half_plane_type) function new_half_plane(material, nodes, interval, datum, coupling, tangential) result(self)
       type(material_type), intent(in) :: material
       integer, intent(in) :: nodes, coupling
@@ -102,18 +101,18 @@ contains
       end do
    end subroutine entries
 
-   !> See mfv_compliance; the cross blocks, constant on either side of the diagonal, need only running sums.
-   subroutine parts(self, pressure, shear, part)
+   !> See mfv_compliance; the cross blocks, constant on either side of the diagonal, are evaluated by running sums.
+   subroutine products(self, pressure, shear, by_block)
       class(half_plane_type), intent(in) :: self
       real(wp), intent(in) :: pressure(:), shear(:)
-      real(wp), intent(out) :: part(:, :)
+      real(wp), intent(out) :: by_block(:, :)
 
-      part(:, [block_wt, block_up]) = 0.0_wp
-      call self%operator%multiply(pressure, part(:, block_wp), shear, part(:, block_ut))
-      if (self%has_block(block_wt)) call multiply_steps(self%cross, shear, part(:, block_wt))
-      if (self%has_block(block_up)) call multiply_steps(-self%cross, pressure, part(:, block_up))
-      if (.not. self%has_block(block_ut)) part(:, block_ut) = 0.0_wp
-   end subroutine parts
+      by_block(:, [block_wt, block_up]) = 0.0_wp
+      call self%operator%multiply(pressure, by_block(:, block_wp), shear, by_block(:, block_ut))
+      if (self%has_block(block_wt)) call multiply_steps(self%cross, shear, by_block(:, block_wt))
+      if (self%has_block(block_up)) call multiply_steps(-self%cross, pressure, by_block(:, block_up))
+      if (.not. self%has_block(block_ut)) by_block(:, block_ut) = 0.0_wp
+   end subroutine products
 
    !> displacement(i) = cross (sum of tractions left of i - sum right of i).
    pure subroutine multiply_steps(cross, traction, displacement)
@@ -135,8 +134,8 @@ contains
       end do
    end subroutine multiply_steps
 
-   !> (r+1) ln|r+1| - (r-1) ln|r-1|, the normal displacement by a box traction, to a relative error near epsilon for
-   !> every r >= 0 (r = |x|/h): near 0 and far away, where the two terms cancel, by their series.
+   !> (r+1) ln|r+1| - (r-1) ln|r-1|, the normal displacement by a box traction, to a relative error near epsilon for every r
+   !> >= 0 (r = |x|/h): by series for small and large r, where the terms cancel.
    elemental real(wp) function log_kernel(r) result(kernel)
       real(wp), intent(in) :: r
       real(wp), parameter :: near = 0.5_wp, far = 2.0_wp
@@ -160,8 +159,8 @@ contains
       if (abs(x) > 0.0_wp) x_log_x = x*log(abs(x))
    end function x_log_x
 
-   !> sum over k >= 1 of square^k/(k (2k + sign)), from the smallest term up; square <= 1/4. With sign -1 and r^2 it is
-   !> (1+r) ln(1+r) + (1-r) ln(1-r), with sign 1 and 1/r^2 what log_kernel lacks of 2 ln(r) + 2.
+   !> sum over k >= 1 of square^k/(k (2k + sign)), from the smallest term up; square <= 1/4. With sign -1 and r^2 it equals
+   !> (1+r) ln(1+r) + (1-r) ln(1-r), with sign 1 and 1/r^2 the difference of log_kernel to 2 ln(r) + 2.
    pure real(wp) function series(square, sign) result(total)
       real(wp), intent(in) :: square, sign
       integer, parameter :: terms = 26

@@ -8,7 +8,7 @@ module mfv_material
    !> The two plane states.
    integer, parameter :: plane_strain = 1, plane_stress = 2
 
-   !> An isotropic material in a plane state. The modulus has the unit of stress.
+   !> An isotropic material in a plane state.
    type :: material_type
       !> Shear modulus G, force/length^2.
       real(wp) :: shear_modulus = 0.0_wp
@@ -23,7 +23,7 @@ module mfv_material
 
 contains
 
-   !> Material from its shear modulus (force/length^2), Poisson's ratio and plane state. The caller checks the ranges.
+   !> Material from shear modulus (force/length^2), Poisson's ratio and plane state, all checked by the caller.
    pure type(material_type) function new_material(shear_modulus, poisson_ratio, plane) result(material)
       real(wp), intent(in) :: shear_modulus, poisson_ratio
       integer, intent(in) :: plane
@@ -51,10 +51,10 @@ contains
       shear_modulus = youngs_modulus/(2.0_wp*(1.0_wp + poisson_ratio))
    end function shear_modulus_of
 
-   !> The flexibilities 1/G_1 and 1/G_2, length^2/force, of a lower and an upper body of Poisson's ratio 0 with Dundurs' parameter
-   !> `beta`, from -1/2 to 1/2, positive where the lower body couples more, and the mutual compliance A, length^2/force, the sum of
-   !> (kappa + 1)/(4 G). Poisson's ratio 0 is kappa = 3 in plane strain and plane stress: 1/G_1 = A (1 + 2 beta)/2 and
-   !> 1/G_2 = A (1 - 2 beta)/2 (dissertation eq. 6.1). For beta = -1/2 or 1/2 one of them is 0: that body is rigid.
+   !> Flexibilities 1/G_1 and 1/G_2, length^2/force, of a lower and an upper body with Poisson's ratio 0, for Dundurs'
+   !> parameter `beta`, from -1/2 to 1/2, and the mutual compliance A, length^2/force, the sum of (kappa + 1)/(4 G). With
+   !> kappa = 3: 1/G_1 = A (1 + 2 beta)/2 and 1/G_2 = A (1 - 2 beta)/2 (dissertation eq. 6.1). beta = -1/2 or 1/2: one body is
+   !> rigid.
    pure function flexibilities(beta, compliance)
       real(wp), intent(in) :: beta, compliance
       real(wp) :: flexibilities(2)

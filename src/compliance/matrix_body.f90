@@ -1,10 +1,10 @@
-!> Bodies given by a matrix, from their datasets, wherever these come from:
+!> Bodies given by a matrix, from datasets of any source:
 !>
 !>     x           (n)             positions of the surface nodes, increasing
-!>     gap         (n), optional   how far the undeformed surface recedes from y = 0
-!>     width       (n), optional   surface that belongs to each node; else from the midpoints between the nodes
+!>     gap         (n), optional   initial distance of the surface from y = 0
+!>     width       (n), optional   surface length of each node; default: between the midpoints to its neighbours
 !>     compliance  (n, n) or (2n, 2n): displacements by nodal forces; or
-!>     stiffness   the same inverted: nodal forces by displacements, the other nodes condensed out
+!>     stiffness   its inverse: nodal forces by displacements, the other nodes condensed out
 !>
 !> Rows and columns: normal components (into the body), then tangential ones (to the right).
 module mfv_matrix_body
@@ -18,10 +18,10 @@ module mfv_matrix_body
    private
    public :: matrix_data_type, check_positions, most_matrix_nodes
 
-   !> More nodes than this make matrices beyond reason.
+   !> Largest supported number of nodes.
    integer, parameter :: most_matrix_nodes = 20000
 
-   !> The datasets; `name` of the matrix is compliance or stiffness.
+   !> The datasets; `name` of the matrix: compliance or stiffness.
    type :: matrix_data_type
       real(wp), allocatable :: x(:), gap(:), width(:), matrix(:, :)
       character(:), allocatable :: name
@@ -31,24 +31,23 @@ module mfv_matrix_body
 
 contains
 
-   !> Whether positions can be those of nodes, `has_width`: whether their widths are given. Error MFV_INPUT_ERROR.
+   !> Check the positions of nodes; `has_width`: their widths are given. Error MFV_INPUT_ERROR.
    subroutine check_positions(x, has_width, error)
       real(wp), intent(in) :: x(:)
       logical, intent(in) :: has_width
       type(error_type), allocatable, intent(out) :: error
 
       if (size(x) < 1 .or. size(x) > most_matrix_nodes) then
-         call set_error(error, MFV_INPUT_ERROR, 'x has '//to_text(size(x))//' nodes; 1 to '//to_text(most_matrix_nodes)// &
-                        ' can be')
+         call set_error(error, MFV_INPUT_ERROR, 'x has '//to_text(size(x))//' nodes; allowed are 1 to '//to_text(most_matrix_nodes))
       else if (any(x(2:) <= x(:size(x) - 1))) then
          call set_error(error, MFV_INPUT_ERROR, 'x is not increasing at node '// &
                         to_text(findloc(x(2:) <= x(:size(x) - 1), .true., dim=1) + 1))
       else if (.not. has_width .and. size(x) < 2) then
-         call set_error(error, MFV_INPUT_ERROR, 'width is missing, which one node alone needs')
+         call set_error(error, MFV_INPUT_ERROR, 'width is missing; it is required with a single node')
       end if
    end subroutine check_positions
 
-   !> The body. The data's sizes agree with x, which has been checked. Error MFV_INPUT_ERROR.
+   !> Make the body from data whose sizes and x have been checked. Error MFV_INPUT_ERROR.
    subroutine make_body(self, body, error)
       class(matrix_data_type), intent(inout) :: self
       type(body_type), intent(out) :: body
@@ -70,7 +69,7 @@ contains
       if (.not. allocated(error)) body = new_matrix_body(self%x, self%gap, self%width, self%matrix)
    end subroutine make_body
 
-   !> Half the way to either neighbour; an end node has as much on its outer side as on its inner one.
+   !> Half the distance to either neighbour; an end node is symmetric.
    pure subroutine tributary(x, width)
       real(wp), intent(in) :: x(:)
       real(wp), allocatable, intent(out) :: width(:)

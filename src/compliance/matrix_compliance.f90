@@ -1,8 +1,8 @@
-!> A body given by its compliance or stiffness matrix: the route for finite-element users.
+!> A body given by its compliance or stiffness matrix, for example from finite elements.
 !>
-!> The user's matrices relate nodal forces to nodal displacements of the surface nodes, force/length to length per unit
-!> thickness; rows and columns run over the normal components of all nodes (into the body), then, where shear is to be
-!> carried, over the tangential ones (to the right).
+!> The matrices relate nodal forces and nodal displacements of the surface nodes, force/length and length per unit thickness.
+!> Rows and columns: normal components of all nodes (into the body) and, for problems with shear, all tangential ones (to the
+!> right).
 module mfv_matrix_compliance
    use, intrinsic :: ieee_arithmetic, only: ieee_is_finite
    use mfv_compliance
@@ -22,17 +22,17 @@ module mfv_matrix_compliance
    contains
       procedure :: resize
       procedure :: entries
-      procedure :: parts
+      procedure :: products
    end type matrix_compliance_type
 
-   !> Matrices that differ from their transpose by more than this part of their largest entry are not symmetric.
+   !> Relative tolerance of the symmetry check.
    real(wp), parameter :: symmetry_tolerance = 1.0e-8_wp
 
 contains
 
-   !> Compliance of `compliance`, displacements by nodal forces, checked by check_compliance; shape (n, n) or (2n, 2n).
-   !> `width`: length of the surface that belongs to each node, shape (n); a traction on it makes a nodal force.
-   !> `tangential`: whether friction can act; it takes the larger matrix.
+   !> Compliance by `compliance`, displacements by nodal forces, checked by check_compliance; shape (n, n) or (2n, 2n).
+   !> `width`: surface length of each node, shape (n); traction times width is the nodal force. `tangential`: friction can
+   !> act; it requires the larger matrix.
    type(matrix_compliance_type) function new_matrix_compliance(compliance, width, coupling, tangential) result(self)
       real(wp), intent(in) :: compliance(:, :), width(:)
       integer, intent(in) :: coupling
@@ -51,8 +51,7 @@ contains
       self%block_values = size(self%matrix)
    end function new_matrix_compliance
 
-   !> What is wrong with a matrix of nodal compliances or stiffnesses for `nodes` nodes: error MFV_INPUT_ERROR.
-   !> `name`: what to call it.
+   !> Check a matrix of nodal compliances or stiffnesses for `nodes` nodes, called `name` in messages. Error MFV_INPUT_ERROR.
    subroutine check_compliance(matrix, nodes, name, error)
       real(wp), intent(in) :: matrix(:, :)
       integer, intent(in) :: nodes
@@ -60,7 +59,7 @@ contains
       type(error_type), allocatable, intent(out) :: error
       real(wp), allocatable :: factor(:, :)
       real(wp) :: difference
-      integer :: info, part, place(2)
+      integer :: info, block, place(2)
 
       if (size(matrix, 1) /= size(matrix, 2) .or. (size(matrix, 1) /= nodes .and. size(matrix, 1) /= 2*nodes)) then
          call set_error(error, MFV_INPUT_ERROR, name//' has the shape '//to_text(size(matrix, 1))//' x '// &
@@ -83,19 +82,19 @@ contains
                         to_text(matrix(place(2), place(1))))
          return
       end if
-      do part = 1, size(matrix, 1)/nodes
-         factor = matrix((part - 1)*nodes + 1:part*nodes, (part - 1)*nodes + 1:part*nodes)
+      do block = 1, size(matrix, 1)/nodes
+         factor = matrix((block - 1)*nodes + 1:block*nodes, (block - 1)*nodes + 1:block*nodes)
          call dpotrf('L', nodes, factor, nodes, info)
          if (info == 0) cycle
          call set_error(error, MFV_INPUT_ERROR, name//' is not positive definite in its '// &
-                        trim(merge('normal    ', 'tangential', part == 1))//' part (rows and columns '// &
-                        to_text((part - 1)*nodes + 1)//' to '//to_text(part*nodes)//'; found at row '//to_text(max(info, 1))//')')
+                        trim(merge('normal    ', 'tangential', block == 1))//' part (rows and columns '// &
+                        to_text((block - 1)*nodes + 1)//' to '//to_text(block*nodes)//'; found at row '//to_text(max(info, 1))//')')
          return
       end do
    end subroutine check_compliance
 
-   !> Inverse of a symmetric stiffness (any shape (m, m)). Error MFV_INPUT_ERROR where it is not positive definite: a body
-   !> that can still move as a whole, for one.
+   !> Inverse of a symmetric stiffness (shape (m, m)). Error MFV_INPUT_ERROR if it is not positive definite, for example
+   !> because of rigid-body motions.
    subroutine inverse_of(stiffness, compliance, error)
       real(wp), intent(in) :: stiffness(:, :)
       real(wp), allocatable, intent(out) :: compliance(:, :)
@@ -116,7 +115,7 @@ contains
       end do
    end subroutine inverse_of
 
-   !> See mfv_compliance: the nodes of a matrix are what they are.
+   !> See mfv_compliance: the nodes of a matrix are fixed.
    subroutine resize(self, nodes)
       class(matrix_compliance_type), intent(inout) :: self
       integer, intent(in) :: nodes
@@ -124,7 +123,7 @@ contains
       self%nodes = min(nodes, self%nodes)
    end subroutine resize
 
-   !> Where a block begins: rows and columns before it.
+   !> Rows and columns before a block.
    pure function origin(self, block)
       class(matrix_compliance_type), intent(in) :: self
       integer, intent(in) :: block
@@ -146,24 +145,24 @@ contains
       matrix = self%matrix(before(1) + rows, before(2) + columns)
    end subroutine entries
 
-   !> See mfv_compliance; only what is loaded is looked at.
-   subroutine parts(self, pressure, shear, part)
+   !> See mfv_compliance; only loaded columns are used.
+   subroutine products(self, pressure, shear, by_block)
       class(matrix_compliance_type), intent(in) :: self
       real(wp), intent(in) :: pressure(:), shear(:)
-      real(wp), intent(out) :: part(:, :)
+      real(wp), intent(out) :: by_block(:, :)
       real(wp) :: traction(self%nodes)
       integer :: before(2), block, j
 
-      part = 0.0_wp
+      by_block = 0.0_wp
       do block = 1, 4
          if (.not. self%has_block(block)) cycle
          before = origin(self, block)
          traction = merge(pressure, shear, before(2) == 0)
          do j = 1, self%nodes
             if (.not. abs(traction(j)) > 0.0_wp) cycle
-            part(:, block) = part(:, block) + traction(j)*self%matrix(before(1) + 1:before(1) + self%nodes, before(2) + j)
+            by_block(:, block) = by_block(:, block) + traction(j)*self%matrix(before(1) + 1:before(1) + self%nodes, before(2) + j)
          end do
       end do
-   end subroutine parts
+   end subroutine products
 
 end module mfv_matrix_compliance

@@ -1,4 +1,4 @@
-!> Profiles from points as they were measured: scaled, centred and levelled.
+!> Profiles from measured points: scaled, centred and levelled.
 module mfv_profile
    use mfv_body, only: body_type, interpolation_unset, new_profile
    use mfv_error, only: error_type, set_error
@@ -10,26 +10,26 @@ module mfv_profile
    private
    public :: trace_type, profile_of_points, level_none, level_mean, level_line
 
-   !> What is taken off heights: nothing, their mean, or the straight line with the least squares.
+   !> Levelling of heights: none, by their mean, or by the least-squares line.
    integer, parameter :: level_none = 0, level_mean = 1, level_line = 2
 
-   !> How measured points become a profile.
+   !> Settings that turn measured points into a profile.
    type :: trace_type
-      !> Lengths of the case per unit of the points; a negative one for heights turns outward heights into recess.
+      !> Lengths of the case per unit of the points; for heights negative if they are positive outwards.
       real(wp) :: position_scale = 1.0_wp, height_scale = 1.0_wp
       !> One of level_...; one of interpolation_... (mfv_body).
       integer :: level = level_none, interpolation = interpolation_unset
-      !> Whether the middle of the positions is put at x = 0.
+      !> Whether the middle of the positions is moved to x = 0.
       logical :: centred = .false.
    end type trace_type
 
-   !> Steffen's interpolation needs as many points.
+   !> Minimum for Steffen's interpolation.
    integer, parameter :: fewest_points = 3
 
 contains
 
-   !> The profile through measured points: their increasing positions, and how far the surface recedes there; shape (points).
-   !> Error MFV_INPUT_ERROR for fewer than 3 points, and for scales that make them too large or put two in one place.
+   !> The profile through measured points: increasing positions and the recess there; shape (points). Error MFV_INPUT_ERROR
+   !> for fewer than 3 points, and for scales with which numbers are too large or points coincide.
    subroutine profile_of_points(positions, heights, trace, body, error)
       real(wp), intent(in) :: positions(:), heights(:)
       type(trace_type), intent(in) :: trace
@@ -40,7 +40,7 @@ contains
 
       n = size(positions)
       if (n < fewest_points) then
-         call set_error(error, MFV_INPUT_ERROR, 'needs at least '//to_text(fewest_points)//' points, and has '//to_text(n))
+         call set_error(error, MFV_INPUT_ERROR, 'needs at least '//to_text(fewest_points)//' points; it has '//to_text(n))
          return
       end if
       if (any(abs(positions) > largest_size/max(trace%position_scale, 1.0_wp)) .or. &
@@ -56,11 +56,11 @@ contains
       if (all(x(2:) > x(:n - 1))) then
          body = new_profile(x, height, trace%interpolation)
       else
-         call set_error(error, MFV_INPUT_ERROR, 'position_scale or centred leaves no distance between points')
+         call set_error(error, MFV_INPUT_ERROR, 'with position_scale and centred, points coincide')
       end if
    end subroutine profile_of_points
 
-   !> Take the straight line with the least squares off some heights.
+   !> Subtract the least-squares line from heights.
    pure subroutine remove_line(x, height)
       real(wp), intent(in) :: x(:)
       real(wp), intent(inout) :: height(:)

@@ -1,8 +1,7 @@
-!> Products with symmetric Toeplitz matrices, entries by distance, through FFTW: of the order of n log n operations. The
-!> matrix is part of a circulant one, which Fourier's transform diagonalises (Golub and Van Loan, Matrix Computations,
-!> section 4.8).
+!> Products with symmetric Toeplitz matrices by FFTW, of order n log n. The matrix is embedded in a circulant one, which the
+!> Fourier transform diagonalises (Golub and Van Loan, Matrix Computations, section 4.8).
 !>
-!> Two real vectors x and y go through one complex transform, as z = x + i y. With the transform Z and its mirror image
+!> Two real vectors x and y share one complex transform, as z = x + i y. With the transform Z and its mirror image
 !> Z*(k) = conj(Z(N-k)), that of x is (Z + Z*)/2 and that of y (Z - Z*)/(2 i), so that
 !>
 !>     X = A x - B y,    Y = B x + C y     (A, C even, B odd in the distance)
@@ -20,8 +19,8 @@ module mfv_toeplitz
       private
       !> Vectors of `nodes` values, transforms of `length`.
       integer :: nodes = 0, length = 0
-      !> What the transform and its mirror image are multiplied by, divided by the length; the second is left out where it
-      !> is zero. Shape (length).
+      !> Multipliers of the transform and of its mirror image, divided by the length; the second is unallocated if zero. Shape
+      !> (length).
       real(wp), allocatable :: straight(:), mirrored(:)
       !> Whether there is a B: X depends on y, and Y on x.
       logical :: coupled = .false.
@@ -31,8 +30,8 @@ module mfv_toeplitz
 
 contains
 
-   !> From the entries by distance 0, 1, ..., n-1, shape (n): the even A and, where present, the odd B (its sign that of row
-   !> less column) and the even C; left out, B is zero and C is A.
+   !> From the entries by distance 0, 1, ..., n-1, shape (n): the even A, the odd B (its sign that of row minus column) and
+   !> the even C; if omitted, B is zero and C equals A.
    type(toeplitz_type) function new_toeplitz(even, odd, other) result(self)
       real(wp), intent(in) :: even(:)
       real(wp), intent(in), optional :: odd(:), other(:)
@@ -97,7 +96,7 @@ contains
 
       n = self%nodes
       length = self%length
-      ! A z alone: the two vectors do not meet.
+      ! With A = C and B = 0, x and y do not mix.
       alike = .not. (allocated(self%mirrored) .or. self%coupled)
       factor = 1.0_wp
       largest_x = 1.0_wp
@@ -124,8 +123,8 @@ contains
       if (.not. largest_y > 0.0_wp) by_y = 0.0_wp
    end subroutine multiply_in
 
-   !> The largest sizes in x and y, and a power of two that makes y about as large as x, so that the smaller one keeps its digits
-   !> beside the larger one.
+   !> Largest magnitudes in x and y, and a power of two that scales y to the magnitude of x, so that the smaller one keeps its
+   !> digits.
    pure subroutine find_evening(x, y, largest_x, largest_y, factor)
       real(wp), intent(in) :: x(:), y(:)
       real(wp), intent(out) :: largest_x, largest_y, factor

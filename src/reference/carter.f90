@@ -1,7 +1,6 @@
 !> Closed form: two elastically similar cylinders in steady rolling under constant normal and tangential forces (Carter 1926;
-!> Johnson
-!> 1985, section 8.3). The contact rolls to the right, x is measured from its middle: the stick zone adjoins the leading edge x = a.
-!> Where it rolls to the left take the shear at -x, and the creepage with the other sign.
+!> Johnson 1985, section 8.3). The contact rolls to the right, x is measured from its middle: the stick zone adjoins the
+!> leading edge x = a. For rolling to the left use the shear at -x, and the negative creepage.
 module mfv_reference_carter
    use mfv_kinds, only: wp
    use mfv_reference_hertz, only: hertz_pressure
@@ -12,9 +11,9 @@ module mfv_reference_carter
 
 contains
 
-   !> Creepage (mu a/R) (1 - sqrt(1 - |Q|/(mu P))), of the sign of Q: sliding of the upper surface over the lower one per rolled
-   !> distance, both to the right. Q, P: force/length; half-width a and radius R: length, 1/R = 1/R1 + 1/R2. In gross sliding
-   !> the creepage is not determined; the largest one, mu a/R, is given.
+   !> Creepage (mu a/R) (1 - sqrt(1 - |Q|/(mu P))), of the sign of Q: sliding of the upper surface over the lower one per
+   !> rolled distance, both to the right. Q, P: force/length; half-width a and radius R: length, 1/R = 1/R1 + 1/R2. In gross
+   !> sliding the creepage is undetermined; the largest value mu a/R is returned.
    elemental real(wp) function carter_creepage(tangential_force, normal_force, half_width, radius, friction_coefficient) &
       result(creepage)
       real(wp), intent(in) :: tangential_force, normal_force, half_width, radius, friction_coefficient
@@ -23,8 +22,8 @@ contains
                       *(1.0_wp - mindlin_stick_ratio(tangential_force, normal_force, friction_coefficient)), tangential_force)
    end function carter_creepage
 
-   !> Shear traction at x (length), force/length^2: mu times Hertz's pressure, less over the stick zone, of half-width
-   !> b = a sqrt(1 - |Q|/(mu P)) and middle a - b, the same ellipse scaled by b/a.
+   !> Shear traction at x (length), force/length^2: mu times Hertz's pressure, minus, in the stick zone of half-width b = a
+   !> sqrt(1 - |Q|/(mu P)) and middle a - b, the same ellipse scaled by b/a.
    elemental real(wp) function carter_shear(x, tangential_force, normal_force, half_width, friction_coefficient) result(shear)
       real(wp), intent(in) :: x, tangential_force, normal_force, half_width, friction_coefficient
       real(wp) :: ratio

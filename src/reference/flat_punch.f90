@@ -8,8 +8,8 @@ module mfv_reference_flat_punch
 
 contains
 
-   !> Pressure P/(pi sqrt(a^2 - x^2)) at x (length) under a punch of half-width a (length), force/length^2; zero outside,
-   !> and infinite at the edges, where this returns huge values.
+   !> Pressure P/(pi sqrt(a^2 - x^2)) at x (length) under a punch of half-width a (length), force/length^2; zero outside; huge
+   !> at the edges, where it is infinite.
    elemental real(wp) function flat_punch_pressure(x, normal_force, half_width) result(pressure)
       real(wp), intent(in) :: x, normal_force, half_width
       real(wp) :: inside

@@ -1,6 +1,5 @@
-!> Closed form: a cylinder pressed on a half-plane, or two cylinders on each other, without friction (Hertz; Johnson 1985, section
-!> 4.2;
-!> dissertation eqs. 3.1, 3.2).
+!> Closed form: a cylinder pressed on a half-plane, or two cylinders on each other, without friction (Hertz; Johnson 1985,
+!> section 4.2; dissertation eqs. 3.1, 3.2).
 module mfv_reference_hertz
    use mfv_kinds, only: pi, wp
    implicit none

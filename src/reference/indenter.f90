@@ -2,10 +2,9 @@
 !> other without friction: wedge (n = 1), cylinder (n = 2), power law, flat punch with rounded edges, and sums of them.
 !>
 !> A growing contact is a sequence of flat punches of half-width s, each with the force P'(s) ds (Johnson 1985, section 2.8;
-!> Jaeger 2005). The gap's slope at x < a asks for P(a) = 2 m F(a) with F(a) = integral of x g'(x)/sqrt(a^2 - x^2) from 0
-!> to a, m the modulus of mfv_reference_hertz; then p(x) = integral of P'(s)/(pi sqrt(s^2 - x^2)) from |x| to a. Both are linear in
-!> g
-!> at a given a, so that gaps may be added. Rounded edges: Ciavarella, Hills and Monno 1998.
+!> Jaeger 2005). The gap's slope at x < a requires P(a) = 2 m F(a) with F(a) = integral of x g'(x)/sqrt(a^2 - x^2) from 0 to
+!> a, m the modulus of mfv_reference_hertz; then p(x) = integral of P'(s)/(pi sqrt(s^2 - x^2)) from |x| to a. Both are linear
+!> in g for a given a: gaps can be added. Rounded edges: Ciavarella, Hills and Monno 1998.
 module mfv_reference_indenter
    use mfv_kinds, only: pi, wp
    use mfv_numerics, only: gauss_legendre
@@ -13,11 +12,11 @@ module mfv_reference_indenter
    private
    public :: indenter_type, flat_indenter, power_indenter, rounded_punch_indenter
 
-   !> A gap between two bodies. No terms: flat.
+   !> A gap between two bodies. Without terms: flat.
    type :: indenter_type
       !> Terms C |x|^n: C >= 0, length^(1 - n), and n >= 1.
       real(wp), allocatable :: coefficient(:), exponent(:)
-      !> Rounded edges: half-widths b of the flat parts and radii R, lengths.
+      !> Rounded edges: half-widths b of the flats and radii R, lengths.
       real(wp), allocatable :: flat(:), radius(:)
    contains
       procedure :: add
@@ -34,7 +33,7 @@ module mfv_reference_indenter
 
 contains
 
-   !> No gap at all.
+   !> A zero gap.
    pure type(indenter_type) function flat_indenter() result(indenter)
 
       indenter = indenter_type([real(wp) ::], [real(wp) ::], [real(wp) ::], [real(wp) ::])
@@ -65,23 +64,22 @@ contains
       self%radius = [self%radius, other%radius]
    end subroutine add
 
-   !> Whether there is no gap at all.
+   !> Whether the gap is zero everywhere.
    pure logical function is_flat(self)
       class(indenter_type), intent(in) :: self
 
       is_flat = size(self%coefficient) == 0 .and. size(self%flat) == 0
    end function is_flat
 
-   !> Whether there is a sharp tip, under which the pressure is infinite as a logarithm.
+   !> Whether there is a sharp tip, where the pressure has a logarithmic singularity.
    pure logical function is_pointed(self)
       class(indenter_type), intent(in) :: self
 
       is_pointed = any(self%exponent <= 1.0_wp)
    end function is_pointed
 
-   !> Force over 2 m, length, at a contact half-width a (length). Of C |x|^n: C n B a^n with B = integral of t^n/sqrt(1 - t^2) from
-   !> 0
-   !> to 1; of a rounded punch: a^2 (2 psi - sin 2 psi)/(4 R) with cos psi = b/a (Ciavarella, Hills and Monno 1998).
+   !> Force over 2 m, length, at a contact half-width a (length). Of C |x|^n: C n B a^n with B = integral of t^n/sqrt(1 - t^2)
+   !> from 0 to 1; of a rounded punch: a^2 (2 psi - sin 2 psi)/(4 R) with cos psi = b/a (Ciavarella, Hills and Monno 1998).
    pure real(wp) function force(self, a)
       class(indenter_type), intent(in) :: self
       real(wp), intent(in) :: a
@@ -96,7 +94,7 @@ contains
       end do
    end function force
 
-   !> Derivative of `force` by a, without unit.
+   !> Derivative of `force` with respect to a, dimensionless.
    pure real(wp) function slope(self, a)
       class(indenter_type), intent(in) :: self
       real(wp), intent(in) :: a
@@ -111,9 +109,8 @@ contains
       end do
    end function slope
 
-   !> Contact half-width, length, at a force over 2 m (length). The force is a convex function of the half-width, and Newton's
-   !> iteration
-   !> comes down to it from a half-width at which one term alone carries it all.
+   !> Contact half-width, length, at a force over 2 m (length). The force is convex in the half-width: Newton's iteration
+   !> converges monotonically from the half-width at which one term alone has the whole force.
    pure real(wp) function half_width(self, force) result(a)
       class(indenter_type), intent(in) :: self
       real(wp), intent(in) :: force
@@ -139,7 +136,7 @@ contains
       end do
    end function half_width
 
-   !> The half-width, length, at which contact begins: that of the flat part.
+   !> Half-width, length, at first contact: that of the flat.
    pure real(wp) function smallest(self)
       class(indenter_type), intent(in) :: self
 
@@ -168,7 +165,7 @@ contains
       approach = 2.0_wp/pi*(self%force(a)*log(2.0_wp*datum/a) + inner)
    end function approach
 
-   !> Contact half-width, length, at an approach (length); at most `largest` (length; no more than the datum). By bisection.
+   !> Contact half-width, length, at an approach (length), by bisection; at most `largest` (length; not above the datum).
    pure real(wp) function half_width_at_approach(self, approach, datum, largest) result(a)
       class(indenter_type), intent(in) :: self
       real(wp), intent(in) :: approach, datum, largest
@@ -189,7 +186,7 @@ contains
       end do
    end function half_width_at_approach
 
-   !> Pressure over 2 m at x (length) for a contact half-width a (length), without unit; zero outside, and large at a sharp tip.
+   !> Pressure over 2 m at x (length) for a contact half-width a (length), dimensionless; zero outside, large at a sharp tip.
    function pressure(self, x, a)
       class(indenter_type), intent(in) :: self
       real(wp), intent(in) :: x(:), a
@@ -219,7 +216,7 @@ contains
       wallis = 0.5_wp*sqrt(pi)*exp(log_gamma(0.5_wp*(n + 1.0_wp)) - log_gamma(0.5_wp*n + 1.0_wp))
    end function wallis
 
-   !> arccos(b/a), without cancellation; 0 where a is not above b.
+   !> arccos(b/a), without cancellation; 0 for a <= b.
    elemental real(wp) function opening(b, a)
       real(wp), intent(in) :: b, a
 

@@ -1,9 +1,9 @@
-!> Closed form: a cylinder pressed without shear and then sheared at constant normal force, elastically decoupled
-!> (Cattaneo 1938, Mindlin 1949; dissertation eqs. 3.7, 3.8), with any history of the tangential force: between turning
-!> points the traction changes by twice the first-loading traction of half the change (Mindlin and Deresiewicz 1953).
+!> Closed form: a cylinder pressed without shear and then sheared at constant normal force, elastically decoupled (Cattaneo
+!> 1938, Mindlin 1949; dissertation eqs. 3.7, 3.8), for any history of the tangential force: between turning points the
+!> traction changes by twice the first-loading traction of half the change (Mindlin and Deresiewicz 1953).
 !>
-!> On half-planes the same holds for every shape: the shear traction of first loading is mu times the pressure, less mu times the
-!> pressure at the smaller normal force P - |Q|/mu, whose contact is the stick zone (Jaeger 1998, Ciavarella 1998).
+!> On half-planes the same holds for every shape: the shear traction of first loading is mu times the pressure, minus mu times
+!> the pressure at the smaller normal force P - |Q|/mu, whose contact is the stick zone (Jaeger 1998, Ciavarella 1998).
 module mfv_reference_mindlin
    use mfv_kinds, only: pi, wp
    use mfv_numerics, only: gauss_legendre
@@ -18,12 +18,12 @@ module mfv_reference_mindlin
       module procedure new_history_of_cylinder, new_history_of_indenter
    end interface new_mindlin_history
 
-   !> A sheared contact and what it remembers of its tangential forces.
+   !> A sheared contact with its load history.
    type :: mindlin_history_type
       type(indenter_type) :: indenter
       !> Normal force (force/length), contact half-width, datum (lengths), coefficient of friction.
       real(wp) :: normal_force, half_width, datum, friction_coefficient
-      !> Turning points of the tangential force that still matter, and last the force now, force/length.
+      !> Turning points of the tangential force outside closed loops, and the present force as the last one, force/length.
       real(wp), allocatable :: turning(:)
    contains
       procedure :: load
@@ -36,14 +36,14 @@ module mfv_reference_mindlin
 
 contains
 
-   !> Stick ratio b/a = sqrt(1 - |Q|/(mu P)) on first loading; 0 from gross sliding on. Equation 3.7.
+   !> Stick ratio b/a = sqrt(1 - |Q|/(mu P)) on first loading; 0 in gross sliding. Equation 3.7.
    elemental real(wp) function mindlin_stick_ratio(tangential_force, normal_force, friction_coefficient) result(ratio)
       real(wp), intent(in) :: tangential_force, normal_force, friction_coefficient
 
       ratio = sqrt(max(1.0_wp - abs(tangential_force)/(friction_coefficient*normal_force), 0.0_wp))
    end function mindlin_stick_ratio
 
-   !> The contact of a cylinder that has not been sheared yet. Arguments as the components of the type; radius: length.
+   !> A cylinder in contact, before shear. Arguments as the components of the type; radius: length.
    pure function new_history_of_cylinder(normal_force, half_width, radius, datum, friction_coefficient) result(history)
       real(wp), intent(in) :: normal_force, half_width, radius, datum, friction_coefficient
       type(mindlin_history_type) :: history
@@ -52,7 +52,7 @@ contains
                                         friction_coefficient)
    end function new_history_of_cylinder
 
-   !> The contact of an indenter that has not been sheared yet. Arguments as the components of the type.
+   !> An indenter in contact, before shear. Arguments as the components of the type.
    pure function new_history_of_indenter(normal_force, half_width, indenter, datum, friction_coefficient) result(history)
       real(wp), intent(in) :: normal_force, half_width, datum, friction_coefficient
       type(indenter_type), intent(in) :: indenter
@@ -61,7 +61,7 @@ contains
       history = mindlin_history_type(indenter, normal_force, half_width, datum, friction_coefficient, [real(wp) ::])
    end function new_history_of_indenter
 
-   !> Lead the tangential force (force/length) straight to `tangential_force`. Closed inner loops are forgotten.
+   !> Change the tangential force (force/length) monotonically to `tangential_force`. Closed loops are removed.
    pure subroutine load(self, tangential_force)
       class(mindlin_history_type), intent(inout) :: self
       real(wp), intent(in) :: tangential_force
@@ -94,12 +94,12 @@ contains
    pure real(wp) function stick_half_width(self, tangential_force)
       class(mindlin_history_type), intent(in) :: self
       real(wp), intent(in) :: tangential_force
-      real(wp) :: part
+      real(wp) :: fraction
 
-      part = max(1.0_wp - abs(tangential_force)/(self%friction_coefficient*self%normal_force), 0.0_wp)
+      fraction = max(1.0_wp - abs(tangential_force)/(self%friction_coefficient*self%normal_force), 0.0_wp)
       stick_half_width = 0.0_wp
-      if (part > 0.0_wp) stick_half_width = min(self%indenter%half_width(part*self%indenter%force(self%half_width)), &
-                                                self%half_width)
+      if (fraction > 0.0_wp) stick_half_width = min(self%indenter%half_width(fraction*self%indenter%force(self%half_width)), &
+                                                    self%half_width)
    end function stick_half_width
 
    !> Shear traction at x (length), force/length^2. Equation 3.8 (whose second line misprints sqrt(1 - x^2/b^2)) on first
@@ -151,7 +151,7 @@ contains
                 - self%indenter%approach(self%stick_half_width(tangential_force), self%datum))
    end function first_shift
 
-   !> Size of the slip on first loading at the distance x from the centre (length), for the stick half-width b (length):
+   !> Magnitude of the slip on first loading at the distance x from the centre (length), for the stick half-width b (length):
    !> mu b^2/(2R) [xi sqrt(xi^2 - 1) - arcosh xi], xi = x/b, length.
    pure real(wp) function mindlin_slip(x, stick_half_width, radius, friction_coefficient) result(slip)
       real(wp), intent(in) :: x, stick_half_width, radius, friction_coefficient
@@ -187,9 +187,9 @@ contains
       total = total*y
    end function sinh_less_argument
 
-   !> Energy dissipated by one full cycle of the tangential force between -Q and Q at constant normal force, force
-   !> (energy per unit thickness): 4 times the integral of mu p s over the slip zones (dissertation eq. 6.4, whose
-   !> integrand is garbled in print; Fleury et al. 2017).
+   !> Energy dissipated in one full cycle of the tangential force between -Q and Q at constant normal force, force (energy per
+   !> unit thickness): 4 times the integral of mu p s over the slip zones (dissertation eq. 6.4, with a misprinted integrand;
+   !> Fleury et al. 2017).
    function mindlin_dissipation(tangential_force, normal_force, half_width, radius, friction_coefficient) result(dissipation)
       real(wp), intent(in) :: tangential_force, normal_force, half_width, radius, friction_coefficient
       real(wp) :: dissipation
@@ -200,8 +200,8 @@ contains
                                           0.0_wp, 0.5_wp*pi, quadrature_points)
    end function mindlin_dissipation
 
-   !> mu p s dx/dphi at x = b + (a - b) sin^2(phi), which takes the square roots out of both ends;
-   !> parameters: P, a, b, R, mu.
+   !> mu p s dx/dphi at x = b + (a - b) sin^2(phi), a substitution that removes the square roots at both ends; parameters: P,
+   !> a, b, R, mu.
    pure real(wp) function friction_work(x, parameters) result(value)
       real(wp), intent(in) :: x, parameters(:)
       real(wp) :: position

@@ -1,10 +1,10 @@
 !> Closed form: a rigid cylinder or flat punch pressed on a half-plane with Coulomb friction, under Goodman's
 !> approximation (Spence 1973; dissertation eqs. 3.4 to 3.6; derivation in docs/theory.md).
 !>
-!> The stick ratio c = b/a is the same for both indenters and all loads. Under the punch the shear traction is that of
-!> the slipping punch times F(asin(x/b), c)/K(c) in the stick zone. (The logarithm that the print's eq. 3.6 adds belongs
-!> to the cylinder alone: with it the traction is not constant in strain over the stick zone. A test checks the singular
-!> integral.) The cylinder's follows by superposing punches of growing width, which gives eq. 3.5 as printed.
+!> The stick ratio c = b/a is the same for both indenters and all loads. Under the punch the shear traction is that of the
+!> slipping punch times F(asin(x/b), c)/K(c) in the stick zone. (The logarithm in eq. 3.6 as printed belongs to the cylinder
+!> alone: with it the strain is not constant over the stick zone. A test checks the singular integral.) The cylinder's follows
+!> by superposing punches of increasing width, which gives eq. 3.5 as printed.
 module mfv_reference_spence
    use mfv_gsl, only: GSL_PREC_DOUBLE, gsl_sf_ellint_RF
    use mfv_kinds, only: pi, wp
@@ -13,15 +13,15 @@ module mfv_reference_spence
    private
    public :: spence_stick_ratio, spence_cylinder_shear, spence_flat_punch_shear, elliptic_k, elliptic_f
 
-   !> Stick ratios are looked for between exp(-300) and 1 - 1e-290, where elliptic integrals are in double range.
+   !> Range of the search for stick ratios, exp(-300) to 1 - 1e-290, where elliptic integrals do not overflow.
    real(wp), parameter :: log_smallest = -300.0_wp, log_largest = -1.0e-290_wp
-   !> Arguments of R_F are kept above this, inside the domain outside of which GSL would abort.
+   !> Lower limit for arguments of R_F, inside the domain outside of which GSL would abort.
    real(wp), parameter :: domain_edge = 1.0e-300_wp
 
 contains
 
-   !> Stick ratio c from beta K(c) = mu K'(c), equation 3.4. 1 for beta = 0 (nothing slips), 0 for mu = 0.
-   !> `beta`: Dundurs' parameter of the half-plane against a rigid body, of either sign.
+   !> Stick ratio c from beta K(c) = mu K'(c), equation 3.4. 1 for beta = 0 (full stick), 0 for mu = 0. `beta`: Dundurs'
+   !> parameter of the half-plane against a rigid body, of either sign.
    real(wp) function spence_stick_ratio(friction_coefficient, beta) result(ratio)
       real(wp), intent(in) :: friction_coefficient, beta
 
@@ -112,7 +112,7 @@ contains
       end do
    end function spence_flat_punch_shear
 
-   !> K(c) at the stick ratio c: by equation 3.4 it is mu K'(c)/beta, which stays accurate where c is 1 to round-off.
+   !> K(c) at the stick ratio c: by equation 3.4 it equals mu K'(c)/beta, which stays accurate where c rounds to 1.
    pure real(wp) function stick_ratio_k(ratio, friction_coefficient, beta)
       real(wp), intent(in) :: ratio, friction_coefficient, beta
 

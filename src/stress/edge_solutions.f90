@@ -1,25 +1,26 @@
-!> The two solutions of the discrete equations next to an edge of contact, by which tractions at nodes are off.
+!> Discretisation error of nodal tractions next to a contact edge: the two solutions of the discrete equations there.
 !>
-!> Tractions are uniform on equal intervals of a half-plane's surface, and displacements are those at the middles. At the edge the
-!> tractions go to zero with the power m of the distance. Far from everything else the discrete equations have two solutions, g(j)
-!> and k(j), j = 0 at the outermost node; scaled to go as u^m and u^(m-1), u = j + offset. g + 2 m r k is the discrete traction that
-!> stands for d^m with its edge offset + 2 r intervals outwards from the outermost node. They follow from the Wiener-Hopf factors
-!> of the equations' symbol (docs/theory.md, edges between nodes).
+!> Tractions are uniform on equal intervals of a half-plane, and displacements are those at the middles. At the edge tractions
+!> vanish as the distance to the power m. Far from everything else the discrete equations have two solutions, g(j) and k(j), j
+!> = 0 at the outermost node, with the asymptotes u^m and u^(m-1), u = j + offset. g + 2 m r k is the discrete traction for
+!> d^m with an edge offset + 2 r intervals outwards from the outermost node. They follow from the Wiener-Hopf factors of the
+!> symbol (docs/theory.md, edges between nodes).
 module mfv_edge_solutions
    use mfv_kinds, only: wp
    implicit none
    private
    public :: solved_distance, discrete_over_exact, least_power, most_power
 
-   !> Powers for which the solutions are tabulated.
+   !> Exponents for which the solutions are tabulated.
    real(wp), parameter :: least_power = 0.29_wp, most_power = 0.71_wp
 
 contains
 
-   !> How many intervals outwards from the outermost node an edge is at which tractions go to zero with a `power`. `values`: the
-   !> tractions at five nodes and more, the outermost first, to the inverse power; `inwards`: how many intervals inwards from it
-   !> they are. g + 2 m r k, to the inverse power, makes the second to fourth value (with powers below 1/2, where k is ragged, the
-   !> third to fifth) with a parabola without linear term. Of several such edges the one nearest to `guess`, of none that.
+   !> Distance of the edge, in intervals outwards from the outermost node, where tractions vanish with the exponent `power`.
+   !> `values`: tractions at five or more nodes to the inverse exponent, outermost first; `inwards`: their distances from that
+   !> node. With the edge g + 2 m r k, to the inverse exponent, fits the second to fourth value (third to fifth with exponents
+   !> below 1/2, where k is irregular) by a parabola without a linear term. Of several such edges the one nearest to `guess`;
+   !> `guess` without any.
    pure real(wp) function solved_distance(inwards, values, power, guess) result(distance)
       real(wp), intent(in) :: inwards(0:), values(0:), power, guess
       integer, parameter :: steps = 22, halvings = 40
@@ -53,8 +54,7 @@ contains
 
    contains
 
-      !> The determinant of the three values, of those that the discrete equations give them with the edge at `edge`, and of the
-      !> squares of their distances from it.
+      !> Determinant of the three values, those of the discrete solution with the edge at `edge`, and the squared distances.
       pure real(wp) function misfit(edge)
          real(wp), intent(in) :: edge
          real(wp) :: discrete(3), square(3)
@@ -69,8 +69,8 @@ contains
       end function misfit
    end function solved_distance
 
-   !> The offset and the two solutions for j = 1 to 4 for a power, between those that are tabulated: to 1e-5, k to 6e-4.
-   !> tests/python/test_edge_solutions.py has the numbers.
+   !> Offset and the two solutions for j = 1 to 4 for an exponent, interpolated in the table to 1e-5, k to 6e-4. Verified by
+   !> tests/python/test_edge_solutions.py.
    pure subroutine find_edge_solutions(power, offset, g, k)
       real(wp), intent(in) :: power
       real(wp), intent(out) :: offset, g(4), k(4)
@@ -100,8 +100,8 @@ contains
       k = found(6:9)
    end subroutine find_edge_solutions
 
-   !> The discrete traction over d^power at the nodes j = 1, 2, ..., the edge being `distance` intervals outwards from the outermost
-   !> node; 1 where the discrete equations have none. Its difference from 1 decays as the inverse square of the distance.
+   !> Discrete traction over d^power at the nodes j = 1, 2, ..., for an edge `distance` intervals outwards from the outermost
+   !> node; 1 without a discrete solution. Its difference from 1 decays as the inverse square of the distance.
    pure function discrete_over_exact(power, distance, nodes) result(ratio)
       real(wp), intent(in) :: power, distance
       integer, intent(in) :: nodes

@@ -1,7 +1,6 @@
-!> Stresses inside a body of a scene, under the tractions on its surface: coordinates, signs and invariants. Between nodes the
-!> tractions are continuous, see mfv_surface_tractions.
-!>
-!> x to the right and y up from the pole; the upper body is the mirror image of a lower one with the shear reversed.
+!> Stresses inside a body of a scene under its surface tractions: coordinates, signs and invariants. Tractions are continuous
+!> between nodes, see mfv_surface_tractions. x to the right and y up from the initial point of contact; the upper body is the
+!> mirror image of a lower one with the shear reversed.
 module mfv_interior
    use, intrinsic :: ieee_arithmetic, only: ieee_is_finite, ieee_is_nan, ieee_quiet_nan, ieee_value
    use mfv_body, only: body_type, shape_disk, shape_hole, shape_matrix
@@ -15,10 +14,10 @@ module mfv_interior
    public :: interior_type, new_interior, has_interior, von_mises_stress, tresca_stress, principal_stresses, polar_stress
    public :: stress_xx, stress_yy, stress_xy, stress_zz, stress_count, stress_names, stress_von_mises
 
-   !> Places of the stresses in what `stress` returns.
+   !> Indices of the result of `stress`.
    integer, parameter :: stress_xx = 1, stress_yy = 2, stress_xy = 3, stress_zz = 4
-   !> What `all_stresses` returns: those, principal stresses in the plane, von Mises, polar ones about a circle's centre,
-   !> Tresca, the direction of the first principal stress.
+   !> Result of `all_stresses`: these, principal stresses in the plane, von Mises, polar stresses about a circle's centre,
+   !> Tresca, direction of the first principal stress.
    integer, parameter :: stress_von_mises = 7, stress_tresca = 11, stress_angle = 12, stress_count = 12
    character(*), parameter :: stress_names = 'sigma_xx sigma_yy sigma_xy sigma_zz principal_1 principal_2 von_mises '// &
                               'sigma_rr sigma_thetatheta sigma_rtheta tresca principal_angle'
@@ -28,13 +27,14 @@ module mfv_interior
       type(body_type) :: body
       !> 1 for a lower body, -1 for an upper one.
       real(wp) :: side = 1.0_wp
-      !> 1 for a disk, -1 for a hole: which way out of the body the centre's radius goes.
+      !> 1 for a disk, -1 for a hole: sign of the outward radial direction.
       real(wp) :: outward = 1.0_wp
       !> Poisson's ratio in plane strain, 0 in plane stress: sigma_zz over sigma_xx + sigma_yy.
       real(wp) :: out_of_plane = 0.0_wp
-      !> Elements of the surface, their ends along it and over `length`, and p + i tau on the body as if it were below.
+      !> Elements of the surface, their ends as arc lengths and over `length`, and p + i tau on the body as if it were the
+      !> lower one.
       type(traction_elements_type) :: elements
-      !> A circle under these.
+      !> A circle with these elements.
       type(circle_load_type) :: circle
       !> Largest pressure at the nodes, force/length^2; unit of the elements of a half-plane, length.
       real(wp) :: peak = 0.0_wp, length = 1.0_wp
@@ -55,7 +55,7 @@ module mfv_interior
 
 contains
 
-   !> Whether stresses inside a body can be had: it is elastic and no mere matrix.
+   !> Whether stresses inside a body are available: it is elastic and not a matrix.
    pure logical function has_interior(body)
       type(body_type), intent(in) :: body
 
@@ -63,9 +63,9 @@ contains
    end function has_interior
 
    !> The body under `pressure` and `shear` (on the lower body, force/length^2) at nodes with the arc lengths `arc` and the
-   !> intervals `width`, lengths; shapes (nodes). `zones`: edges of contact and stick zones, where they are known. `upper`:
-   !> whether it is the body above. `plane`: see mfv_material. `radial`: whether the pressure is along the radius of a disk or
-   !> hole, not vertical. `available`: false for a body that is rigid or a mere matrix.
+   !> intervals `width`, lengths; shapes (nodes). `zones`: known edges of contact and stick zones. `upper`: the upper body.
+   !> `plane`: see mfv_material. `radial`: pressure along the radius of a disk or hole, not vertical. `available`: false for a
+   !> rigid body or a matrix.
    subroutine new_interior(body, upper, plane, radial, arc, width, pressure, shear, zones, self, available)
       type(body_type), intent(in) :: body
       logical, intent(in) :: upper, radial
@@ -103,7 +103,7 @@ contains
       end associate
    end subroutine new_interior
 
-   !> sigma_rr + i sigma_rtheta on the circle at an angle from the pole from p + i tau; `radial`: see new_interior.
+   !> sigma_rr + i sigma_rtheta on the circle at the angle theta, from p + i tau; `radial`: see new_interior.
    elemental complex(wp) function polar(self, radial, angle, traction)
       type(interior_type), intent(in) :: self
       logical, intent(in) :: radial
@@ -130,42 +130,42 @@ contains
    pure logical function contains_point(self, x, y)
       class(interior_type), intent(in) :: self
       real(wp), intent(in) :: x, y
-      real(wp) :: from_pole(2)
-      real(wp), parameter :: round_off = 4.0_wp*epsilon(1.0_wp)
+      real(wp) :: from_origin(2)
+      real(wp), parameter :: tolerance = 4.0_wp*epsilon(1.0_wp)
 
       if (self%body%circular()) then
-         from_pole = radii_from_pole(self, x, y)
-         associate (beyond => 2.0_wp*from_pole(1) + sum(from_pole**2))
-            contains_point = merge(beyond <= round_off, beyond >= -round_off, self%body%shape == shape_disk)
+         from_origin = coordinates_in_radii(self, x, y)
+         associate (beyond => 2.0_wp*from_origin(1) + sum(from_origin**2))
+            contains_point = merge(beyond <= tolerance, beyond >= -tolerance, self%body%shape == shape_disk)
          end associate
       else
          contains_point = self%side*y <= 0.0_wp
       end if
    end function contains_point
 
-   !> Coordinates of mfv_interior_circle: outwards from the centre through the pole, and along the surface to the right.
-   pure function radii_from_pole(self, x, y)
+   !> Coordinates of mfv_interior_circle: from theta = 0 outwards along the radius, and tangential to the right.
+   pure function coordinates_in_radii(self, x, y)
       class(interior_type), intent(in) :: self
       real(wp), intent(in) :: x, y
-      real(wp) :: radii_from_pole(2)
+      real(wp) :: coordinates_in_radii(2)
 
-      radii_from_pole = [self%outward*self%side*y, x]/self%body%radius
-   end function radii_from_pole
+      coordinates_in_radii = [self%outward*self%side*y, x]/self%body%radius
+   end function coordinates_in_radii
 
-   !> Stresses sigma_xx, sigma_yy, sigma_xy, sigma_zz, force/length^2, at the point (x, y), lengths; NaN outside the body
-   !> and in the centre of a disk.
+   !> Stresses sigma_xx, sigma_yy, sigma_xy, sigma_zz, force/length^2, at the point (x, y), lengths; NaN outside the body and
+   !> at the centre of a disk.
    function stress(self, x, y) result(values)
       class(interior_type), intent(in) :: self
       real(wp), intent(in) :: x, y
-      real(wp) :: values(4), turned(3), from_pole(2)
+      real(wp) :: values(4), turned(3), from_origin(2)
 
       values = ieee_value(1.0_wp, ieee_quiet_nan)
       if (.not. (ieee_is_finite(x) .and. ieee_is_finite(y))) return
       if (.not. self%contains_point(x, y)) return
       if (self%body%circular()) then
-         from_pole = radii_from_pole(self, x, y)
-         if (self%body%shape == shape_disk .and. hypot(1.0_wp + from_pole(1), from_pole(2)) < epsilon(1.0_wp)) return
-         turned = self%circle%stress(from_pole)
+         from_origin = coordinates_in_radii(self, x, y)
+         if (self%body%shape == shape_disk .and. hypot(1.0_wp + from_origin(1), from_origin(2)) < epsilon(1.0_wp)) return
+         turned = self%circle%stress(from_origin)
          values(stress_xx) = turned(2)
          values(stress_yy) = turned(1)
          values(stress_xy) = merge(turned(3), -turned(3), self%body%shape == shape_disk)
@@ -177,7 +177,7 @@ contains
       values(stress_zz) = self%out_of_plane*(values(stress_xx) + values(stress_yy))
    end function stress
 
-   !> The stress along the surface, force/length^2, positive in tension, at an arc length from the pole.
+   !> Stress tangential to the surface, force/length^2, positive in tension, at an arc length from the origin of x.
    pure real(wp) function surface_stress(self, arc)
       class(interior_type), intent(in) :: self
       real(wp), intent(in) :: arc
@@ -190,8 +190,8 @@ contains
       end if
    end function surface_stress
 
-   !> All stresses of `stress_names` at (x, y), force/length^2, and the direction in radians; NaN outside the body, polar ones in a
-   !> half-plane.
+   !> All stresses of `stress_names` at (x, y), force/length^2, and the direction in radians; NaN outside the body; polar
+   !> stresses NaN in a half-plane.
    function all_stresses(self, x, y) result(values)
       class(interior_type), intent(in) :: self
       real(wp), intent(in) :: x, y
@@ -208,7 +208,7 @@ contains
       if (self%body%circular()) values(8:10) = polar_stress(values(:4), self%centre(), x, y)
    end function all_stresses
 
-   !> y of the surface at x, lengths; NaN beside a disk or hole.
+   !> y of the surface at x, lengths; NaN outside a disk or hole.
    real(wp) function surface(self, x)
       class(interior_type), intent(in) :: self
       real(wp), intent(in) :: x
@@ -222,7 +222,7 @@ contains
       surface = -self%side*depth(1)
    end function surface
 
-   !> Half the length of surface from the first to the last edge of the loaded zones, length; 0 without load.
+   !> Half the arc length from the first to the last edge of the loaded zones, length; 0 without load.
    pure real(wp) function half_width(self)
       class(interior_type), intent(in) :: self
 
@@ -249,8 +249,8 @@ contains
       is_sheared = any(abs(aimag(self%elements%first)) > 0.0_wp) .or. any(abs(aimag(self%elements%last)) > 0.0_wp)
    end function is_sheared
 
-   !> Edges of contact and stick zones along the surface from the pole, lengths, ascending, and between them equidistant places,
-   !> together about `most_between`.
+   !> Edges of contact and stick zones, arc lengths from the origin of x, ascending, with equidistant points between them,
+   !> about `most_between` in total.
    function zone_edges(self, most_between) result(places)
       class(interior_type), intent(in) :: self
       integer, intent(in) :: most_between
@@ -266,7 +266,7 @@ contains
       end associate
    end function zone_edges
 
-   !> Ends of the elements between which the tractions are linear, along the surface from the pole, lengths.
+   !> Ends of the elements with linear tractions, arc lengths from the origin of x.
    pure function knots(self)
       class(interior_type), intent(in) :: self
       real(wp), allocatable :: knots(:)
@@ -285,7 +285,7 @@ contains
       point = [arc, -self%side*depth]
       if (.not. self%body%circular()) return
       angle = arc/self%body%radius
-      ! The height of the arc over the pole, and the depth along the radius, each without a difference of radii.
+      ! Height of the arc above y = 0 and depth along the radius, each without a difference of radii.
       point(1) = (self%body%radius - self%outward*depth)*sin(angle)
       point(2) = -self%side*(depth*cos(angle) + self%outward*self%body%radius*2.0_wp*sin(0.5_wp*angle)**2)
    end function point_at
@@ -298,7 +298,7 @@ contains
                                       + (values(stress_zz) - values(stress_xx))**2) + 3.0_wp*values(stress_xy)**2)
    end function von_mises_stress
 
-   !> Tresca's equivalent stress: the largest difference of the three principal stresses, sigma_zz among them; twice the largest
+   !> Tresca's equivalent stress: largest difference of the three principal stresses including sigma_zz; twice the largest
    !> shear stress.
    pure real(wp) function tresca_stress(values)
       real(wp), intent(in) :: values(4)

@@ -1,4 +1,4 @@
-!> Stresses inside a solid disk, or around a hole in an infinite plane, under tractions that are linear along elements of the
+!> Stresses inside a solid disk, or around a hole in an infinite plane, under tractions that are linear on elements of the
 !> circle, in closed form.
 !>
 !> Kolosov's potentials on the unit circle (Muskhelishvili 1953, chapters 14 and 15): with the Cauchy integrals
@@ -12,16 +12,16 @@
 !>           J+ = I+ + F* z/(pi (1+kappa)),  J- = I- + F* z/(2 pi)
 !>     hole: Phi = -I+ + kappa F/(2 pi (1+kappa) z),  z^2 Psi = I- + Phi - z Phi' + kappa F* z/(2 pi (1+kappa)) - N + i T
 !>
-!> with F the force that the disk's centre, or the tractions in the hole, exert on the body, M the integral and N, T the
-!> means of sigma_rr and sigma_rtheta: the singular terms of dissertation eq. 4.9, and of 4.13, in one piece. Sums of the
-!> series of C.2.1 and D.2.1, whose n = 0 terms are misprinted (docs/theory.md).
+!> with F the force that the disk's centre, or the tractions in the hole, exert on the body, M the integral and N, T the means
+!> of sigma_rr and sigma_rtheta: the singular terms of dissertation eqs. 4.9 and 4.13 together. Sums of the series of C.2.1
+!> and D.2.1, whose n = 0 terms are misprinted (docs/theory.md).
 !>
-!> The traction of an element is linear in u = sin(theta - middle)/sin(half its angle), that is, along its chord; u is a sum of
-!> s and 1/s on the circle, so that the integrals are elementary. Where an element is short against its distance, power series
-!> in its length keep their digits.
+!> The traction of an element is linear in u = sin(theta - middle)/sin(half its angle), the coordinate on its chord; u is a
+!> sum of s and 1/s on the circle, so that the integrals are elementary. For elements that are short compared with their
+!> distance, power series in their length avoid cancellation.
 !>
-!> Points are given from the pole z = 1, not from the centre, so that nothing cancels close to the contact; Phi' comes
-!> only times |z|^2 - 1, which vanishes on the surface.
+!> Points are relative to z = 1 (theta = 0), not to the centre, to avoid cancellation close to the contact; Phi' occurs only
+!> times |z|^2 - 1, which vanishes on the surface.
 module mfv_interior_circle
    use mfv_kinds, only: pi, wp
    use mfv_logarithms, only: log_ratio
@@ -29,13 +29,13 @@ module mfv_interior_circle
    private
    public :: circle_load_type, new_circle_load, longest_element
 
-   !> Elements that are not longer than this, radians, keep their digits everywhere.
+   !> Longest element, radians, without loss of digits anywhere.
    real(wp), parameter :: longest_element = 0.1_wp
-   !> Terms that the power series take: enough for the kind of real numbers.
+   !> Terms of the power series, enough for the kind of real numbers.
    integer, parameter :: terms = int(0.25_wp*digits(1.0_wp)) + 2
 
-   !> One element: its ends, radians; its ends and its middle, seen from the pole; direction of the middle; sine of half its
-   !> angle, chord of that; sigma_rr + i sigma_rtheta in the middle, and half of what it changes by.
+   !> One element: its ends, radians; its ends and its middle relative to theta = 0; direction of the middle; sine of half its
+   !> angle, and the chord of that; sigma_rr + i sigma_rtheta in the middle, and half of its change.
    type :: element_type
       complex(wp) :: first, last, middle, turn, mean, tilt
       real(wp) :: from, to, half, sine, chord
@@ -72,9 +72,9 @@ contains
          associate (e => self%elements(j), middle => 0.5_wp*(from(j) + to(j)))
             e%from = from(j)
             e%to = to(j)
-            e%first = from_pole_to(from(j))
-            e%last = from_pole_to(to(j))
-            e%middle = from_pole_to(middle)
+            e%first = from_origin_to(from(j))
+            e%last = from_origin_to(to(j))
+            e%middle = from_origin_to(middle)
             e%turn = cmplx(cos(middle), sin(middle), wp)
             e%half = 0.5_wp*(to(j) - from(j))
             e%sine = sin(e%half)
@@ -111,24 +111,23 @@ contains
       next_of_root = -0.25_wp*root*(0.5_wp - k)/(k + 1)
    end function next_of_root
 
-   !> Stresses (sigma_XX, sigma_YY, sigma_XY), force/length^2, at the point with the coordinates `from_pole` = (X, Y), measured from
-   !> the pole in radii, X outwards from the centre through the pole. The point must be on or inside the disk, on or outside the
-   !> hole; in the centre of a disk stresses are singular. Where tractions jump, the stress along the surface is singular: that
-   !> part is left out.
-   pure function stress(self, from_pole)
+   !> Stresses (sigma_XX, sigma_YY, sigma_XY), force/length^2, at the point `from_origin` = (X, Y), relative to theta = 0 and in
+   !> radii, X in the outward direction. The point must be on or inside the disk, on or outside the hole; the centre of a disk
+   !> is singular. At jumps of the tractions the singular term of the tangential stress is omitted.
+   pure function stress(self, from_origin)
       class(circle_load_type), intent(in) :: self
-      real(wp), intent(in) :: from_pole(2)
+      real(wp), intent(in) :: from_origin(2)
       real(wp) :: stress(3)
       complex(wp), parameter :: i = (0.0_wp, 1.0_wp)
-      real(wp), parameter :: round_off = 8.0_wp*epsilon(1.0_wp)
+      real(wp), parameter :: tolerance = 8.0_wp*epsilon(1.0_wp)
       complex(wp) :: zeta, z, plus, minus, slope, integral(2), derivative(2), potential, potential_slope, rest, force
       real(wp) :: beyond, kelvin
       integer :: j
 
-      zeta = cmplx(from_pole(1), from_pole(2), wp)
+      zeta = cmplx(from_origin(1), from_origin(2), wp)
       z = 1.0_wp + zeta
       beyond = 2.0_wp*real(zeta, wp) + abs(zeta)**2
-      if (abs(beyond) <= round_off*(2.0_wp*abs(real(zeta, wp)) + abs(zeta)**2)) beyond = 0.0_wp
+      if (abs(beyond) <= tolerance*(2.0_wp*abs(real(zeta, wp)) + abs(zeta)**2)) beyond = 0.0_wp
       plus = 0.0_wp
       minus = 0.0_wp
       slope = 0.0_wp
@@ -163,9 +162,9 @@ contains
       stress(3) = aimag(rest)
    end function stress
 
-   !> The stress along the circle at an angle from the pole, radians, as `stress` has it there. On the circle the integrals are real
-   !> but for the traction itself, and only those of the shear are left:
-   !> disk: 2/pi S + sigma_rr + 2 Re(F/z)/(pi (1+kappa)), hole: -2/pi S + sigma_rr - 2 N + 2 kappa Re(F/z)/(pi (1+kappa)).
+   !> Tangential stress at an angle from theta = 0, radians, equal to that of `stress`. On the circle the integrals are real
+   !> except for the traction itself, and only those of the shear remain: disk: 2/pi S + sigma_rr + 2 Re(F/z)/(pi (1+kappa)),
+   !> hole: -2/pi S + sigma_rr - 2 N + 2 kappa Re(F/z)/(pi (1+kappa)).
    pure real(wp) function surface_stress(self, angle) result(stress)
       class(circle_load_type), intent(in) :: self
       real(wp), intent(in) :: angle
@@ -223,8 +222,8 @@ contains
       end if
    end function tilted_part
 
-   !> Integrals over an element of 1/(s - z) and u/(s - z) ds, and their derivatives with respect to z (not at its ends, where they
-   !> are multiplied by zero). `zeta`: the point, seen from the pole; the logarithm is continuous on the body's side.
+   !> Integrals over an element of 1/(s - z) and u/(s - z) ds, and their derivatives with respect to z (not at its ends, where
+   !> they are multiplied by zero). `zeta`: the point relative to theta = 0; the logarithm is continuous on the body's side.
    pure subroutine element_integrals(element, disk, zeta, integral, derivative)
       type(element_type), intent(in) :: element
       logical, intent(in) :: disk
@@ -245,11 +244,11 @@ contains
          integral(1) = cmplx(0.5_wp*log_ratio(abs(first)**2, abs(last)**2, real(step*conjg(first + last), wp)), turn, wp)
          derivative(1) = step/(first*last)
       else
-         ! At an end on the surface the logarithm of no distance goes out against that of the next element.
+         ! At an end on the surface the singular logarithm cancels with that of the next element.
          turn = merge(0.5_wp*pi + element%half, element%half - 0.5_wp*pi, disk)
          integral(1) = cmplx(merge(1.0_wp, -1.0_wp, abs(first) < abs(last))*log(abs(step)), turn, wp)
       end if
-      ! The point in coordinates in which the middle of the element is 1; how far it is from there.
+      ! The point relative to the middle of the element, in units in which the middle is 1; and its distance from it.
       place = (1.0_wp + zeta)*conjg(element%turn)
       away = (element%middle - zeta)*conjg(element%turn)
       if (element%chord**2*max(1.0_wp, abs(place)) < short*abs(away)**2) then
@@ -262,8 +261,8 @@ contains
                       *(0.5_wp*i*(1.0_wp + place**2)*integral(1) + element%half)
    end subroutine element_integrals
 
-   !> The integral of u/(s - z) ds and its derivative where the element is short against its distance: with v = 2 sin(phi/2)
-   !> they are those of v^2 sqrt(1 - v^2/4) over away^2 + place v^2, and over the square of that.
+   !> Integral of u/(s - z) ds and its derivative for an element that is short compared with its distance: with v = 2
+   !> sin(phi/2) those of v^2 sqrt(1 - v^2/4) over away^2 + place v^2, and over the square of that.
    pure subroutine distant_integrals(element, place, away, integral, derivative)
       type(element_type), intent(in) :: element
       complex(wp), intent(in) :: place, away
@@ -294,10 +293,10 @@ contains
    end subroutine distant_integrals
 
    !> exp(i theta) - 1.
-   pure complex(wp) function from_pole_to(theta)
+   pure complex(wp) function from_origin_to(theta)
       real(wp), intent(in) :: theta
 
-      from_pole_to = 2.0_wp*sin(0.5_wp*theta)*cmplx(-sin(0.5_wp*theta), cos(0.5_wp*theta), wp)
-   end function from_pole_to
+      from_origin_to = 2.0_wp*sin(0.5_wp*theta)*cmplx(-sin(0.5_wp*theta), cos(0.5_wp*theta), wp)
+   end function from_origin_to
 
 end module mfv_interior_circle

@@ -1,10 +1,10 @@
-!> Stresses inside a half-plane under tractions that are linear along elements of its surface, in closed form.
+!> Stresses inside a half-plane under tractions that are linear on elements of its surface, in closed form.
 !>
 !> Muskhelishvili's potentials of the lower half-plane with sigma_yy = -p, sigma_xy = tau on y = 0 (Muskhelishvili 1953,
 !> sections 90 to 93; Johnson 1985, section 2.5, for uniform and triangular tractions): Phi(z) = 1/(2 pi i) integral of (p + i
-!> tau)/(t - z) dt, sigma_xx + sigma_yy = 4 Re Phi, sigma_yy - sigma_xx + 2 i sigma_xy = -4 i y Phi' - 2/pi integral of tau/(t -
-!> z) dt. The integrals over an element are elementary; where it is short against its distance they are summed as series, so
-!> that they keep their digits.
+!> tau)/(t - z) dt, sigma_xx + sigma_yy = 4 Re Phi, sigma_yy - sigma_xx + 2 i sigma_xy = -4 i y Phi' - 2/pi integral of tau/(t
+!> - z) dt. The integrals over an element are elementary; for elements that are short compared with their distance, series
+!> avoid cancellation.
 module mfv_interior_half_plane
    use mfv_kinds, only: pi, wp
    use mfv_logarithms, only: log_ratio
@@ -12,14 +12,14 @@ module mfv_interior_half_plane
    private
    public :: half_plane_stress, half_plane_surface_stress
 
-   !> Terms of the power series, which converge at least like 1/25^k: enough for the kind of real numbers.
+   !> Terms of the power series, which converge at least as 1/25^k: enough for the kind of real numbers.
    integer, parameter :: most_terms = int(0.25_wp*digits(1.0_wp)) + 2
 
 contains
 
-   !> Stresses (sigma_xx, sigma_yy, sigma_xy), force/length^2, at the depth `depth` >= 0 below the surface point `x`. The
-   !> elements go from `from` to `to` (lengths); the traction p + i tau is `first` and `last` there and linear between; shapes
-   !> (elements). Where tractions jump, sigma_xx on the surface is singular: that part is left out.
+   !> Stresses (sigma_xx, sigma_yy, sigma_xy), force/length^2, at the depth `depth` >= 0 below the surface point `x`. Elements
+   !> from `from` to `to` (lengths) with the traction p + i tau linear from `first` to `last`; shapes (elements). At jumps of
+   !> the tractions the singular term of sigma_xx on the surface is omitted.
    pure function half_plane_stress(from, to, first, last, x, depth) result(stress)
       real(wp), intent(in) :: from(:), to(:), x, depth
       complex(wp), intent(in) :: first(:), last(:)
@@ -46,8 +46,8 @@ contains
       stress(3) = aimag(shear)
    end function half_plane_stress
 
-   !> sigma_xx at the surface point `x`, as half_plane_stress has it there, in real numbers: -p(x) + 2/pi integral of tau/(t -
-   !> x) dt.
+   !> sigma_xx at the surface point `x`, equal to that of half_plane_stress, in real numbers: -p(x) + 2/pi integral of tau/(t
+   !> - x) dt.
    pure real(wp) function half_plane_surface_stress(from, to, first, last, x) result(stress)
       real(wp), intent(in) :: from(:), to(:), x
       complex(wp), intent(in) :: first(:), last(:)
@@ -83,8 +83,8 @@ contains
       stress = 2.0_wp/pi*sum - pressure
    end function half_plane_surface_stress
 
-   !> Integrals over an element of 1/(t - z) and u/(t - z) dt, u going from -1 to 1, and their derivatives with respect to z
-   !> (zero on the surface, where they are not needed). `left`, `right`: its ends, seen from the point; `depth` of the point.
+   !> Integrals over an element of 1/(t - z) and u/(t - z) dt, u from -1 to 1, and their derivatives with respect to z (zero
+   !> on the surface, where they are not needed). `left`, `right`: its ends relative to the point; `depth` of the point.
    pure subroutine element_integrals(left, right, depth, integral, derivative)
       real(wp), intent(in) :: left, right, depth
       complex(wp), intent(out) :: integral(2), derivative(2)
@@ -107,15 +107,15 @@ contains
          integral(1) = integral(1) + 0.5_wp*log_ratio(square_left, square_right, 4.0_wp*half*middle)
          if (depth > 0.0_wp) derivative(1) = 2.0_wp*half/(cmplx(left, depth, wp)*cmplx(right, depth, wp))
       else
-         ! At an end on the surface the logarithm of no distance goes out against that of the next element.
+         ! At an end on the surface the singular logarithm cancels with that of the next element.
          integral(1) = cmplx(merge(1.0_wp, -1.0_wp, middle > 0.0_wp)*log(2.0_wp*half), -0.5_wp*pi, wp)
       end if
       integral(2) = place*integral(1) + 2.0_wp
       if (depth > 0.0_wp) derivative(2) = integral(1)/half + place*derivative(1)
    end subroutine element_integrals
 
-   !> The same as power series, for elements that are short against their distance. `place`: the point, seen from the middle, over
-   !> half the length of the element.
+   !> The same as power series, for elements that are short compared with their distance. `place`: the point relative to the
+   !> middle, over half the length of the element.
    pure subroutine distant_integrals(half, place, integral, derivative)
       real(wp), intent(in) :: half
       complex(wp), intent(in) :: place

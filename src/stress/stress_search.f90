@@ -1,4 +1,4 @@
-!> Where in a body stresses are largest: the von Mises stress, and the tension along the surface.
+!> Largest stresses in a body: the von Mises stress, and the tension at the surface.
 module mfv_stress_search
    use, intrinsic :: ieee_arithmetic, only: ieee_is_finite, ieee_quiet_nan, ieee_value
    use mfv_interior, only: interior_type, von_mises_stress
@@ -22,9 +22,9 @@ module mfv_stress_search
 
 contains
 
-   !> The largest von Mises stress: the best points of a coarse net below the contact, which is dense towards the surface, are each
-   !> refined by a simplex search (GSL), those on the surface along it. A disk is not searched deeper than half its radius nor where
-   !> stresses rise towards the force in its centre. Zero where there is no load.
+   !> Largest von Mises stress. The best points of a coarse grid below the contact, graded towards the surface, are refined by
+   !> a simplex search (GSL), those on the surface along it. A disk is searched to half its radius, and not where stresses
+   !> only rise towards the force at its centre. Zero without load.
    type(largest_type) function largest_von_mises(interior) result(largest)
       type(interior_type), intent(in) :: interior
       integer, parameter :: across = 41, down = 21, starts = 6, neighbours = 2
@@ -48,7 +48,7 @@ contains
             net(i, j) = von_mises_at(interior, positions(i), depths(j))
          end do
       end do
-      if (interior%body%circular()) call leave_out_rise(net)
+      if (interior%body%circular()) call exclude_rise(net)
       do start = 1, starts
          best = maxloc(net)
          if (.not. net(best(1), best(2)) > 0.0_wp) exit
@@ -59,11 +59,11 @@ contains
          net(max(1, best(1) - neighbours):min(across, best(1) + neighbours), &
              max(1, best(2) - neighbours):min(down, best(2) + neighbours)) = -1.0_wp
       end do
-      call refine_along(interior, interior%knots(), .true., place(1), value)
+      call refine_on_surface(interior, interior%knots(), .true., place(1), value)
       call keep_larger(interior, largest, place(1), 0.0_wp)
    end function largest_von_mises
 
-   !> The von Mises stress, to be made large, at an arc length and a depth.
+   !> Negative von Mises stress at an arc length and a depth, the objective of the search.
    real(wp) function negative_von_mises(self, x) result(value)
       class(search_type), intent(in) :: self
       real(wp), intent(in) :: x(:)
@@ -71,8 +71,8 @@ contains
       value = -von_mises_at(self%interior, x(1), min(max(x(2), 0.0_wp), self%deepest))
    end function negative_von_mises
 
-   !> Take out of a net (across, down) what only rises towards its lower edge: the force in a disk's centre.
-   pure subroutine leave_out_rise(net)
+   !> Exclude points of a grid (across, down) where stresses only rise towards its lower edge: the force at a disk's centre.
+   pure subroutine exclude_rise(net)
       real(wp), intent(inout) :: net(:, :)
       real(wp) :: below
       integer :: i, j
@@ -85,11 +85,11 @@ contains
             net(i, j) = -1.0_wp
          end do
       end do
-   end subroutine leave_out_rise
+   end subroutine exclude_rise
 
-   !> The largest tension along the surface, force/length^2: at the edges of contact and stick zones, where it has cusps,
-   !> between them and beside the contact (of a circle, all around). Not a number where tractions are singular, at the end of a
-   !> body's surface that carries shear; `x` and `y` are not numbers where there is no tension anywhere.
+   !> Largest tension at the surface, force/length^2: at edges of contact and stick zones, where it has cusps, between them
+   !> and beside the contact (on a circle, everywhere). NaN where tractions are singular, at the end of a surface under shear;
+   !> `x` and `y` are NaN without any tension.
    type(largest_type) function largest_tension(interior) result(largest)
       type(interior_type), intent(in) :: interior
       real(wp) :: place, point(2)
@@ -100,7 +100,7 @@ contains
       if (.not. interior%body%circular() .and. .not. interior%is_sheared()) return
       largest%value = ieee_value(1.0_wp, ieee_quiet_nan)
       if (interior%elements%singular) return
-      call refine_along(interior, candidates(interior), .false., place, largest%value)
+      call refine_on_surface(interior, candidates(interior), .false., place, largest%value)
       if (largest%value > 0.0_wp) then
          point = interior%point_at(place, 0.0_wp)
          largest%x = point(1)
@@ -110,8 +110,8 @@ contains
       end if
    end function largest_tension
 
-   !> Places on the surface, ascending, among which the largest tension is looked for: zone edges, some knots between, and places
-   !> farther and farther beside the contact.
+   !> Candidate points for the largest tension, ascending: zone edges, some knots between them, and points beside the contact
+   !> at increasing distances.
    function candidates(interior) result(places)
       type(interior_type), intent(in) :: interior
       real(wp), allocatable :: places(:)
@@ -130,8 +130,8 @@ contains
       places = [inside(1) - beside(size(beside):1:-1), inside, inside(size(inside)) + beside]
    end function candidates
 
-   !> The best of ascending places on the surface, refined between its neighbours by golden sections.
-   subroutine refine_along(interior, places, von_mises, place, value)
+   !> Best of ascending surface points, refined between its neighbours by golden-section search.
+   subroutine refine_on_surface(interior, places, von_mises, place, value)
       type(interior_type), intent(in) :: interior
       real(wp), intent(in) :: places(:)
       logical, intent(in) :: von_mises
@@ -180,9 +180,9 @@ contains
             stress_at = interior%surface_stress(arc)
          end if
       end function stress_at
-   end subroutine refine_along
+   end subroutine refine_on_surface
 
-   !> Von Mises stress at a depth below the arc length `arc`, -1 where there is none.
+   !> Von Mises stress at a depth below the arc length `arc`, -1 outside the body.
    real(wp) function von_mises_at(interior, arc, depth)
       type(interior_type), intent(in) :: interior
       real(wp), intent(in) :: arc, depth

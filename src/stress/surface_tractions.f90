@@ -1,11 +1,11 @@
 !> Tractions between the nodes: continuous, from the values at nodes and the edges of contact and stick zones between them.
 !>
-!> A pressure goes to zero at a smooth edge as the root of the distance, and so does, at the edge of a stick zone, what the shear
-!> traction lacks of the friction limit (Hertz; Cattaneo and Mindlin, dissertation eqs. 3.1, 3.7). The pressure and the lack, each
-!> over its roots, are smooth: they are interpolated linearly and continued to the edges. Values at nodes are freed of the error of
-!> the discretisation where it is known (mfv_edge_solutions); those within two intervals of an edge are left out. The resultant
-!> forces are those of the nodal values. The whole is projected onto linear elements that are graded towards the edges: of the
-!> elements only their sums with other functions matter for stresses, which a projection keeps.
+!> A pressure vanishes at a smooth edge as the root of the distance, and so does, at the edge of a stick zone, the remaining
+!> friction |mu p| - |tau| (Hertz; Cattaneo and Mindlin, dissertation eqs. 3.1, 3.7). Both, divided by their roots, are
+!> smooth: they are interpolated linearly and extrapolated to the edges. Nodal values are corrected for the discretisation
+!> error where it is known (mfv_edge_solutions); those within two intervals of an edge are not used. Resultant forces are
+!> those of the nodal values. The result is projected onto linear elements that are graded towards the edges; the projection
+!> preserves the integrals of tractions with smooth functions, on which stresses depend.
 module mfv_surface_tractions
    use mfv_edge_solutions, only: discrete_over_exact, least_power, most_power, solved_distance
    use mfv_kinds, only: pi, wp
@@ -13,28 +13,27 @@ module mfv_surface_tractions
    private
    public :: zone_list_type, traction_elements_type, find_traction_elements, root_shift
 
-   !> Edges along the surface, lengths, the left one first; shapes (2, zones). A sharp edge is one at which the pressure does
-   !> not go to zero: the end of a body's surface. `beta`: Dundurs' parameter that couples tractions and displacements, 0
-   !> without coupling.
+   !> Edges, arc lengths, left one first; shapes (2, zones). At a sharp edge the pressure does not vanish: the end of a body's
+   !> surface. `beta`: Dundurs' parameter, 0 without coupling.
    type :: zone_list_type
       real(wp), allocatable :: contact(:, :), stick(:, :)
       logical, allocatable :: sharp(:, :)
       real(wp) :: beta = 0.0_wp
-      !> Elements that a contact zone has at least: with few the place of the largest von Mises stress, whose maximum is flat, is
-      !> drawn to their ends.
+      !> Minimum of elements in a contact zone: with fewer, the point of the largest von Mises stress, a flat maximum, would
+      !> move to their ends.
       integer :: fewest_elements = 300
    end type zone_list_type
 
-   !> Elements from `from` to `to`, lengths, in ascending order; p + i tau is `first` and `last` there, force/length^2, and linear
-   !> between; shapes (elements). `edges`: of contact and stick zones, ascending. `singular`: whether there is shear at a sharp
-   !> edge, where the stress along the surface has no limit.
+   !> Elements from `from` to `to`, lengths, in ascending order, with p + i tau linear from `first` to `last`, force/length^2;
+   !> shapes (elements). `edges`: of contact and stick zones, ascending. `singular`: shear at a sharp edge, where the
+   !> tangential stress diverges.
    type :: traction_elements_type
       real(wp), allocatable :: from(:), to(:), edges(:)
       complex(wp), allocatable :: first(:), last(:)
       logical :: singular = .false.
    end type traction_elements_type
 
-   !> A function known at some positions, linear between.
+   !> A piecewise linear function.
    type :: table_type
       real(wp), allocatable :: x(:), value(:)
    contains
@@ -42,12 +41,12 @@ module mfv_surface_tractions
       procedure :: continued
    end type table_type
 
-   !> A zone with the sides (left, right) on which something goes to zero as a root, the powers of these, and what is left when
-   !> it is divided by them.
+   !> A zone: the sides (left, right) where the function vanishes as a root, the exponents there, and the function divided by
+   !> these roots.
    type :: zone_type
       real(wp) :: edge(2) = 0.0_wp, power(2) = 0.5_wp
       logical :: rooted(2) = .true.
-      !> Whether the error of the discretisation at the edges is known.
+      !> Whether the discretisation error at the edges is known.
       logical :: known(2) = .false.
       type(table_type) :: rest
    contains
@@ -55,16 +54,16 @@ module mfv_surface_tractions
       procedure :: roots
    end type zone_type
 
-   !> One contact zone: the pressure; tau/p, `limit` in slip zones and between their ends; what tau lacks of it in the stick
-   !> zones, over the pressure where a stick zone ends with the contact. Where nodes without pressure have shear, `shear` in place
-   !> of these.
+   !> One contact zone: the pressure; `limit` tau/p in slip zones, linear between them; in stick zones the remaining friction,
+   !> over the pressure where a stick zone ends with the contact. If nodes without pressure have shear, `shear` instead of
+   !> these.
    type :: patch_type
       real(wp), allocatable :: arc(:), width(:), pressure(:), shear(:)
       type(zone_type) :: contact
       type(zone_type), allocatable :: stick(:)
       type(table_type) :: limit, shear_rest
       logical :: has_ratio = .true.
-      !> Whether the edges of the contact are not given but ends of the intervals of nodes, to be located.
+      !> Whether the contact edges are ends of intervals, to be located between the nodes.
       logical :: counted = .false.
    contains
       procedure :: tractions
@@ -72,9 +71,9 @@ module mfv_surface_tractions
 
 contains
 
-   !> The elements under `pressure` and `shear` (on the lower body, force/length^2) at the nodes `arc`, whose intervals have the
-   !> lengths `width`; shapes (nodes). `zones`: the edges; contact zones that it does not have are located from their
-   !> nodes. `longest`: no element is longer.
+   !> Elements under `pressure` and `shear` (on the lower body, force/length^2) at the nodes `arc` with the intervals `width`,
+   !> lengths; shapes (nodes). `zones`: known edges; other contact zones are located from their nodes. `longest`: upper limit
+   !> of the element length.
    subroutine find_traction_elements(arc, width, pressure, shear, zones, longest, elements)
       real(wp), intent(in) :: arc(:), width(:), pressure(:), shear(:), longest
       type(zone_list_type), intent(in) :: zones
@@ -100,7 +99,7 @@ contains
       end do
    end subroutine find_traction_elements
 
-   !> Which contact zone each loaded node belongs to, 0 for none: the nearest; zones of their own for nodes that are in none.
+   !> Contact zone of each loaded node, 0 without load: the nearest; nodes outside all zones form new ones.
    subroutine assign_nodes(arc, width, loaded, zones, edges, sharp, owner)
       real(wp), intent(in) :: arc(:), width(:)
       logical, intent(in) :: loaded(:)
@@ -131,7 +130,7 @@ contains
       end do
    end subroutine assign_nodes
 
-   !> Everything of a patch from its nodes and edges.
+   !> Fit a patch to its nodes and edges.
    subroutine fit_patch(patch, zones)
       type(patch_type), intent(inout) :: patch
       type(zone_list_type), intent(in) :: zones
@@ -152,17 +151,17 @@ contains
       call find_known(patch, zones%beta)
       if (patch%counted) call locate_edges(patch)
       values = patch%pressure
-      call free_of_error(patch, patch%contact, values)
+      call correct_error(patch, patch%contact, values)
       call fit_zone(patch, values, patch%contact)
       do i = 1, size(patch%stick)
          values = patch%limit%at(patch%arc)*patch%pressure - patch%shear
-         call free_of_error(patch, patch%stick(i), values)
+         call correct_error(patch, patch%stick(i), values)
          if (.not. all(patch%stick(i)%rooted)) values = values/patch%pressure
          call fit_zone(patch, values, patch%stick(i))
       end do
    end subroutine fit_patch
 
-   !> Edges of a contact between the nodes, where the error of the discretisation is known.
+   !> Contact edges between the nodes, if the discretisation error is known.
    subroutine locate_edges(patch)
       type(patch_type), intent(inout) :: patch
       real(wp) :: values(size(patch%arc)), inwards(size(patch%arc))
@@ -179,7 +178,7 @@ contains
       end do
    end subroutine locate_edges
 
-   !> The edges at which the error of the discretisation is known: of contact zones where enough nodes slip, of stick zones without
+   !> Find edges with a known discretisation error: of contact zones with enough slipping nodes, and of stick zones without
    !> coupling (`beta` 0).
    subroutine find_known(patch, beta)
       type(patch_type), intent(inout) :: patch
@@ -203,7 +202,7 @@ contains
       end if
    end subroutine find_known
 
-   !> The powers at edges next to which nodes slip: see mfv_zone_edges.
+   !> Exponents at edges next to slipping nodes: see mfv_zone_edges.
    subroutine find_powers(patch, beta)
       type(patch_type), intent(inout) :: patch
       real(wp), intent(in) :: beta
@@ -212,23 +211,23 @@ contains
       do side = 1, 2
          outermost = merge(1, size(patch%arc), side == 1)
          if (any(patch%stick%contains_place(patch%arc(outermost)))) cycle
-         patch%contact%power(side) = 0.5_wp + (2*side - 3)*lean(patch%arc(outermost))
+         patch%contact%power(side) = 0.5_wp + (2*side - 3)*exponent_shift(patch%arc(outermost))
       end do
       do i = 1, size(patch%stick)
-         patch%stick(i)%power = 0.5_wp + [1, -1]*lean(patch%stick(i)%edge)
+         patch%stick(i)%power = 0.5_wp + [1, -1]*exponent_shift(patch%stick(i)%edge)
       end do
 
    contains
 
-      elemental real(wp) function lean(place)
+      elemental real(wp) function exponent_shift(place)
          real(wp), intent(in) :: place
 
-         lean = root_shift(beta*patch%limit%at(place))
-      end function lean
+         exponent_shift = root_shift(beta*patch%limit%at(place))
+      end function exponent_shift
    end subroutine find_powers
 
-   !> By how much tractions at the edge of a slip zone go to zero with another power of the distance than 1/2, `product` being
-   !> Dundurs' beta times tau/p (Johnson 1985, section 8.1). Not quite 1/2, so that powers stay above zero.
+   !> Deviation of the exponent from 1/2 at the edge of a slip zone, for `product`, Dundurs' beta times tau/p (Johnson 1985,
+   !> section 8.1). Below 1/2 in magnitude, so that exponents remain positive.
    elemental real(wp) function root_shift(product)
       real(wp), intent(in) :: product
       real(wp), parameter :: most = 0.49_wp
@@ -236,7 +235,7 @@ contains
       root_shift = min(max(atan(product)/pi, -most), most)
    end function root_shift
 
-   !> The stick zones in a patch that have nodes; `rooted` on the sides where nodes slip.
+   !> The stick zones of a patch that contain nodes; `rooted` on sides with slipping nodes.
    function stick_zones(patch, zones) result(stick)
       type(patch_type), intent(in) :: patch
       type(zone_list_type), intent(in) :: zones
@@ -259,7 +258,7 @@ contains
       end do
    end function stick_zones
 
-   !> tau/p of the slipping nodes, and at the rooted edges of the stick zones as at the next such node.
+   !> tau/p of the slipping nodes, also at the rooted edges of the adjacent stick zones.
    subroutine find_limit(patch)
       type(patch_type), intent(inout) :: patch
       logical :: slips(size(patch%arc))
@@ -291,7 +290,7 @@ contains
          end do
       end subroutine add_nodes_before
 
-      !> Add a place with tau/p of a node.
+      !> Add a point with tau/p of a node.
       subroutine add(x, from)
          real(wp), intent(in) :: x
          integer, intent(in) :: from
@@ -301,7 +300,7 @@ contains
       end subroutine add
    end subroutine find_limit
 
-   !> Which nodes are in no stick zone.
+   !> Nodes outside all stick zones.
    pure function outside_stick_zones(patch) result(outside)
       type(patch_type), intent(in) :: patch
       logical :: outside(size(patch%arc))
@@ -310,9 +309,8 @@ contains
       outside = [(.not. any(patch%stick%contains_place(patch%arc(i))), i=1, size(outside))]
    end function outside_stick_zones
 
-   !> The nodes outside all stick zones, but for those within half an interval of an edge that have another such node behind them:
-   !> an
-   !> edge may be so far inside the last node that holds.
+   !> Slipping nodes: those outside all stick zones, except within half an interval of an edge if there is another such node
+   !> behind: an edge may be this far inside the last sticking node.
    pure function slipping_nodes(patch) result(slips)
       type(patch_type), intent(in) :: patch
       logical :: slips(size(patch%arc))
@@ -331,13 +329,13 @@ contains
       end do
    end function slipping_nodes
 
-   !> Take the error of the discretisation off the `values` at the nodes of a zone, next to edges where it is known. The outermost
-   !> node may be just outside of its edge.
-   subroutine free_of_error(patch, zone, values)
+   !> Correct the `values` at the nodes of a zone for the discretisation error, next to edges where it is known. The outermost
+   !> node may be slightly outside its edge.
+   subroutine correct_error(patch, zone, values)
       type(patch_type), intent(in) :: patch
       type(zone_type), intent(in) :: zone
       real(wp), intent(inout) :: values(:)
-      real(wp), parameter :: round_off = 1.0e-9_wp
+      real(wp), parameter :: tolerance = 1.0e-9_wp
       integer, allocatable :: nodes(:)
       real(wp) :: distance
       integer :: i, side
@@ -345,17 +343,16 @@ contains
       do side = 1, 2
          if (.not. (zone%rooted(side) .and. zone%known(side))) cycle
          nodes = pack([(i, i=1, size(values))], zone%contains_place(patch%arc) .or. &
-                      (abs(patch%arc - zone%edge(side)) < 0.5_wp*patch%width .and. abs(values) > round_off*maxval(abs(values))))
+                      (abs(patch%arc - zone%edge(side)) < 0.5_wp*patch%width .and. abs(values) > tolerance*maxval(abs(values))))
          if (side == 2) nodes = nodes(size(nodes):1:-1)
          distance = (2*side - 3)*(zone%edge(side) - patch%arc(nodes(1)))/patch%width(nodes(1))
          nodes = nodes(2:)
          values(nodes) = values(nodes)/discrete_over_exact(zone%power(side), distance, size(nodes))
       end do
-   end subroutine free_of_error
+   end subroutine correct_error
 
-   !> How many intervals next to an edge are left out: two, and where nothing else changes nearby, without coupling, of many more,
-   !> so
-   !> that with finer meshes what is left of the error of the discretisation goes out of sight.
+   !> Intervals next to an edge that are not used: two, or, without other edges nearby and without coupling, a fraction of
+   !> many more, so that the remaining discretisation error vanishes with mesh refinement.
    pure integer function skipped_intervals(patch, zone)
       type(patch_type), intent(in) :: patch
       type(zone_type), intent(in) :: zone
@@ -365,8 +362,8 @@ contains
          skipped_intervals = max(2, nint(0.4_wp*sqrt(real(count(zone%contains_place(patch%arc)), wp))))
    end function skipped_intervals
 
-   !> `values` at the nodes of a patch over the roots of a zone, as a table of the nodes in the zone; without those that are
-   !> nearer to a rooted edge than skipped_intervals, if others are left.
+   !> `values` at the nodes of a patch over the roots of a zone, as a table of its nodes, except those nearer to a rooted edge
+   !> than skipped_intervals, if any remain.
    subroutine fit_zone(patch, values, zone)
       type(patch_type), intent(in) :: patch
       real(wp), intent(in) :: values(:)
@@ -381,7 +378,7 @@ contains
          if (count(used) > merge(1, 0, intervals > 0)) exit
       end do
       if (.not. any(used)) then
-         ! The edges are beside the only nodes: what counts is the resultant.
+         ! The only nodes are outside the edges: set the resultant.
          zone%rest%x = [0.5_wp*sum(zone%edge)]
          zone%rest%value = [sum(values)/size(values)/max(zone%roots(zone%rest%x(1)), tiny(1.0_wp))]
          return
@@ -410,7 +407,7 @@ contains
       end associate
    end function roots
 
-   !> Linear between the positions of a table, constant outside; 0 of an empty one.
+   !> Linear interpolation in a table, constant outside; 0 for an empty one.
    elemental real(wp) function at(self, x)
       class(table_type), intent(in) :: self
       real(wp), intent(in) :: x
@@ -426,7 +423,7 @@ contains
       at = self%value(i) + (self%value(i + 1) - self%value(i))*(x - self%x(i))/(self%x(i + 1) - self%x(i))
    end function at
 
-   !> The same, continued outside linearly, but to between half and twice the last value.
+   !> The same with linear extrapolation, limited to between half and twice the last value.
    elemental real(wp) function continued(self, x)
       class(table_type), intent(in) :: self
       real(wp), intent(in) :: x
@@ -445,7 +442,7 @@ contains
       continued = min(max(continued, minval(bounds)), maxval(bounds))
    end function continued
 
-   !> Number of the last of ascending positions that is not beyond `x`, 0 for none, by bisection.
+   !> Index of the last of ascending positions not beyond `x`, 0 for none, by bisection.
    pure integer function interval_of(positions, x) result(low)
       real(wp), intent(in) :: positions(:), x
       integer :: high, middle
@@ -462,7 +459,7 @@ contains
       end do
    end function interval_of
 
-   !> p + i tau of a patch at a place.
+   !> p + i tau of a patch at a point.
    elemental complex(wp) function tractions(self, x)
       class(patch_type), intent(in) :: self
       real(wp), intent(in) :: x
@@ -507,26 +504,26 @@ contains
       elements%singular = elements%singular .or. abs(aimag(values(1))) > 0.0_wp .or. abs(aimag(values(n))) > 0.0_wp
    end subroutine add_elements
 
-   !> Ends of the elements of a patch: its nodes and edges, and between them as many that no element is longer than half its
-   !> distance from the next rooted edge (a ratio of the root of 1/2 beside it) or than `longest`: sigma_xx on the surface
-   !> has a kink at each end of an element. The same from left to right as from right to left.
+   !> Ends of the elements of a patch: its nodes and edges, and points between them so that no element is longer than half its
+   !> distance from the next rooted edge (a ratio of the root of 1/2 beside it) or than `longest`: sigma_xx on the surface has
+   !> a kink at each end. Symmetric with respect to left and right.
    function knots_of(patch, longest) result(knots)
       type(patch_type), intent(in) :: patch
       real(wp), intent(in) :: longest
       real(wp), allocatable :: knots(:)
       real(wp), allocatable :: roots(:), points(:)
-      logical :: kept(size(patch%arc))
-      !> Nodes nearer to an edge, in intervals, are no ends; an edge that is found by counting is half an interval away.
+      logical :: is_knot(size(patch%arc))
+      !> Nodes nearer to an edge, in intervals, are not used as ends; edges at interval ends are half an interval away.
       real(wp), parameter :: apart = 0.4_wp
       integer :: i
 
       roots = [stick_edges(patch), pack(patch%contact%edge, patch%contact%rooted)]
       points = [patch%contact%edge(1), stick_edges(patch), patch%contact%edge(2)]
-      do i = 1, size(kept)
-         kept(i) = all(abs(patch%arc(i) - points) > apart*patch%width(i)) .and. &
-                   patch%contact%contains_place(patch%arc(i))
+      do i = 1, size(is_knot)
+         is_knot(i) = all(abs(patch%arc(i) - points) > apart*patch%width(i)) .and. &
+                      patch%contact%contains_place(patch%arc(i))
       end do
-      points = merged(points, pack(patch%arc, kept))
+      points = merged(points, pack(patch%arc, is_knot))
       knots = points(:1)
       do i = 2, size(points)
          if (points(i) > knots(size(knots))) &
@@ -534,7 +531,7 @@ contains
       end do
    end function knots_of
 
-   !> Edges of the stick zones of a patch next to which nodes slip, ascending.
+   !> Edges of the stick zones of a patch next to slipping nodes, ascending.
    pure function stick_edges(patch) result(edges)
       type(patch_type), intent(in) :: patch
       real(wp), allocatable :: edges(:)
@@ -546,7 +543,7 @@ contains
       end do
    end function stick_edges
 
-   !> Two ascending lists as one.
+   !> Merge two ascending lists.
    pure function merged(one, other) result(both)
       real(wp), intent(in) :: one(:), other(:)
       real(wp) :: both(size(one) + size(other))
@@ -606,7 +603,7 @@ contains
       end function is_at
    end function between
 
-   !> Values at the knots of the continuous function, linear between them, that is nearest to the tractions in the mean square;
+   !> Values at the knots of the continuous piecewise linear function with the least mean square distance to the tractions;
    !> zero at rooted ends.
    function projected(patch, knots) result(values)
       type(patch_type), intent(in) :: patch
@@ -655,8 +652,8 @@ contains
       end subroutine fix
    end function projected
 
-   !> Give the elements of a patch the resultants of its nodes: tractions are scaled by the normal force, and what lacks in the
-   !> tangential one is put where nodes hold, or everywhere where none do.
+   !> Give the elements of a patch the resultants of its nodes: tractions are scaled by the normal force, and the missing
+   !> tangential force is added in stick zones, or everywhere without any.
    subroutine balance(patch, knots, values)
       type(patch_type), intent(in) :: patch
       real(wp), intent(in) :: knots(:)

@@ -224,9 +224,9 @@ def test_a_file_of_gigabytes(tmp_path: Path) -> None:
 
 
 PROFILES = {
-    "empty": ("", "profile.txt: needs at least 3 points, and has 0"),
-    "comments only": ("# x height\n! nothing\n\n", "profile.txt: needs at least 3 points, and has 0"),
-    "two points": ("0 0\n1 1\n", "profile.txt: needs at least 3 points, and has 2"),
+    "empty": ("", "profile.txt: needs at least 3 points; it has 0"),
+    "comments only": ("# x height\n! nothing\n\n", "profile.txt: needs at least 3 points; it has 0"),
+    "two points": ("0 0\n1 1\n", "profile.txt: needs at least 3 points; it has 2"),
     "not increasing": ("0 0\n1 1\n1 2\n", "profile.txt:3: x must increase from line to line"),
     "one number": ("0 0\n1\n2 2\n", "profile.txt:2: must be two numbers, x and height, not '1'"),
     "three numbers": ("0 0\n1 1 1\n2 2\n", "profile.txt:2: must be two numbers, x and height, not '1 1 1'"),
@@ -236,7 +236,7 @@ PROFILES = {
     "NaN": ("0 0\n1 NaN\n2 2\n", "profile.txt:2: must be two numbers"),
     "Inf": ("0 0\n1 Inf\n2 2\n", "profile.txt:2: must be two numbers"),
     "huge": ("0 0\n1 1e400\n2 2\n", "profile.txt:2: must be two numbers"),
-    "beyond what is taken": ("0 0\n1 1e200\n2 2\n", "profile.txt:2: a number other than 0 must be of a size from 1e-100 to 1e100"),
+    "beyond what is taken": ("0 0\n1 1e200\n2 2\n", "profile.txt:2: numbers other than 0 must have a magnitude from 1e-100 to 1e100"),
     "Fortran's repeats": ("0 0\n2*1\n2 2\n", "profile.txt:2: must be two numbers"),
     "a null": ("0 0\n1 1\0\n2 2\n", "profile.txt:2: must be two numbers"),
     "a long line": ("0 0\n1 " + "9" * LONG + "\n2 2\n", "profile.txt:2: must be two numbers, x and height, not '1 9999"),
@@ -280,7 +280,7 @@ MATRICES = {
     "x of two dimensions": ({"x": X.reshape(1, N), "compliance": GOOD_MATRIX}, "x has 2 dimensions, not 1"),
     "x with NaN": ({"x": np.where(X > 0.9, np.nan, X), "compliance": GOOD_MATRIX}, "x is not finite at node 5"),
     "x not increasing": ({"x": -X, "compliance": GOOD_MATRIX}, "x is not increasing at node 2"),
-    "no nodes": ({"x": X[:0], "compliance": GOOD_MATRIX}, "x has 0 nodes; 1 to 20000 can be"),
+    "no nodes": ({"x": X[:0], "compliance": GOOD_MATRIX}, "x has 0 nodes; allowed are 1 to 20000"),
     "no matrix": ({"x": X}, "give either compliance or stiffness, not both"),
     "two matrices": ({"x": X, "compliance": GOOD_MATRIX, "stiffness": GOOD_MATRIX}, "either compliance or stiffness"),
     "another shape": (
@@ -295,7 +295,7 @@ MATRICES = {
     "zero": ({"x": X, "compliance": 0.0 * GOOD_MATRIX}, "compliance is not positive definite"),
     "singular": ({"x": X, "stiffness": np.ones((2 * N, 2 * N))}, "stiffness is not positive definite"),
     "short gap": ({"x": X, "gap": X[:3], "compliance": GOOD_MATRIX}, "gap has 3 values, x has 5"),
-    "one node without width": ({"x": X[:1], "compliance": np.eye(2)}, "width is missing, which one node alone needs"),
+    "one node without width": ({"x": X[:1], "compliance": np.eye(2)}, "width is missing; it is required with a single node"),
     "width of nothing": ({"x": X, "width": 0.0 * X, "compliance": GOOD_MATRIX}, "width is not positive at node 1"),
 }
 
@@ -374,7 +374,7 @@ def test_matrices_have_no_other_meshes(tmp_path: Path) -> None:
     )
     refused(
         run(RUN, "--advise", "error=1e-2", "case.nml", cwd=tmp_path),
-        "case.nml: no advice: a body with shape='matrix' has its own nodes",
+        "case.nml: no advice: a body with shape='matrix' has a fixed mesh",
     )
 
 

@@ -238,10 +238,10 @@ def test_sensitivity_in_summary_and_file(tmp_path):
 def test_no_error_estimate_of_what_ended_early(tmp_path):
     path = case(tmp_path, MINDLIN.format(force=8e-4, name="early", more=", error_estimate=.true."))
     run = mfv_run(path, cwd=tmp_path)
-    assert run.returncode == EARLY and "error estimate      none: the run ended early" in run.stdout
+    assert run.returncode == EARLY and "error estimate      none: the run did not complete" in run.stdout
     with h5py.File(tmp_path / "early.h5") as result:
         assert "error_estimate" not in result
-        assert result.attrs["error_estimate"] == "none: the run ended early"
+        assert result.attrs["error_estimate"] == "none: the run did not complete"
 
 
 def test_interrupted_error_estimate_keeps_the_result(tmp_path):

@@ -811,7 +811,7 @@ def test_sensitivity_to_round_off_in_the_process_and_in_the_file(tmp_path: Path)
     assert mfv.read(tmp_path / "case.h5").sensitivity.shear_change == changes.shear_change
     assert "shear_change" in info.description(result)
     early = mfv.run(text=SHEARED + "&step tangential_force=8e-4 /\n&output sensitivity=.true. /\n")
-    assert not early.sensitivity and early.attributes["sensitivity"] == "none: the run ended early"
+    assert not early.sensitivity and early.attributes["sensitivity"] == "none: the run did not complete"
     with pytest.raises(errors.InputError, match="&output sensitivity=.true.: must be .false. in a case without friction"):
         mfv.run(text=FRICTIONLESS + "&output sensitivity=.true. /\n")
 

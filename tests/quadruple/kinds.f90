@@ -1,4 +1,4 @@
-!> In place of src/common/kinds.f90: the same names in quadruple precision, for suites that differentiate by differences.
+!> Replaces src/common/kinds.f90 in quadruple precision, for suites that differentiate numerically.
 module mfv_kinds
    use, intrinsic :: iso_fortran_env, only: real128
    implicit none

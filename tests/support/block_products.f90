@@ -1,4 +1,4 @@
-!> Products of single blocks of a compliance.
+!> Products of single compliance blocks.
 module block_products
    use mfv_compliance, only: block_up, block_wp, compliance_type
    use mfv_kinds, only: wp
@@ -14,15 +14,15 @@ contains
       integer, intent(in) :: block
       real(wp), intent(in) :: traction(:)
       real(wp), intent(inout) :: displacement(:)
-      real(wp) :: part(size(traction), 4), nothing(size(traction))
+      real(wp) :: by_block(size(traction), 4), nothing(size(traction))
 
       nothing = 0.0_wp
       if (block == block_wp .or. block == block_up) then
-         call compliance%parts(traction, nothing, part)
+         call compliance%products(traction, nothing, by_block)
       else
-         call compliance%parts(nothing, traction, part)
+         call compliance%products(nothing, traction, by_block)
       end if
-      displacement = displacement + part(:, block)
+      displacement = displacement + by_block(:, block)
    end subroutine add_product
 
 end module block_products

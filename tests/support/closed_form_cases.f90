@@ -1,6 +1,5 @@
-!> Random cases that have closed forms: Hertz, the flat punch and the cylinder pressed with friction (Spence, Goodman's
-!> coupling), Cattaneo and Mindlin with and without a cycle; meshes, coefficients of friction, Poisson's ratios, loads and
-!> units at random.
+!> Random cases with closed forms: Hertz, the flat punch and the cylinder pressed with friction (Spence, Goodman's coupling),
+!> Cattaneo and Mindlin with and without a cycle; random meshes, coefficients of friction, Poisson's ratios, loads and units.
 module test_closed_form_cases
    use mfv_body, only: new_disk
    use mfv_compliance, only: coupling_goodman
@@ -16,12 +15,12 @@ module test_closed_form_cases
    private
    public :: random_case, random_numbers, kinds, kind_hertz, kind_punch, kind_cycle, kind_mindlin
 
-   !> A case is of the kind modulo(its number, kinds): one of these, or a cylinder pressed with friction.
+   !> The kind of a case is modulo(its number, kinds): one of these, or a cylinder pressed with friction.
    integer, parameter :: kinds = 6, kind_hertz = 0, kind_punch = 1, kind_cycle = 2, kind_mindlin = 3
 
 contains
 
-   !> Case `i` of set `number`, and what its quantities really are; -1: no closed form.
+   !> Case `i` of set `number`, and the exact quantities; -1: no closed form.
    subroutine random_case(number, i, scene, truth)
       integer, intent(in) :: number, i
       type(scene_type), intent(out) :: scene
@@ -78,7 +77,7 @@ contains
 
    contains
 
-      !> Between `fewest` and `most`, the more seldom the more.
+      !> Between `fewest` and `most`, with decreasing probability.
       integer function intervals(fewest, most)
          integer, intent(in) :: fewest, most
 
@@ -96,8 +95,8 @@ contains
       largest_spence_shear = maxval(abs(spence_cylinder_shear(x, force, half_width, mu, beta)))
    end function largest_spence_shear
 
-   !> Numbers between 0 and 1, the same everywhere: the minimal standard generator, started with the cube of the seed so
-   !> that seeds next to each other lead apart.
+   !> Platform-independent numbers between 0 and 1: the minimal standard generator, started with the cube of the seed so that
+   !> sequences of neighbouring seeds differ.
    pure function random_numbers(seed, n) result(numbers)
       integer, intent(in) :: seed, n
       real(wp) :: numbers(n)

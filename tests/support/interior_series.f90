@@ -1,6 +1,6 @@
-!> Stresses on a ring inside a disk or around a hole from Michell's series, summed by FFTW: the dissertation's way
-!> (section 5.1.4, C.2.1, D.2.1). One transform for each of the three stresses gives a whole ring; the number of terms that
-!> matter grows like 1/|ln r|, so that close to the surface the closed form of mfv_interior_circle is the better one.
+!> Stresses on a ring inside a disk or around a hole from Michell's series, summed by FFTW as in the dissertation (section
+!> 5.1.4, C.2.1, D.2.1). One transform for each of the three stresses gives a whole ring; the number of terms grows as 1/|ln
+!> r|, so that the closed form of mfv_interior_circle is better close to the surface.
 module mfv_interior_series
    use mfv_fourier, only: fourier_sum
    use mfv_kinds, only: pi, wp
@@ -22,7 +22,7 @@ module mfv_interior_series
 contains
 
    !> Series of the tractions `radial` and `shear` (force/length^2) on boxes around `theta` of the half-widths `half`,
-   !> radians, shapes (boxes), cut after `terms` harmonics. `disk`, `kappa`: as for mfv_interior_circle.
+   !> radians, shapes (boxes), truncated after `terms` harmonics. `disk`, `kappa`: as for mfv_interior_circle.
    pure function new_traction_series(disk, kappa, theta, half, radial, shear, terms) result(self)
       logical, intent(in) :: disk
       real(wp), intent(in) :: kappa, theta(:), half(:), radial(:), shear(:)
@@ -50,9 +50,9 @@ contains
       end do
    end function new_traction_series
 
-   !> Polar stresses sigma_rr, sigma_thetatheta, sigma_rtheta, each of shape (points), at the radius `r` (in units of R:
-   !> below 1 in a disk, above 1 around a hole) and the angles 0, 2 pi/points, ... Terms beyond half the points
-   !> are left out: ask for more points.
+   !> Polar stresses sigma_rr, sigma_thetatheta, sigma_rtheta, each of shape (points), at the radius `r` (in units of R: below
+   !> 1 in a disk, above 1 around a hole) and the angles 0, 2 pi/points, ... Terms beyond half the number of points are
+   !> omitted.
    subroutine ring_stress(self, r, radial, around, shear)
       class(traction_series_type), intent(in) :: self
       real(wp), intent(in) :: r
@@ -81,7 +81,7 @@ contains
    end subroutine ring_stress
 
    !> Coefficients of exp(i n theta) (a hole: exp(-i n theta)) in Phi and in z Phi' + z^2 Psi/r^2 of mfv_interior_circle,
-   !> the singular force terms apart.
+   !> without the singular force terms.
    pure subroutine harmonic(self, n, r, mean, deviator)
       type(traction_series_type), intent(in) :: self
       integer, intent(in) :: n
@@ -111,7 +111,7 @@ contains
       end if
    end subroutine harmonic
 
-   !> A disk's first harmonics without what the force in its centre makes of them on the surface.
+   !> A disk's first harmonics without the effect of the force at its centre on the surface.
    pure subroutine take_force_off(self, plus, minus)
       type(traction_series_type), intent(in) :: self
       complex(wp), intent(inout) :: plus, minus
@@ -122,7 +122,7 @@ contains
       minus = minus + conjg(force)/(2.0_wp*pi)
    end subroutine take_force_off
 
-   !> The terms of the resultant force: of the concentrated one in a disk's centre; of a hole's at infinity.
+   !> Terms of the resultant force: concentrated at a disk's centre; at infinity for a hole.
    pure subroutine add_force_terms(self, r, sum_half, difference, shear_part)
       type(traction_series_type), intent(in) :: self
       real(wp), intent(in) :: r
@@ -150,8 +150,8 @@ contains
       call fold(shear_part, 1, -i*forward)
    end subroutine add_force_terms
 
-   !> Add Re(value exp(i n theta)) to the coefficients of a sum over 2 (size - 1) or 2 size - 1 points, as mfv_fourier
-   !> takes them.
+   !> Add Re(value exp(i n theta)) to the coefficients of a sum over 2 (size - 1) or 2 size - 1 points, in the form of
+   !> mfv_fourier.
    pure subroutine fold(coefficients, n, value)
       complex(wp), intent(inout) :: coefficients(0:)
       integer, intent(in) :: n

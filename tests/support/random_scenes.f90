@@ -1,4 +1,4 @@
-!> Random scenes, the same ones everywhere: laws, couplings, materials, shapes and load paths by a number.
+!> Platform-independent random scenes: laws, couplings, materials, shapes and load paths by a number.
 module test_random_scenes_support
    use, intrinsic :: iso_fortran_env, only: int64
    use mfv_body
@@ -27,7 +27,7 @@ module test_random_scenes_support
       procedure :: chance_where
    end type generator_type
 
-   !> Stops a run that chatters, after so many increments.
+   !> Stops a run with chatter after a number of increments.
    type, extends(observer_type) :: patience_type
       integer :: increments = 0
    contains
@@ -36,14 +36,14 @@ module test_random_scenes_support
 
    integer, parameter :: most_increments = 400
 
-   !> What a contact is like: force P, half-width, approach and shift that go with it, coefficient of friction.
+   !> Scales of a contact: force P, half-width, approach and shift, coefficient of friction.
    type :: sizes_type
       real(wp) :: force = 1.0_wp, half_width = 1.0_wp, approach = 1.0_wp, shift = 1.0_wp, mu = 0.0_wp, radius = 0.0_wp
    end type sizes_type
 
 contains
 
-   !> Scene `number` >= 1; `law`: which of law_names it has.
+   !> Scene `number` >= 1; `law`: its entry in law_names.
    subroutine random_scene(number, scene, law)
       integer, intent(in) :: number
       type(scene_type), intent(out) :: scene
@@ -67,9 +67,8 @@ contains
       scene%method%friction_tolerance = 1.0e-2_wp
    end subroutine random_scene
 
-   !> Pin `number` >= 1 in its bore, with radial normals: couplings, materials, clearances, the pin below or above, one of the
-   !> bodies
-   !> rigid or none, up to 40 degrees; pressed, sheared, pressed again and perhaps turned, by forces.
+   !> Pin `number` >= 1 in its bore, with radial normals: couplings, materials, clearances, the pin below or above, at most
+   !> one rigid body, up to 40 degrees; pressed, sheared, pressed again and perhaps rotated, by forces.
    subroutine random_pin(number, scene)
       integer, intent(in) :: number
       type(scene_type), intent(out) :: scene
@@ -245,7 +244,7 @@ contains
       end do
    end subroutine choose_steps
 
-   !> Even between two numbers.
+   !> Uniform between two numbers.
    real(wp) function between(self, low, high)
       class(generator_type), intent(inout) :: self
       real(wp), intent(in) :: low, high
@@ -270,8 +269,8 @@ contains
       chance = self%between(0.0_wp, 1.0_wp) < probability
    end function chance
 
-   !> The same where it is `possible`; else false, and nothing is drawn. (In a logical expression the compiler chooses how much
-   !> of it is evaluated: the scenes would differ with the optimisation.)
+   !> The same if it is `possible`; otherwise false without drawing a number. (The evaluation of a logical expression, and
+   !> with it the scenes, would depend on the optimisation.)
    logical function chance_where(self, possible, probability)
       class(generator_type), intent(inout) :: self
       logical, intent(in) :: possible
@@ -281,7 +280,7 @@ contains
       if (possible) chance_where = self%chance(probability)
    end function chance_where
 
-   !> Stop after so many increments.
+   !> Stop after a number of increments.
    subroutine notify(self, state, segment, segments, fraction, stop_wanted)
       class(patience_type), intent(inout) :: self
       type(contact_state_type), intent(in) :: state

@@ -1,4 +1,4 @@
-!> Scenes that several suites use: the dissertation's cylinder and punch on a half-plane.
+!> Scenes of several suites: the dissertation's cylinder and punch on a half-plane.
 module test_scenes
    use mfv_body
    use mfv_compliance, only: coupling_full
@@ -17,8 +17,8 @@ module test_scenes
 
 contains
 
-   !> A body of a shape of mfv_body that needs no more than a radius; elastic in plane strain with G = `modulus` and its
-   !> radius (a half-plane: 1) for datum, rigid without.
+   !> A body with a shape of mfv_body that needs at most a radius; elastic in plane strain with G = `modulus` and its radius
+   !> (a half-plane: 1) as datum, or rigid.
    function body(shape, body_radius, modulus, ratio) result(self)
       integer, intent(in) :: shape
       real(wp), intent(in), optional :: body_radius, modulus, ratio
@@ -39,7 +39,7 @@ contains
       if (self%circular()) self%datum = self%radius
    end function body
 
-   !> Two bodies on intervals over [-half_width, half_width] along the surface; 0: chosen.
+   !> Two bodies on intervals over [-half_width, half_width] of the surface; 0: automatic.
    function two_bodies(lower, upper, nodes, half_width, mu, coupling) result(scene)
       type(body_type), intent(in) :: lower, upper
       integer, intent(in) :: nodes
@@ -123,7 +123,7 @@ contains
       scene%steps = [scene%steps, step]
    end subroutine shear
 
-   !> The scene led through its steps.
+   !> Run the scene through its steps.
    function solved(scene) result(simulation)
       type(scene_type), intent(in) :: scene
       type(simulation_type) :: simulation

@@ -18,8 +18,8 @@ module test_solver_comparison
 
 contains
 
-   !> Contact from one sixth to five sixths of the mesh, `stuck`: slip to the left, stick, slip to the right; else all stick
-   !> but every fifth node. The loads are forces, with rates of their own.
+   !> Contact from one sixth to five sixths of the mesh, `stuck`: slip of the lower surface to the left, stick, slip to the
+   !> right; otherwise all stick except every fifth node. The loads are forces with given rates.
    subroutine partly_stuck(model, stuck, constraints)
       type(contact_model_type), intent(in) :: model
       logical, intent(in) :: stuck
@@ -45,7 +45,7 @@ contains
       constraints%load(motion_rotation) = load_type(control_displacement)
    end subroutine partly_stuck
 
-   !> The largest difference of the tractions, displacements and motions of two fields, each in parts of the largest of its kind.
+   !> Largest difference of the tractions, displacements and motions of two fields, relative to the largest of each kind.
    pure real(wp) function difference(one, other)
       type(contact_fields_type), intent(in) :: one, other
 
@@ -60,8 +60,8 @@ contains
                        /max(abs(one%force(motion_approach)), abs(one%force(motion_shift))))
    end function difference
 
-   !> The difference of a solver's answers from those of the augmented system, from a guess of zero and again from the answer;
-   !> huge where one of them has none.
+   !> Difference of a solver's solution from that of the augmented system, from a zero guess and again from the solution; huge
+   !> if one of them has none.
    subroutine compare_solves(system, model, constraints, largest)
       class(contact_system_type), intent(inout) :: system
       type(contact_model_type), intent(in) :: model
@@ -84,8 +84,8 @@ contains
       largest = max(largest, difference(expected%state, found%state), difference(expected%rate, found%rate))
    end subroutine compare_solves
 
-   !> The scene led through its steps by dgesv and by another linear solver: events of both, and the largest difference of
-   !> tractions in parts of the largest pressure; huge where they end differently.
+   !> Run the scene with dgesv and with another linear solver: events of both, and the largest difference of tractions over
+   !> the largest pressure; huge for different outcomes.
    subroutine compare_runs(scene, linear_solver, tolerance, events, largest)
       type(scene_type), intent(in) :: scene
       integer, intent(in) :: linear_solver

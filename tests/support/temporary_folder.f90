@@ -1,4 +1,4 @@
-!> A folder for the files of a test, outside of the working directory.
+!> A folder for the files of a test, outside the working directory.
 module temporary_folder
    use, intrinsic :: iso_c_binding, only: c_associated, c_char, c_int, c_null_char, c_ptr
    implicit none
@@ -20,7 +20,7 @@ module temporary_folder
 
 contains
 
-   !> A new folder in TMPDIR or /tmp, its path with the final slash; empty where there can be none.
+   !> A new folder in TMPDIR or /tmp, its path with the final slash; empty if it cannot be created.
    subroutine make_temporary_folder(path)
       character(:), allocatable, intent(out) :: path
       character(len=1000) :: parent

@@ -1,7 +1,7 @@
-!> How many nodes, and which linear solver, a scene needs for a wanted error. Pairs of coarse meshes of the scene itself, of
-!> m and 3 m intervals, whose nodes lie in the same places, tell the size c of the errors c/nodes^order of the tractions
-!> (l2, over the nodes) and of the dissipation; the width of the intervals that of half-width and stick ratio, and the width of
-!> the slip zones that of the dissipation too (mfv_slip_zones). What a solver costs comes from laws with measured constants.
+!> Advice: number of nodes and linear solver for a given error. Pairs of coarse meshes of the scene, of m and 3 m intervals
+!> with common nodes, give the constants c of the error laws c/nodes^order of the tractions (l2 norm over the nodes) and of
+!> the dissipation. Half-width and stick ratio are uncertain by the interval; the dissipation also depends on the width of the
+!> slip zones (mfv_slip_zones). Solver costs follow from laws with measured constants.
 module mfv_advice
    use mfv_discretisation_error
    use mfv_error_bar, only: quantity_count, quantity_half_width, quantity_stick_ratio
@@ -19,75 +19,73 @@ module mfv_advice
    public :: advice_type, advise, advice_names, advice_count, advice_pressure, advice_shear, advice_half_width, &
              advice_stick_ratio, advice_dissipation, cheapest_solver, seconds_of_solve
 
-   !> Quantities that can be wanted: the tractions in the l2 norm relative to their own; half-width and dissipation
-   !> relative; the stick ratio as it is, that is in parts of the contact.
+   !> Quantities: tractions relative in the l2 norm; half-width and dissipation relative; stick ratio absolute, that is,
+   !> relative to the contact.
    integer, parameter :: advice_pressure = 1, advice_shear = 2, advice_half_width = 3, advice_stick_ratio = 4, &
                          advice_dissipation = 5, advice_count = 5
    character(*), parameter :: advice_names(advice_count) = [character(11) :: 'pressure', 'shear', 'half_width', 'stick_ratio', &
                                                                                                                       'dissipation']
-   !> Orders of convergence, docs/verification.md, and safety factors on the errors: of what comes from pairs of meshes, and of
-   !> half an interval at either edge.
+   !> Orders of convergence (docs/verification.md), and safety factors on errors from pairs of meshes and on half an interval
+   !> at each edge.
    real(wp), parameter :: order(advice_count) = [1.0_wp, 1.0_wp, 1.0_wp, 1.0_wp, 2.0_wp]
    real(wp), parameter :: safety(advice_count) = [2.0_wp, 2.0_wp, 1.4_wp, 1.4_wp, 2.0_wp]
-   !> Safety on the error by the width of slip zones, which is an upper bound but comes from coarse meshes.
+   !> Safety factor on the error by the width of slip zones: an upper bound, but from coarse meshes.
    real(wp), parameter :: slip_safety = 1.5_wp
-   !> &mesh nodes that can be advised.
+   !> Largest &mesh nodes that are advised.
    integer, parameter :: most_nodes = 100000
-   !> Nodes in contact that the coarse meshes of the pairs should have, about.
+   !> Approximate numbers of nodes in contact on the coarse meshes.
    integer, parameter :: pair_nodes(8) = [13, 15, 17, 19, 21, 23, 25, 27]
-   !> Nodes in contact that a first mesh must have, to tell how many nodes the pairs need; and that a mesh should have at
-   !> least.
+   !> Nodes in contact that the pilot mesh needs; and the minimum for any mesh.
    integer, parameter :: fewest_pilot_nodes = 8, fewest_nodes = 10
 
-   !> Relative residual that an iterative solver may leave, in parts of the wanted error; never below the default.
+   !> Relative residual of an iterative solver over the given error; at least the default.
    real(wp), parameter :: tolerance_part = 1.0e-3_wp
-   !> Tolerance of friction laws that are not linear, in parts of the wanted error: the error itself is about a sixth of it
+   !> Tolerance of nonlinear friction laws over the given error: their error is about a sixth of the tolerance
    !> (docs/verification.md).
    real(wp), parameter :: friction_tolerance_part = 0.3_wp
-   !> Tolerance of leaps, in parts of the wanted error: the error follows it.
+   !> Tolerance of large increments over the given error: their error is proportional to it.
    real(wp), parameter :: leap_tolerance_part = 0.1_wp
 
    type :: advice_type
-      !> How it went (see mfv_status), and why there is no advice; empty where there is.
+      !> Status (see mfv_status), and why there is no advice; empty with advice.
       integer :: status = MFV_COMPLETE
       character(:), allocatable :: message
       real(wp) :: wanted_error = 0.0_wp
-      !> &mesh nodes that the wanted error takes, and nodes in contact then; and what the scene has itself.
+      !> &mesh nodes and nodes in contact that the given error needs; and the scene's own numbers.
       integer :: nodes = 0, contact_nodes = 0, present_nodes = 0
-      !> Whether the scene has a quantity that is wanted; the error that its law has with the scene's own nodes, and the
-      !> nodes in contact that the wanted error takes.
+      !> Whether the scene has the quantity; its predicted error with the scene's own nodes, and the nodes in contact that the
+      !> given error needs.
       logical :: known(advice_count) = .false.
       real(wp) :: present_error(advice_count) = 0.0_wp, needed_nodes(advice_count) = 0.0_wp
-      !> Coarse meshes that were solved, &mesh nodes of the coarser one of each pair.
+      !> &mesh nodes of the coarser mesh of each pair.
       integer, allocatable :: pair_nodes(:)
       !> See method_type.
       integer :: linear_solver = solver_auto
       real(wp) :: linear_tolerance = 0.0_wp, friction_tolerance = 0.0_wp, leap_tolerance = 0.0_wp
-      !> Linear solves and seconds that the run will take, about.
+      !> Approximate number of linear solves and seconds of the run.
       real(wp) :: solves = 0.0_wp, seconds = 0.0_wp
-      !> Linear solves on the finest of the coarse meshes, of &mesh nodes `tried_nodes`, by events and by large increments; 0: not
-      !> tried.
-      integer :: tried_nodes = 0, event_solves = 0, leap_solves = 0
+      !> Linear solves on the finest of the coarse meshes, of &mesh nodes `tried_nodes`, by events and by large increments; 0:
+      !> not tried.
+      integer :: tried_nodes = 0, event_solves = 0, increment_solves = 0
    end type advice_type
 
-   !> What the pairs tell: squares of the coefficients c of the errors c/nodes^order, nodes in contact; shape (advice_count).
+   !> Sums of the squared constants c of the error laws c/nodes^order, nodes in contact; shape (advice_count).
    type :: law_type
       real(wp) :: squares(advice_count) = 0.0_wp
-      !> Nodes in contact over &mesh nodes. Linear solves with `nodes` nodes in contact, and the power of the nodes with which
-      !> they grow.
+      !> Nodes in contact over &mesh nodes. Linear solves with `nodes` nodes in contact, and their exponent of growth with the
+      !> nodes.
       real(wp) :: density = 0.0_wp, solves = 0.0_wp, nodes = 1.0_wp, growth = 0.0_wp
       logical :: known(advice_count) = .false.
-      !> Pairs, and those whose meshes both resolve the slip zones; nodes in contact that the error 1 of the dissipation takes by
-      !> the
-      !> width of the slip zones, squared, and summed over the pairs.
+      !> Number of pairs, and of those that both resolve the slip zones; sum over the pairs of the squared nodes in contact
+      !> for which the width of the slip zones predicts an error 1 of the dissipation.
       integer :: pairs = 0, resolved_pairs = 0
       real(wp) :: slip_law = 0.0_wp
    end type law_type
 
 contains
 
-   !> What a scene needs for the error `wanted_error`, between 0 and 1, in the quantities of `wanted`, shape (advice_count).
-   !> `observer` watches the coarse meshes, and can stop them.
+   !> Nodes and solver for the error `wanted_error`, between 0 and 1, in the quantities `wanted`, shape (advice_count).
+   !> `observer` monitors the runs on coarse meshes and can stop them.
    subroutine advise(scene, wanted_error, wanted, advice, observer)
       type(scene_type), intent(in) :: scene
       real(wp), intent(in) :: wanted_error
@@ -109,7 +107,7 @@ contains
       advice%known = law%known .and. wanted
       if (.not. any(advice%known)) then
          advice%status = MFV_INPUT_ERROR
-         advice%message = 'the case has none of the wanted quantities'
+         advice%message = 'the case has none of the quantities asked for'
          return
       end if
       call choose_nodes(scene, law, advice)
@@ -117,16 +115,16 @@ contains
       call choose_solver(scene, law, advice)
    end subroutine advise
 
-   !> Scenes whose mesh cannot be another.
+   !> Scenes whose mesh is fixed.
    subroutine refuse_fixed_meshes(scene, advice)
       type(scene_type), intent(in) :: scene
       type(advice_type), intent(inout) :: advice
 
       if (.not. has_coarser_meshes(scene)) then
-         advice%message = "a body with shape='matrix' has its own nodes"
+         advice%message = "a body with shape='matrix' has a fixed mesh"
       else if (allocated(scene%friction%static%value) .and. .not. allocated(scene%friction%static%position)) then
          if (size(scene%friction%static%value) > 1) &
-            advice%message = 'the coefficient of friction has one value a node; a mu_file would do with any number of nodes'
+            advice%message = 'the coefficient of friction is given by one value per node; give it by mu_file, which suits any mesh'
       end if
       if (advice%message /= '') advice%status = MFV_INPUT_ERROR
    end subroutine refuse_fixed_meshes
@@ -155,7 +153,7 @@ contains
       end do
       if (law%pairs == 0) then
          advice%status = MFV_INPUT_ERROR
-         advice%message = 'no coarse mesh fits the circle of a Fourier series'
+         advice%message = "kernel='fourier': no coarser mesh divides the circle into whole intervals"
          return
       end if
       law%squares(advice_dissipation) = law%squares(advice_dissipation)*law%pairs/max(law%resolved_pairs, 1)
@@ -167,10 +165,10 @@ contains
       law%solves = max(fine%contact%system%solves, 1)
       law%growth = max(log(law%solves/max(coarse%contact%system%solves, 1))/log(3.0_wp), 0.0_wp)
       call add_interval_laws(law, fine)
-      call try_leaps(scene, fine, pilot, advice, watch)
+      call try_large_increments(scene, fine, pilot, advice, watch)
    end subroutine measure
 
-   !> A coarse mesh with enough nodes in contact to tell how many there are on any other.
+   !> A coarse mesh with enough nodes in contact to predict their number on any other mesh.
    subroutine solve_pilot(scene, pilot, nodes, advice, watch)
       type(scene_type), intent(in) :: scene
       type(simulation_type), intent(out) :: pilot
@@ -194,7 +192,7 @@ contains
       end do
       advice%status = pilot%outcome
       if (advice%status == MFV_COMPLETE) advice%status = MFV_INPUT_ERROR
-      advice%message = 'with '//to_text(nodes)//' nodes: '//status_outcome(pilot%outcome)//', '//to_text(contact)// &
+      advice%message = 'on a mesh of '//to_text(nodes)//' nodes: '//status_outcome(pilot%outcome)//', '//to_text(contact)// &
                        ' nodes in contact'
    end subroutine solve_pilot
 
@@ -215,33 +213,34 @@ contains
       call simulation%run(watch)
       if (simulation%outcome == MFV_COMPLETE) return
       advice%status = simulation%outcome
-      advice%message = 'with '//to_text(nodes)//' nodes: '//status_outcome(simulation%outcome)
+      advice%message = 'on a mesh of '//to_text(nodes)//' nodes: '//status_outcome(simulation%outcome)
    end subroutine solve
 
-   !> Whether large increments take fewer solves than events, on the finest of the coarse meshes, under Coulomb's friction.
-   subroutine try_leaps(scene, fine, pilot, advice, watch)
+   !> Compare the number of solves by large increments with that by events, on the finest of the coarse meshes, with Coulomb
+   !> friction.
+   subroutine try_large_increments(scene, fine, pilot, advice, watch)
       type(scene_type), intent(in) :: scene
       type(simulation_type), intent(in) :: fine, pilot
       type(advice_type), intent(inout) :: advice
       type(relay_type), intent(inout) :: watch
       type(advice_type) :: trial
-      type(scene_type) :: leaping
+      type(scene_type) :: large
       type(simulation_type) :: simulation
 
       if (scene%method%algorithm /= algorithm_mfv .or. scene%method%stepping /= stepping_event) return
       if (.not. scene%friction%is_proportional() .or. .not. scene%tangential()) return
-      leaping = scene
-      leaping%method%stepping = stepping_leap
-      leaping%method%leap_tolerance = min(leap_tolerance_part*advice%wanted_error, scene%method%leap_tolerance)
+      large = scene
+      large%method%stepping = stepping_leap
+      large%method%leap_tolerance = min(leap_tolerance_part*advice%wanted_error, scene%method%leap_tolerance)
       advice%tried_nodes = 3*advice%pair_nodes(size(advice%pair_nodes))
       trial%message = ''
-      call solve(leaping, advice%tried_nodes, pilot, simulation, trial, watch)
+      call solve(large, advice%tried_nodes, pilot, simulation, trial, watch)
       if (trial%message /= '') return
       advice%event_solves = fine%contact%system%solves
-      advice%leap_solves = simulation%contact%system%solves
-   end subroutine try_leaps
+      advice%increment_solves = simulation%contact%system%solves
+   end subroutine try_large_increments
 
-   !> Add what a pair of meshes tells of the tractions and the dissipation.
+   !> Add the error laws of tractions and dissipation from a pair of meshes.
    subroutine add_pair(law, coarse, fine)
       type(law_type), intent(inout) :: law
       type(simulation_type), intent(in) :: coarse, fine
@@ -271,8 +270,8 @@ contains
       law%pairs = law%pairs + 1
    end subroutine add_pair
 
-   !> Relative distance, l2, of coarse tractions from fine ones; `place`: the coarse nodes among the fine ones, outside of
-   !> which there is no traction.
+   !> Relative l2 distance of coarse tractions from fine ones; `place`: indices of the coarse nodes among the fine ones;
+   !> tractions are zero outside.
    pure real(wp) function distance(coarse, fine, place)
       real(wp), intent(in) :: coarse(:), fine(:)
       integer, intent(in) :: place(:)
@@ -287,7 +286,7 @@ contains
       if (norm2(there) > 0.0_wp) distance = norm2(coarse - there)/norm2(there)
    end function distance
 
-   !> Half-width and stick ratio may be wrong by what the intervals leave open.
+   !> Half-width and stick ratio are uncertain by half an interval at each edge.
    subroutine add_interval_laws(law, fine)
       type(law_type), intent(inout) :: law
       type(simulation_type), intent(in) :: fine
@@ -301,7 +300,7 @@ contains
       law%squares(advice_stick_ratio) = (nodes*allowances(quantity_stick_ratio))**2
    end subroutine add_interval_laws
 
-   !> Nodes by the laws.
+   !> Number of nodes from the error laws.
    subroutine choose_nodes(scene, law, advice)
       type(scene_type), intent(in) :: scene
       type(law_type), intent(in) :: law
@@ -317,9 +316,10 @@ contains
       hardest = maxloc(advice%needed_nodes, dim=1, mask=advice%known)
       if (advice%needed_nodes(hardest) > most_nodes*law%density) then
          advice%status = MFV_INPUT_ERROR
-         advice%message = trim(advice_names(hardest))//' takes about '//to_text(advice%needed_nodes(hardest)/law%density, 2)// &
-                          ' nodes, more than the '//to_text(most_nodes)//' that can be advised'
-         if (hardest == advice_dissipation) advice%message = advice%message//': its slip zones are narrow parts of the contact'
+         advice%message = trim(advice_names(hardest))//' needs about '//to_text(advice%needed_nodes(hardest)/law%density, 2)// &
+                          ' nodes, more than the limit of '//to_text(most_nodes)
+         if (hardest == advice_dissipation) &
+            advice%message = advice%message//', because its slip zones are much narrower than the contact'
          return
       end if
       advice%contact_nodes = ceiling(max(maxval(advice%needed_nodes, mask=advice%known), real(fewest_nodes, wp)))
@@ -327,8 +327,8 @@ contains
       advice%contact_nodes = nint(advice%nodes*law%density)
    end subroutine choose_nodes
 
-   !> The least number of intervals, as odd or even as the scene's, that is no less than `wanted` and fits; where none fits the
-   !> circle of a Fourier series the next one that does not.
+   !> Smallest number of intervals not below `wanted`, of the parity of the scene's, that fits the circle of a Fourier series;
+   !> if none fits, the next one of this parity.
    integer function mesh_of_at_least(scene, wanted) result(nodes)
       type(scene_type), intent(in) :: scene
       real(wp), intent(in) :: wanted
@@ -341,7 +341,7 @@ contains
       nodes = ceiling(wanted)
    end function mesh_of_at_least
 
-   !> Solver, tolerances and cost.
+   !> Linear solver, tolerances and cost.
    subroutine choose_solver(scene, law, advice)
       type(scene_type), intent(in) :: scene
       type(law_type), intent(in) :: law

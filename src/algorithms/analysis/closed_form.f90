@@ -1,5 +1,4 @@
-!> Which closed form holds for a scene and its load history so far, evaluated on its mesh: what a picture or a test can
-!> hold the numbers against.
+!> The closed form of a scene and its load history so far, evaluated on its mesh, for comparison in pictures and tests.
 module mfv_closed_form
    use mfv_body, only: shape_flat_punch, shape_half_plane
    use mfv_compliance, only: block_up, block_wt
@@ -19,25 +18,25 @@ module mfv_closed_form
    public :: closed_form_type, closed_form_of
 
    type :: closed_form_type
-      !> Where each comes from; empty where there is none.
+      !> Source of each; empty without a closed form.
       character(:), allocatable :: pressure_source, shear_source
       !> Tractions on the nodes, force/length^2.
       real(wp), allocatable :: pressure(:), shear(:)
-      !> Contact half-width of the closed form, length.
+      !> Half-width of the contact by the closed form, length.
       real(wp) :: half_width = 0.0_wp
-      !> Shift at every record of the load history, length; only where there is a history and Mindlin's form holds.
+      !> Shift at every record of the load history, length; only for Mindlin's solution and with a recorded history.
       real(wp), allocatable :: shift(:)
-      !> The gap, where there is one.
+      !> The gap, if there is a closed form.
       type(indenter_type), private :: indenter
    end type closed_form_type
 
-   !> Beyond this part of the radius of a circle a contact half-width is too large for parabolas on half-planes.
+   !> Largest contact half-width over the radius of a circle for which parabolas on half-planes are a good approximation.
    real(wp), parameter :: widest_hertz = 0.2_wp
 
 contains
 
-   !> The closed form of a simulation's present state. The forms are those of parabolas on half-planes: for the exact
-   !> circle they are off by the order of (a/R)^2, for elastic disks and holes by that of a/R or less.
+   !> Closed form for the present state of a simulation. It holds for parabolas on half-planes: errors are of the order
+   !> (a/R)^2 for rigid circles, up to a/R for elastic disks and holes.
    type(closed_form_type) function closed_form_of(simulation) result(form)
       type(simulation_type), intent(in) :: simulation
 
@@ -71,7 +70,7 @@ contains
       end associate
    end function closed_form_of
 
-   !> Positions of the nodes, length, from the middle of the contact, which may have rolled along.
+   !> Positions of the nodes, length, from the middle of the contact, which may have rolled.
    function middle_at_zero(simulation) result(position)
       type(simulation_type), intent(in) :: simulation
       real(wp), allocatable :: position(:)
@@ -83,7 +82,7 @@ contains
       end associate
    end function middle_at_zero
 
-   !> Similar bodies that have rolled far enough under constant forces, short of gross sliding; `half_width`: Hertz's, length.
+   !> Similar bodies that have rolled far enough under constant forces, without gross sliding; `half_width`: Hertz's, length.
    logical function is_carter(simulation, half_width)
       type(simulation_type), intent(in) :: simulation
       real(wp), intent(in) :: half_width
@@ -109,9 +108,7 @@ contains
       form%shear_source = 'Carter 1926; Johnson 1985, section 8.3'
    end subroutine add_carter
 
-   !> The widest half-width of a contact, length, for which closed forms are attached: rigid parabolas on a half-plane may be as
-   !> wide as
-   !> they are.
+   !> Largest contact half-width with a closed form, length; unlimited for rigid parabolas on a half-plane.
    pure real(wp) function widest(scene)
       type(scene_type), intent(in) :: scene
 
@@ -120,7 +117,7 @@ contains
          widest = widest_hertz*min(scene%lower%half_extent(), scene%upper%half_extent())
    end function widest
 
-   !> The pressure of an indenter on the nodes; at a sharp tip, where it is infinite, its mean over the interval of a node there.
+   !> Pressure of an indenter at the nodes. At a sharp tip, where it is infinite, the mean over the interval of the node.
    subroutine add_pressure(form, simulation)
       type(closed_form_type), intent(inout) :: form
       type(simulation_type), intent(in) :: simulation
@@ -145,8 +142,7 @@ contains
                  (scene%upper%circular() .or. scene%upper%shape == shape_half_plane) .and. scene%curvature() > 0.0_wp
    end function is_hertz
 
-   !> Whether Dundurs' beta vanishes: bodies of one material. What coupling their different shapes leave is of the order of
-   !> a/R.
+   !> Whether Dundurs' beta vanishes: both bodies of one material. Different shapes couple by the order of a/R only.
    pure logical function alike(scene)
       type(scene_type), intent(in) :: scene
       real(wp), parameter :: none = 1.0e-12_wp
@@ -154,7 +150,7 @@ contains
       alike = abs(scene%dundurs_beta()) < none
    end function alike
 
-   !> Pressed only, ever harder, with friction from the start and Goodman's coupling.
+   !> Monotonic pressing with friction from the start and Goodman's coupling.
    logical function is_spence(simulation)
       type(simulation_type), intent(in) :: simulation
 
@@ -184,8 +180,8 @@ contains
       end associate
    end subroutine add_spence
 
-   !> An indenter pressed to a constant normal force without shear (friction off, or no coupling), then sheared by forces, of
-   !> which every turn was kept.
+   !> An indenter pressed to a constant normal force without shear (friction off or no coupling), then loaded by tangential
+   !> forces whose turning points are all recorded.
    logical function is_mindlin(form, simulation)
       type(closed_form_type), intent(in) :: form
       type(simulation_type), intent(in) :: simulation

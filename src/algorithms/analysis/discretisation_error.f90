@@ -1,5 +1,5 @@
-!> The discretisation error of a result: its scene is solved again on coarser meshes, the companions, and half-width, stick
-!> ratio, peak tractions and dissipation get error bars (mfv_error_bar).
+!> Discretisation error of a result: the scene is solved again on coarser meshes; half-width, stick ratio, peak tractions and
+!> dissipation get error bars (mfv_error_bar).
 module mfv_discretisation_error
    use mfv_body, only: body_type, shape_matrix
    use mfv_circle, only: kernel_fourier
@@ -20,22 +20,22 @@ module mfv_discretisation_error
    public :: estimate_error, coarser_scene, scene_on_mesh, fix_cycles, nearest_mesh, quantities_of, interval_allowances, &
              has_coarser_meshes
 
-   !> By how much the companions are coarser: spread, so that their edges lie in different places of an interval.
+   !> Ratios of fine to coarse numbers of intervals: spread, so that edges lie in different places of an interval.
    real(wp), parameter :: coarsening(3) = [1.4_wp, 1.7_wp, 2.0_wp]
-   !> Nodes in contact that the coarsest companion should have at least.
+   !> Minimum of nodes in contact on the coarsest mesh.
    integer, parameter :: fewest_contact_nodes = 5
 
 contains
 
-   !> Whether a scene can be solved on coarser meshes: a user's matrix has its own nodes.
+   !> Whether the scene can be solved on coarser meshes: the nodes of a matrix are fixed.
    pure logical function has_coarser_meshes(scene)
       type(scene_type), intent(in) :: scene
 
       has_coarser_meshes = scene%lower%shape /= shape_matrix
    end function has_coarser_meshes
 
-   !> Estimate the discretisation error of a simulation that has been run, into simulation%estimate. `observer` watches the
-   !> companions, and can stop them. Where there can be no estimate its message says why.
+   !> Estimate the discretisation error of a finished simulation, into simulation%estimate. `observer` monitors the runs on
+   !> the coarser meshes and can stop them. Its message says why there is no estimate.
    subroutine estimate_error(simulation, observer)
       type(simulation_type), intent(inout) :: simulation
       class(observer_type), intent(inout), target, optional :: observer
@@ -46,11 +46,11 @@ contains
 
       estimate%nodes = simulation%contact%model%scene%mesh%nodes
       estimate%message = ''
-      allocate (estimate%companion_nodes(0))
-      call choose_companions(simulation, nodes, estimate)
-      if (estimate%message == '') call solve_companions(simulation, nodes, values, allowances, estimate, observer)
+      allocate (estimate%coarser_nodes(0))
+      call choose_coarser_meshes(simulation, nodes, estimate)
+      if (estimate%message == '') call solve_coarser_meshes(simulation, nodes, values, allowances, estimate, observer)
       if (estimate%message == '') then
-         estimate%companion_nodes = nodes(2:)
+         estimate%coarser_nodes = nodes(2:)
          do quantity = 1, quantity_count
             if (is_resolved(simulation, quantity) .and. &
                 .not. is_there(simulation%contact%model, quantity, values(quantity, :))) cycle
@@ -81,7 +81,7 @@ contains
       end select
    end function is_resolved
 
-   !> Whether a quantity is modelled and is not zero on all meshes, as far as these tell.
+   !> Whether a quantity is modelled and is not zero on all meshes.
    pure logical function is_there(model, quantity, values)
       type(contact_model_type), intent(in) :: model
       integer, intent(in) :: quantity
@@ -92,8 +92,8 @@ contains
       is_there = is_there .and. any(abs(values) > 0.0_wp)
    end function is_there
 
-   !> Numbers of intervals: the mesh's own, then those of the companions that differ; or, in the estimate, why there are none.
-   subroutine choose_companions(simulation, nodes, estimate)
+   !> Numbers of intervals of the mesh and of different coarser meshes; or, in `estimate`, why there are none.
+   subroutine choose_coarser_meshes(simulation, nodes, estimate)
       type(simulation_type), intent(in) :: simulation
       integer, allocatable, intent(out) :: nodes(:)
       type(error_estimate_type), intent(inout) :: estimate
@@ -104,27 +104,28 @@ contains
       associate (scene => simulation%contact%model%scene)
          if (simulation%outcome /= MFV_COMPLETE) then
             estimate%status = simulation%outcome
-            estimate%message = 'the run ended early'
+            estimate%message = 'the run did not complete'
          else if (.not. has_coarser_meshes(scene)) then
             estimate%message = "a body with shape='matrix' has no coarser mesh"
          else if (simulation%load_summary%steps /= size(scene%steps)) then
-            estimate%message = 'steps were taken that the case does not have'
+            estimate%message = 'load steps were applied that are not in the case'
          else if (simulation%contact%state%contact_nodes() < 2*fewest_contact_nodes) then
-            estimate%message = to_text(2*fewest_contact_nodes)//' nodes in contact are needed, there are '// &
+            estimate%message = 'at least '//to_text(2*fewest_contact_nodes)//' nodes in contact are needed, not '// &
                                to_text(simulation%contact%state%contact_nodes())
          else
             do i = 1, size(coarsening)
                coarser = nearest_mesh(scene, scene%mesh%nodes/coarsening(i))
                if (coarser > 0 .and. coarser < nodes(size(nodes))) nodes = [nodes, coarser]
             end do
-            if (size(nodes) < 3) estimate%message = 'no two coarser meshes fit the circle of a Fourier series'
+            if (size(nodes) < 3) &
+               estimate%message = "kernel='fourier': fewer than two coarser meshes divide the circle into whole intervals"
          end if
       end associate
       if (estimate%message == '') estimate%status = MFV_COMPLETE
-   end subroutine choose_companions
+   end subroutine choose_coarser_meshes
 
-   !> The number of intervals nearest to `wanted`, as odd or even as the scene's, that fits its circles; 0 where there is none
-   !> within a fifth.
+   !> Number of intervals nearest to `wanted`, of the parity of the scene's, that fits its circles; 0 if there is none within
+   !> a fifth.
    pure integer function nearest_mesh(scene, wanted) result(nodes)
       type(scene_type), intent(in) :: scene
       real(wp), intent(in) :: wanted
@@ -142,8 +143,8 @@ contains
       nodes = 0
    end function nearest_mesh
 
-   !> Whether a mesh of `nodes` intervals over a given half-width fits a body: a Fourier series needs a whole number on its
-   !> circle.
+   !> Whether a mesh of `nodes` intervals over a given half-width fits a body: a Fourier series needs a whole number of them
+   !> on its circle.
    pure logical function fits(scene, body, nodes)
       type(scene_type), intent(in) :: scene
       type(body_type), intent(in) :: body
@@ -158,15 +159,16 @@ contains
       fits = abs(intervals - anint(intervals)) <= whole*intervals
    end function fits
 
-   !> Solve the companions. `values`, `allowances`: of every quantity on every mesh, shape (quantity_count, size(nodes)).
-   subroutine solve_companions(simulation, nodes, values, allowances, estimate, observer)
+   !> Solve the scene on the coarser meshes. `values`, `allowances`: every quantity on every mesh, shape (quantity_count,
+   !> size(nodes)).
+   subroutine solve_coarser_meshes(simulation, nodes, values, allowances, estimate, observer)
       type(simulation_type), intent(in) :: simulation
       integer, intent(in) :: nodes(:)
       real(wp), allocatable, intent(out) :: values(:, :), allowances(:, :)
       type(error_estimate_type), intent(inout) :: estimate
       class(observer_type), intent(inout), target, optional :: observer
       type(relay_type) :: watch
-      type(simulation_type) :: companion
+      type(simulation_type) :: coarse
       integer :: i
 
       allocate (values(quantity_count, size(nodes)), allowances(quantity_count, size(nodes)))
@@ -176,19 +178,19 @@ contains
       watch%runs = size(nodes) - 1
       do i = 2, size(nodes)
          watch%before = i - 2
-         companion = new_simulation(coarser_scene(simulation, nodes(i)), history_none, states_steps)
-         call companion%run(watch)
-         if (companion%outcome /= MFV_COMPLETE) then
-            estimate%status = companion%outcome
-            estimate%message = 'with '//to_text(nodes(i))//' nodes: '//status_outcome(companion%outcome)
+         coarse = new_simulation(coarser_scene(simulation, nodes(i)), history_none, states_steps)
+         call coarse%run(watch)
+         if (coarse%outcome /= MFV_COMPLETE) then
+            estimate%status = coarse%outcome
+            estimate%message = 'on a mesh of '//to_text(nodes(i))//' nodes: '//status_outcome(coarse%outcome)
             return
          end if
-         values(:, i) = quantities_of(companion)
-         allowances(:, i) = interval_allowances(companion)
+         values(:, i) = quantities_of(coarse)
+         allowances(:, i) = interval_allowances(coarse)
       end do
-   end subroutine solve_companions
+   end subroutine solve_coarser_meshes
 
-   !> The scene of a simulation on `nodes` intervals, with as many cycles as were run, steady or not.
+   !> The scene of a simulation on `nodes` intervals, with as many cycles as the simulation, steady or not.
    type(scene_type) function coarser_scene(simulation, nodes) result(scene)
       type(simulation_type), intent(in) :: simulation
       integer, intent(in) :: nodes
@@ -197,7 +199,7 @@ contains
       call fix_cycles(scene, simulation)
    end function coarser_scene
 
-   !> Have a scene run as many cycles as a simulation of it did, steady or not.
+   !> Set the number of cycles of a scene to that of a simulation of it, steady or not.
    subroutine fix_cycles(scene, simulation)
       type(scene_type), intent(inout) :: scene
       type(simulation_type), intent(in) :: simulation
@@ -212,9 +214,9 @@ contains
       scene%steps%steady_tolerance = 0.0_wp
    end subroutine fix_cycles
 
-   !> A scene on `nodes` intervals over the same surface. A mesh of a given half-width has another interval at either end, so
-   !> that wider intervals do not exceed it; a mesh that grows does so here too: what is beyond the contact changes nothing. A
-   !> coefficient of friction that is given one a node is averaged over the wider intervals.
+   !> A scene on `nodes` intervals over the same surface. A mesh of given half-width has another interval at either end, so
+   !> that wider intervals do not exceed it, and grows if it did: intervals outside the contact have no effect. A coefficient
+   !> of friction per node is averaged over the wider intervals.
    type(scene_type) function scene_on_mesh(original, nodes) result(scene)
       type(scene_type), intent(in) :: original
       integer, intent(in) :: nodes
@@ -230,8 +232,8 @@ contains
       call average(scene%friction%kinetic, nodes, spare)
    end function scene_on_mesh
 
-   !> Values given one a node, constant over each interval, made means over `nodes` intervals; `spare` more at either end
-   !> have those of the ends.
+   !> Averages over `nodes` intervals of values that are constant on each interval; `spare` more intervals at either end take
+   !> the end values.
    pure subroutine average(coefficient, nodes, spare)
       type(friction_coefficient_type), intent(inout) :: coefficient
       integer, intent(in) :: nodes, spare
@@ -270,16 +272,15 @@ contains
       end associate
    end function quantities_of
 
-   !> What the intervals of a mesh leave open in each quantity, whatever other meshes say. An edge of the contact or of a
-   !> stick zone may be half an interval off, except where the contact ends because a body does. The peak of the shear
-   !> traction is somewhere between two nodes.
+   !> Uncertainty of each quantity within an interval. An edge of a contact or stick zone is uncertain by half an interval,
+   !> unless a body ends there; the peak of the shear traction lies between two nodes.
    function interval_allowances(simulation) result(allowances)
       type(simulation_type), intent(in) :: simulation
       real(wp) :: allowances(quantity_count)
       real(wp) :: contact, stick, length
 
       associate (state => simulation%contact%state, model => simulation%contact%model)
-         ! Edges of one patch are off together, patches as they come.
+         ! Errors of the two edges of one patch add up; those of several patches are independent.
          contact = model%interval()*sqrt(0.5_wp*free_edges(model, in_contact(state%status)))
          stick = model%interval()*sqrt(real(max(size(zones_of(holds(state%status))), 1), wp))
          length = max(sum(model%width, mask=in_contact(state%status)), model%interval())
@@ -291,7 +292,7 @@ contains
       end associate
    end function interval_allowances
 
-   !> Edges of the contact less those where the surface of a body ends between two intervals: these are exact.
+   !> Edges of the contact except where a body ends between two intervals: these are exact.
    pure integer function free_edges(model, contact)
       type(contact_model_type), intent(in) :: model
       logical, intent(in) :: contact(:)
@@ -305,10 +306,9 @@ contains
       end do
    end function free_edges
 
-   !> How far the true peak of the size of the shear traction may be off that at a node. Where the peak is at the edge of a
-   !> zone that holds, the true one is somewhere between two nodes, and not above the friction limit at the one that holds;
-   !> elsewhere it may be off by what the peak differs from the nearer one of its neighbours. Arguments of shape (nodes),
-   !> force/length^2.
+   !> Uncertainty of the peak of the shear traction, force/length^2. At the edge of a stick zone the true peak lies between
+   !> two nodes, at most at the friction limit of the sticking one; elsewhere, difference to the nearer neighbouring value.
+   !> Arguments of shape (nodes), force/length^2.
    pure real(wp) function room_at_peak(shear, limit, held) result(room)
       real(wp), intent(in) :: shear(:), limit(:)
       logical, intent(in) :: held(:)

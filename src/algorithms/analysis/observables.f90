@@ -1,6 +1,6 @@
-!> What a joint-damping engineer reads off a load history with cycles: dissipation a cycle, stiffness after a reversal, stick
-!> ratios on loading and reversal, shift of the contact patch; as they are, and dimensionless as in dissertation section 5.2 and eq.
-!> 6.5.
+!> Observables for joint damping from a load history with cycles: dissipation per cycle, stiffness after a reversal, stick
+!> ratios on loading and reversal, shift of the contact patch; with units, and dimensionless as in dissertation section 5.2
+!> and eq. 6.5.
 module mfv_observables
    use, intrinsic :: ieee_arithmetic, only: ieee_quiet_nan, ieee_value
    use mfv_contact_state, only: contact_state_type
@@ -16,35 +16,35 @@ module mfv_observables
    private
    public :: observable_count, observables, observable_place, observables_of
 
-   !> Name, as in tables and files; unit in terms of length and force (energies are per unit thickness), or 1; what it is.
+   !> Name, as in tables and files; unit in terms of length and force (energies per unit thickness), or 1; meaning.
    type :: row_type
       character(len=24) :: name
       character(len=14) :: unit
       character(len=96) :: meaning
    end type row_type
 
-   !> Number of observables, and the observables.
+   !> Number and list of the observables.
    integer, parameter :: observable_count = 40
    type(row_type), parameter :: observables(observable_count) = [ &
                                 row_type('normal_force', 'force/length', 'normal force P per unit thickness at the end'), &
                                 row_type('tangential_force', 'force/length', 'tangential force Q per unit thickness at the end'), &
                                 row_type('approach', 'length', 'approach of the upper body at the end'), &
                                 row_type('shift', 'length', 'shift of the upper body to the right at the end'), &
-                                row_type('dissipation', 'force', 'energy dissipated in all, per unit thickness'), &
+                                row_type('dissipation', 'force', 'energy dissipated since the start, per unit thickness'), &
                                 row_type('contact_half_width', 'length', &
                                     'half the length of the contact at the end, from edges between nodes, where it is one patch'), &
            row_type('contact_length', 'length', 'length of the contact at the end, of all its patches, from edges between nodes'), &
                                 row_type('patches', '1', 'contact patches at the end, with open nodes between them'), &
-         row_type('contact_centre', 'length', 'middle between the outermost edges at the end, from the origin along the surface'), &
+           row_type('contact_centre', 'length', 'middle between the outermost edges at the end, arc length from the origin of x'), &
           row_type('stick_ratio', '1', 'length of the stick zones over that of the contact at the end, from edges between nodes'), &
                                 row_type('peak_pressure', 'force/length^2', 'largest pressure at the end'), &
                                 row_type('peak_shear', 'force/length^2', 'largest size of the shear traction at the end'), &
                                 row_type('cycles', '1', 'whole cycles of the last step that has any'), &
                                 row_type('cycle_dissipation', 'force', 'energy dissipated in the last cycle, per unit thickness'), &
                          row_type('first_cycle_dissipation', 'force', 'energy dissipated in the first cycle, per unit thickness'), &
-              row_type('cycle_change', '1', 'largest change of a traction over the last cycle, in parts of the largest traction'), &
-                    row_type('force_amplitude', 'force/length', 'half of what the tangential force changes by in the last cycle'), &
-                                row_type('shift_amplitude', 'length', 'half of what the shift changes by in the last cycle'), &
+              row_type('cycle_change', '1', 'largest change of a traction over the last cycle, relative to the largest traction'), &
+                          row_type('force_amplitude', 'force/length', 'half the range of the tangential force in the last cycle'), &
+                                row_type('shift_amplitude', 'length', 'half the range of the shift in the last cycle'), &
                   row_type('tangential_stiffness', 'force/length^2', 'tangential force over shift right after the last reversal'), &
                   row_type('secant_stiffness', 'force/length^2', 'tangential force over shift from end to end of the last cycle'), &
                                 row_type('loss_factor', '1', &
@@ -71,7 +71,7 @@ module mfv_observables
 
 contains
 
-   !> Number of the observable of a name, which must be one.
+   !> Index of an observable; the name must be valid.
    pure integer function observable_place(name) result(place)
       character(*), intent(in) :: name
 
@@ -80,7 +80,7 @@ contains
       end do
    end function observable_place
 
-   !> All observables of a simulation as far as it has come, each in its unit; NaN where there is none.
+   !> All observables at the present state of a simulation, with units; NaN if not available.
    subroutine observables_of(simulation, values)
       type(simulation_type), intent(in) :: simulation
       real(wp), intent(out) :: values(observable_count)
@@ -92,10 +92,10 @@ contains
       if (simulation%marks(mark_loading)%step == 0) return
       state = simulation%padded(simulation%marks(mark_loading))
       call find_zone_edges(simulation%contact%model, state, loading)
-      call add_moment(loading, 'loading', values)
+      call add_turning_point(loading, 'loading', values)
       if (simulation%cycle_count == 0) return
       associate (cycle => simulation%cycles(simulation%cycle_count))
-         ! Not those of a step before, where the last step with cycles ended in its first one.
+         ! Not those of an earlier step, if the last step with cycles ended in its first one.
          if (cycle%step == simulation%marks(mark_loading)%step) call add_cycle(simulation, cycle, values)
       end associate
    end subroutine observables_of
@@ -137,7 +137,7 @@ contains
       end associate
    end subroutine add_present
 
-   !> The largest tension along the surface of a body: none of a rigid body or a matrix, nor where it is singular.
+   !> The largest tension along the surface of a body; NaN for a rigid body or a matrix, and if singular.
    subroutine add_tension(simulation, upper, name, values)
       type(simulation_type), intent(in) :: simulation
       logical, intent(in) :: upper
@@ -169,13 +169,13 @@ contains
       call put(values, 'tangential_stiffness', cycle%return%stiffness_on_leaving)
       call put(values, 'secant_stiffness', cycle%secant_stiffness())
       call put(values, 'loss_factor', cycle%loss_factor())
-      call add_moment(cycle%reversal%edges, 'reversal', values)
-      call add_moment(cycle%return%edges, 'return', values)
+      call add_turning_point(cycle%reversal%edges, 'reversal', values)
+      call add_turning_point(cycle%return%edges, 'return', values)
       call add_numbers(simulation, cycle, values)
    end subroutine add_cycle
 
-   !> Stick ratio and shift of the patch at one moment.
-   subroutine add_moment(edges, name, values)
+   !> Stick ratio and patch shift at a turning point.
+   subroutine add_turning_point(edges, name, values)
       type(zone_edges_type), intent(in) :: edges
       character(*), intent(in) :: name
       real(wp), intent(inout) :: values(:)
@@ -183,9 +183,9 @@ contains
       if (.not. edges%contact) return
       call put(values, 'stick_ratio_'//name, edges%stick_ratio())
       call put(values, 'patch_shift_'//name, edges%centre()/edges%half_width())
-   end subroutine add_moment
+   end subroutine add_turning_point
 
-   !> The last cycle without dimensions.
+   !> Dimensionless observables of the last cycle.
    subroutine add_numbers(simulation, cycle, values)
       type(simulation_type), intent(in) :: simulation
       type(cycle_type), intent(in) :: cycle

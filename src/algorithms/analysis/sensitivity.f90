@@ -1,9 +1,6 @@
-!> How much a result depends on the last digits of its input: the same scene once more, with all coefficients of friction times
-!> 1 + 1e-12.
-!>
-!> Where friction drops, one node's slip decides whether the next one slips. Round-off can decide between them, and what
-!> follows can then be another of the states that the loads allow: such a result is chaotic, and its certificate is small all the
-!> same.
+!> Sensitivity of a result to rounding errors: the scene is run again with all coefficients of friction times 1 + 1e-12. With
+!> a stress drop the slip of one node decides whether the next one slips. Rounding errors can then select another of several
+!> admissible states: such a result is chaotic, although its certificate is small.
 module mfv_sensitivity
    use mfv_friction, only: friction_type
    use mfv_kinds, only: wp
@@ -18,10 +15,8 @@ module mfv_sensitivity
 
 contains
 
-   !> Run the scene of a simulation that has been run once more with friction perturbed, and note in simulation%sensitivity by how
-   !> much
-   !> the final state differs. `observer` watches that run, and can stop it. Where there is nothing to compare its message says
-   !> why.
+   !> Run the scene of a finished simulation again with perturbed friction and record the difference of the final states in
+   !> simulation%sensitivity. `observer` monitors that run and can stop it. Its message says why there is no comparison.
    subroutine find_sensitivity(simulation, observer)
       type(simulation_type), intent(inout) :: simulation
       class(observer_type), intent(inout), target, optional :: observer
@@ -35,9 +30,9 @@ contains
       scene = simulation%contact%model%scene
       if (simulation%outcome /= MFV_COMPLETE) then
          sensitivity%status = simulation%outcome
-         sensitivity%message = 'the run ended early'
+         sensitivity%message = 'the run did not complete'
       else if (simulation%load_summary%steps /= size(scene%steps)) then
-         sensitivity%message = 'steps were taken that the case does not have'
+         sensitivity%message = 'load steps were applied that are not in the case'
       else if (.not. scene%friction%acts()) then
          sensitivity%message = 'the case has no friction'
       else
@@ -49,7 +44,7 @@ contains
          if (other%outcome == MFV_COMPLETE) then
             call compare(simulation, other, sensitivity)
          else
-            sensitivity%message = 'with friction perturbed: '//status_outcome(other%outcome)
+            sensitivity%message = 'with perturbed friction: '//status_outcome(other%outcome)
          end if
       end if
       simulation%sensitivity = sensitivity
@@ -74,7 +69,7 @@ contains
       scale = one%contact%certificate%traction_scale()
       associate (a => one%contact%state, b => other%contact%state)
          if (size(a%status) /= size(b%status)) then
-            sensitivity%message = 'with friction perturbed the mesh grows to another length'
+            sensitivity%message = 'with perturbed friction the mesh grows to another length'
             return
          end if
          sensitivity%pressure = maxval(abs(b%fields%pressure - a%fields%pressure))/scale

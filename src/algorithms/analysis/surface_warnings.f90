@@ -1,5 +1,4 @@
-!> Warnings about the undeformed surfaces under a contact: where they end, what they are between the points of a profile, how steep
-!> they are.
+!> Warnings about the undeformed surfaces in contact: ends, shape between the points of a profile, slope.
 module mfv_surface_warnings
    use mfv_body, only: body_type, interpolation_cubic, interpolation_linear, shape_flat_punch, shape_power, shape_profile, &
                        shape_rounded_punch
@@ -17,13 +16,13 @@ module mfv_surface_warnings
 
 contains
 
-   !> Add warnings about the surface of the lower or `upper` body of a simulation; `steepest`: degrees up to which flanks are small
-   !> enough for a half-plane.
-   subroutine warn_of_surface(simulation, upper, body, steepest, warnings)
+   !> Add warnings about the surface of the lower or `upper` body of a simulation; `largest_angle`: largest angle of flanks,
+   !> degrees, for which half-planes are a good approximation.
+   subroutine warn_of_surface(simulation, upper, body, largest_angle, warnings)
       type(simulation_type), intent(in) :: simulation
       logical, intent(in) :: upper
       type(body_type), intent(in) :: body
-      real(wp), intent(in) :: steepest
+      real(wp), intent(in) :: largest_angle
       type(string_type), allocatable, intent(inout) :: warnings(:)
       character(len=5) :: name
       logical, allocatable :: contact(:)
@@ -37,13 +36,13 @@ contains
       if (body%shape == shape_rounded_punch) call check_rounded_edges
       if (body%shape /= shape_power .or. body%exponent > 1.0_wp) return
       angle = atan(body%coefficient)*180.0_wp/pi
-      if (angle > steepest) call add_text(warnings, 'the flanks of the '//name//' body rise by '//to_text(angle, 3)// &
-                                          ' degrees; bodies deform as half-planes, which is a poor approximation beyond '// &
-                                          to_text(steepest, 2)//' degrees')
+      if (angle > largest_angle) call add_text(warnings, 'the flanks of the '//name//' body rise by '//to_text(angle, 3)// &
+                                               ' degrees; the half-plane compliance is inaccurate beyond '// &
+                                               to_text(largest_angle, 2)//' degrees')
 
    contains
 
-      !> A contact cannot grow beyond the end of a surface. (That of a flat punch is a corner by design.)
+      !> A contact cannot grow beyond the end of a surface. (A flat punch has corners by design.)
       subroutine check_end()
          integer :: i, side
 
@@ -52,14 +51,14 @@ contains
             do i = 1, size(contact)
                if (.not. contact(i) .or. .not. ends_at(i, side)) cycle
                call add_text(warnings, 'the contact reaches the end of the surface of the '//name//' body, near x = '// &
-                             to_text(simulation%contact%model%x(i), 4)//', and cannot grow beyond it: the tractions there are '// &
-                             'those at a sharp corner')
+                             to_text(simulation%contact%model%x(i), 4)//' and cannot grow beyond it: tractions and '// &
+                             'stresses there are those at a sharp corner; extend the surface unless the corner is real')
                return
             end do
          end do
       end subroutine check_end
 
-      !> Whether the body has no surface one node further.
+      !> Whether the surface of the body ends before the next node.
       pure logical function ends_at(node, side)
          integer, intent(in) :: node, side
          real(wp) :: arc
@@ -73,7 +72,7 @@ contains
          end associate
       end function ends_at
 
-      !> Between the flat of a punch and the edge of the contact the pressure rises to its peak and falls to zero.
+      !> From the flat of a punch to the contact edge the pressure rises to its peak and vanishes.
       subroutine check_rounded_edges()
          type(zone_edges_type) :: edges
          real(wp) :: width
@@ -84,18 +83,17 @@ contains
             if (.not. edges%contact .or. .not. width > 0.0_wp .or. width >= resolved_nodes*model%interval()) return
             call add_text(warnings, 'the rounded edges of the '//name//' body are in contact over a width of '// &
                           to_text(width, 3)//', '//to_text(width/model%interval(), 2)// &
-                          ' intervals: the peak of the pressure, slip and stresses '// &
-                          'there are not resolved; use '//trim(needed_mesh(model, state, width)))
+                          ' intervals: peak pressure, slip and stresses '// &
+                          'are not resolved there; use '//trim(needed_mesh(model, state, width)))
          end associate
       end subroutine check_rounded_edges
 
-      !> Points further apart than the nodes leave open what is between them, where that matters: a bump of the height e and the
-      !> width h takes a pressure of pi m e/h to be pressed flat (Johnson 1985, section 13.2: pi E* (e/2)/h of a sinusoid, E* = 2
-      !> m).
+      !> With points further apart than the nodes the shape between them is uncertain. The effect as a pressure: flattening a
+      !> bump of height e and width h takes pi m e/h (Johnson 1985, section 13.2: pi E* (e/2)/h of a sinusoid, E* = 2 m).
       subroutine check_interpolation()
          real(wp), parameter :: matters = 0.02_wp, further = 1.5_wp
          real(wp), allocatable :: x(:), departure(:), spacing(:)
-         real(wp) :: part
+         real(wp) :: share
 
          x = pack(simulation%contact%model%x, contact)
          departure = abs(body%from_polyline(x))
@@ -103,22 +101,22 @@ contains
          if (maxval(spacing) <= further*simulation%contact%model%interval()) return
          associate (model => simulation%contact%model, pressure => simulation%contact%state%fields%pressure)
             if (model%scene%modulus() > 0.0_wp .and. maxval(pressure) > 0.0_wp) then
-               part = pi*model%scene%modulus()*maxval(departure/spacing)/maxval(pressure)
+               share = pi*model%scene%modulus()*maxval(departure/spacing)/maxval(pressure)
             else
-               part = maxval(departure)/max(maxval(pack(model%initial_gap, contact)) - minval(pack(model%initial_gap, contact)), &
-                                            tiny(1.0_wp))
+               share = maxval(departure)/max(maxval(pack(model%initial_gap, contact)) - minval(pack(model%initial_gap, contact)), &
+                                             tiny(1.0_wp))
             end if
          end associate
-         if (part < matters) return
+         if (share < matters) return
          if (body%interpolation == interpolation_linear .and. corners_under(body, x) <= 2) return
          call add_text(warnings, 'the profile of the '//name//' body is coarser than the mesh: its points are up to '// &
-                       to_text(maxval(spacing), 3)//' apart in the contact; straight lines and a smooth curve through them '// &
-                       'differ by up to '//to_text(maxval(departure), 3)//', equivalent to some '//to_text(100.0_wp*part, 2)// &
-                       ' % of the largest pressure: give more points, or '//trim(advice_for(body%interpolation)))
+                       to_text(maxval(spacing), 3)//' apart in the contact. Straight lines and a smooth curve through them '// &
+                       'differ by up to '//to_text(maxval(departure), 3)//', which changes the pressure by about '// &
+                       to_text(100.0_wp*share, 2)//' % of its peak: give more points, or '//trim(advice_for(body%interpolation)))
       end subroutine check_interpolation
    end subroutine warn_of_surface
 
-   !> The nodes in contact in the last state or in that of the largest normal force among those kept.
+   !> Nodes in contact in the last state or in the saved state with the largest normal force.
    function touched(simulation) result(contact)
       type(simulation_type), intent(in) :: simulation
       logical, allocatable :: contact(:)
@@ -133,16 +131,16 @@ contains
       contact = contact .or. in_contact(state%status)
    end function touched
 
-   !> What to do about a profile that is not clear between its points; padded with blanks.
+   !> Advice for a profile that is uncertain between its points; padded with blanks.
    pure function advice_for(interpolation) result(advice)
       integer, intent(in) :: interpolation
       character(len=120) :: advice
 
       select case (interpolation)
       case (interpolation_cubic)
-         advice = "interpolation='linear' if the profile has corners at its points; they are rounded now"
+         advice = "interpolation='linear' if the profile has corners at its points, which are now rounded"
       case (interpolation_linear)
-         advice = "interpolation='monotone_cubic' if the profile is smooth; now it has corners at its points"
+         advice = "interpolation='monotone_cubic' if the profile is smooth, without corners at its points"
       case default
          advice = "interpolation='monotone_cubic' if the profile is smooth, 'linear' (the default) if it has corners at its points"
       end select
@@ -168,13 +166,13 @@ contains
    pure integer function corners_under(body, x) result(corners)
       type(body_type), intent(in) :: body
       real(wp), intent(in) :: x(:)
-      real(wp), parameter :: round_off = 1.0e-9_wp
+      real(wp), parameter :: tolerance = 1.0e-9_wp
       real(wp), allocatable :: slope(:)
       integer :: i, n
 
       n = size(body%position)
       slope = (body%height(2:) - body%height(:n - 1))/(body%position(2:) - body%position(:n - 1))
-      corners = count([(abs(slope(i) - slope(i - 1)) > round_off*maxval(abs(slope)) .and. &
+      corners = count([(abs(slope(i) - slope(i - 1)) > tolerance*maxval(abs(slope)) .and. &
                         body%position(i) > minval(x) .and. body%position(i) < maxval(x), i=2, n - 1)])
    end function corners_under
 

@@ -1,8 +1,8 @@
-!> The consistent tangent of a contact: how its loads change with the motions of the upper body.
+!> Consistent tangent of a contact: derivatives of its loads with respect to the motions of the upper body.
 !>
-!> With all statuses fixed everything is linear (mfv_first_violation), so that the rates of the loads under prescribed motions are
-!> derivatives, exact until a node changes its status. At corners of contact and friction (a load that turns, nodes that touch) they
-!> depend on where the motions go on to: then the statuses are first settled in that direction.
+!> With fixed statuses everything is linear (mfv_first_violation): the derivatives are exact until a node changes its status.
+!> Where contact and friction are not differentiable (load reversal, first contact of nodes) they depend on the direction of
+!> the motions: the statuses are first adapted to it.
 module mfv_tangent
    use mfv_contact_path, only: contact_path_type, segment_type
    use mfv_contact_state, only: contact_state_type
@@ -18,9 +18,8 @@ module mfv_tangent
    private
    public :: find_tangent
 
-   !> Ends a run when the statuses have settled: not at an increment that is round-off, or that only lets excess tractions go, after
-   !> which
-   !> others change at the same load.
+   !> Stops a run when the statuses are consistent with the direction: not at an increment within tolerance, or one that only
+   !> relaxes over-stress, after which others change at the same load.
    type, extends(observer_type) :: settled_type
    contains
       procedure :: notify
@@ -28,12 +27,10 @@ module mfv_tangent
 
 contains
 
-   !> tangent(i, j): derivative of the force of motion i with respect to motion j (mfv_motions), shape (motions, motions), motions
-   !> from 2 to motion_count; the others are held.
-   !> `direction`: of motions to go on with, shape (motions), only its direction counts; friction acts, if the scene has any. Left
-   !> out, statuses are as they are.
-   !> Errors MFV_BAD_ARGUMENT: the contact does not determine it, or a direction of zeros; others: nothing leads on in this
-   !> direction.
+   !> tangent(i, j): derivative of the force of motion i with respect to motion j (mfv_motions), shape (motions, motions),
+   !> motions from 2 to motion_count; the others are fixed. `direction`: of the next motions, shape (motions), of any length;
+   !> friction acts, if the scene has any. If omitted, statuses are unchanged. Errors MFV_BAD_ARGUMENT: singular contact, or a
+   !> direction of zeros; others: the run in this direction fails.
    subroutine find_tangent(path, tangent, error, direction)
       type(contact_path_type), intent(in) :: path
       real(wp), intent(out) :: tangent(:, :)
@@ -45,7 +42,7 @@ contains
 
       tangent = 0.0_wp
       if (.not. present(direction) .and. all(path%model%moves(:size(tangent, 1)))) then
-         ! The solver's work is its state: a copy leaves the digits of the original as they are.
+         ! The solver changes in use: work on a copy, so that results of the original stay bit-identical.
          allocate (system, source=path%system)
          call derive(path, system, tangent, error)
          return
@@ -54,18 +51,18 @@ contains
       do i = 1, size(tangent, 1)
          call copy%begin_motion(i)
       end do
-      if (present(direction)) call turn(copy, direction, error)
+      if (present(direction)) call adapt_statuses(copy, direction, error)
       if (allocated(error)) return
       allocate (system, source=copy%system)
       call derive(copy, system, tangent, error)
    end subroutine find_tangent
 
-   !> Settle the statuses for motions that go on in a direction.
-   subroutine turn(path, direction, error)
+   !> Adapt the statuses to motions in a direction.
+   subroutine adapt_statuses(path, direction, error)
       type(contact_path_type), intent(inout) :: path
       real(wp), intent(in) :: direction(:)
       type(error_type), allocatable, intent(out) :: error
-      !> So far, in parts of the mesh's length: little beside everything but round-off.
+      !> Length of the trial motion over that of the mesh: small, but well above rounding errors.
       real(wp), parameter :: little = 1.0e-9_wp
       type(segment_type) :: segment
       type(settled_type) :: observer
@@ -76,7 +73,7 @@ contains
       motion(:size(direction)) = direction
       largest = maxval(abs(motion)*[(arm_unit(i, path%model%length()), i=1, motion_count)])
       if (.not. largest > 0.0_wp) then
-         call set_error(error, MFV_BAD_ARGUMENT, 'the direction of the tangent has no length')
+         call set_error(error, MFV_BAD_ARGUMENT, 'the direction of the tangent must not be all zeros')
          return
       end if
       motion = motion/largest*(little*path%model%length())
@@ -84,7 +81,7 @@ contains
       call apply_by_violations(path, segment, observer, error)
       if (.not. allocated(error)) return
       if (error%status == MFV_INTERRUPTED) deallocate (error)
-   end subroutine turn
+   end subroutine adapt_statuses
 
    !> See mfv_observer.
    subroutine notify(self, state, segment, segments, fraction, stop_wanted)
@@ -93,12 +90,12 @@ contains
       integer, intent(in) :: segment, segments
       real(wp), intent(in) :: fraction
       logical, intent(out) :: stop_wanted
-      real(wp), parameter :: on_the_way = 0.01_wp
+      real(wp), parameter :: minimum = 0.01_wp
 
-      stop_wanted = fraction > on_the_way
+      stop_wanted = fraction > minimum
    end subroutine notify
 
-   !> The derivatives with the statuses as they are, by a solver of its own.
+   !> Derivatives with the present statuses, by a separate solver.
    subroutine derive(path, system, tangent, error)
       type(contact_path_type), intent(in) :: path
       class(contact_system_type), intent(inout) :: system
@@ -116,7 +113,8 @@ contains
                               i=1, motion_count)]
          call system%solve(path%model, constraints, path%state%fields, response, singular)
          if (singular) then
-            call set_error(error, MFV_BAD_ARGUMENT, 'the contact does not determine the tangent: the linear system is singular')
+            call set_error(error, MFV_BAD_ARGUMENT, &
+                           'the tangent is not determined: the linear system of the contact is singular')
             return
          end if
          do i = 1, size(tangent, 1)

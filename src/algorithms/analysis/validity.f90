@@ -1,4 +1,4 @@
-!> Where the model stops holding: warnings that go with a result.
+!> Warnings where the assumptions of the model do not hold.
 module mfv_validity
    use mfv_body, only: body_type, shape_matrix
    use mfv_contact_state, only: contact_state_type
@@ -16,20 +16,18 @@ module mfv_validity
    private
    public :: validity_warnings
 
-   !> Normals are vertical at every node: at this angle from the pole, degrees, that is wrong by 1.5 % (1 - cos) in the
-   !> normal and by 17 % (sin) in the tangential component.
+   !> Normals are vertical at every node: at this angle from the initial point of contact, degrees, the error is 1.5 % (1 -
+   !> cos) in the normal and 17 % (sin) in the tangential component.
    real(wp), parameter :: largest_angle = 10.0_wp
 
 contains
 
-   !> Warnings about a simulation, none as a rule: few nodes in contact or in slip zones; contact at angles for which vertical
-   !> normals
-   !> are a poor approximation; surfaces that end, are steep or are not clear between the points of a profile; stresses beyond a
-   !> yield strength that the user gave (the largest von Mises stress by refinement); large rotations; lost digits.
+   !> Warnings about a simulation: few nodes in contact or slip zones; contact at large angles; surfaces that end, are steep
+   !> or are uncertain between points; yield (the largest von Mises stress by refinement); large rotations; lost digits.
    subroutine validity_warnings(simulation, warnings)
       type(simulation_type), intent(in) :: simulation
       type(string_type), allocatable, intent(out) :: warnings(:)
-      !> Half-width and stick ratio come in whole nodes: the fewest in contact; the largest residual without lost digits.
+      !> Fewest nodes in contact for half-width and stick ratio; largest residual without lost digits.
       integer, parameter :: fewest = 10
       real(wp), parameter :: good = 1.0e-8_wp
       integer :: nodes
@@ -47,13 +45,14 @@ contains
       nodes = simulation%contact%state%contact_nodes()
       if (nodes > 0 .and. nodes < fewest) call add_text(warnings, 'only '//to_text(nodes)// &
                                                         trim(merge(' node is  ', ' nodes are', nodes == 1))// &
-                                                        ' in contact: the mesh is too coarse')
+                                                        ' in contact: half-width, stick ratio and tractions are '// &
+                                                        'inaccurate; use a finer mesh')
       call check_slip_zones(simulation, warnings)
       call check_order(simulation%contact%model%scene%lower, warnings)
       call check_rotation(simulation, warnings)
       largest = simulation%contact%certificate%largest()
-      if (largest > good) call add_text(warnings, 'the certificate, '//to_text(largest, 2)// &
-                                        ', is far from round-off: digits have been lost')
+      if (largest > good) call add_text(warnings, 'the largest residual in the certificate is '//to_text(largest, 2)// &
+                                        ', well above rounding errors: results may be inaccurate; see the certificate')
    end subroutine validity_warnings
 
    subroutine check_angle(simulation, name, body, warnings)
@@ -70,12 +69,11 @@ contains
       end associate
       if (.not. angle > largest_angle) return
       call add_text(warnings, 'the contact reaches '//to_text(angle, 3)//' degrees from the initial point of '// &
-                    'contact on the '//name//' body; normals are taken as vertical, which is a poor approximation beyond '// &
+                    'contact on the '//name//' body; vertical normals are inaccurate beyond '// &
                     to_text(largest_angle, 2)//' degrees')
    end subroutine check_angle
 
-   !> Rotation is taken to first order: exactly for parabolas that roll, else with errors that grow as the bodies roll or slide
-   !> along.
+   !> Rotation is first order: exact for rolling parabolas, otherwise with errors that grow with rolled and slid distance.
    subroutine check_rotation(simulation, warnings)
       type(simulation_type), intent(in) :: simulation
       type(string_type), allocatable, intent(inout) :: warnings(:)
@@ -91,19 +89,19 @@ contains
          error = model%rolling_error(state%fields)
       end associate
       if (abs(error) > small_error) &
-         call add_text(warnings, 'the contact has rolled by '//to_text(rolled, 3)//', where the relative curvature is wrong by '// &
-                       to_text(100.0_wp*error, 2)//' % and the contact half-width by about half of that: roll less far')
+         call add_text(warnings, 'the contact has rolled by '//to_text(rolled, 3)//': the relative curvature has an error of '// &
+                       to_text(100.0_wp*error, 2)//' % and the contact half-width about half of that; roll less far')
       if (simulation%contact%model%scene%mesh%radial) return
       if (abs(slid) > small_slide*half_width) &
          call add_text(warnings, 'the upper body has slid by '//to_text(slid, 3)//' along the lower one; '// &
-                       'the contact half-width is '//to_text(half_width, 3)//', and the model assumes that opposite nodes '// &
-                       'stay opposite each other')
+                       'the model neglects the offset of the surfaces, which must be small compared with '// &
+                       'the contact half-width of '//to_text(half_width, 3))
       if (simulation%load(motion_approach)%control == control_displacement .and. rolled**2 > small_slide**2*half_width**2) &
-         call add_text(warnings, 'the bodies have rolled at a prescribed approach, which is measured at the initial '// &
-                       'point of contact, so that the normal force has grown with the distance: prescribe normal_force')
+         call add_text(warnings, 'the bodies have rolled at a prescribed approach: it refers to the initial '// &
+                       'point of contact, and the normal force has grown with the distance; prescribe normal_force instead')
    end subroutine check_rotation
 
-   !> Slip zones with too few nodes: of which quantities, and how many nodes it takes.
+   !> Slip zones with too few nodes: affected quantities and required mesh.
    subroutine check_slip_zones(simulation, warnings)
       type(simulation_type), intent(in) :: simulation
       type(string_type), allocatable, intent(inout) :: warnings(:)
@@ -116,7 +114,7 @@ contains
       width = huge(width)
       interval = contact_interval(simulation%contact%model, simulation%contact%state)
       call add_work(simulation%slip, 'dissipation')
-      ! The tension behind a contact grows with the root of its slip zone; a matrix has no inside.
+      ! The tension behind a contact grows with the root of its slip zone; a matrix has no interior.
       call add_zones(simulation%slip, trim(merge('stick_ratio, peak_shear         ', 'stick_ratio, peak_shear, tension', &
                                                  simulation%contact%model%scene%lower%shape == shape_matrix)))
       if (simulation%cycle_count > 0) then
@@ -130,10 +128,10 @@ contains
       end if
       if (names == '') return
       text = 'slip zones have only '//to_text(nodes)//trim(merge(' node ', ' nodes', nodes == 1))
-      if (nodes == 0) text = 'no node slips, because slip zones are too narrow'
-      call add_text(warnings, text//' ('//to_text(width/interval, 2)//' intervals); not resolved: '//names(3:)//'; '// &
+      if (nodes == 0) text = 'no node slips: slip zones are narrower than the mesh resolves'
+      call add_text(warnings, text//' ('//to_text(width/interval, 2)//' intervals); not resolved: '//names(3:)//'; use '// &
                     trim(needed_mesh(simulation%contact%model, simulation%contact%state, width))// &
-                    ' would give them '//to_text(resolved_nodes)//' nodes')
+                    ' for '//to_text(resolved_nodes)//' nodes in each slip zone')
 
    contains
 
@@ -162,8 +160,8 @@ contains
       end subroutine add
    end subroutine check_slip_zones
 
-   !> A user's matrix whose rows come node by node, not normal components first: almost every node then moves its neighbour in
-   !> the matrix, which is its own other component, less than the one after that.
+   !> A matrix with the components of each node in turn, instead of all normal ones first. Neighbouring rows are then the two
+   !> components of one node, which almost everywhere displace each other less than the next node's.
    subroutine check_order(body, warnings)
       type(body_type), intent(in) :: body
       type(string_type), allocatable, intent(inout) :: warnings(:)
@@ -173,12 +171,12 @@ contains
       if (body%shape /= shape_matrix) return
       n = size(body%position) - 2
       if (count([(body%matrix(i, i + 1) < body%matrix(i, i + 2), i=1, n)]) > almost_every*n .and. n > 1) &
-         call add_text(warnings, 'in the matrix neighbours move each other less than nodes further apart: do its rows and '// &
-                       'columns have all normal components first, then the tangential ones?')
+         call add_text(warnings, 'the matrix seems to be in the wrong order, because neighbouring rows couple weakly: rows and '// &
+                       'columns must have all normal components first, then all tangential ones')
    end subroutine check_order
 
-   !> The last state, and of those at the ends of steps the ones with the largest normal force and the largest tangential
-   !> forces to either side.
+   !> The last state and, at the ends of steps, those of largest normal force and largest tangential force in either
+   !> direction.
    subroutine check_yield(simulation, upper, body, warnings)
       type(simulation_type), intent(in) :: simulation
       logical, intent(in) :: upper
@@ -205,11 +203,11 @@ contains
       end do
       if (largest%value > body%yield_strength) &
          call add_text(warnings, 'the largest von Mises stress of the '//merge('upper', 'lower', upper)//' body, '// &
-                       to_text(largest%value, 4)//' '//where_it_is//', is beyond its yield_strength '// &
-                       to_text(body%yield_strength)//': elasticity no longer holds')
+                       to_text(largest%value, 4)//' '//where_it_is//', exceeds its yield_strength '// &
+                       to_text(body%yield_strength)//': stresses and tractions are not valid beyond yield')
    end subroutine check_yield
 
-   !> The largest von Mises stress of a body in a state; zero for a body without an inside.
+   !> Largest von Mises stress of a body in a state; zero without an interior.
    type(largest_type) function largest_below(simulation, upper, state) result(largest)
       type(simulation_type), intent(in) :: simulation
       logical, intent(in) :: upper
@@ -217,7 +215,7 @@ contains
       type(interior_type) :: interior
       logical :: available
 
-      ! The value, not the place, counts: some elements are enough.
+      ! The value is flat at its maximum: few elements suffice.
       call state_interior(simulation%contact%model, state, upper, interior, available, fewest_elements=60)
       if (available) largest = largest_von_mises(interior)
    end function largest_below

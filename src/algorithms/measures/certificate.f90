@@ -1,7 +1,7 @@
-!> The certificate: how well every state of the load history satisfies elasticity, equilibrium and the equalities and
-!> inequalities of dissertation Table 2.1, computed from tractions, displacements and statuses alone, with the full
-!> compliance, and from nothing that the solver says of itself. Residuals are relative to the largest magnitudes of
-!> their sort so far, so that units do not matter; the largest over all increments is kept.
+!> Certificate: how well every state of the load history satisfies elasticity, equilibrium and the equalities and inequalities
+!> of dissertation Table 2.1. Computed independently of the solver, from tractions, displacements and statuses with the full
+!> compliance. Residuals are relative to the largest magnitude of their kind so far; the largest over all increments is
+!> recorded.
 module mfv_certificate
    use, intrinsic :: ieee_arithmetic, only: ieee_is_finite
    use mfv_compliance, only: block_up, block_ut, block_wp, block_wt
@@ -22,14 +22,14 @@ module mfv_certificate
                          slip_traction = 8, pressure_sign = 9, gap_sign = 10, friction_limit = 11, &
                          slip_direction = 12, continuity = 13, energy_balance = 14
    integer :: motion
-   !> Number of residuals: the balances of the forces of optional motions, which come after approach and shift, are the last.
+   !> Number of residuals. The force balances of optional motions (all but approach and shift) come last.
    integer, parameter :: residual_count = energy_balance + motion_count - motion_shift
-   !> The balance of the force of every motion with the tractions.
+   !> Force balance of every motion.
    integer, parameter :: force_balance(motion_count) = [normal_force_balance, tangential_force_balance, &
                                                         (energy_balance + motion - motion_shift, &
                                                          motion=motion_shift + 1, motion_count)]
 
-   !> Names of the residuals, as in the result file, and what they are the sizes of.
+   !> Names of the residuals in the result file, and the quantities that they measure.
    character(*), parameter :: residual_names(residual_count) = &
                               [character(24) :: 'elasticity_normal', 'elasticity_tangential', motions(:motion_shift)%balance, &
                      'contact_gap', 'open_traction', 'stick_slip', 'slip_traction', 'pressure_sign', 'gap_sign', 'friction_limit', &
@@ -45,27 +45,27 @@ module mfv_certificate
    type :: certificate_type
       !> Largest relative residuals over all increments, by kind.
       real(wp) :: residual(residual_count) = 0.0_wp
-      !> Which of them are claimed in this scene.
-      logical :: claimed(residual_count) = .true.
-      !> Number of the increment with the largest residual, by kind; and increments so far.
+      !> Whether each kind applies to this scene.
+      logical :: applies(residual_count) = .true.
+      !> Increment with the largest residual, by kind; and number of increments so far.
       integer :: worst_increment(residual_count) = 0
       integer :: increments = 0
-      !> How many of them were large increments: on their way nothing was checked.
-      integer :: leaps = 0
-      !> Largest estimated errors of large increments: of the tractions, in parts of the largest traction so far; of what friction
-      !> dissipates in an interval, in parts of that.
+      !> Number of large increments: nothing is checked between their ends.
+      integer :: large_increments = 0
+      !> Largest estimated errors of large increments: of the tractions relative to the largest traction so far, and of the
+      !> dissipated energy relative to the dissipation of the interval.
       real(wp) :: increment_traction_error = 0.0_wp, increment_dissipation_error = 0.0_wp
       !> Largest magnitudes so far.
       real(wp), private :: traction = 0.0_wp, normal = 0.0_wp, tangential = 0.0_wp, energy = 0.0_wp, &
                            force(motion_count) = 0.0_wp
-      !> Work of the loads so far, force (energy per unit thickness); and the sizes of the works of every load on every increment,
-      !> summed: where a disk rolls, those of the tangential force and the moment cancel almost wholly.
+      !> Work of the loads so far (energy per unit thickness, force), and the sum of its magnitudes by load and increment. In
+      !> rolling, the works of tangential force and moment nearly cancel.
       real(wp) :: work = 0.0_wp, gross_work = 0.0_wp
    contains
       procedure :: largest
       procedure :: traction_scale
       procedure :: force_scale
-      procedure :: claim
+      procedure :: find_applicable
       procedure :: check_increment
       procedure :: note_jump
       procedure :: note_large_increment
@@ -77,67 +77,68 @@ contains
    type(certificate_type) function new_certificate(model) result(certificate)
       type(contact_model_type), intent(in) :: model
 
-      call certificate%claim(model)
+      call certificate%find_applicable(model)
    end function new_certificate
 
-   !> Find out what can be claimed. No energy balance under Goodman's coupling with friction, whose compliance is not
-   !> symmetric; nothing tangential where friction has not acted yet; of the conventional algorithm's load steps, and of leaps,
-   !> nothing but their ends.
-   subroutine claim(self, model)
+   !> Find out which residuals apply. No energy balance under Goodman's coupling with friction: its compliance is not
+   !> symmetric. Nothing tangential before friction acts. Only the end states of large increments and of the conventional
+   !> algorithm's load steps.
+   subroutine find_applicable(self, model)
       class(certificate_type), intent(inout) :: self
       type(contact_model_type), intent(in) :: model
 
-      self%claimed([continuity, energy_balance]) = model%scene%method%algorithm == algorithm_mfv
-      self%claimed(energy_balance) = self%claimed(continuity) .and. (.not. model%tangential .or. &
+      self%applies([continuity, energy_balance]) = model%scene%method%algorithm == algorithm_mfv
+      self%applies(energy_balance) = self%applies(continuity) .and. (.not. model%tangential .or. &
                                                                      .not. model%compliance%one_way())
-      if (self%leaps > 0 .and. self%leaps == self%increments) self%claimed([continuity, energy_balance]) = .false.
-      self%claimed(force_balance) = model%moves
-      self%claimed([elasticity_tangential, tangential_force_balance, stick_slip, slip_traction, friction_limit, &
+      if (self%large_increments > 0 .and. self%large_increments == self%increments) &
+         self%applies([continuity, energy_balance]) = .false.
+      self%applies(force_balance) = model%moves
+      self%applies([elasticity_tangential, tangential_force_balance, stick_slip, slip_traction, friction_limit, &
                     slip_direction]) = model%tangential
-   end subroutine claim
+   end subroutine find_applicable
 
-   !> The largest claimed residual.
+   !> Largest residual that applies.
    pure real(wp) function largest(self)
       class(certificate_type), intent(in) :: self
 
-      largest = maxval(self%residual, mask=self%claimed)
+      largest = maxval(self%residual, mask=self%applies)
    end function largest
 
-   !> The largest traction so far, force/length^2.
+   !> Largest traction so far, force/length^2.
    pure real(wp) function traction_scale(self)
       class(certificate_type), intent(in) :: self
 
       traction_scale = self%traction
    end function traction_scale
 
-   !> The largest normal force so far, force/length.
+   !> Largest normal force so far, force/length.
    pure real(wp) function force_scale(self)
       class(certificate_type), intent(in) :: self
 
       force_scale = self%force(motion_approach)
    end function force_scale
 
-   !> Check the increment from `before` to `after`, with the statuses of `after` on the way. `leap`: a large increment, whose
-   !> path is not known; the end is checked; the energy is balanced from there on.
-   subroutine check_increment(self, model, before, after, leap)
+   !> Check the increment from `before` to `after`, with the statuses of `after`. `is_large`: large increment; only its end is
+   !> checked.
+   subroutine check_increment(self, model, before, after, is_large)
       class(certificate_type), intent(inout) :: self
       type(contact_model_type), intent(in) :: model
       type(contact_state_type), intent(in) :: before, after
-      logical, intent(in), optional :: leap
-      logical :: leaps
+      logical, intent(in), optional :: is_large
+      logical :: large
 
-      leaps = .false.
-      if (present(leap)) leaps = leap
+      large = .false.
+      if (present(is_large)) large = is_large
       self%increments = self%increments + 1
-      if (leaps) self%leaps = self%leaps + 1
+      if (large) self%large_increments = self%large_increments + 1
       call check_equilibrium(self, model, after%fields)
       call check_normal_contact(self, model, after)
-      if (self%claimed(slip_traction)) call check_friction(self, model, before, after, leaps)
-      call check_energy(self, model, before%fields, after, leaps)
-      if (self%leaps > 0) call self%claim(model)
+      if (self%applies(slip_traction)) call check_friction(self, model, before, after, large)
+      call check_energy(self, model, before%fields, after, large)
+      if (self%large_increments > 0) call self%find_applicable(model)
    end subroutine check_increment
 
-   !> Note a jump of the tractions at an unchanged load.
+   !> Record the jump of the tractions at an unchanged load.
    subroutine note_jump(self, before, after)
       class(certificate_type), intent(inout) :: self
       type(contact_fields_type), intent(in) :: before, after
@@ -152,8 +153,8 @@ contains
       if (self%traction > 0.0_wp) call note(self, continuity, jump, self%traction)
    end subroutine note_jump
 
-   !> Note the estimated errors of an interval by large increments: of the tractions at its end, force/length^2; of what friction
-   !> dissipates, `work`, force.
+   !> Record the estimated errors of an interval of large increments: of the tractions at its end, force/length^2, and of the
+   !> dissipated energy, force. `work`: dissipated energy of the interval, force.
    pure subroutine note_large_increment(self, traction_error, work_error, work)
       class(certificate_type), intent(inout) :: self
       real(wp), intent(in) :: traction_error, work_error, work
@@ -163,19 +164,19 @@ contains
       if (work > 0.0_wp) self%increment_dissipation_error = max(self%increment_dissipation_error, work_error/work)
    end subroutine note_large_increment
 
-   !> Elasticity with the full compliance, and balance of forces. Tangential magnitudes count as no smaller than what friction
-   !> could make of the normal ones, so that round-off of a shear that should be zero is not held against itself.
+   !> Elasticity with the full compliance, and balance of forces. The tangential scale is at least the friction limit: a shear
+   !> that should be zero is not judged by its own rounding errors.
    subroutine check_equilibrium(self, model, fields)
       class(certificate_type), intent(inout) :: self
       type(contact_model_type), intent(in) :: model
       type(contact_fields_type), intent(in) :: fields
-      real(wp) :: part(size(fields%pressure), 4)
+      real(wp) :: by_block(size(fields%pressure), 4)
       real(wp), dimension(size(fields%pressure)) :: rigid_normal, rigid_tangential
       real(wp) :: pressure_force, shear_force, normal_rest, tangential_rest
       integer :: i
 
-      ! By pressure and by shear apart: their sizes are the scale, however much they cancel.
-      call model%compliance%parts(fields%pressure, fields%shear, part)
+      ! Sum of magnitudes by pressure and by shear, which may cancel.
+      call model%compliance%products(fields%pressure, fields%shear, by_block)
       rigid_normal = 0.0_wp
       rigid_tangential = 0.0_wp
       if (model%has_rigid_parts()) then
@@ -188,13 +189,13 @@ contains
       tangential_rest = 0.0_wp
       do i = 1, size(fields%pressure)
          self%traction = max(self%traction, abs(fields%pressure(i)), abs(fields%shear(i)))
-         self%normal = max(self%normal, abs(part(i, block_wp)), abs(part(i, block_wt)))
-         self%tangential = max(self%tangential, abs(part(i, block_up)), abs(part(i, block_ut)), abs(rigid_tangential(i)))
+         self%normal = max(self%normal, abs(by_block(i, block_wp)), abs(by_block(i, block_wt)))
+         self%tangential = max(self%tangential, abs(by_block(i, block_up)), abs(by_block(i, block_ut)), abs(rigid_tangential(i)))
          pressure_force = pressure_force + model%width(i)*abs(fields%pressure(i))
          shear_force = shear_force + model%width(i)*abs(fields%shear(i))
-         normal_rest = largest_or_nan(normal_rest, fields%normal(i) + rigid_normal(i) - part(i, block_wp) - part(i, block_wt))
-         tangential_rest = largest_or_nan(tangential_rest, fields%tangential(i) + rigid_tangential(i) - part(i, block_up) &
-                                          - part(i, block_ut))
+       normal_rest = largest_or_nan(normal_rest, fields%normal(i) + rigid_normal(i) - by_block(i, block_wp) - by_block(i, block_wt))
+         tangential_rest = largest_or_nan(tangential_rest, fields%tangential(i) + rigid_tangential(i) - by_block(i, block_up) &
+                                          - by_block(i, block_ut))
       end do
       self%tangential = max(self%tangential, model%friction_scale*self%normal, abs(fields%motion(motion_shift)))
       self%force(motion_approach) = max(self%force(motion_approach), abs(fields%force(motion_approach)), pressure_force)
@@ -204,7 +205,7 @@ contains
       call note(self, elasticity_tangential, tangential_rest, self%tangential)
       do i = 1, motion_count
          if (motions(i)%optional) then
-            if (.not. self%claimed(force_balance(i))) cycle
+            if (.not. self%applies(force_balance(i))) cycle
             self%force(i) = max(self%force(i), abs(fields%force(i)), self%force(motion_approach)*arm_unit(i, model%length()), &
                                 model%force(abs(model%normal_arm(:, i)*fields%pressure)) &
                                 + model%force(abs(model%tangential_arm(:, i)*fields%shear)))
@@ -213,7 +214,7 @@ contains
       end do
    end subroutine check_equilibrium
 
-   !> The larger of a size so far and the size of a number; not a number where that is none.
+   !> Larger of a magnitude so far and the magnitude of a number; NaN if that is NaN.
    elemental real(wp) function largest_or_nan(so_far, number)
       real(wp), intent(in) :: so_far, number
 
@@ -251,13 +252,13 @@ contains
       call note(self, pressure_sign, negative_pressure, self%traction)
    end subroutine check_normal_contact
 
-   !> Equalities and inequalities of slip and shear traction. Over a large increment (`leap`) slip counts from what that
-   !> says: of nodes that touch on the way from then.
-   subroutine check_friction(self, model, before, after, leap)
+   !> Equalities and inequalities of slip and shear traction. Over a large increment slip counts from its own reference, which
+   !> includes nodes that came into contact within it.
+   subroutine check_friction(self, model, before, after, is_large)
       class(certificate_type), intent(inout) :: self
       type(contact_model_type), intent(in) :: model
       type(contact_state_type), intent(in) :: before, after
-      logical, intent(in) :: leap
+      logical, intent(in) :: is_large
       real(wp) :: sliding, law_defect, beyond_limit, wrong_way, slipped, limit
       type(friction_point_type) :: here, there
       logical :: explicit, varies
@@ -273,7 +274,7 @@ contains
          do i = 1, size(after%status)
             status = after%status(i)
             if (status == node_open) cycle
-            ! Friction points cost: they are made where something is asked of them.
+            ! Friction points are costly: make them only where something depends on them.
             if (varies .or. motion_sign(status) /= 0) there = after%friction_point(after%fields, i, model%static_friction(i), &
                                                                                    model%kinetic_friction(i))
             limit = model%static_friction(i)
@@ -283,7 +284,7 @@ contains
             beyond_limit = max(beyond_limit, abs(after%fields%shear(i)) - limit)
             slipped = after%fields%tangential(i) - after%fields%motion(motion_shift) &
                       - (before%fields%tangential(i) - before%fields%motion(motion_shift))
-            if (leap .and. .not. before%fields%pressure(i) > 0.0_wp) &
+            if (is_large .and. .not. before%fields%pressure(i) > 0.0_wp) &
                slipped = after%fields%tangential(i) - after%fields%motion(motion_shift) - before%stuck_slip(i)
             if (status == node_stick) then
                sliding = largest_or_nan(sliding, slipped)
@@ -304,14 +305,15 @@ contains
       end associate
    end subroutine check_friction
 
-   !> Work of the loads = stored + dissipated energy; between events everything is linear, so the trapezoid is exact. Over a
-   !> large increment (`leap`) the work is not known: it counts as what is stored and dissipated, and nothing is noted.
-   subroutine check_energy(self, model, before, after, leap)
+   !> Energy balance: work of the loads = stored + dissipated energy. Between events everything is linear and the trapezoidal
+   !> rule exact. Over a large increment the work is unknown: it is set to the stored and dissipated energy, without a
+   !> residual.
+   subroutine check_energy(self, model, before, after, is_large)
       class(certificate_type), intent(inout) :: self
       type(contact_model_type), intent(in) :: model
       type(contact_fields_type), intent(in) :: before
       type(contact_state_type), intent(in) :: after
-      logical, intent(in) :: leap
+      logical, intent(in) :: is_large
       real(wp) :: stored, works(motion_count), own(motion_count)
       integer :: i
 
@@ -325,7 +327,7 @@ contains
          end do
          stored = 0.5_wp*stored
          if (model%has_rigid_parts()) then
-            ! Of approach and shift the work of the deformation is in the sum above.
+            ! The work of approach and shift through the deformation is in the sum above.
             own = 0.0_wp
             own(motion_approach) = model%force(now%pressure)
             own(motion_shift) = model%force(now%shear)
@@ -333,12 +335,12 @@ contains
                                            i=1, motion_count)])
          end if
       end associate
-      if (leap) self%work = stored + after%dissipation
+      if (is_large) self%work = stored + after%dissipation
       self%energy = max(self%energy, self%gross_work, abs(stored), after%dissipation)
-      if (.not. leap) call note(self, energy_balance, abs(self%work - stored - after%dissipation), self%energy)
+      if (.not. is_large) call note(self, energy_balance, abs(self%work - stored - after%dissipation), self%energy)
    end subroutine check_energy
 
-   !> Keep a residual when it is the largest of its kind; `scale` is its magnitude of reference.
+   !> Record a residual if it is the largest of its kind; `scale` is its reference magnitude.
    subroutine note(self, kind, residual, scale)
       class(certificate_type), intent(inout) :: self
       integer, intent(in) :: kind

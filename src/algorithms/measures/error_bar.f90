@@ -1,7 +1,6 @@
-!> Error bars from meshes: how far a value is from its limit, told from values on coarser meshes (Richardson 1911; Roache
-!> 1994; least squares over several meshes as Eca and Hoekstra 2014). An edge of a contact or stick zone lies somewhere in
-!> an interval, so that errors have the shape of a saw over the number of intervals. So no single pair of meshes is
-!> believed: the bar is the mean square over all of them; and what the intervals leave open comes on top.
+!> Error bars by Richardson extrapolation from several meshes (Richardson 1911; Roache 1994; least squares as in Eca and
+!> Hoekstra 2014). Edges of contact and stick zones lie anywhere in an interval: errors are a sawtooth over the number of
+!> intervals. The bar is therefore a mean square over all meshes, plus the uncertainty within an interval.
 module mfv_error_bar
    use, intrinsic :: ieee_arithmetic, only: ieee_positive_inf, ieee_quiet_nan, ieee_value
    use mfv_kinds, only: wp
@@ -10,56 +9,53 @@ module mfv_error_bar
    public :: error_bar_type, error_estimate_type, new_error_bar, unresolved_bar, quantity_count, quantity_half_width, &
              quantity_stick_ratio, quantity_peak_pressure, quantity_peak_shear, quantity_dissipation, lowest_order, highest_order
 
-   !> What is estimated.
+   !> Estimated quantities.
    integer, parameter :: quantity_half_width = 1, quantity_stick_ratio = 2, quantity_peak_pressure = 3, &
                          quantity_peak_shear = 4, quantity_dissipation = 5, quantity_count = 5
 
-   !> A quantity with its bar.
+   !> A quantity with its error bar.
    type :: error_bar_type
-      !> Whether the scene has this quantity; and whether the mesh resolves what it depends on. Error and order of one that is not
-      !> resolved are NaN: coarser meshes tell nothing of it.
+      !> Whether the scene has this quantity, and whether the mesh resolves what it depends on. If not resolved, error and
+      !> order are NaN.
       logical :: known = .false., resolved = .true.
-      !> Its value on the finest mesh, and how far from that the limit of ever finer meshes may be: infinite where there is no
-      !> limit. In the quantity's unit.
+      !> Value on the finest mesh, and estimated distance to its limit under mesh refinement, infinite without a limit; in the
+      !> unit of the quantity.
       real(wp) :: value = 0.0_wp, error = 0.0_wp
-      !> Observed order of convergence, between lowest_order and highest_order; lowest_order where all that is observed is
-      !> whole intervals; negative where there is no limit.
+      !> Observed order of convergence, between lowest_order and highest_order; lowest_order if only whole intervals are
+      !> observed; negative without a limit.
       real(wp) :: order = 0.0_wp
-      !> Values on the coarser meshes, the finest first.
-      real(wp), allocatable :: companions(:)
+      !> Values on the coarser meshes, finest first.
+      real(wp), allocatable :: coarser_values(:)
    end type error_bar_type
 
-   !> The bars of a result.
+   !> The error bars of a result.
    type :: error_estimate_type
-      !> How it went (see mfv_status), MFV_COMPLETE where there are bars; and in words why there are none, else empty.
+      !> Status (see mfv_status), MFV_COMPLETE with error bars; message: why there are none, else empty.
       integer :: status = 0
       character(:), allocatable :: message
-      !> Intervals of the mesh, and of the coarser meshes, the finest first; as &mesh nodes counts them.
+      !> Intervals of the mesh and of the coarser meshes, finest first; as &mesh nodes.
       integer :: nodes = 0
-      integer, allocatable :: companion_nodes(:)
+      integer, allocatable :: coarser_nodes(:)
       type(error_bar_type) :: bar(quantity_count)
    end type error_estimate_type
 
-   !> Orders that make sense: tractions and edges converge with the first, integrals with the second. One mesh's place in the
-   !> saw can pretend any.
+   !> Accepted orders: tractions and edges converge with order 1, integrals with 2. The sawtooth can simulate any order.
    real(wp), parameter :: lowest_order = 1.0_wp, highest_order = 2.0_wp
-   !> Safety on Richardson's estimate; as is usual where three meshes and more take part (Roache 1994).
+   !> Safety factor on Richardson's estimate, usual for three and more meshes (Roache 1994).
    real(wp), parameter :: safety = 1.25_wp
-   !> A peak that grows from every mesh to the next with about the same power of the number of intervals, within this factor, has
-   !> no limit where the power is between these: the edge of a flat punch grows with the power 1/2, and a traction whose sum is a
-   !> force with less than 1.
+   !> A peak diverges if it grows with a power of the number of intervals between these, equal from mesh to mesh to within
+   !> this factor: 1/2 at the edge of a flat punch, below 1 for any finite force.
    real(wp), parameter :: growth_factor = 1.5_wp, least_growth = 0.2_wp, most_growth = 1.0_wp
-   !> Meshes that such a claim takes.
+   !> Number of meshes needed to call a peak divergent.
    integer, parameter :: fewest_growing = 3
-   !> Numbers of intervals times their width are equal to within this.
-   real(wp), parameter :: round_off = 1.0e-12_wp
+   !> Tolerance for equal lengths, number of intervals times their width.
+   real(wp), parameter :: tolerance = 1.0e-12_wp
 
 contains
 
-   !> The bar of a quantity with `values` on meshes of `nodes` intervals, the finest first, shape (2 or more). `allowances`:
-   !> what the interval leaves open on each of the meshes, in the unit of the values, shape of values. `counted`: whether the
-   !> values are numbers of intervals, so that differences that the allowances explain say nothing. `bounded`: whether the
-   !> quantity always has a limit.
+   !> Error bar of a quantity with `values` on meshes of `nodes` intervals, finest first, shape (2 or more). `allowances`:
+   !> uncertainty within an interval on each mesh, in the unit of the values, shape of values. `counted`: values are numbers
+   !> of intervals; differences below the allowances have no significance. `bounded`: the quantity always has a limit.
    pure type(error_bar_type) function new_error_bar(nodes, values, allowances, counted, bounded) result(bar)
       integer, intent(in) :: nodes(:)
       real(wp), intent(in) :: values(:), allowances(:)
@@ -69,7 +65,7 @@ contains
 
       bar%known = .true.
       bar%value = values(1)
-      bar%companions = values(2:)
+      bar%coarser_values = values(2:)
       if (.not. bounded .and. grows(nodes, abs(values))) then
          bar%order = -log(abs(values(1)/values(size(values))))/log(real(nodes(1), wp)/nodes(size(nodes)))
          bar%error = ieee_value(1.0_wp, ieee_positive_inf)
@@ -77,14 +73,14 @@ contains
       end if
       ratio = real(nodes(1), wp)/nodes(2:)
       difference = abs(values(2:) - values(1))
-      if (counted) difference = max(difference - allowances(2:) - allowances(1) - round_off*abs(values(1)), 0.0_wp)
+      if (counted) difference = max(difference - allowances(2:) - allowances(1) - tolerance*abs(values(1)), 0.0_wp)
       bar%order = observed_order(nodes, values)
       if (counted .and. .not. any(difference > 0.0_wp)) bar%order = lowest_order
       scatter = norm2(difference/(ratio**bar%order - 1.0_wp))/sqrt(real(size(difference), wp))
       bar%error = norm2([allowances(1), safety*scatter])
    end function new_error_bar
 
-   !> Whether the values grow without end.
+   !> Whether the values diverge.
    pure logical function grows(nodes, values)
       integer, intent(in) :: nodes(:)
       real(wp), intent(in) :: values(:)
@@ -96,7 +92,7 @@ contains
       grows = minval(power) > least_growth .and. maxval(power) < min(most_growth, growth_factor*minval(power))
    end function grows
 
-   !> The bar of a quantity of which coarser meshes tell nothing. `values`: as above.
+   !> A quantity that the coarser meshes do not resolve. `values`: as above.
    pure type(error_bar_type) function unresolved_bar(values) result(bar)
       real(wp), intent(in) :: values(:)
 
@@ -105,11 +101,11 @@ contains
       bar%value = values(1)
       bar%error = ieee_value(1.0_wp, ieee_quiet_nan)
       bar%order = bar%error
-      bar%companions = values(2:)
+      bar%coarser_values = values(2:)
    end function unresolved_bar
 
-   !> The order p, between lowest_order and highest_order, with which v0 + c/nodes^p comes nearest to the values, by least
-   !> squares in which a mesh weighs as much as its errors are small.
+   !> Order p, between lowest_order and highest_order, of the best fit v0 + c/nodes^p to the values. Weighted least squares: a
+   !> mesh with smaller errors has a larger weight.
    pure real(wp) function observed_order(nodes, values) result(order)
       integer, intent(in) :: nodes(:)
       real(wp), intent(in) :: values(:)
@@ -128,7 +124,7 @@ contains
       end do
    end function observed_order
 
-   !> Weighted mean square that the best v0 + c/nodes^order leaves, relative to the values.
+   !> Weighted mean square residual of the best v0 + c/nodes^order, relative to the values.
    pure real(wp) function misfit_of(nodes, values, order) result(misfit)
       integer, intent(in) :: nodes(:)
       real(wp), intent(in) :: values(:), order

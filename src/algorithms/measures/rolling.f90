@@ -1,6 +1,5 @@
-!> How two bodies creep while they roll on each other: the sliding per rolled distance, over the last few intervals of the mesh.
-!> In steady rolling it repeats with every interval, as nodes enter and leave one by one; between events it is linear, and
-!> interpolated where the contact has rolled by a whole number of intervals.
+!> Creepage: sliding per rolled distance, over the last few intervals of the mesh. In steady rolling the sliding has the
+!> period of one interval, as nodes enter and leave the contact one by one.
 module mfv_rolling
    use, intrinsic :: ieee_arithmetic, only: ieee_quiet_nan, ieee_value
    use mfv_kinds, only: wp
@@ -8,17 +7,16 @@ module mfv_rolling
    private
    public :: rolling_type
 
-   !> Over how many intervals the creepage is measured.
+   !> Intervals over which the creepage is measured.
    integer, parameter :: intervals = 4
 
    type :: rolling_type
       private
-      !> Which way it rolls, 1 to the right, -1 to the left; how many interval ends it has passed that way, counted to `intervals` +
-      !> 1.
+      !> Rolling direction, 1 to the right, -1 to the left; number of interval ends passed, at most `intervals` + 1.
       integer :: direction = 0, passed = 0
-      !> How far it has rolled that way under constant forces, length.
+      !> Distance rolled in this direction under constant forces, length.
       real(wp) :: distance = 0.0_wp
-      !> Sliding at the ends of the last intervals, length, the last one first; and an interval, length.
+      !> Sliding at the ends of the last intervals, length, latest first; and width of an interval, length.
       real(wp) :: slid(intervals + 1) = 0.0_wp, interval = 0.0_wp
    contains
       procedure :: follow
@@ -29,13 +27,13 @@ module mfv_rolling
 
 contains
 
-   !> Follow an increment, in which the contact rolls from `rolled(1)` to `rolled(2)` and the surfaces slide from `slid(1)` to
-   !> `slid(2)`, lengths; `forces_stay`: under constant forces. What does not roll, or rolls back, begins anew.
+   !> Add an increment in which the contact rolls from `rolled(1)` to `rolled(2)` and the surfaces slide from `slid(1)` to
+   !> `slid(2)`, lengths. `forces_stay`: forces are constant. Starts anew without rolling and after a reversal.
    pure subroutine follow(self, interval, rolled, slid, forces_stay)
       class(rolling_type), intent(inout) :: self
       real(wp), intent(in) :: interval, rolled(2), slid(2)
       logical, intent(in) :: forces_stay
-      real(wp) :: ends, last, part
+      real(wp) :: ends, last, fraction
       integer :: direction, i
 
       direction = 0
@@ -49,14 +47,14 @@ contains
       last = aint_down(direction*rolled(2)/interval)
       ends = last - aint_down(direction*rolled(1)/interval)
       do i = nint(min(ends, real(intervals + 1, wp))) - 1, 0, -1
-         part = ((last - i)*direction*interval - rolled(1))/(rolled(2) - rolled(1))
+         fraction = ((last - i)*direction*interval - rolled(1))/(rolled(2) - rolled(1))
          self%slid(2:) = self%slid(:intervals)
-         self%slid(1) = slid(1) + part*(slid(2) - slid(1))
+         self%slid(1) = slid(1) + fraction*(slid(2) - slid(1))
          self%passed = min(self%passed + 1, intervals + 1)
       end do
    end subroutine follow
 
-   !> The largest whole number that is not above a number.
+   !> Largest integer not above a number.
    pure real(wp) function aint_down(number)
       real(wp), intent(in) :: number
 
@@ -64,8 +62,8 @@ contains
       if (aint_down > number) aint_down = aint_down - 1.0_wp
    end function aint_down
 
-   !> Sliding of the upper surface over the lower one per rolled distance, both to the right; NaN where it has not rolled over
-   !> enough intervals.
+   !> Sliding of the upper surface over the lower one per rolled distance, both to the right; NaN before enough intervals are
+   !> rolled.
    pure real(wp) function creepage(self)
       class(rolling_type), intent(in) :: self
 
@@ -74,14 +72,14 @@ contains
          creepage = (self%slid(1) - self%slid(intervals + 1))/(self%direction*intervals*self%interval)
    end function creepage
 
-   !> Whether it has rolled by twice the length of a contact of this half-width (length) under constant forces: transients of
-   !> the tractions have left it.
+   !> Whether it has rolled by twice the contact length under constant forces, so that transients of the tractions have left
+   !> the contact. Half-width: length.
    pure logical function is_steady(self, half_width)
       class(rolling_type), intent(in) :: self
       real(wp), intent(in) :: half_width
-      real(wp), parameter :: lengths = 2.0_wp, round_off = 1.0e-6_wp
+      real(wp), parameter :: lengths = 2.0_wp, tolerance = 1.0e-6_wp
 
-      is_steady = self%distance*(1.0_wp + round_off) >= lengths*2.0_wp*half_width .and. half_width > 0.0_wp
+      is_steady = self%distance*(1.0_wp + tolerance) >= lengths*2.0_wp*half_width .and. half_width > 0.0_wp
    end function is_steady
 
    !> Whether it rolls to the right.

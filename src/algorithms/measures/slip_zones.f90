@@ -1,12 +1,12 @@
 !> Whether a mesh resolves the slip zones of partial slip.
 !>
-!> What a leg of the load history (a straight segment) dissipates goes with the third power of the width of its slip zones, so
-!> that zones of a few nodes tell it badly: by no more than dissipation_constant/c^2, relative, where the widest is c intervals
-!> wide (measured against Mindlin's closed form, docs/verification.md). Where not even one node slips, the width comes from
-!> the tractions. Next to the edge of the contact, at the distance d, the friction limit goes as M sqrt(d) (M is mu L on first
-!> loading and 2 mu L after a reversal, L sqrt(d) the pressure), and the change of the shear traction of a contact where all
-!> sticks as K/sqrt(d). The slip zone of Cattaneo and Mindlin, M (sqrt(d) - sqrt(d - c)), has the same far field where
-!> c = 2 K/M: for small forces, c/a = Q/(2 mu P). It dissipates pi mu L M c^3/(24 m), m the contact modulus.
+!> The dissipation of a load segment grows with the third power of the slip zone width. A widest slip zone of c intervals
+!> gives it a relative error of at most dissipation_constant/c^2 (measured against Mindlin's closed form,
+!> docs/verification.md). If no node slips, the width follows from the tractions. At a distance d from the contact edge the
+!> friction limit is M sqrt(d) (M = mu L on first loading, 2 mu L after a reversal, L sqrt(d) the pressure), and with full
+!> stick the shear traction changes by K/sqrt(d). The slip zone of Cattaneo and Mindlin, M (sqrt(d) - sqrt(d - c)), has the
+!> same far field for c = 2 K/M: for small forces, c/a = Q/(2 mu P). It dissipates pi mu L M c^3/(24 m), m the contact
+!> modulus.
 module mfv_slip_zones
    use mfv_body, only: shape_matrix
    use mfv_compliance, only: block_up
@@ -20,49 +20,49 @@ module mfv_slip_zones
    use mfv_zone_edges, only: ends_with_body, find_zone_edges, zone_edges_type
    implicit none
    private
-   public :: slip_record_type, leg_start_type, widest_slip_zone, resolved_nodes, needed_mesh, &
+   public :: slip_record_type, segment_start_type, widest_slip_zone, resolved_nodes, needed_mesh, &
              contact_interval, largest_resolved_error
 
-   !> Nodes that a slip zone should have.
+   !> Nodes of a resolved slip zone.
    integer, parameter :: resolved_nodes = 4
-   !> Intervals that a slip zone should be wide so that it has them.
+   !> Width in intervals of a zone with this many nodes.
    real(wp), parameter :: resolving_intervals = 4.5_wp
-   !> See above.
+   !> See the head of this file.
    real(wp), parameter :: dissipation_constant = 0.7_wp
-   !> What the dissipation of slip zones that the mesh just resolves errs by at most, relative.
+   !> Largest relative error of the dissipation in slip zones that are just resolved.
    real(wp), parameter :: largest_resolved_error = dissipation_constant/resolving_intervals**2
-   !> Legs with too few nodes matter to the dissipation if they have more than this part of it.
+   !> Segments with too few nodes matter to the dissipation above this fraction of it.
    real(wp), parameter :: coarse_share = 0.05_wp
-   !> Hidden slip zones narrower than this part of an interval matter to the dissipation only; narrower than this part of the
-   !> contact half-width to nothing.
+   !> Hidden slip zones narrower than this fraction of an interval affect the dissipation only; narrower than this fraction of
+   !> the contact half-width, nothing.
    real(wp), parameter :: visible = 0.05_wp, negligible = 1.0e-6_wp
-   !> The same of pressing with friction, where slip zones shrink exponentially with mu.
+   !> The same for pressing with friction, where slip zones shrink exponentially with mu.
    real(wp), parameter :: negligible_pressing = 1.0e-4_wp
 
-   !> What a leg began from.
-   type :: leg_start_type
+   !> State at the start of a load segment.
+   type :: segment_start_type
       real(wp) :: dissipation = 0.0_wp
-      !> As contact_fields_type has it.
+      !> As in contact_fields_type.
       real(wp) :: force(motion_count) = 0.0_wp
       !> Shear traction, force/length^2, shape (nodes).
       real(wp), allocatable :: shear(:)
-   end type leg_start_type
+   end type segment_start_type
 
-   !> What is known of the slip zones of all legs so far: sums, so that the difference of two records is the record of what is
-   !> between them.
+   !> Record of the slip zones of all load segments so far. All sums: the difference of two records is the record of the
+   !> segments between them.
    type :: slip_record_type
-      !> Energy per unit thickness (force): dissipated, with an estimate of what slip zones of no node would have; the part of legs
-      !> whose slip zones have too few nodes.
+      !> Energy per unit thickness (force): dissipation, with an estimate for slip zones without a node; dissipation of
+      !> segments whose slip zones have too few nodes.
       real(wp) :: work = 0.0_wp, coarse_work = 0.0_wp
-      !> Sums over these legs of their work times the nodes (force), and times the width of their slip zones (force*length).
+      !> Sums over these segments: work times nodes (force), and work times slip zone width (force*length).
       real(wp) :: nodes = 0.0_wp, width = 0.0_wp
-      !> Sum over all legs of their work over the square of the width of their slip zones, force/length^2.
+      !> Sum over all segments of work over squared slip zone width, force/length^2.
       real(wp) :: sharpness = 0.0_wp
-      !> The widest slip zone now: its nodes, and its width, length. Width 0: none.
+      !> Widest slip zone now: its nodes and its width, length. Width 0: none.
       integer :: nodes_now = 0
       real(wp) :: width_now = 0.0_wp
    contains
-      procedure :: add_leg
+      procedure :: add_segment
       procedure :: since
       procedure :: is_coarse
       procedure :: error_number
@@ -73,8 +73,8 @@ module mfv_slip_zones
 
 contains
 
-   !> Nodes of the widest slip zone: next to each other, moving, and bordering on nodes that hold. 0 where there is none; where a
-   !> whole patch slides there is no zone to resolve either, and it counts with its nodes, but as resolved at least.
+   !> Nodes of the widest slip zone: neighbouring slipping nodes next to sticking ones; 0 without any. A contact patch in
+   !> gross sliding has no zone to resolve: it counts with its nodes, and as resolved.
    pure integer function widest_slip_zone(status) result(widest)
       integer, intent(in) :: status(:)
       logical :: moves(0:size(status) + 1)
@@ -96,20 +96,20 @@ contains
       end do
    end function widest_slip_zone
 
-   !> Add a leg that has led from `start` to `state`. `nodes`: the most that a slip zone had on the way; `noise`: relative, of the
-   !> linear solver.
-   subroutine add_leg(self, model, start, state, nodes, noise)
+   !> Add the load segment from `start` to `state`. `nodes`: largest number of nodes in a slip zone on it. `tolerance`:
+   !> relative tolerance of the linear solver.
+   subroutine add_segment(self, model, start, state, nodes, tolerance)
       class(slip_record_type), intent(inout) :: self
       type(contact_model_type), intent(in) :: model
-      type(leg_start_type), intent(in) :: start
+      type(segment_start_type), intent(in) :: start
       type(contact_state_type), intent(in) :: state
       integer, intent(in) :: nodes
-      real(wp), intent(in) :: noise
+      real(wp), intent(in) :: tolerance
       real(wp) :: work, width
 
       if (.not. model%tangential .or. .not. allocated(model%scene%friction%law)) return
       if (nodes == 0) then
-         call estimate_hidden_slip(model, start, state, noise, width, work)
+         call estimate_hidden_slip(model, start, state, tolerance, width, work)
          if (.not. work > 0.0_wp .and. widest_slip_zone(state%status) > 0) return
       else
          work = state%dissipation - start%dissipation
@@ -123,9 +123,9 @@ contains
       self%coarse_work = self%coarse_work + work
       self%nodes = self%nodes + nodes*work
       self%width = self%width + width*work
-   end subroutine add_leg
+   end subroutine add_segment
 
-   !> Width of the slip zones at the edges of stick zones, on the average, length.
+   !> Mean width of the slip zones next to stick zones, length.
    real(wp) function mean_slip_width(model, state) result(width)
       type(contact_model_type), intent(in) :: model
       type(contact_state_type), intent(in) :: state
@@ -140,17 +140,17 @@ contains
       width = max(width, narrowest*contact_interval(model, state))
    end function mean_slip_width
 
-   !> Width (length) of the slip zone that a leg has made although no node slips, and what it dissipates, force; 0 for both where
-   !> the theory has no slip either, or where it does not hold: a wider zone would show.
-   subroutine estimate_hidden_slip(model, start, state, noise, width, missing)
+   !> Width (length) of a slip zone without a slipping node, and its dissipation, force. Both 0 if the theory has no slip or
+   !> does not hold: a wider zone would have slipping nodes.
+   subroutine estimate_hidden_slip(model, start, state, tolerance, width, missing)
       type(contact_model_type), intent(in) :: model
-      type(leg_start_type), intent(in) :: start
+      type(segment_start_type), intent(in) :: start
       type(contact_state_type), intent(in) :: state
-      real(wp), intent(in) :: noise
+      real(wp), intent(in) :: tolerance
       real(wp), intent(out) :: width, missing
       integer, parameter :: fewest = 6
-      !> Changes of the shear traction below a part of the friction limit are round-off.
-      real(wp), parameter :: widest = 1.5_wp, round_off = 1.0e-9_wp, noises = 100.0_wp
+      !> Relative to the friction limit, smaller changes of the shear traction are within tolerance.
+      real(wp), parameter :: widest = 1.5_wp, least_tolerance = 1.0e-9_wp, margin = 100.0_wp
       real(wp) :: change(size(state%status)), one_width, one_work
       integer :: added, first, last, side
 
@@ -169,7 +169,7 @@ contains
       added = (size(change) - size(start%shear))/2
       change = state%fields%shear
       change(added + 1:added + size(start%shear)) = change(added + 1:added + size(start%shear)) - start%shear
-      if (.not. maxval(abs(change)) > max(round_off, noises*noise)*model%scene%friction%static%largest() &
+      if (.not. maxval(abs(change)) > max(least_tolerance, margin*tolerance)*model%scene%friction%static%largest() &
           *maxval(state%fields%pressure)) return
       do side = -1, 1, 2
          call hidden_at_edge(model, state, change, merge(first, last, side < 0), side, one_width, one_work)
@@ -181,7 +181,7 @@ contains
 
    contains
 
-      !> Bodies that couple always slip next to the edge where they are pressed with friction from the start (Spence 1973).
+      !> With coupling, pressing with friction always causes slip next to the edge (Spence 1973).
       subroutine add_pressing
          real(wp) :: ratio, half_width
 
@@ -196,32 +196,32 @@ contains
       end subroutine add_pressing
    end subroutine estimate_hidden_slip
 
-   !> Whether more pressure comes with a leg than its tangential force needs: what newly touches then holds the change of the
-   !> tangential force below the friction limit everywhere (Mindlin and Deresiewicz 1953).
+   !> Whether the pressure grows by more than the tangential force needs. Then nothing slips: newly touching nodes keep the
+   !> shear traction below the friction limit (Mindlin and Deresiewicz 1953).
    pure logical function presses_within_friction(model, start, state)
       type(contact_model_type), intent(in) :: model
-      type(leg_start_type), intent(in) :: start
+      type(segment_start_type), intent(in) :: start
       type(contact_state_type), intent(in) :: state
-      real(wp), parameter :: round_off = 1.0e-9_wp
+      real(wp), parameter :: tolerance = 1.0e-9_wp
       real(wp) :: pressed, sheared
 
       pressed = state%fields%force(motion_approach) - start%force(motion_approach)
       sheared = abs(state%fields%force(motion_shift) - start%force(motion_shift))
-      presses_within_friction = pressed > round_off*state%fields%force(motion_approach) .and. &
-                                sheared <= model%scene%friction%static%largest()*pressed*(1.0_wp + round_off)
+      presses_within_friction = pressed > tolerance*state%fields%force(motion_approach) .and. &
+                                sheared <= model%scene%friction%static%largest()*pressed*(1.0_wp + tolerance)
    end function presses_within_friction
 
-   !> Width (length) of the slip zone that the `change` of the shear traction, force/length^2, makes at the edge of the contact
-   !> on `side` (-1 left, 1 right), whose outermost node `edge` holds; and what it dissipates, force. The squares of the friction
-   !> limit and of what the shear traction lacks of it are straight lines next to the edge; their zeros are the width apart.
-   !> Room for the change, over the friction limit: 2 after a reversal, for the edge slips under any shear, seen on the mesh or not.
+   !> Width (length) and dissipation (force) of the slip zone that the `change` of the shear traction, force/length^2, causes
+   !> at the contact edge on `side` (-1 left, 1 right), whose outermost node `edge` sticks. Next to the edge the squares of
+   !> friction limit and remaining friction are linear; the distance of their zeros is the width. `room` for the change over
+   !> the friction limit: 2 after a reversal.
    subroutine hidden_at_edge(model, state, change, edge, side, width, work)
       type(contact_model_type), intent(in) :: model
       type(contact_state_type), intent(in) :: state
       real(wp), intent(in) :: change(:)
       integer, intent(in) :: edge, side
       real(wp), intent(out) :: width, work
-      real(wp), parameter :: largest_room = 2.0_wp, least_room = 0.05_wp, round_off = 1.0e-6_wp
+      real(wp), parameter :: largest_room = 2.0_wp, least_room = 0.05_wp, tolerance = 1.0e-6_wp
       real(wp), dimension(3) :: limit, before, towards, room
       real(wp) :: room_number, slope, lack_slope, intervals
       integer :: node(3), i
@@ -235,7 +235,7 @@ contains
       towards = sign(1.0_wp, change(node(2)))*change(node)
       before = sign(1.0_wp, change(node(2)))*(state%fields%shear(node) - change(node))
       room_number = min(max(1.0_wp - sum(before/limit)/3, least_room), largest_room)
-      if (before(2) < 0.0_wp .and. towards(2) <= 2.0_wp*abs(before(2))*(1.0_wp + round_off)) room_number = largest_room
+      if (before(2) < 0.0_wp .and. towards(2) <= 2.0_wp*abs(before(2))*(1.0_wp + tolerance)) room_number = largest_room
       room = room_number*limit
       slope = 0.5_wp*(room(3)**2 - room(1)**2)
       room(1) = max(room(1) - towards(1), 0.0_wp)
@@ -248,7 +248,7 @@ contains
       work = pi*slope/model%width(edge)*width**3/(24.0_wp*room_number*model%compliance%modulus)
    end subroutine hidden_at_edge
 
-   !> The record of what has come since another one of the same run.
+   !> Record of the segments since another record of the same run.
    elemental type(slip_record_type) function since(self, before)
       class(slip_record_type), intent(in) :: self
       type(slip_record_type), intent(in) :: before
@@ -264,7 +264,7 @@ contains
       is_coarse = self%coarse_work > coarse_share*self%work
    end function is_coarse
 
-   !> The relative error of the dissipation over the square of the interval, 1/length^2; 0 where nothing slips.
+   !> Relative error of the dissipation over the squared interval, 1/length^2; 0 without slip.
    elemental real(wp) function error_number(self)
       class(slip_record_type), intent(in) :: self
 
@@ -272,7 +272,7 @@ contains
       if (self%work > 0.0_wp) error_number = dissipation_constant*self%sharpness/self%work
    end function error_number
 
-   !> Nodes of these slip zones, on the average by the work of the legs.
+   !> Mean number of nodes of these slip zones, weighted by dissipation.
    elemental integer function mean_nodes(self)
       class(slip_record_type), intent(in) :: self
 
@@ -280,7 +280,7 @@ contains
       if (self%coarse_work > 0.0_wp) mean_nodes = nint(self%nodes/self%coarse_work)
    end function mean_nodes
 
-   !> Their width, length, in the same way.
+   !> Mean width of these slip zones, length, weighted by dissipation.
    elemental real(wp) function mean_width(self)
       class(slip_record_type), intent(in) :: self
 
@@ -288,7 +288,7 @@ contains
       if (self%coarse_work > 0.0_wp) mean_width = self%width/self%coarse_work
    end function mean_width
 
-   !> Whether the slip zones at the end of the last leg have too few nodes for the stick ratio. `interval`: length.
+   !> Whether the slip zones at the end of the last segment have too few nodes for the stick ratio. `interval`: length.
    elemental logical function is_coarse_now(self, interval)
       class(slip_record_type), intent(in) :: self
       real(wp), intent(in) :: interval
@@ -297,7 +297,7 @@ contains
                       (self%nodes_now > 0 .or. self%width_now > visible*interval)
    end function is_coarse_now
 
-   !> Width of the intervals in contact, on the average, length; without contact of all.
+   !> Mean width of the intervals in contact, length; of all intervals without contact.
    pure real(wp) function contact_interval(model, state)
       type(contact_model_type), intent(in) :: model
       type(contact_state_type), intent(in) :: state
@@ -306,7 +306,7 @@ contains
       if (state%contact_nodes() > 0) contact_interval = sum(model%width, mask=in_contact(state%status))/state%contact_nodes()
    end function contact_interval
 
-   !> In words, the mesh that resolves slip zones of a width (length).
+   !> The mesh that resolves slip zones of a width (length), in words.
    function needed_mesh(model, state, width) result(words)
       type(contact_model_type), intent(in) :: model
       type(contact_state_type), intent(in) :: state

@@ -1,4 +1,4 @@
-!> The inside of a body in a contact state, with the edges that the state has between the nodes.
+!> Interior of a body in a contact state, with edges between the nodes.
 module mfv_state_interior
    use, intrinsic :: ieee_arithmetic, only: ieee_quiet_nan, ieee_value
    use mfv_contact_model, only: contact_model_type
@@ -12,7 +12,7 @@ module mfv_state_interior
 
 contains
 
-   !> The lower or `upper` body under the tractions of a state; `available`: false for a rigid body or a mere matrix.
+   !> The lower or `upper` body under the tractions of a state; `available`: false for a rigid body and a matrix.
    !> `fewest_elements`: see mfv_surface_tractions.
    subroutine state_interior(model, state, upper, interior, available, fewest_elements)
       type(contact_model_type), intent(in) :: model
@@ -28,9 +28,9 @@ contains
                                 stick_edge, interior, available, fewest_elements)
    end subroutine state_interior
 
-   !> Edges of the contact and stick zones of a state, lengths along the surface from the pole, each at the first or last node
-   !> of its zone, and not a number elsewhere; shape (nodes). Zones of one node are those of its interval. Stick zones only
-   !> where friction has a corner at the limit.
+   !> Edges of contact and stick zones, arc lengths from the origin of x, at the first and last node of each zone; NaN
+   !> elsewhere; shape (nodes). A zone of one node has the width of its interval. Stick zones only with a sharp friction
+   !> limit.
    subroutine find_edges_at_nodes(model, state, contact_edge, stick_edge)
       type(contact_model_type), intent(in) :: model
       type(contact_state_type), intent(in) :: state

@@ -1,15 +1,13 @@
 !> Edges of contact and stick zones between the nodes.
 !>
-!> Numbers of nodes know an edge to an interval. The tractions know it better: where a smooth contact ends, the pressure goes
-!> to zero as a root of the distance, and where a stick zone ends, so does what the shear traction lacks of the friction limit
-!> (Hertz; Cattaneo and Mindlin, dissertation eqs. 3.1, 3.7). The root is the square root but for full coupling of slipping
-!> nodes: there p goes with the power 1/2 + l towards +x and 1/2 - l towards -x, tan(pi l) = beta tau/p, tau/p that of the
-!> slipping nodes (the exponent of a sliding contact: Johnson 1985, section 8.1; Comninou 1977 at the end of a stick zone,
-!> from the other side). Where a stick zone grows, what lacks has come about bit by bit behind its edge, and goes with a power
-!> larger by one (integrate the root; so do the closed forms of Spence): the straighter of the two tells. So the traction raised
-!> to the inverse power is nearly a straight line, which a parabola through a few nodes follows to its zero. The outermost node,
-!> which carries the largest error of the discretisation, is left out, and that of the others, which is known, is taken off: see
-!> mfv_edge_solutions.
+!> Statuses locate an edge to an interval, tractions more precisely. At a smooth contact edge the pressure vanishes as the
+!> square root of the distance, and so does, at the edge of a stick zone, the remaining friction |mu p| - |tau| (Hertz;
+!> Cattaneo and Mindlin, dissertation eqs. 3.1, 3.7). With full coupling and slip the exponent of p is 1/2 + l towards +x and
+!> 1/2 - l towards -x, tan(pi l) = beta tau/p (sliding contact: Johnson 1985, section 8.1; Comninou 1977 at the end of a stick
+!> zone). Behind the edge of a growing stick zone the exponent is larger by one, the integral of the root, as in Spence's
+!> closed forms; the exponent with the straighter fit is used. A traction raised to the inverse exponent is nearly linear: a
+!> parabola through a few nodes is extrapolated to its zero. The outermost node has the largest discretisation error and is
+!> not used; the error of the others is known and corrected (mfv_edge_solutions).
 module mfv_zone_edges
    use, intrinsic :: ieee_arithmetic, only: ieee_quiet_nan, ieee_value
    use mfv_body, only: shape_matrix
@@ -25,8 +23,8 @@ module mfv_zone_edges
    private
    public :: zone_type, patch_type, zone_edges_type, find_patches, find_zone_edges, zones_of, ends_with_body
 
-   !> A zone of neighbouring nodes, from `first` to `last`, and its edges: lengths along the surface from the pole, to the right
-   !> positive.
+   !> A zone of neighbouring nodes, from `first` to `last`, and its edges: arc lengths from the origin of x, positive to the
+   !> right.
    type :: zone_type
       integer :: first = 0, last = 0
       real(wp) :: left = 0.0_wp, right = 0.0_wp
@@ -36,21 +34,21 @@ module mfv_zone_edges
 
    !> A contact patch: neighbouring nodes in contact, between open ones.
    type, extends(zone_type) :: patch_type
-      !> Whether the patch ends where the surface of a body does: the pressure may be singular there. At the other edges it goes
-      !> to zero as the distance to the power `left_power` or `right_power`.
+      !> Whether the patch ends with the surface of a body, where the pressure may be singular. At other edges it vanishes as
+      !> the distance to the power `left_power` or `right_power`.
       logical :: left_ends = .false., right_ends = .false.
       real(wp) :: left_power = 0.5_wp, right_power = 0.5_wp
-      !> The zones in it that stick, from left to right; none: size 0.
+      !> Its stick zones from left to right; size 0 without any.
       type(zone_type), allocatable :: stick(:)
    end type patch_type
 
-   !> What all patches amount to.
+   !> Summary of all patches.
    type :: zone_edges_type
-      !> Whether anything is in contact; and whether anything sticks.
+      !> Whether any node is in contact; whether any node sticks.
       logical :: contact = .false., stick = .false.
       !> Number of contact patches.
       integer :: patches = 0
-      !> The outermost edges, and the length of all zones together.
+      !> The outermost edges, and the total length of the zones.
       real(wp) :: contact_left = 0.0_wp, contact_right = 0.0_wp, contact_length = 0.0_wp
       real(wp) :: stick_left = 0.0_wp, stick_right = 0.0_wp, stick_length = 0.0_wp
    contains
@@ -59,19 +57,19 @@ module mfv_zone_edges
       procedure :: stick_ratio
    end type zone_edges_type
 
-   !> Most nodes that an edge is found from.
+   !> Largest number of nodes to extrapolate from.
    integer, parameter :: most_samples = 7
    real(wp), parameter :: unknown_bend = 1.0e10_wp
-   !> Nodes that have to slip next to an edge for its error to be known if normal and tangential motions couple.
+   !> With coupling, number of slipping nodes next to an edge from which its discretisation error is known.
    integer, parameter :: fewest_slipping = 6
 
-   !> A traction near an edge: its values at the outermost nodes of a zone, the outermost first, and how far inwards from that one
-   !> the nodes are, in its intervals.
+   !> A traction near an edge: values at the outermost nodes of a zone, outermost first, and their distances from the first
+   !> one, in intervals.
    type :: samples_type
-      !> Values, and nodes of the whole zone.
+      !> Number of values, and of nodes in the whole zone.
       integer :: number = 0, zone = 0
       real(wp) :: inwards(0:most_samples - 1) = 0.0_wp, value(0:most_samples - 1) = 0.0_wp
-      !> The power of the distance with which the traction goes to zero, and whether the error of the discretisation is known.
+      !> Exponent of the distance, and whether the discretisation error is known.
       real(wp) :: power = 0.5_wp
       logical :: is_regular = .false.
    end type samples_type
@@ -85,7 +83,7 @@ contains
       length = self%right - self%left
    end function length
 
-   !> Half the length of the contact if it is one patch, length; else NaN: that of several patches is no half-width.
+   !> Half the length of a contact of one patch, length; NaN for several patches.
    elemental real(wp) function half_width(self)
       class(zone_edges_type), intent(in) :: self
 
@@ -93,14 +91,14 @@ contains
       if (self%patches > 1) half_width = ieee_value(1.0_wp, ieee_quiet_nan)
    end function half_width
 
-   !> Middle between the outermost edges of the contact, length from the pole.
+   !> Middle between the outermost contact edges, arc length from the origin of x.
    elemental real(wp) function centre(self)
       class(zone_edges_type), intent(in) :: self
 
       centre = 0.5_wp*(self%contact_left + self%contact_right)
    end function centre
 
-   !> Length of what sticks over that of the contact; 0 without contact.
+   !> Length of the stick zones over that of the contact; 0 without contact.
    elemental real(wp) function stick_ratio(self)
       class(zone_edges_type), intent(in) :: self
 
@@ -134,8 +132,8 @@ contains
       end do
    end subroutine find_zone_edges
 
-   !> The contact patches in a state, from left to right. Where tractions do not tell (a few nodes, sharp corners, laws of friction
-   !> without a corner at the limit) an edge is where the surface of the outermost node ends.
+   !> The contact patches in a state, from left to right. Where tractions cannot be extrapolated (few nodes, sharp corners,
+   !> friction laws without a sharp limit) the edge is the end of the outermost node's surface.
    subroutine find_patches(model, state, patches)
       type(contact_model_type), intent(in) :: model
       type(contact_state_type), intent(in) :: state
@@ -155,7 +153,7 @@ contains
          patches(i)%left = contact_edge(model, state, patches(i), -1)
          patches(i)%right = contact_edge(model, state, patches(i), 1)
          if (i == 1) cycle
-         ! Patches with an open node between them do not overlap, wherever the tractions of a few nodes may point.
+         ! Extrapolated edges of neighbouring patches must not overlap.
          if (patches(i - 1)%right <= patches(i)%left) cycle
          patches(i - 1)%right = 0.5_wp*(patches(i - 1)%right + patches(i)%left)
          patches(i)%left = patches(i - 1)%right
@@ -167,7 +165,7 @@ contains
       end do
    end subroutine find_patches
 
-   !> The edges of the `zones` of a patch that stick.
+   !> The edges of the stick zones of a patch.
    subroutine find_stick_zones(model, state, zones, patch)
       type(contact_model_type), intent(in) :: model
       type(contact_state_type), intent(in) :: state
@@ -178,7 +176,7 @@ contains
 
       patch%stick = zones
       do i = 1, size(zones)
-         ! What sticks is in contact, wherever the tractions of a few nodes may point.
+         ! A stick zone is inside the contact.
          left = max(stick_edge(model, state, zones(i), patch, -1), patch%left)
          right = min(stick_edge(model, state, zones(i), patch, 1), patch%right)
          if (left > right) left = 0.5_wp*(left + right)
@@ -187,8 +185,8 @@ contains
       end do
    end subroutine find_stick_zones
 
-   !> Which nodes hold; those too that may slip from now on and have not done so yet. (Where a cycle repeats the tractions of one
-   !> before, many nodes come to their limit together at the very end, and round-off decides how many of them are called slipping.)
+   !> Nodes that stick, and those that may slip but have not yet: when a cycle repeats its tractions, many nodes reach their
+   !> limit together and rounding errors decide which are called slipping.
    pure function held(state)
       type(contact_state_type), intent(in) :: state
       logical :: held(size(state%status))
@@ -222,7 +220,7 @@ contains
       end do
    end function zones_of
 
-   !> Edge of a contact patch on `side` (-1 left, 1 right), length from the pole.
+   !> Edge of a contact patch on `side` (-1 left, 1 right), arc length from the origin of x.
    real(wp) function contact_edge(model, state, patch, side) result(edge)
       type(contact_model_type), intent(in) :: model
       type(contact_state_type), intent(in) :: state
@@ -242,7 +240,7 @@ contains
       end associate
    end function contact_edge
 
-   !> How many nodes slip in one direction from a node on, going to the left (-1) or right (1).
+   !> Number of neighbouring nodes that slip in one direction, from a node to the left (-1) or right (1).
    pure integer function slipping_run(state, from, direction) result(nodes)
       type(contact_state_type), intent(in) :: state
       integer, intent(in) :: from, direction
@@ -258,7 +256,7 @@ contains
       end do
    end function slipping_run
 
-   !> The power of the distance with which the pressure of an outermost node goes to zero on `side`.
+   !> Exponent with which the pressure vanishes beyond an outermost node on `side`.
    real(wp) function contact_power(model, state, node, side) result(power)
       type(contact_model_type), intent(in) :: model
       type(contact_state_type), intent(in) :: state
@@ -266,11 +264,12 @@ contains
 
       power = 0.5_wp
       if (slips(state%status(node)) .and. state%fields%pressure(node) > 0.0_wp) &
-         power = 0.5_wp + side*lean(model, node, state%fields%shear(node)/state%fields%pressure(node))
+         power = 0.5_wp + side*exponent_shift(model, node, state%fields%shear(node)/state%fields%pressure(node))
    end function contact_power
 
-   !> Edge of a zone that holds, on `side` (-1 left, 1 right), length from the pole: where the shear traction comes to the friction
-   !> limit. Where the next node is open, that is the edge of the patch or, with a slip zone narrower than an interval, within it.
+   !> Edge of a stick zone on `side` (-1 left, 1 right), arc length from the origin of x: where the shear traction reaches the
+   !> friction limit. If the next node is open, the edge is that of the patch or, with a slip zone narrower than an interval,
+   !> inside it.
    real(wp) function stick_edge(model, state, zone, patch, side) result(edge)
       type(contact_model_type), intent(in) :: model
       type(contact_state_type), intent(in) :: state
@@ -300,26 +299,26 @@ contains
             if (next /= last) edge = edge_by_slip(model, state, next, side, edge)
             return
          end if
-         ! One node may hold or slip: the edge must not depend on that.
+         ! One node may stick or slip: the edge must not depend on that.
          last = last - side
       end if
-      power = 0.5_wp - side*lean(model, next, direction*model%kinetic_friction(next))
+      power = 0.5_wp - side*exponent_shift(model, next, direction*model%kinetic_friction(next))
       samples = sampled(model, lack, last, other)
       if (.not. model%compliance%elastic_block(block_wt)) samples%is_regular = has_known_error(model, last, samples%number)
       edge = model%arc(last) + side*model%width(last)*distance_of_lack(samples, power)
 
    contains
 
-      !> Whether a node holds at its friction limit to within round-off.
+      !> Whether a sticking node is at its friction limit within tolerance.
       pure logical function at_its_limit(node)
          integer, intent(in) :: node
-         real(wp), parameter :: round_off = 1.0e-9_wp
+         real(wp), parameter :: tolerance = 1.0e-9_wp
 
-         at_its_limit = lack(node) <= round_off*model%static_friction(node)*state%fields%pressure(node)
+         at_its_limit = lack(node) <= tolerance*model%static_friction(node)*state%fields%pressure(node)
       end function at_its_limit
    end function stick_edge
 
-   !> The outermost values of a traction in a zone that goes from node `outermost` to node `other`; shape of the traction (nodes).
+   !> The outermost values of a traction in a zone from node `outermost` to node `other`; shape of the traction (nodes).
    pure type(samples_type) function sampled(model, traction, outermost, other) result(samples)
       type(contact_model_type), intent(in) :: model
       real(wp), intent(in) :: traction(:)
@@ -337,29 +336,28 @@ contains
       end associate
    end function sampled
 
-   !> Where what the shear traction lacks of the friction limit is zero, intervals outwards from the outermost node. It goes with
-   !> `power`, or, where the zone has grown, with a power larger by one. Short zones do not tell which: there it is `power`. In long
-   !> ones the one that is straighter tells, the larger one if clearly so; between, both have their part, so that no edge is
-   !> decided by round-off.
+   !> Where the remaining friction vanishes, in intervals outwards from the outermost node. The exponent is `power` or, behind
+   !> a growing stick zone, larger by one: in long zones that with the straighter fit, and in between a weighted mean, so that
+   !> rounding errors do not decide. Short zones: `power`.
    pure real(wp) function distance_of_lack(samples, power) result(distance)
       type(samples_type), intent(in) :: samples
       real(wp), intent(in) :: power
       integer, parameter :: short = 8, steepness = 4
       real(wp), parameter :: clearly = 2.0_wp
-      real(wp) :: steady, grown, part
+      real(wp) :: steady, grown, weight
 
       steady = bend(straightened(samples, power))
       grown = clearly*bend(straightened(samples, power + 1.0_wp))
-      part = 0.0_wp
-      if (min(steady, grown) < unknown_bend) part = min(max((samples%zone - short)/real(short, wp), 0.0_wp), 1.0_wp) &
-                                                    *steady**steepness/(steady**steepness + grown**steepness)
+      weight = 0.0_wp
+      if (min(steady, grown) < unknown_bend) weight = min(max((samples%zone - short)/real(short, wp), 0.0_wp), 1.0_wp) &
+                                                      *steady**steepness/(steady**steepness + grown**steepness)
       distance = 0.0_wp
-      if (part < 1.0_wp) distance = (1.0_wp - part)*refined_distance(straightened(samples, power))
-      if (part > 0.0_wp) distance = distance + part*distance_to_zero(straightened(samples, power + 1.0_wp), .true.)
+      if (weight < 1.0_wp) distance = (1.0_wp - weight)*refined_distance(straightened(samples, power))
+      if (weight > 0.0_wp) distance = distance + weight*distance_to_zero(straightened(samples, power + 1.0_wp), .true.)
    end function distance_of_lack
 
-   !> How far from a straight line the second to fourth value are, in parts of their change; `unknown_bend` where there are fewer
-   !> or where they do not grow.
+   !> Deviation of the second to fourth value from a straight line, relative to their change; `unknown_bend` for fewer or
+   !> decreasing values.
    pure real(wp) function bend(samples)
       type(samples_type), intent(in) :: samples
       real(wp) :: first, second
@@ -374,9 +372,9 @@ contains
       end associate
    end function bend
 
-   !> The edge of a stick zone whose nodes hold at their limit, as in a cycle that repeats the tractions of one before: tractions do
-   !> not tell it, but what the nodes beyond it have slipped since they last held, which grows with the power 3/2 of the distance
-   !> (Mindlin). `next`: the first node that slips; `otherwise`: the edge where that does not tell either.
+   !> Edge of a stick zone whose nodes are at the friction limit, as in a cycle that repeats its tractions. It follows from
+   !> the slip beyond the zone since the last stick, which grows with the power 3/2 of the distance (Mindlin). `next`: first
+   !> slipping node; `otherwise`: the edge if that fails.
    pure real(wp) function edge_by_slip(model, state, next, side, otherwise) result(edge)
       type(contact_model_type), intent(in) :: model
       type(contact_state_type), intent(in) :: state
@@ -399,7 +397,7 @@ contains
       if (distance <= farthest) edge = model%arc(next) - distance*(model%arc(next + side) - model%arc(next))
    end function edge_by_slip
 
-   !> Tractions that go as a power of the distance, raised to the inverse power, in parts of the largest.
+   !> Tractions raised to the inverse of their exponent, relative to the largest.
    pure type(samples_type) function straightened(samples, power) result(straight)
       type(samples_type), intent(in) :: samples
       real(wp), intent(in) :: power
@@ -413,25 +411,24 @@ contains
       if (largest > 0.0_wp) straight%value = max(samples%value/largest, 0.0_wp)**(1.0_wp/power)
    end function straightened
 
-   !> By how much the exponent of the root is off 1/2 where nodes near `node` slip with shear traction over pressure `ratio`: only
-   !> under full coupling, between -1/2 and 1/2.
-   real(wp) function lean(model, node, ratio)
+   !> Deviation of the exponent from 1/2 where nodes near `node` slip with shear traction over pressure `ratio`: nonzero with
+   !> full coupling only, between -1/2 and 1/2.
+   real(wp) function exponent_shift(model, node, ratio)
       type(contact_model_type), intent(in) :: model
       integer, intent(in) :: node
       real(wp), intent(in) :: ratio
       real(wp) :: beta
 
-      lean = 0.0_wp
+      exponent_shift = 0.0_wp
       if (.not. model%compliance%elastic_block(block_wt)) return
       beta = model%scene%dundurs_beta()
       if (model%scene%lower%shape == shape_matrix) beta = local_beta(model, node)
-      lean = root_shift(beta*ratio)
-   end function lean
+      exponent_shift = root_shift(beta*ratio)
+   end function exponent_shift
 
-   !> Dundurs' beta of bodies whose compliance is a matrix, from the entries about a node: next to a force P, w goes as
-   !> -A ln(r) P/pi, and next to a force Q it jumps from -B Q to B Q, with beta = 2 B/A as for half-planes (A is the sum of
-   !> (kappa + 1)/(4 G), B the difference of (kappa - 1)/(8 G)). What is regular about the node cancels between its sides. 0 where
-   !> there are too few nodes or where the matrix has no such logarithm.
+   !> Dundurs' beta of bodies given by a matrix, from the entries about a node. Next to a force P, w is -A ln(r) P/pi; next to
+   !> a force Q it jumps from -B Q to B Q; beta = 2 B/A as for half-planes (A the sum of (kappa + 1)/(4 G), B the difference
+   !> of (kappa - 1)/(8 G)). Regular terms cancel between the two sides. 0 with too few nodes or without such a logarithm.
    real(wp) function local_beta(model, node) result(beta)
       type(contact_model_type), intent(in) :: model
       integer, intent(in) :: node
@@ -453,8 +450,8 @@ contains
       if (slope > 0.0_wp) beta = min(max((by_shear(1, 2) - by_shear(1, 3))/slope, -1.0_wp), 1.0_wp)
    end function local_beta
 
-   !> Whether the equations about a node are those of mfv_edge_solutions: tractions uniform on equal intervals, normal
-   !> displacements -ln(r) P at their middles. Matrices are judged by their entries. `samples`: values that there are.
+   !> Whether the equations about a node are those of mfv_edge_solutions: uniform tractions on equal intervals, normal
+   !> displacements -ln(r) P at their middles. Matrices are judged by their entries. `samples`: number of values.
    logical function has_known_error(model, node, samples)
       type(contact_model_type), intent(in) :: model
       integer, intent(in) :: node, samples
@@ -475,7 +472,7 @@ contains
                         maxval(abs(model%width(node - about:node + about) - model%width(node))) <= near*model%width(node)
    end function has_known_error
 
-   !> See distance_to_zero; where the error of the discretisation is known the edge is that of its discrete solution.
+   !> See distance_to_zero; with a known discretisation error, the edge of its discrete solution.
    pure real(wp) function refined_distance(samples) result(distance)
       type(samples_type), intent(in) :: samples
 
@@ -483,12 +480,10 @@ contains
       if (samples%is_regular) distance = solved_distance(samples%inwards, samples%value, samples%power, distance)
    end function refined_distance
 
-   !> Where nearly straight values, the outermost first, are zero, in intervals outwards from the outermost node. The second to
-   !> fourth node tell, the outermost one carrying the largest error; where the third to seventh are smooth (near edges of other
-   !> zones they are not), the third, fifth and seventh tell better. The tractions of a zone that has `grown` node by node are
-   !> ragged: there
-   !> the second to seventh tell together. Of three nodes all tell, of two a line; 1/2 where all this leads nowhere within
-   !> one interval of that.
+   !> Zero of nearly linear values, outermost first, in intervals outwards from the outermost node. Used are the second to
+   !> fourth node, because the outermost one has the largest discretisation error; the third, fifth and seventh if the third
+   !> to seventh are smooth (not near other edges); the second to seventh by least squares in a zone that has `grown` node by
+   !> node; all of three nodes; a line through two. 1/2 if the zero is not within one interval of that.
    pure real(wp) function distance_to_zero(samples, grown) result(distance)
       type(samples_type), intent(in) :: samples
       logical, intent(in) :: grown
@@ -518,7 +513,8 @@ contains
       end associate
    end function distance_to_zero
 
-   !> How far the fourth and sixth value are off the parabola through the third, fifth and seventh, in intervals by their slope.
+   !> Deviation of the fourth and sixth value from the parabola through the third, fifth and seventh, in intervals by their
+   !> slope.
    pure real(wp) function off_parabola(t, values) result(off)
       real(wp), intent(in) :: t(0:most_samples - 1), values(0:most_samples - 1)
       real(wp) :: first, second, bend, slope
@@ -536,7 +532,7 @@ contains
       end do
    end function off_parabola
 
-   !> The same as distance_to_zero for the parabola through three values.
+   !> The same for the parabola through three values.
    pure subroutine find_zero_of_three(t, values, distance, found)
       real(wp), intent(in) :: t(3), values(3)
       real(wp), intent(out) :: distance
@@ -549,25 +545,25 @@ contains
       call find_zero(values(1), first - bend*(t(2) - t(1)), bend, t(1), distance, found)
    end subroutine find_zero_of_three
 
-   !> The same for the parabola that is nearest to several values, by orthogonal polynomials of their places.
+   !> The same for the least-squares parabola of several values, by orthogonal polynomials.
    pure subroutine find_zero_of_many(t, values, distance, found)
       real(wp), intent(in) :: t(:), values(:)
       real(wp), intent(out) :: distance
       logical, intent(out) :: found
       real(wp), dimension(size(t)) :: line, parabola
-      real(wp) :: mean, slope, bend, lean
+      real(wp) :: mean, slope, bend, skewness
 
       line = t - sum(t)/size(t)
-      lean = sum(line**3)/sum(line**2)
-      parabola = line**2 - lean*line - sum(line**2)/size(t)
+      skewness = sum(line**3)/sum(line**2)
+      parabola = line**2 - skewness*line - sum(line**2)/size(t)
       mean = sum(values)/size(t)
       slope = sum(line*values)/sum(line**2)
       bend = sum(parabola*values)/sum(parabola**2)
-      call find_zero(mean + slope*line(1) + bend*parabola(1), slope + bend*(2.0_wp*line(1) - lean), bend, t(1), distance, found)
+      call find_zero(mean + slope*line(1) + bend*parabola(1), slope + bend*(2.0_wp*line(1) - skewness), bend, t(1), distance, found)
    end subroutine find_zero_of_many
 
-   !> Zero of the parabola near + slope*t + bend*t^2, t intervals inwards from a place that is `inwards` of the outermost node, the
-   !> zero nearest to the edge; `distance` as in distance_to_zero. `found`: it is within one interval of the outermost node's end.
+   !> Zero nearest to the edge of the parabola near + slope*t + bend*t^2, t intervals inwards from a point `inwards` of the
+   !> outermost node; `distance` as in distance_to_zero. `found`: within one interval of the outermost node's end.
    pure subroutine find_zero(near, slope, bend, inwards, distance, found)
       real(wp), intent(in) :: near, slope, bend, inwards
       real(wp), intent(out) :: distance
@@ -582,7 +578,7 @@ contains
       found = abs(distance - 0.5_wp) <= 1.0_wp
    end subroutine find_zero
 
-   !> Whether the surface of a body ends where the interval of a node does, on `side` (-1 left, 1 right).
+   !> Whether the surface of a body ends with the interval of a node, on `side` (-1 left, 1 right).
    pure logical function ends_with_body(model, node, side)
       type(contact_model_type), intent(in) :: model
       integer, intent(in) :: node, side

@@ -209,7 +209,7 @@ contains
 
       call self%model_as(added, self%model%tangential, self%model%moves)
       self%path_position_type = position
-      call self%certificate%claim(self%model)
+      call self%certificate%find_applicable(self%model)
    end subroutine resume
 
    !> Notify the observer, if present, of the load at the fraction `done` of a segment. Error MFV_INTERRUPTED: it requests a stop.
@@ -280,7 +280,7 @@ contains
       real(wp) :: normal(self%model%nodes())
 
       if (.not. self%model%tangential) call self%model%add_tangential()
-      call self%certificate%claim(self%model)
+      call self%certificate%find_applicable(self%model)
       call self%model%relative_displacements(self%state%fields, normal, self%state%fields%tangential)
    end subroutine begin_tangential
 
@@ -291,7 +291,7 @@ contains
 
       if (self%model%moves(motion)) return
       call self%model%add_motion(motion)
-      call self%certificate%claim(self%model)
+      call self%certificate%find_applicable(self%model)
       associate (fields => self%state%fields)
          fields%force(motion) = self%model%resultant(motion, fields%pressure, fields%shear)
       end associate

@@ -18,7 +18,7 @@ module mfv_simulation
    use mfv_node_status, only: event_none, event_step_end, event_stopped
    use mfv_observer, only: observer_type
    use mfv_scene
-   use mfv_slip_zones, only: leg_start_type, slip_record_type
+   use mfv_slip_zones, only: segment_start_type, slip_record_type
    use mfv_status, only: MFV_COMPLETE
    use mfv_straight, only: apply_directly
    use mfv_strings, only: to_text
@@ -88,7 +88,7 @@ module mfv_simulation
       type(load_type) :: there(motion_count), back(motion_count)
       type(cycle_type) :: cycle
       type(segment_type) :: segment
-      type(leg_start_type) :: start
+      type(segment_start_type) :: start
    end type leg_type
 
    !> Complete restart state, taken at the start of a segment: the contact, the number of history records, the work of the linear
@@ -508,8 +508,8 @@ contains
             call apply_directly(self%contact, self%leg%segment, observer, error)
          end if
       end associate
-      call self%slip%add_leg(self%contact%model, self%leg%start, self%contact%state, self%contact%slip_zone_nodes, &
-                             self%contact%system%tolerance)
+      call self%slip%add_segment(self%contact%model, self%leg%start, self%contact%state, self%contact%slip_zone_nodes, &
+                                 self%contact%system%tolerance)
       self%load%control = targets%control
       self%load%value = targets%value
       if (self%keep_history /= history_none) &
@@ -534,7 +534,7 @@ contains
          segment%segments = segments
       end associate
       associate (state => self%contact%state)
-         self%leg%start = leg_start_type(state%dissipation, state%fields%force, state%fields%shear)
+         self%leg%start = segment_start_type(state%dissipation, state%fields%force, state%fields%shear)
       end associate
       call self%contact%reset_first_stiffness()
    end subroutine begin_segment

@@ -3,7 +3,7 @@
 module mfv_result_fields
    use, intrinsic :: ieee_arithmetic, only: ieee_is_nan, ieee_positive_inf, ieee_quiet_nan, ieee_value
    use mfv_body, only: body_type, shape_names, shape_power, shape_wedge
-   use mfv_body_pair, only: part_lower, part_upper
+   use mfv_body_pair, only: lower_body, upper_body
    use mfv_case, only: case_type
    use mfv_certificate, only: residual_count, residual_descriptions, residual_names
    use mfv_closed_form, only: closed_form_of, closed_form_type
@@ -315,7 +315,7 @@ contains
          end do
          do i = 1, size(bodies)
             bytes = 0
-            if (pair%deforms(i)) bytes = int(pair%part(i)%compliance%bytes())
+            if (pair%deforms(i)) bytes = int(pair%body(i)%compliance%bytes())
             call list%add(bodies(i)//'_bytes', bytes, 'bytes of the '//bodies(i)//" body's kernels or matrix")
          end do
       end associate
@@ -375,17 +375,17 @@ contains
       type(contact_state_type), intent(in) :: state
       real(wp), dimension(simulation%contact%model%nodes()) :: normal, tangential
       character(*), parameter :: prefix(2) = [character(6) :: '', 'upper_'], body(2) = [character(5) :: 'lower', 'upper']
-      integer :: part
+      integer :: side
 
-      do part = part_lower, part_upper
+      do side = lower_body, upper_body
          associate (pair => simulation%contact%model%compliance)
-            if (.not. pair%deforms(part)) cycle
-            call pair%part_displacements(part, state%fields%pressure, state%fields%shear, normal, tangential)
+            if (.not. pair%deforms(side)) cycle
+            call pair%body_displacements(side, state%fields%pressure, state%fields%shear, normal, tangential)
          end associate
-         call list%add(trim(prefix(part))//'normal_displacement', normal, along_nodes, 'length', 'displacement w of the '// &
-                       body(part)//' surface into its body')
-         call list%add(trim(prefix(part))//'tangential_displacement', modelled(simulation, tangential), along_nodes, 'length', &
-                       'displacement u of the '//body(part)//' surface to the right (not modelled without friction)')
+         call list%add(trim(prefix(side))//'normal_displacement', normal, along_nodes, 'length', 'displacement w of the '// &
+                       body(side)//' surface into its body')
+         call list%add(trim(prefix(side))//'tangential_displacement', modelled(simulation, tangential), along_nodes, 'length', &
+                       'displacement u of the '//body(side)//' surface to the right (not modelled without friction)')
       end do
    end subroutine add_displacements
 
@@ -622,7 +622,7 @@ contains
       call add_loads(list, simulation, state)
       call list%add('steps_done', simulation%steps_done, 'steps reached')
       call list%add('events', simulation%contact%events, 'loads at which nodes changed their status')
-      call list%add('leaps', simulation%contact%certificate%leaps, "stepping='leap': large increments, in which events are not "// &
+      call list%add('leaps', simulation%contact%certificate%large_increments, "stepping='leap': large increments, in which events are not "// &
                     'located')
       if (simulation%contact%model%scene%method%stepping == stepping_leap) then
          call list%add('increment_traction_error', simulation%contact%certificate%increment_traction_error, '1', &
@@ -646,7 +646,7 @@ contains
          call list%add('largest', certificate%largest(), '1', 'largest of the residuals below')
          call list%add('increments', certificate%increments, 'increments that were checked')
          do kind = 1, residual_count
-            if (certificate%claimed(kind)) call list%add(trim(residual_names(kind)), certificate%residual(kind), '1', &
+            if (certificate%applies(kind)) call list%add(trim(residual_names(kind)), certificate%residual(kind), '1', &
                                                          trim(residual_descriptions(kind))// &
                                                          ', relative, largest over all increments')
          end do
@@ -679,13 +679,13 @@ contains
 
       call find_zone_edges(simulation%contact%model, simulation%contact%state, edges)
       call list%add('nodes', estimate%nodes, 'intervals of the mesh, as &mesh nodes counts them')
-      call list%add('companion_nodes', estimate%companion_nodes, along_companions, 'intervals of the coarser meshes')
+      call list%add('companion_nodes', estimate%coarser_nodes, along_companions, 'intervals of the coarser meshes')
       associate (bar => estimate%bar)
          if (edges%patches > 1) then
             length = bar(quantity_half_width)
             length%value = 2.0_wp*length%value
             length%error = 2.0_wp*length%error
-            length%companions = 2.0_wp*length%companions  ! wording: ok
+            length%coarser_values = 2.0_wp*length%coarser_values
             call add_bar(list, length, 'contact_length', 'length', 'length of all intervals in contact')
          else
             call add_bar(list, bar(quantity_half_width), 'contact_half_width', 'length', 'half the length of all intervals in '// &
@@ -726,7 +726,7 @@ contains
                     'there is no limit, NaN if slip zones have too few nodes to resolve it')
       call list%add(name//'_order', bar%order, '1', 'observed order of convergence, from 1 to 2 (negative: no limit; NaN: not '// &
                     'resolved): '//meaning)
-      call list%add(name//'_companions', bar%companions, along_companions, unit, 'on the coarser meshes: '//meaning)  ! wording: ok
+      call list%add(name//'_companions', bar%coarser_values, along_companions, unit, 'on the coarser meshes: '//meaning)  ! wording: ok
    end subroutine add_bar
 
    !> Some of the motions and their forces (shape (values, motion_count)), first the forces.

@@ -56,8 +56,8 @@ contains
             call add_line(text, 'creepage', amount(seen, 'creepage')//', over mu a K '//amount(seen, 'creepage_number'))
          call add_tension(text, seen, model, simulation%contact%state%contact_nodes() > 0)
          words = ''
-         if (simulation%contact%certificate%leaps > 0) words = amount(fields, 'leaps')//' large increments, '
-         if (simulation%contact%certificate%leaps == 1) words = '1 large increment, '
+         if (simulation%contact%certificate%large_increments > 0) words = amount(fields, 'leaps')//' large increments, '
+         if (simulation%contact%certificate%large_increments == 1) words = '1 large increment, '
          words = trim(numbered(simulation%contact%events, 'event'))//', '//words
          words = words//trim(numbered(simulation%contact%system%solves, 'linear solve'))
          call add_line(text, 'work', words//' ('//trim(simulation%contact%system%name)//'), '//to_text(seconds, 3)//' s')
@@ -150,7 +150,7 @@ contains
       do i = 1, size(bodies)
          words = words//', '//bodies(i)//' body '
          if (model%compliance%deforms(i)) then
-            words = words//to_text(int(model%compliance%part(i)%compliance%bytes()))//' bytes'
+            words = words//to_text(int(model%compliance%body(i)%compliance%bytes()))//' bytes'
          else
             words = words//'rigid'
          end if
@@ -197,9 +197,9 @@ contains
             end if
          end associate
       end do
-      meshes = to_text(simulation%estimate%companion_nodes(1))
-      do i = 2, size(simulation%estimate%companion_nodes)
-         meshes = meshes//', '//to_text(simulation%estimate%companion_nodes(i))
+      meshes = to_text(simulation%estimate%coarser_nodes(1))
+      do i = 2, size(simulation%estimate%coarser_nodes)
+         meshes = meshes//', '//to_text(simulation%estimate%coarser_nodes(i))
       end do
       call add_line(text, 'error estimate', 'from meshes with '//meshes//' nodes in place of '// &
                     to_text(simulation%estimate%nodes))

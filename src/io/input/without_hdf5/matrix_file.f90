@@ -2,7 +2,7 @@
 module mfv_matrix_file
    use mfv_body, only: body_type
    use mfv_error, only: error_type, set_error
-   use mfv_features, only: hdf5_is_left_out
+   use mfv_features, only: no_hdf5_message
    use mfv_status, only: MFV_INPUT_ERROR
    implicit none
    private
@@ -16,7 +16,7 @@ contains
       type(body_type), intent(out) :: body
       type(error_type), allocatable, intent(out) :: error
 
-      call set_error(error, MFV_INPUT_ERROR, path//' cannot be read: '//hdf5_is_left_out)
+      call set_error(error, MFV_INPUT_ERROR, path//' cannot be read: '//no_hdf5_message)
    end subroutine read_matrix_body
 
 end module mfv_matrix_file

@@ -2,7 +2,7 @@
 module mfv_result_file
    use mfv_case, only: case_type
    use mfv_error, only: error_type, set_error
-   use mfv_features, only: hdf5_is_left_out
+   use mfv_features, only: no_hdf5_message
    use mfv_simulation, only: simulation_type
    use mfv_status, only: MFV_FILE_ERROR, MFV_INPUT_ERROR
    use mfv_strings, only: string_type
@@ -17,7 +17,7 @@ contains
       character(*), intent(in) :: path
       type(error_type), allocatable, intent(out) :: error
 
-      call set_error(error, MFV_INPUT_ERROR, path//' cannot be written: '//hdf5_is_left_out)
+      call set_error(error, MFV_INPUT_ERROR, path//' cannot be written: '//no_hdf5_message)
    end subroutine check_writable
 
    !> Whether there is a result: false, always.
@@ -36,7 +36,7 @@ contains
       type(error_type), allocatable, intent(out) :: error
 
       is_finished = .false.
-      call set_error(error, MFV_INPUT_ERROR, path//' cannot be read: '//hdf5_is_left_out)
+      call set_error(error, MFV_INPUT_ERROR, path//' cannot be read: '//no_hdf5_message)
    end subroutine resume_result
 
    !> Error MFV_FILE_ERROR, always.
