@@ -622,8 +622,8 @@ contains
       call add_loads(list, simulation, state)
       call list%add('steps_done', simulation%steps_done, 'steps reached')
       call list%add('events', simulation%contact%events, 'loads at which nodes changed their status')
-      call list%add('leaps', simulation%contact%certificate%large_increments, "stepping='leap': large increments, in which events are not "// &
-                    'located')
+      call list%add('leaps', simulation%contact%certificate%large_increments, &
+                    "stepping='leap': large increments, in which events are not located")
       if (simulation%contact%model%scene%method%stepping == stepping_leap) then
          call list%add('increment_traction_error', simulation%contact%certificate%increment_traction_error, '1', &
                        "stepping='leap': largest estimated error of the tractions by large increments, relative to the "// &
