@@ -45,7 +45,7 @@ class Along(IntEnum):
     NOTHING = 0
     NODES = 1
     RECORDS = 2
-    EXTRA_FILES = 3
+    COMPANIONS = 3
     CYCLES = 4
     PATCHES = 5
 

@@ -281,8 +281,8 @@ MATRICES = {
     "x with NaN": ({"x": np.where(X > 0.9, np.nan, X), "compliance": GOOD_MATRIX}, "x is not finite at node 5"),
     "x not increasing": ({"x": -X, "compliance": GOOD_MATRIX}, "x is not increasing at node 2"),
     "no nodes": ({"x": X[:0], "compliance": GOOD_MATRIX}, "x has 0 nodes; allowed are 1 to 20000"),
-    "no matrix": ({"x": X}, "give either compliance or stiffness, not both"),
-    "two matrices": ({"x": X, "compliance": GOOD_MATRIX, "stiffness": GOOD_MATRIX}, "either compliance or stiffness"),
+    "no matrix": ({"x": X}, "give exactly one of compliance and stiffness"),
+    "two matrices": ({"x": X, "compliance": GOOD_MATRIX, "stiffness": GOOD_MATRIX}, "exactly one of compliance and stiffness"),
     "another shape": (
         {"x": X, "compliance": np.eye(3)},
         "compliance has the shape 3 x 3; with 5 positions in x it must be 5 x 5, or 10 x 10",

@@ -86,7 +86,7 @@ def test_calls_that_fail_are_errors_and_leave_the_old_file(program, number, shim
         restore(begun, folder)
         done = run_on_disk(shim, command, folder, call, number)
         assert done.returncode == FILE and os.strerror(number) in done.stderr, (call, done.stderr)
-        assert (f"{written} is written, but a power cut" in done.stderr) == (call == "folder"), (call, done.stderr)
+        assert (f"{written} is written, but may be lost in a power cut" in done.stderr) == (call == "folder"), (call, done.stderr)
         assert numbers(folder / written) == (new if call == "folder" else old) and parts(folder) == [], call
 
 

@@ -329,7 +329,7 @@ def test_wrong_wishes_for_advice(arguments, message, tmp_path):
 def test_no_advice_for_what_ends_early(tmp_path):
     path = case(tmp_path, MINDLIN.format(force=8e-4, name="early", more=""))
     run = mfv_run("--advise", "error=1e-2", path.name, cwd=tmp_path)
-    assert run.returncode == EARLY and "case.nml: no advice: with " in run.stderr and "gross sliding" in run.stderr
+    assert run.returncode == EARLY and "case.nml: no advice: on a mesh of " in run.stderr and "gross sliding" in run.stderr
 
 
 @pytest.mark.parametrize("arguments", [(), ("--chekc", "x.nml"), ("a.nml", "b.nml"), ("--check",), ("--estimate",)])

@@ -24,7 +24,7 @@ foreach(program ${WORK_DIR}/consumer/consumer ${WORK_DIR}/by_pkg_config)
 endforeach()
 
 execute_process(COMMAND ${tree}/bin/mfv_run ${case} WORKING_DIRECTORY ${WORK_DIR} RESULT_VARIABLE code OUTPUT_VARIABLE output)
-if(NOT code EQUAL 0 OR NOT output MATCHES "in contact 87, .*\nresult +no file: .*MFV_HDF5=OFF" OR EXISTS ${WORK_DIR}/mindlin.h5)
+if(NOT code EQUAL 0 OR NOT output MATCHES "in contact 87, .*\nresult +not written: .*MFV_HDF5=OFF" OR EXISTS ${WORK_DIR}/mindlin.h5)
   message(FATAL_ERROR "mfv_run without HDF5 ends with ${code} and prints ${output}")
 endif()
 expect_no_executable_stack(${tree}/bin/mfv_run ${tree}/bin/mfv_conventional)

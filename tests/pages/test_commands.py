@@ -137,7 +137,7 @@ def test_what_cannot_be_compared_is_named(tmp_path: Path, capsys: pytest.Capture
     for arguments, complaint in (
         ([good, bad], f"{bad}: not a result file"),
         ([good, str(tmp_path / "c.h5")], "c.h5"),
-        ([good, good, "--step", "9"], f"{good}: there is no state 9"),
+        ([good, good, "--step", "9"], f"{good}: no state 9"),
         ([good, good, "-o", str(tmp_path / "nowhere" / "x.png")], "nowhere"),
     ):
         assert main(["compare", *arguments]) == 2

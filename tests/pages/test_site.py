@@ -41,7 +41,7 @@ def test_broken_links_of_a_document_are_named(tmp_path, site):
     assert web == {"https://example.org/"}
     assert [line.removeprefix(f"{tmp_path}/one.md: ") for line in broken] == [
         "nowhere.png: no such file",
-        "other.md#no-heading: there is no such place in other.md",
+        "other.md#no-heading: no such anchor in other.md",
         "#there: there is no such place in one.md",
         "gone.md: no such file",
     ]
@@ -54,7 +54,7 @@ def test_broken_links_of_a_site_are_named(tmp_path):
     (tmp_path / "index.html").write_text("".join(f'<a href="{link}">x</a>' for link in links) + '<img src="gone.png">')
     checked = subprocess.run([sys.executable, CHECKER, tmp_path], capture_output=True, text=True)
     assert checked.returncode == 1
-    assert "index.html#new: there is no such place" in checked.stderr and "gone.png: no such file" in checked.stderr
+    assert "index.html#new: no such anchor" in checked.stderr and "gone.png: no such file" in checked.stderr
     assert len(checked.stderr.splitlines()) == 2
     assert "not fetched: https://example.org" in checked.stdout and "2 pages, 6 links, 1 addresses" in checked.stdout
 

@@ -106,5 +106,5 @@ def test_the_example_draws(
     monkeypatch.setattr(sys, "argv", ["scipy_host.py", "-o", str(tmp_path / "host.png")])
     host.main()
     printed = capsys.readouterr().out
-    assert "two contacts in series, with the tangent:" in printed and "turns round" in printed
+    assert "two contacts in series, with the tangent:" in printed and "a mass released at Q = 0.8 mu P turns at" in printed
     assert (tmp_path / "host.png").stat().st_size > 10000

@@ -141,7 +141,7 @@ def test_names_of_executors(study, tmp_path):
         mfv.study(folder / "base.nml", AXES, executor="thread")
     with pytest.raises(ValueError, match="workers must be 1 or more, not 0"):
         mfv.study(folder / "base.nml", AXES, workers=0)
-    with InOneProcess() as pool, pytest.raises(ValueError, match="has its own number of workers"):
+    with InOneProcess() as pool, pytest.raises(ValueError, match="workers= has no effect with an Executor object"):
         mfv.study(folder / "base.nml", AXES, executor=pool, workers=2)
     write(tmp_path)
     done = run("study.nml", "--executor", "treads", cwd=tmp_path)

@@ -309,7 +309,7 @@ def test_interrupted(executor, number, tmp_path):
     for options, words in (
         (["--so-far", "-o", "part.nc"], "part.sqlite"),
         (["--so-far", "--again"], "not allowed"),
-        (["--again", "--executor", "none"], "there is no executor 'none'"),
+        (["--again", "--executor", "none"], "unknown executor 'none'"),
     ):
         done = run("study.nml", *options, cwd=tmp_path)
         assert done.returncode == INPUT and words in done.stderr, done.stderr
@@ -365,7 +365,7 @@ def test_other_files_are_not_replaced(tmp_path, capsys, monkeypatch):
     subprocess.run([MFV_RUN, "base.nml"], cwd=tmp_path, capture_output=True)
     (tmp_path / "base.h5").rename(tmp_path / "study.h5")
     for name, words in (
-        ("study.h5", "is HDF5, perhaps a result, and is not overwritten"),
+        ("study.h5", "is an HDF5 file, not overwritten"),
         ("study.nml", "must end with .nc or .h5 or .csv"),
         ("no/study.nc", "no does not exist or is not a directory"),
     ):

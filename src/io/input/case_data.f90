@@ -166,7 +166,7 @@ contains
       place = self%place_of(file, 'compliance')
       if (place > 0) data%name = 'compliance'
       if ((place > 0) .eqv. (self%place_of(file, 'stiffness') > 0)) then
-         call set_error(error, MFV_INPUT_ERROR, 'give either compliance or stiffness, not both')
+         call set_error(error, MFV_INPUT_ERROR, 'give exactly one of compliance and stiffness')
          return
       end if
       if (place == 0) place = self%place_of(file, 'stiffness')

@@ -42,7 +42,7 @@ contains
       if (has(file, 'width')) call read_vector(file, 'width', size(data%x), data%width, error)
       if (allocated(error)) return
       if (has(file, 'compliance') .eqv. has(file, 'stiffness')) then
-         call set_error(error, MFV_INPUT_ERROR, 'give either compliance or stiffness, not both')
+         call set_error(error, MFV_INPUT_ERROR, 'give exactly one of compliance and stiffness')
          return
       end if
       data%name = 'stiffness'

@@ -254,7 +254,7 @@ contains
       shape = body%shape
       if (shape == shape_power .and. .not. abs(body%exponent - 1.0_wp) > 0.0_wp) shape = shape_wedge
       name = word(shape_names, shape)
-      if (body%rigid) name = 'rigid '//name
+      if (body%rigid) name = 'rigid '//word(shape_names, shape)
    end function body_name
 
    !> Word `number` of a list of words; padded with blanks.
