@@ -53,7 +53,7 @@ def write_fortran_reference(root: Path, folder: Path) -> None:
     pages.mkdir()
     modules = [module for path in sorted((root / "src").rglob("*.[fF]90")) for module in [read_module(path)] if module]
     by_name = {module.name: module for module in modules}
-    lines = ["# Fortran modules", "", "From the comments of the sources; what is private is left out.", ""]
+    lines = ["# Fortran modules", "", "From the comments of the sources; what is private is omitted.", ""]
     folders: dict[str, list[Module]] = {}
     for module in modules:
         folders.setdefault(module.path.relative_to(root / "src").parts[0], []).append(module)
@@ -143,7 +143,7 @@ def _statements(source: str) -> Iterator[tuple[str, list[str]]]:
 
 
 def _declared(statement: str) -> list[str]:
-    """Names that a declaration declares, with what is between brackets and quotes left out."""
+    """Names that a declaration declares, with what is between brackets and quotes omitted."""
     rest = statement.split("::", 1)[1]
     before = None
     while before != rest:

@@ -32,7 +32,7 @@ LANGUAGES = {".nml": "fortran", ".f90": "fortran", ".F90": "fortran", ".py": "py
 LANGUAGES |= {".sh": "sh", ".cff": "yaml", ".toml": "toml"}
 # Files that the page of a folder names.
 SHOWN = (*PICTURES, *LANGUAGES, ".csv", ".md", ".txt")
-# Pages of the side bar by heading, as they are staged; pages that are not there yet are left out.
+# Pages of the side bar by heading, as they are staged; pages that are not there yet are omitted.
 CONTENTS = {
     "Start": [
         "docs/install",

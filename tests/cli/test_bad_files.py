@@ -236,7 +236,10 @@ PROFILES = {
     "NaN": ("0 0\n1 NaN\n2 2\n", "profile.txt:2: must be two numbers"),
     "Inf": ("0 0\n1 Inf\n2 2\n", "profile.txt:2: must be two numbers"),
     "huge": ("0 0\n1 1e400\n2 2\n", "profile.txt:2: must be two numbers"),
-    "beyond what is taken": ("0 0\n1 1e200\n2 2\n", "profile.txt:2: numbers other than 0 must have a magnitude from 1e-100 to 1e100"),
+    "beyond what is taken": (
+        "0 0\n1 1e200\n2 2\n",
+        "profile.txt:2: numbers other than 0 must have a magnitude from 1e-100 to 1e100",
+    ),
     "Fortran's repeats": ("0 0\n2*1\n2 2\n", "profile.txt:2: must be two numbers"),
     "a null": ("0 0\n1 1\0\n2 2\n", "profile.txt:2: must be two numbers"),
     "a long line": ("0 0\n1 " + "9" * LONG + "\n2 2\n", "profile.txt:2: must be two numbers, x and height, not '1 9999"),

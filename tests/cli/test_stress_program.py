@@ -109,7 +109,10 @@ def test_states_without_load_or_steps(folder):
     (folder / "light.nml").write_text(CASE[: CASE.index("&step")] + "&step approach=-1e-4 /\n&output states='none' /\n")
     subprocess.run([RUN, "light.nml"], cwd=folder, check=True, capture_output=True)
     before = (folder / "light.h5").read_bytes()
-    for arguments, message in (((), "light.h5: no load acts in this state"), (("--step", "1"), "the result has no state steps/0001")):
+    for arguments, message in (
+        ((), "light.h5: no load acts in this state"),
+        (("--step", "1"), "the result has no state steps/0001"),
+    ):
         run = stress("light.h5", *arguments, cwd=folder)
         assert run.returncode == 2 and message in run.stderr and run.stdout == "", run
         assert (folder / "light.h5").read_bytes() == before
