@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import atexit
 import signal
 import threading
+import time
 from collections.abc import Iterator
 from contextlib import contextmanager
 from ctypes import c_void_p
@@ -11,6 +13,10 @@ from typing import Any, Callable
 
 from ._library import OBSERVER, ProgressStructure, library
 from .loads import Progress
+
+#: Observers of runs in progress; and whether the interpreter is ending.
+_leading: set[Observer] = set()
+_ending = threading.Event()
 
 BAR_FORMAT = "{percentage:3.0f}%|{bar}| {elapsed}<{remaining}{postfix}"
 
@@ -46,11 +52,13 @@ class Observer:
         self.refuse_while_leading()
         library().mfv_observe(self._handle, self._function, None)
         self._signals, self._raised, self.is_leading, self.is_idle = [], None, True, False
+        _leading.add(self)
         try:
             with self._signals_held():
                 return function(*arguments)
         finally:
             self.is_leading = False
+            _leading.discard(self)
 
     def rest(self, function: Callable[..., int], *arguments: object) -> int:
         """Remove the observer and call the function; return its status."""
@@ -89,7 +97,7 @@ class Observer:
 
     def _tell(self, progress: Any, _: object) -> int:
         """The function that the library calls; a value other than 0 ends the run."""
-        if self._signals:
+        if self._signals or _ending.is_set():
             return 1
         if not self.is_wanted:
             return 0
@@ -117,3 +125,15 @@ class Observer:
             yield
         finally:
             signal.signal(signal.SIGINT, self._handler)
+
+
+def _end_runs() -> None:
+    """Stop the runs of daemon threads before the interpreter ends, since it could no longer call their observers."""
+    longest = 2.0
+    _ending.set()
+    started = time.monotonic()
+    while _leading and time.monotonic() - started < longest:
+        time.sleep(0.001)
+
+
+atexit.register(_end_runs)
