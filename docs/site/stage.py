@@ -55,7 +55,7 @@ CONTENTS = {
     "Project": ["CHANGELOG", "CONTRIBUTING", "SECURITY", "docs/releasing"],
 }
 # Read in the repository only: what the site says by other pages.
-LEFT_OUT = ("python/README.md",)
+LEFT_OUT = ("python/README.md", "python/mfv/templates/keys.md")
 
 
 def main() -> int:
@@ -104,7 +104,7 @@ class Site:
             self.pages[relative] = "index.md" if str(relative) == "README.md" else str(relative)
         for path in documents:
             self._write(self.pages[path.relative_to(ROOT)], self._with_links(path, path.read_text()))
-        self._add_contents(sorted(page.removesuffix(".md") for page in self.pages.values()))
+        self._add_contents(sorted(page.removesuffix(".md") for page in self.pages.values() if page.endswith(".md")))
 
     def _write(self, page: str, text: str) -> None:
         path = self.folder / page

@@ -36,21 +36,25 @@ contains
    !> A zero gap.
    pure type(indenter_type) function flat_indenter() result(indenter)
 
-      indenter = indenter_type([real(wp) ::], [real(wp) ::], [real(wp) ::], [real(wp) ::])
+      allocate (indenter%coefficient(0), indenter%exponent(0), indenter%flat(0), indenter%radius(0))
    end function flat_indenter
 
    !> The gap C |x|^n (C: length^(1 - n)).
    pure type(indenter_type) function power_indenter(coefficient, exponent) result(indenter)
       real(wp), intent(in) :: coefficient, exponent
 
-      indenter = indenter_type([coefficient], [exponent], [real(wp) ::], [real(wp) ::])
+      indenter%coefficient = [coefficient]
+      indenter%exponent = [exponent]
+      allocate (indenter%flat(0), indenter%radius(0))
    end function power_indenter
 
    !> The gap of a punch that is flat over |x| < half_width, with edges of a radius, lengths.
    pure type(indenter_type) function rounded_punch_indenter(half_width, radius) result(indenter)
       real(wp), intent(in) :: half_width, radius
 
-      indenter = indenter_type([real(wp) ::], [real(wp) ::], [half_width], [radius])
+      indenter%flat = [half_width]
+      indenter%radius = [radius]
+      allocate (indenter%coefficient(0), indenter%exponent(0))
    end function rounded_punch_indenter
 
    !> Add the gap of another pair.
