@@ -373,7 +373,7 @@ def test_other_files_are_not_replaced(tmp_path, capsys, monkeypatch):
             assert main(["study", "study.nml", "-o", name, *option]) == INPUT
             printed, said = capsys.readouterr()
             assert words in said and printed == "", said
-    for content, words in ((b"my diary\n" * 100, "file is not a database"), (None, "the file of another program")):
+    for content, words in ((b"my diary\n" * 100, "file is not a database"), (None, "it belongs to another program")):
         (tmp_path / "study.sqlite").unlink(missing_ok=True)
         if content is None:
             with contextlib.closing(sqlite3.connect(tmp_path / "study.sqlite")) as connection:
