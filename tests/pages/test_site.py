@@ -42,7 +42,7 @@ def test_broken_links_of_a_document_are_named(tmp_path, site):
     assert [line.removeprefix(f"{tmp_path}/one.md: ") for line in broken] == [
         "nowhere.png: no such file",
         "other.md#no-heading: no such anchor in other.md",
-        "#there: there is no such place in one.md",
+        "#there: no such anchor in one.md",
         "gone.md: no such file",
     ]
 
