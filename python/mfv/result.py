@@ -191,7 +191,7 @@ class Result:
         if step is None:
             return self.state
         if not 1 <= step <= len(self.steps):
-            raise ValueError(f"no state {step}: the result has {len(self.steps)} in steps")
+            raise ValueError(f"no state {step}: the result has {len(self.steps)} in /steps, numbered from 1")
         return self.steps[step - 1]
 
     def to_xarray(self) -> dict[str, xarray.Dataset]:

@@ -671,7 +671,7 @@ def test_largest_tension_is_mirrored_swapped_and_scaled() -> None:
 def test_bad_requests_for_stresses_are_told(two_disks: mfv.Result) -> None:
     with pytest.raises(ValueError, match="'lower' or 'upper'"):
         mfv.stress.stress(two_disks, 0.0, 0.0, body="left")
-    with pytest.raises(ValueError, match="no state 3: the result has 2 in steps"):
+    with pytest.raises(ValueError, match="no state 3: the result has 2 in /steps, numbered from 1"):
         mfv.stress.grid(two_disks, step=3)
     with pytest.raises(errors.BadArgument, match="upper body is rigid"):
         mfv.stress.stress(mfv.run(text=SHEARED), 0.0, 0.0, body="upper")

@@ -379,7 +379,7 @@ class Study:
                 self.reference = along, first.values.index(value)
                 return
         raise input_error(
-            f"reference={as_written(value)}: needs an axis with the single key '{name}' and {as_written(value)} among its values"
+            f"reference={as_written(value)}: no axis varies '{name}' alone and has {as_written(value)} among its values; add one"
         )
 
 

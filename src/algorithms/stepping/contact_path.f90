@@ -267,7 +267,8 @@ contains
          return
       end if
       if (any(abs(self%state%fields%shear) > 0.0_wp)) then
-         call self%end_here(MFV_INADMISSIBLE_STEP, 'friction cannot be switched off while there is shear traction', error)
+         call self%end_here(MFV_INADMISSIBLE_STEP, 'friction cannot be switched off while there is shear traction; '// &
+                            'keep friction on in this step', error)
          return
       end if
       status = node_frictionless
