@@ -6,6 +6,7 @@ import atexit
 import signal
 import threading
 import time
+import warnings
 from collections.abc import Iterator
 from contextlib import contextmanager
 from ctypes import c_void_p
@@ -19,6 +20,14 @@ _leading: set[Observer] = set()
 _ending = threading.Event()
 
 BAR_FORMAT = "{percentage:3.0f}%|{bar}| {elapsed}<{remaining}{postfix}"
+
+
+def progress_bar(**arguments: Any) -> Any:
+    """A progress bar for a terminal or, if ipywidgets is installed, for a notebook; `arguments`: those of tqdm."""
+    with warnings.catch_warnings():
+        warnings.filterwarnings("ignore", "IProgress not found")  # of tqdm in a notebook without ipywidgets
+        from tqdm.auto import tqdm  # here, since it checks whether this is a notebook
+    return tqdm(**arguments)
 
 
 class Observer:
@@ -86,9 +95,7 @@ class Observer:
         if not wanted:
             yield
             return
-        from tqdm.auto import tqdm  # here, since it checks whether this is a notebook
-
-        with tqdm(total=1.0, disable=None, bar_format=BAR_FORMAT) as bar:
+        with progress_bar(total=1.0, disable=None, bar_format=BAR_FORMAT) as bar:
             self._bar, self.is_idle = None if bar.disable else bar, False
             try:
                 yield

@@ -90,6 +90,6 @@ int mfv_replace_file(const char *path, const char *bytes, size_t count, int *is_
 /* Description of such a code. */
 void mfv_describe_error(int code, char *text, size_t length) {
   if (code == NOT_REGULAR)
-    snprintf(text, length, "it is no regular file");
+    snprintf(text, length, "it is not a regular file");
   else if (strerror_r(code, text, length) != 0) snprintf(text, length, "error %d", code);
 }

@@ -12,8 +12,8 @@ module mfv_body
    use mfv_matrix_compliance, only: new_matrix_compliance
    implicit none
    private
-   public :: body_type, new_half_plane_body, new_disk, new_hole, new_flat_punch, new_rounded_punch, new_power, new_profile, &
-             new_matrix_body
+   public :: body_type, new_half_plane_body, new_disk, new_hole, new_flat_punch, new_rounded_punch, new_power, new_wedge, &
+             new_profile, new_matrix_body
    public :: gap_between, radial_gap_between
    public :: shape_half_plane, shape_disk, shape_hole, shape_flat_punch, shape_rounded_punch, shape_wedge, shape_power, &
              shape_profile, shape_matrix, shape_names
@@ -21,7 +21,7 @@ module mfv_body
 
    integer, parameter :: shape_half_plane = 1, shape_disk = 2, shape_hole = 3, shape_flat_punch = 4, shape_rounded_punch = 5, &
                          shape_wedge = 6, shape_power = 7, shape_profile = 8, shape_matrix = 9
-   !> Names of the shapes, in the order of their numbers. A wedge is kept as a power of exponent 1.
+   !> Names of the shapes, in the order of their numbers.
    character(*), parameter :: shape_names = 'half_plane disk hole flat_punch rounded_punch wedge power profile matrix'
    !> Interpolation of a profile: linear by default, linear by choice, monotone cubic.
    integer, parameter :: interpolation_unset = 0, interpolation_linear = 1, interpolation_cubic = 2
@@ -105,6 +105,13 @@ contains
 
       body = body_type(shape=shape_power, coefficient=coefficient, exponent=exponent)
    end function new_power
+
+   !> Wedge: recess slope*|x|, a power law with the exponent 1.
+   pure type(body_type) function new_wedge(slope) result(body)
+      real(wp), intent(in) :: slope
+
+      body = body_type(shape=shape_wedge, coefficient=slope, exponent=1.0_wp)
+   end function new_wedge
 
    !> Profile through the points (position, height), lengths; height is the recess. `interpolation`: linear, or Steffen's
    !> monotone cubic, without overshoot, with rounded corners. At least three strictly increasing positions (checked by the
@@ -203,7 +210,7 @@ contains
          end if
       case (shape_rounded_punch)
          depth = max(abs(x) - self%flat_half_width, 0.0_wp)**2/(2.0_wp*self%radius)
-      case (shape_power)
+      case (shape_power, shape_wedge)
          depth = power_of(self, abs(x))
       case (shape_profile)
          depth = interpolated(self, x, self%interpolation)

@@ -204,7 +204,7 @@ def test_error_estimate_in_summary_and_file(tmp_path):
         assert estimate["contact_half_width_error"].attrs["units"] == "mm"
         assert estimate["contact_half_width"][()] == result["summary/contact_half_width"][()]
         assert abs(estimate["stick_ratio"][()] - 0.6**0.5) < 2 * estimate["stick_ratio_error"][()] < 0.2
-        assert result.attrs["error_estimate"] == "there"
+        assert result.attrs["error_estimate"] == "yes"
     shown = subprocess.run(
         [sys.executable, "-m", "mfv", "info", "key.h5"],
         cwd=tmp_path,

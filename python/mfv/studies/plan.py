@@ -17,6 +17,7 @@ import h5py
 import numpy as np
 
 from .. import errors
+from .._observer import progress_bar
 from ..errors import input_error
 from ..scene import Scene
 from . import executors
@@ -216,8 +217,6 @@ class Study:
         An invalid case, or one that ends early, is in the dataset with its outcome and message.
         Raises InputError, FileError, and what an executor raises; KeyboardInterrupt within an increment with threads.
         """
-        from tqdm.auto import tqdm  # here, since it checks whether this is a notebook
-
         from .dataset import dataset_of  # here, since it imports xarray
 
         executors.check(executor, workers)
@@ -236,7 +235,7 @@ class Study:
             }
             if wanted:
                 there = len(jobs) - len(wanted)
-                with tqdm(total=len(jobs), initial=there, unit="case", disable=None if progress else True) as bar:
+                with progress_bar(total=len(jobs), initial=there, unit="case", disable=None if progress else True) as bar:
 
                     def keep(name: str, one: Solved) -> None:
                         if kept is not None:

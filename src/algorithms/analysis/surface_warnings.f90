@@ -1,7 +1,7 @@
 !> Warnings about the undeformed surfaces in contact: ends, shape between the points of a profile, slope.
 module mfv_surface_warnings
    use mfv_body, only: body_type, interpolation_cubic, interpolation_linear, shape_flat_punch, shape_power, shape_profile, &
-                       shape_rounded_punch
+                       shape_rounded_punch, shape_wedge
    use mfv_contact_state, only: contact_state_type
    use mfv_kinds, only: pi, wp
    use mfv_motions, only: motion_approach
@@ -34,7 +34,7 @@ contains
       call check_end
       if (body%shape == shape_profile) call check_interpolation
       if (body%shape == shape_rounded_punch) call check_rounded_edges
-      if (body%shape /= shape_power .or. body%exponent > 1.0_wp) return
+      if (.not. any(body%shape == [shape_power, shape_wedge]) .or. body%exponent > 1.0_wp) return
       angle = atan(body%coefficient)*180.0_wp/pi
       if (angle > largest_angle) call add_text(warnings, 'the flanks of the '//name//' body rise by '//to_text(angle, 3)// &
                                                ' degrees; the half-plane compliance is inaccurate beyond '// &

@@ -17,7 +17,7 @@ module mfv_slip_zones
    use mfv_node_status, only: holds, in_contact, motion_sign, node_frictionless
    use mfv_reference_spence, only: spence_stick_ratio
    use mfv_strings, only: to_text
-   use mfv_zone_edges, only: ends_with_body, find_zone_edges, zone_edges_type
+   use mfv_zone_edges, only: ends_with_body, find_zone_edges, zone_edges_type, zone_type, zones_of
    implicit none
    private
    public :: slip_record_type, segment_start_type, widest_slip_zone, resolved_nodes, needed_mesh, &
@@ -77,23 +77,25 @@ contains
    !> gross sliding has no zone to resolve: it counts with its nodes, and as resolved.
    pure integer function widest_slip_zone(status) result(widest)
       integer, intent(in) :: status(:)
-      logical :: moves(0:size(status) + 1)
-      integer :: first, last
+      type(zone_type), allocatable :: zones(:)
+      integer :: i, nodes
 
-      moves = .false.
-      moves(1:size(status)) = motion_sign(status) /= 0
+      zones = zones_of(motion_sign(status) /= 0)
       widest = 0
-      last = 0
-      do first = 1, size(status)
-         if (first <= last .or. .not. moves(first)) cycle
-         last = first
-         do while (moves(last + 1))
-            last = last + 1
-         end do
-         widest = max(widest, last - first + 1)
-         if (.not. (any(holds(status(max(first - 1, 1):first - 1))) .or. &
-                    any(holds(status(last + 1:min(last + 1, size(status))))))) widest = max(widest, resolved_nodes)
+      do i = 1, size(zones)
+         nodes = zones(i)%last - zones(i)%first + 1
+         if (.not. (holds_at(zones(i)%first - 1) .or. holds_at(zones(i)%last + 1))) nodes = max(nodes, resolved_nodes)
+         widest = max(widest, nodes)
       end do
+
+   contains
+
+      pure logical function holds_at(node)
+         integer, intent(in) :: node
+
+         holds_at = .false.
+         if (node >= 1 .and. node <= size(status)) holds_at = holds(status(node))
+      end function holds_at
    end function widest_slip_zone
 
    !> Add the load segment from `start` to `state`. `nodes`: largest number of nodes in a slip zone on it. `tolerance`:

@@ -207,7 +207,13 @@ contains
       logical :: before
       integer :: i, number
 
-      allocate (zones(count(inside .and. .not. [.false., inside(:size(inside) - 1)])))
+      number = 0
+      before = .false.
+      do i = 1, size(inside)
+         if (inside(i) .and. .not. before) number = number + 1
+         before = inside(i)
+      end do
+      allocate (zones(number))
       number = 0
       before = .false.
       do i = 1, size(inside)

@@ -1,7 +1,7 @@
 !> The gap of a scene in terms of closed forms, and the contact that they expect.
 module mfv_scene_indenter
    use mfv_body, only: body_type, shape_flat_punch, shape_half_plane, shape_matrix, shape_power, shape_profile, &
-                       shape_rounded_punch
+                       shape_rounded_punch, shape_wedge
    use mfv_kinds, only: wp
    use mfv_motions, only: motion_approach, control_force, control_displacement
    use mfv_reference_indenter, only: flat_indenter, indenter_type, power_indenter, rounded_punch_indenter
@@ -40,14 +40,16 @@ contains
    pure logical function has_form(body)
       type(body_type), intent(in) :: body
 
-      has_form = body%circular() .or. any(body%shape == [shape_half_plane, shape_flat_punch, shape_rounded_punch, shape_power])
+      has_form = body%circular() .or. &
+                 any(body%shape == [shape_half_plane, shape_flat_punch, shape_rounded_punch, shape_power, shape_wedge])
    end function has_form
 
    pure subroutine add_body(indenter, body)
       type(indenter_type), intent(inout) :: indenter
       type(body_type), intent(in) :: body
 
-      if (body%shape == shape_power) call indenter%add(power_indenter(body%coefficient, body%exponent))
+      if (any(body%shape == [shape_power, shape_wedge])) &
+         call indenter%add(power_indenter(body%coefficient, body%exponent))
       if (body%shape == shape_rounded_punch) call indenter%add(rounded_punch_indenter(body%flat_half_width, body%radius))
    end subroutine add_body
 

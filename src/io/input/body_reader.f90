@@ -148,7 +148,7 @@ contains
       case ('rounded_punch')
          body = new_rounded_punch(value('half_width'), value('edge_radius'))
       case ('wedge')
-         body = new_power(tan(degree*value('angle')), 1.0_wp)
+         body = new_wedge(tan(degree*value('angle')))
       case ('power')
          body = new_power(value('coefficient'), value('exponent'))
       case default

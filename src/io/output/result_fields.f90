@@ -2,7 +2,7 @@
 !> their names from here.
 module mfv_result_fields
    use, intrinsic :: ieee_arithmetic, only: ieee_is_nan, ieee_positive_inf, ieee_quiet_nan, ieee_value
-   use mfv_body, only: body_type, shape_names, shape_power, shape_wedge
+   use mfv_body, only: body_type, shape_names
    use mfv_body_pair, only: lower_body, upper_body
    use mfv_case, only: case_type
    use mfv_certificate, only: residual_count, residual_descriptions, residual_names
@@ -221,9 +221,9 @@ contains
       call add('linear_solver', trim(simulation%contact%system%name))
       call add('lower_body', trim(body_name(case%scene%lower)))
       call add('upper_body', trim(body_name(case%scene%upper)))
-      if (allocated(simulation%estimate)) call add('error_estimate', trim(merge('there', 'none ', has_estimate(simulation)))// &
+      if (allocated(simulation%estimate)) call add('error_estimate', trim(merge('yes ', 'none', has_estimate(simulation)))// &
                                                    separated(simulation%estimate%message))
-      if (allocated(simulation%sensitivity)) call add('sensitivity', trim(merge('there', 'none ', has_sensitivity(simulation)))// &
+      if (allocated(simulation%sensitivity)) call add('sensitivity', trim(merge('yes ', 'none', has_sensitivity(simulation)))// &
                                                       separated(simulation%sensitivity%message))
 
    contains
@@ -249,12 +249,8 @@ contains
       type(body_type), intent(in) :: body
       character(len=len('rigid ') + len(shape_names)) :: name
 
-      integer :: shape
-
-      shape = body%shape
-      if (shape == shape_power .and. .not. abs(body%exponent - 1.0_wp) > 0.0_wp) shape = shape_wedge
-      name = word(shape_names, shape)
-      if (body%rigid) name = 'rigid '//word(shape_names, shape)
+      name = word(shape_names, body%shape)
+      if (body%rigid) name = 'rigid '//name
    end function body_name
 
    !> Word `number` of a list of words; padded with blanks.
