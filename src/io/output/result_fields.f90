@@ -250,7 +250,7 @@ contains
       character(len=len('rigid ') + len(shape_names)) :: name
 
       name = word(shape_names, body%shape)
-      if (body%rigid) name = 'rigid '//name
+      if (body%rigid) name = 'rigid '//word(shape_names, body%shape)
    end function body_name
 
    !> Word `number` of a list of words; padded with blanks.
