@@ -7,6 +7,9 @@ jobs=$(nproc 2>/dev/null || echo 2)
 
 say() { printf '== %s\n' "$*"; }
 
+# Targets that a user needs, without the tests.
+programs='mfv_run mfv_stress mfv_conventional'
+
 # Debian packages: compilers, build tools, and the libraries that MFV depends on.
 packages='gfortran gcc make cmake libopenblas-dev liblapack-dev libgsl-dev libfftw3-dev libhdf5-dev'
 
@@ -52,9 +55,9 @@ python_environment() {
 
 # Configure and build one preset. $1: its name; further arguments: options of the build, such as --target mfv_run.
 build() {
-  say "building preset $1 in build/$1"
+  log=build/$1/build.log
+  say "building preset $1: takes up to a few minutes; log: $log"
   cd "$root"
   mkdir -p "build/$1"
-  log=build/$1/build.log
   { cmake --preset "$1" && cmake --build --preset "$@" --parallel "$jobs"; } >"$log" 2>&1 || { tail -n 40 "$log"; return 1; }
 }

@@ -2,7 +2,8 @@
 # Installs what is missing, builds MFV, solves examples/mindlin.nml and draws it. Safe to repeat.
 . "$(dirname "$0")/common.sh"
 install_missing
-build release
+# shellcheck disable=SC2086
+build release --target $programs    # scripts/test.sh builds the tests in the same folder
 python_environment report
 mkdir -p "$root/build/demo"
 cd "$root/build/demo"

@@ -3,7 +3,8 @@
 # gallery, checks every link. Safe to repeat. The site can be read offline.
 . "$(dirname "$0")/common.sh"
 install_missing
-build release --target mfv_run mfv_stress mfv_conventional
+# shellcheck disable=SC2086
+build release --target $programs
 site=$root/build/docs
 venv=$site/venv
 if [ ! "$venv/done" -nt "$root/pyproject.toml" ]; then
