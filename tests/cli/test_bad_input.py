@@ -118,8 +118,6 @@ def wrong_values(row: Row) -> Iterator[str]:
         yield from NO_LOGICALS
     if row.kind == "choice":
         yield from (*NO_TEXTS, "''", f"'{row.choices[0]}x'", f"'{' '.join(row.choices)}'", row.choices[0])
-    if not row.is_list:
-        yield from (f"{row.value}, {row.value}", f"{row.value} {row.value}", f"2*{row.value}")
 
 
 def right_values(row: Row) -> Iterator[str]:
@@ -180,6 +178,9 @@ def test_every_fault_of_a_key_is_told(folder: Path, group: str, key: str, row: R
     for value in wrong_values(row):
         unit = f" ({row.unit})" if row.unit else ""
         refused(f"{key}={value}", f"&{group} {key}={shown(value)}: must be {row.right}{unit}")
+    if not row.is_list:
+        for value in (f"{row.value}, {row.value}", f"{row.value} {row.value}", f"2*{row.value}"):
+            refused(f"{key}={value}", f"&{group} {key}={shown(value)}: one value expected, found 2")
     refused(f"{key}={row.value}, {key}={row.value}", "the key is given twice")
     refused(f"{key}{key[-1]}={row.value}", f"unknown key; did you mean {key}?")
     refused(f"x{key}={row.value}", "unknown key; did you mean ")
@@ -188,7 +189,7 @@ def test_every_fault_of_a_key_is_told(folder: Path, group: str, key: str, row: R
     # What has no = is one more value where the key before it has taken the place of a key.
     message = complaint(written(groups, row, key, f"{key} {row.value}"))
     assert re.match(rf"case\.nml:{line + 1}: &{group} {key}: expected '=' after the key", message) or re.match(
-        rf"case\.nml:{line}: &{group} .*{key}.*: must be ", message
+        rf"case\.nml:{line}: &{group} .*{key}.*: (must be |one value expected, found 3)", message
     ), message
     refused(f"{key}={row.value}, 0*{row.value}", "the number before * must be a whole number from 1 to")
     refused(f"{key}={row.value}, 3*", "a value is missing after *")

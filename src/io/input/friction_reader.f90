@@ -165,7 +165,7 @@ contains
       type(reader_type), intent(in) :: reader
       type(scene_type), intent(in) :: scene
       type(error_type), allocatable, intent(out) :: error
-      character(:), allocatable :: key
+      character(:), allocatable :: key, advice
       real(wp), allocatable :: given(:)
       integer :: nodes
 
@@ -175,13 +175,15 @@ contains
       if (reader%has('friction', 1, 'mu')) key = 'mu'
       call reader%real_values('friction', 1, key, given)
       if (size(given) == 1) key = 'mu_kinetic'
+      advice = ''
+      if (size(given) == 2 .and. .not. any(abs(given - anint(given)) > 0.0_wp)) advice = decimal_point
       nodes = scene%mesh%nodes
       if (scene%lower%shape == shape_matrix) nodes = size(scene%lower%position)
       if (scene%lower%shape /= shape_matrix .and. .not. scene%mesh%half_width > 0.0_wp) then
-         call reader%complain('friction', 1, key, 'one value per node needs a mesh with half_width or half_angle', error)
+         call reader%complain('friction', 1, key, 'one value per node needs a mesh with half_width or half_angle'//advice, error)
       else if (size(scene%friction%static%value) /= nodes) then
          call reader%complain('friction', 1, key, 'must have one value, or one per node ('//to_text(nodes)//'), not '// &
-                              to_text(size(scene%friction%static%value)), error)
+                              to_text(size(scene%friction%static%value))//advice, error)
       end if
    end subroutine check_coefficients_a_node
 

@@ -11,8 +11,10 @@ module mfv_key_reader
    use mfv_strings, only: has_word, list_of_words, lower_case, shortened, string_type, to_text
    implicit none
    private
-   public :: reader_type, check_groups, check_entries, count_groups, line_of, find_file, fail
+   public :: reader_type, check_groups, check_entries, count_groups, line_of, find_file, fail, decimal_point
 
+   !> Advice at the end of a message about 50,5, which is two values.
+   character(*), parameter :: decimal_point = '; write decimals with a point'
    character(*), parameter :: words_for_true = ' .true. t true .t. ', words_for_false = ' .false. f false .f. '
 
    !> A parsed text with its catalogue of keys.
@@ -146,11 +148,26 @@ contains
       end do
       why = ''
       if (right) return
+      if (size(entry%values) > 1 .and. .not. key%is_list) then
+         why = 'one value expected, found '//to_text(size(entry%values))
+         if (key%kind == kind_real .and. has_decimal_comma(entry)) why = why//decimal_point
+         return
+      end if
       call describe_allowed(key, why)
       why = 'must be '//why
       if (key%unit /= '') why = why//' ('//key%unit//')'
       if (.not. reasonable) why = why//'; '//reasonable_sizes
    end subroutine find_fault
+
+   !> Whether the values may be a single number with a decimal comma.
+   pure logical function has_decimal_comma(entry)
+      type(entry_type), intent(in) :: entry
+      character(*), parameter :: digits = '0123456789'
+
+      has_decimal_comma = size(entry%values) == 2 .and. .not. any(entry%is_quoted)
+      if (has_decimal_comma) has_decimal_comma = verify(entry%values(1)%text, '+-'//digits) == 0 .and. &
+                                                 verify(entry%values(2)%text, digits) == 0
+   end function has_decimal_comma
 
    !> Path of the file that a key names, relative to the case; `in_memory`: the name of data in memory.
    subroutine find_file(reader, group, number, name, path, in_memory)

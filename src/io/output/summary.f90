@@ -61,7 +61,6 @@ contains
          words = trim(numbered(simulation%contact%events, 'event'))//', '//words
          words = words//trim(numbered(simulation%contact%system%solves, 'linear solve'))
          call add_line(text, 'work', words//' ('//trim(simulation%contact%system%name)//'), '//to_text(seconds, 3)//' s')
-         call add_compliance(text, model)
          call add_line(text, 'certificate', 'largest relative residual '//amount(fields, 'largest_residual'))
          if (field_named(fields, 'increment_traction_error') > 0) &
             call add_line(text, 'large increments', 'estimated errors: '// &
@@ -134,19 +133,15 @@ contains
       if (words /= '') call add_line(text, 'largest tension', words(3:))
    end subroutine add_tension
 
-   !> Compliance blocks of the scene, memory of the kernels or matrices, and time of assembly.
+   !> Memory of the kernels or matrices, and time of assembly.
    subroutine add_compliance(text, model)
       character(:), allocatable, intent(inout) :: text
       type(contact_model_type), intent(in) :: model
-      character(*), parameter :: blocks(4) = ['C_wp', 'C_wt', 'C_up', 'C_ut'], bodies(2) = ['lower', 'upper']
+      character(*), parameter :: bodies(2) = ['lower', 'upper']
       character(:), allocatable :: words
       integer :: i
 
       words = ''
-      do i = 1, size(blocks)
-         if (model%compliance%elastic_block(i)) words = words//' '//blocks(i)
-      end do
-      words = words(2:)
       do i = 1, size(bodies)
          words = words//', '//bodies(i)//' body '
          if (model%compliance%deforms(i)) then
@@ -155,7 +150,7 @@ contains
             words = words//'rigid'
          end if
       end do
-      call add_line(text, 'compliance', words//', '//to_text(model%assembly_seconds, 2)//' s')
+      call add_line(text, 'compliance', words(3:)//', assembled in '//to_text(model%assembly_seconds, 2)//' s')
    end subroutine add_compliance
 
    !> Values with their error bars, one per line, or why there are none.
