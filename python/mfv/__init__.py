@@ -14,6 +14,10 @@ from importlib.metadata import version as _installed_version
 from pathlib import Path as _Path
 from types import ModuleType
 
+from ._packages import check_required
+
+check_required()
+
 from . import errors, reference, stress
 from ._library import has_feature, library_version
 from .case import Case, State, Trial, run

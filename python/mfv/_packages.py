@@ -1,14 +1,38 @@
-"""Optional Python packages."""
+"""Python packages that this one needs."""
 
 from __future__ import annotations
 
 import sys
+from importlib.util import find_spec
+from pathlib import Path
+
+#: Packages without which this one cannot be imported.
+REQUIRED = ("numpy", "h5py", "f90nml")
 
 #: Packages that belong together, as the extras of pyproject.toml have them.
-TOGETHER = (("plotly", "jinja2"), ("xarray", "h5netcdf", "threadpoolctl"), ("dask", "distributed"))
+TOGETHER = (
+    (*REQUIRED, "matplotlib", "tqdm"),
+    ("plotly", "jinja2"),
+    ("xarray", "h5netcdf", "threadpoolctl"),
+    ("dask", "distributed"),
+)
 
 
 def how_to_install(package: str) -> str:
     """The command that installs a package and related ones for this Python."""
     packages = next((group for group in TOGETHER if package in group), (package,))
     return f'"{sys.executable}" -m pip install {" ".join(repr(name) for name in packages)}'
+
+
+def check_required() -> None:
+    """Raises ModuleNotFoundError if this Python does not have the required packages; `python -m mfv` exits with a message instead."""
+    missing = [name for name in REQUIRED if find_spec(name) is None]
+    if not missing:
+        return
+    environment = Path(__file__).resolve().parents[2] / "build/venv/bin/python"
+    advice = f"use {environment}" if environment.is_file() else how_to_install(missing[0])
+    message = f"{sys.executable} does not have the Python packages {', '.join(missing)}: {advice}"
+    if sys.argv[:1] == ["-m"]:  # python -m mfv imports the package before its arguments are read
+        print(f"mfv: {message}", file=sys.stderr)
+        sys.exit(2)
+    raise ModuleNotFoundError(message, name=missing[0])

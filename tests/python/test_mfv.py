@@ -503,6 +503,15 @@ def test_cycles_of_a_result_and_their_picture(tmp_path: Path, capsys: pytest.Cap
     assert "this result has no cycles" in capsys.readouterr().err
 
 
+def test_a_python_without_the_needed_packages_ends_with_a_message(tmp_path: Path) -> None:
+    environment = {**os.environ, "PYTHONPATH": str(PROJECT / "python")}
+    for arguments, beginning in (("-m", "mfv"), "mfv: "), (("-c", "import mfv"), "Traceback"):
+        done = subprocess.run([sys.executable, "-S", *arguments], env=environment, cwd=tmp_path, capture_output=True, text=True)
+        assert done.returncode == (2 if beginning == "mfv: " else 1) and done.stderr.startswith(beginning), done.stderr
+        assert f"{sys.executable} does not have the Python packages numpy, h5py, f90nml: " in done.stderr
+        assert done.stdout == ""
+
+
 @pytest.mark.parametrize("arguments", [["--step"], ["draw"], ["plot"], ["plot", "x.h5", "--step", "two"]])
 def test_a_wrong_command_line_ends_with_code_2(arguments: list[str]) -> None:
     with pytest.raises(SystemExit) as caught:
