@@ -21,10 +21,11 @@ from numpy.typing import ArrayLike, NDArray
 
 from . import _html, errors
 from ._library import LARGEST_INTEGER, library, real_pointer, text_buffer, text_for, text_of, whole_text
+from ._suggestions import suggestion
 from .inputs import groups
 
 if TYPE_CHECKING:
-    from typing_extensions import Unpack
+    from typing_extensions import Self, Unpack
     from typing_extensions import dataclass_transform as _dataclass_transform
 
     from .case import Case
@@ -65,8 +66,12 @@ class KeyGroup:
     @classmethod
     def _names(cls) -> list[str]:
         """Names of the keys and of the other fields; a subclass of a group has those of the group."""
-        group = next(kind for kind in cls.__mro__ if KeyGroup in kind.__bases__)
-        return [name for name in group.__annotations__ if not name.startswith("_")]
+        return [name for name in cls._group().__annotations__ if not name.startswith("_")]
+
+    @classmethod
+    def _group(cls) -> type[KeyGroup]:
+        """The class of the group that this is or inherits from."""
+        return next(kind for kind in cls.__mro__ if KeyGroup in kind.__bases__)
 
     def keys(self) -> dict[str, Any]:
         """The given keys with their values."""
@@ -78,10 +83,24 @@ class KeyGroup:
         values = {name: getattr(self, name) for name in self._names()}
         return {name: value for name, value in values.items() if value is not None}
 
+    def __new__(cls, *_: Any, **keys: Any) -> Self:
+        """Raises TypeError for an unknown keyword, with a proposal; a subclass may have a constructor with others."""
+        if cls.__init__ is cls._group().__init__:
+            for name in keys:
+                if unknown := cls._unknown(name):
+                    raise TypeError(unknown)
+        return super().__new__(cls)
+
+    @classmethod
+    def _unknown(cls, name: str) -> str:
+        """The message about an unknown attribute; empty if there is such an attribute."""
+        if any(name in getattr(kind, "__annotations__", ()) for kind in cls.__mro__):
+            return ""
+        return f"{cls.__name__} has no '{name}'{suggestion(name, [*cls.key_names(), *cls._not_keys])}"
+
     def __setattr__(self, name: str, value: Any) -> None:
-        if not any(name in getattr(kind, "__annotations__", ()) for kind in type(self).__mro__):
-            known = ", ".join([*self.key_names(), *self._not_keys])
-            raise AttributeError(f"{type(self).__name__} has no '{name}'; it has {known}")
+        if unknown := self._unknown(name):
+            raise AttributeError(unknown)
         super().__setattr__(name, value)
 
     def __eq__(self, other: object) -> bool:

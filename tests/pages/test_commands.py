@@ -455,6 +455,13 @@ def test_new_lists_templates_and_names_what_it_does_not_have(
     assert [path.name for path in tmp_path.iterdir()] == ["cylinder.nml"]
 
 
+def test_a_misspelled_command_has_a_proposal(capsys: pytest.CaptureFixture[str]) -> None:
+    for word, proposal in (("plto", "did you mean plot?"), ("xyz", "choose from new, plot, ")):
+        with pytest.raises(SystemExit) as caught:
+            main([word, "case.h5"])
+        assert caught.value.code == 2 and f"unknown command '{word}'; {proposal}" in capsys.readouterr().err
+
+
 @pytest.mark.parametrize("command", ["new", "plot", "info", "compare", "animate", "report", "study"])
 def test_every_command_teaches(command: str, capsys: pytest.CaptureFixture[str]) -> None:
     with pytest.raises(SystemExit) as caught:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import copy
+import dataclasses
 import os
 import pickle
 import re
@@ -119,11 +120,17 @@ def test_constructors_give_the_keys() -> None:
 
 
 def test_keys_are_given_by_name_and_only_those_there_are() -> None:
-    with pytest.raises(TypeError):
+    with pytest.raises(TypeError, match="Body has no 'radiuss'; did you mean radius?"):
         mfv.Body(shape="disk", radiuss=0.25)  # type: ignore[call-arg]
-    with pytest.raises(AttributeError, match="Step has no 'normal_froce'; it has normal_force, approach"):
+    with pytest.raises(TypeError, match="Body has no 'youngs_moduls'; did you mean youngs_modulus?"):
+        mfv.Body.disk(50.0, youngs_moduls=1.0)  # type: ignore[call-arg]
+    with pytest.raises(TypeError, match="Scene has no 'titel'; did you mean title?"):
+        mfv.Scene(DISK, DISK, titel="x")  # type: ignore[call-arg]
+    with pytest.raises(TypeError, match="Step has no 'xyz'; choose from normal_force, approach"):
+        dataclasses.replace(PRESS, xyz=1.0)
+    with pytest.raises(AttributeError, match="Step has no 'normal_froce'; did you mean normal_force?"):
         PRESS.normal_froce = 1.0
-    with pytest.raises(AttributeError, match="Scene has no 'step'; it has title"):
+    with pytest.raises(AttributeError, match="Scene has no 'step'; did you mean steps?"):
         cylinder().step = PRESS
 
 
@@ -201,6 +208,12 @@ def test_bodies_can_be_subclassed() -> None:
     rounded.grade = "S355"
     with pytest.raises(AttributeError, match="Steel has no 'radiu'"):
         rounded.radiu = 0.25
+
+    class Ball(mfv.Body):
+        def __init__(self, diameter: float) -> None:
+            super().__init__(shape="disk", radius=diameter / 2.0, rigid=True)
+
+    assert Ball(diameter=0.5).keys() == DISK.keys()
     scene = cylinder(PRESS)
     scene.upper = rounded
     assert scene.run().outcome == "complete"

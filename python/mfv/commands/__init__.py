@@ -10,6 +10,7 @@ from pathlib import Path
 
 from .. import __version__
 from .._packages import how_to_install
+from .._suggestions import suggestion
 from ..errors import MfvError
 from . import animate, compare, info, new, plot, report, study
 from .completion import complete
@@ -39,9 +40,13 @@ def main(arguments: list[str] | None = None) -> int:
     """Run the command line; return the exit code."""
     parser = _parser()
     complete(parser)
-    if not (sys.argv[1:] if arguments is None else arguments):
+    words = sys.argv[1:] if arguments is None else arguments
+    if not words:
         print(_overview())
         return 0
+    names = [module.NAME for module in COMMANDS]
+    if not words[0].startswith("-") and words[0] not in names:
+        parser.error(f"unknown command '{words[0]}'{suggestion(words[0], names)}")
     options = parser.parse_args(arguments)
     try:
         code: int = options.command(options) or 0

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import difflib
 import math
 import os
 import re
@@ -12,6 +11,7 @@ from pathlib import Path
 from typing import Any, NoReturn
 
 from .. import errors
+from .._suggestions import suggestion
 from ..errors import input_error
 from ..inputs import groups
 from ..scene import _scene_handle, _text_of_scene
@@ -185,10 +185,10 @@ class _Reader:
     def _check_groups(self) -> None:
         for group in self.groups:
             if group.name not in KEYS:
-                self._fail(group.line, f"&{group.name}: unknown group{_suggestion(group.name, KEYS, '&')}")
+                self._fail(group.line, f"&{group.name}: unknown group{suggestion(group.name, KEYS, '&')}")
             for key in group.lines:
                 if key not in KEYS[group.name]:
-                    self._fail(group.lines[key], f"&{group.name} {key}: unknown key{_suggestion(key, KEYS[group.name])}")
+                    self._fail(group.lines[key], f"&{group.name} {key}: unknown key{suggestion(key, KEYS[group.name])}")
             if group.twice:
                 self._fail(group.lines[group.twice[0]], f"&{group.name} {group.twice[0]}: given twice")
             number = self._varied().index(group) + 1 if group.name == "vary" else 0
@@ -311,12 +311,6 @@ def _fault_of_values(key: Key, values: Sequence[Any]) -> str:
         for value in values
     )
     return "" if is_right else f"must be {_wanted(key)}"
-
-
-def _suggestion(word: str, known: Sequence[str] | dict[str, Any], before: str = "") -> str:
-    """The nearest known word as a question, else all of them."""
-    near = difflib.get_close_matches(word, list(known), n=1)
-    return f"; did you mean {before}{near[0]}?" if near else f"; choose from {', '.join(known)}"
 
 
 def _placed(text: str, parsed: Sequence[tuple[str, dict[str, Any]]]) -> list[_Group]:
