@@ -7,9 +7,6 @@ jobs=$(nproc 2>/dev/null || echo 2)
 
 say() { printf '== %s\n' "$*"; }
 
-# Targets that a user needs, without the tests.
-programs='mfv_run mfv_stress mfv_conventional'
-
 # Debian packages: compilers, build tools, and the libraries that MFV depends on.
 packages='gfortran gcc make cmake libopenblas-dev liblapack-dev libgsl-dev libfftw3-dev libhdf5-dev'
 
@@ -61,3 +58,6 @@ build() {
   mkdir -p "build/$1"
   { cmake --preset "$1" && cmake --build --preset "$@" --parallel "$jobs"; } >"$log" 2>&1 || { tail -n 40 "$log"; return 1; }
 }
+
+# Build what a user needs: programs and library, not the tests.
+build_programs() { build release --target mfv_run mfv_stress mfv_conventional; }

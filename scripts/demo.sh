@@ -2,8 +2,7 @@
 # Installs what is missing, builds MFV, solves examples/mindlin.nml and draws it. Safe to repeat.
 . "$(dirname "$0")/common.sh"
 install_missing
-# shellcheck disable=SC2086
-build release --target $programs    # scripts/test.sh builds the tests in the same folder
+build_programs
 python_environment report
 mkdir -p "$root/build/demo"
 cd "$root/build/demo"

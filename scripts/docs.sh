@@ -3,8 +3,7 @@
 # gallery, checks every link. Safe to repeat. The site can be read offline.
 . "$(dirname "$0")/common.sh"
 install_missing
-# shellcheck disable=SC2086
-build release --target $programs
+build_programs
 site=$root/build/docs
 venv=$site/venv
 if [ ! "$venv/done" -nt "$root/pyproject.toml" ]; then

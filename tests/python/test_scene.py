@@ -124,8 +124,8 @@ def test_keys_are_given_by_name_and_only_those_there_are() -> None:
         mfv.Body(shape="disk", radiuss=0.25)  # type: ignore[call-arg]
     with pytest.raises(TypeError, match="Body has no 'youngs_moduls'; did you mean youngs_modulus?"):
         mfv.Body.disk(50.0, youngs_moduls=1.0)  # type: ignore[call-arg]
-    with pytest.raises(TypeError, match="Scene has no 'titel'; did you mean title?"):
-        mfv.Scene(DISK, DISK, titel="x")  # type: ignore[call-arg]
+    with pytest.raises(TypeError, match="Scene has no 'sovler'; did you mean solver?"):
+        mfv.Scene(DISK, DISK, sovler=None)  # type: ignore[call-arg]
     with pytest.raises(TypeError, match="Step has no 'xyz'; choose from normal_force, approach"):
         dataclasses.replace(PRESS, xyz=1.0)
     with pytest.raises(AttributeError, match="Step has no 'normal_froce'; did you mean normal_force?"):

@@ -122,13 +122,14 @@ contains
       type(entry_type), intent(in) :: entry
       character(:), allocatable, intent(out) :: why
       real(wp) :: value
-      logical :: right, reasonable
+      logical :: right, reasonable, is_text
       integer :: i
 
+      is_text = key%kind == kind_text .or. key%kind == kind_choice
       reasonable = .true.
       right = size(entry%values) == 1 .or. (key%is_list .and. size(entry%values) > 1)
       do i = 1, size(entry%values)
-         if (right) right = entry%is_quoted(i) .eqv. (key%kind == kind_text .or. key%kind == kind_choice)
+         if (right) right = entry%is_quoted(i) .eqv. is_text
          if (.not. right) exit
          associate (text => entry%values(i)%text)
             select case (key%kind)
@@ -148,7 +149,7 @@ contains
       end do
       why = ''
       if (right) return
-      if (size(entry%values) > 1 .and. .not. key%is_list) then
+      if (size(entry%values) > 1 .and. .not. key%is_list .and. all(entry%is_quoted .eqv. is_text)) then
          why = 'one value expected, found '//to_text(size(entry%values))
          if (key%kind == kind_real .and. has_decimal_comma(entry)) why = why//decimal_point
          return
