@@ -1,9 +1,10 @@
-# MFV_ARCHIVES: the dependencies of the static library for the programs of this build, HDF5, GSL and FFTW as static libraries; empty if
-# these are not installed or cannot be linked. Debian's shared HDF5 loads some 35 further libraries (curl, Kerberos, LDAP), which takes
-# 7 ms at every start; they serve parts of HDF5 that the programs do not use. LAPACK is shared: 30 MB otherwise.
+# MFV_ARCHIVES: what the static library is linked with in the programs of this build: HDF5, GSL and FFTW as static libraries. Empty if
+# these are not installed or cannot be linked; the programs then use shared libraries. Debian's shared HDF5 loads some 35 further
+# libraries (curl, Kerberos, LDAP), which takes 7 ms at every start; they serve parts of HDF5 that the programs do not use. LAPACK is
+# always shared: OpenBLAS would add 26 MB to each program.
 include(CheckSourceCompiles)
 
-# The archives beside the shared libraries. GSL's own CBLAS is last: that of OpenBLAS precedes it with shared libraries, too.
+# The archives beside the shared libraries. OpenBLAS precedes GSL's own CBLAS, as it does with shared libraries.
 set(MFV_ARCHIVES)
 set(lapack ${LAPACK_LIBRARIES} ${BLAS_LIBRARIES})
 foreach(library ${HDF5Fortran_LIBRARIES} ${GSL_LIBRARY} ${FFTW3_LIBRARY} ${lapack} ${GSL_CBLAS_LIBRARY})
