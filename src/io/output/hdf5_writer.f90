@@ -21,6 +21,8 @@ module mfv_hdf5_writer
       integer(hid_t) :: file = -1
       !> First failure of an HDF5 call, 0 for none.
       integer :: code = 0
+      !> Type and dataspace of every text attribute.
+      integer(hid_t), private :: text_type = -1, scalar = -1
       !> Bytes that the file must still have when it is replaced, for a copy with additions.
       integer(int8), allocatable, private :: expected(:)
    end type writer_type
@@ -90,6 +92,7 @@ contains
       call h5fcreate_f(path//in_memory_only, H5F_ACC_TRUNC_F, writer%file, code, access_prp=access)
       call note(writer, code)
       call h5pclose_f(access, code)
+      call make_text_type(writer)
    end subroutine create_file
 
    !> Open a copy of a file, given by its `bytes`; it replaces the file if that is still unchanged.
@@ -108,6 +111,7 @@ contains
       call h5fopen_f(path//in_memory_only, H5F_ACC_RDWR_F, writer%file, code, access_prp=access)
       call note(writer, code)
       call h5pclose_f(access, code)
+      call make_text_type(writer)
    end subroutine open_copy
 
    !> The bytes of a file; not allocated if it cannot be read.
@@ -133,7 +137,7 @@ contains
    subroutine in_memory(access, writer)
       integer(hid_t), intent(out) :: access
       type(writer_type), intent(inout) :: writer
-      integer(size_t), parameter :: growth = 1048576
+      integer(size_t), parameter :: growth = 262144
       logical, parameter :: is_written_at_the_end = .false.
       integer :: code
 
@@ -143,6 +147,19 @@ contains
       call note(writer, code)
    end subroutine in_memory
 
+   !> Make the type and the dataspace of text attributes: UTF-8 of variable length.
+   subroutine make_text_type(writer)
+      type(writer_type), intent(inout) :: writer
+      integer :: code
+
+      call h5tcopy_f(H5T_STRING, writer%text_type, code)
+      call note(writer, code)
+      call h5tset_cset_f(writer%text_type, H5T_CSET_UTF8_F, code)
+      call note(writer, code)
+      call h5screate_f(H5S_SCALAR_F, writer%scalar, code)
+      call note(writer, code)
+   end subroutine make_text_type
+
    !> Close the file and replace the one at `path`, unless writing has failed. `what`: its name for messages. Error MFV_FILE_ERROR.
    subroutine finish_file(path, what, writer, error)
       character(*), intent(in) :: path, what
@@ -151,6 +168,8 @@ contains
       integer(int8), allocatable, target :: bytes(:)
       integer :: code
 
+      call h5sclose_f(writer%scalar, code)
+      call h5tclose_f(writer%text_type, code)
       if (writer%file >= 0) then
          call find_bytes(writer, bytes)
          call h5fclose_f(writer%file, code)
@@ -274,30 +293,25 @@ contains
       call h5sclose_f(space, code)
    end subroutine write_flags
 
-   !> A text attribute, UTF-8 of variable length.
+   !> A text attribute.
    subroutine write_text(writer, object, name, text)
       type(writer_type), intent(inout) :: writer
       integer(hid_t), intent(in) :: object
       character(*), intent(in) :: name, text
       character(len=:, kind=c_char), allocatable, target :: terminated
       type(c_ptr), target :: pointers(1)
-      integer(hid_t) :: text_type, space, attribute
+      integer(hid_t) :: attribute
       integer :: code
 
       terminated = text//c_null_char
       pointers = c_loc(terminated)
-      call h5screate_f(H5S_SCALAR_F, space, code)
-      call h5tcopy_f(H5T_STRING, text_type, code)
-      call h5tset_cset_f(text_type, H5T_CSET_UTF8_F, code)
-      call h5acreate_f(object, name, text_type, space, attribute, code)
+      call h5acreate_f(object, name, writer%text_type, writer%scalar, attribute, code)
       call note(writer, code)
       if (code == 0) then
-         call h5awrite_f(attribute, text_type, c_loc(pointers), code)
+         call h5awrite_f(attribute, writer%text_type, c_loc(pointers), code)
          call note(writer, code)
          call h5aclose_f(attribute, code)
       end if
-      call h5sclose_f(space, code)
-      call h5tclose_f(text_type, code)
    end subroutine write_text
 
    !> The version of HDF5, as an attribute of the file.
