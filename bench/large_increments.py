@@ -48,11 +48,11 @@ def study_cycles(cycles: int) -> None:
     exact = np.array(events.cycles.dissipation)
     print(f"events: {events.summary.linear_solves} solves")
     for tolerance in (1e-2, 1e-3, 1e-4):
-        result = cycles_scene(Solver(stepping="leap", leap_tolerance=tolerance), cycles).run()
+        result = cycles_scene(Solver(stepping="leap", accuracy=tolerance), cycles).run()
         error = np.array(result.cycles.dissipation) / exact - 1
         shear = np.abs(result.state.shear - events.state.shear).max() / np.abs(events.state.pressure).max()
         print(
-            f"leap_tolerance {tolerance:.0e}: {result.summary.linear_solves} solves, {result.summary.leaps} increments, error of "
+            f"accuracy {tolerance:.0e}: {result.summary.linear_solves} solves, {result.summary.leaps} increments, error of "
             f"a cycle {np.abs(error).max():.1e}, of the first {error[0]:.1e}, of the last {error[-1]:.1e}, of the shear {shear:.0e}, "
             f"estimated {result.summary.increment_dissipation_error:.0e} and {result.summary.increment_traction_error:.0e}"
         )
@@ -145,7 +145,7 @@ def study_random(scenes: int, tolerance: float) -> None:
     rows, solves, beyond = [], np.zeros(2, int), 0
     for seed in range(scenes):
         events = random_scene(seed, Solver(stepping="event")).run()
-        result = random_scene(seed, Solver(stepping="leap", leap_tolerance=tolerance)).run()
+        result = random_scene(seed, Solver(stepping="leap", accuracy=tolerance)).run()
         if events.outcome != result.outcome:
             print(f"scene {seed}: {events.outcome} by events, {result.outcome} by large increments")
         if "complete" not in (events.outcome, result.outcome) or events.outcome != result.outcome:

@@ -308,8 +308,8 @@ class Solver(KeyGroup):
     """The solver: the keys of &solver."""
 
     algorithm: Literal["mfv", "conventional"] | None = None
-    stepping: Literal["event", "nominal", "leap"] | None = None
-    leap_tolerance: float | None = None
+    accuracy: float | None = None
+    stepping: Literal["auto", "event", "nominal", "leap"] | None = None
     load_step: float | None = None
     integration: Literal["second_order", "explicit"] | None = None
     friction_tolerance: float | None = None

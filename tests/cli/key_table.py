@@ -326,8 +326,10 @@ CASE: dict[tuple[str, str], Row] = {
     ("step", "cycles"): whole("step(3)", "cycles", "2", 0, 1000000, refused={"0": "has no effect without cycles of 2 or more"}),
     ("step", "steady_tolerance"): positive("step(3)", "cycles", "1e-6"),
     ("solver", "algorithm"): choice("solver", "cylinder", "'mfv'", "mfv conventional"),
-    ("solver", "stepping"): choice("solver", "cylinder", "'event'", "event nominal leap"),
-    ("solver", "leap_tolerance"): part("solver", "cylinder", "1e-3"),
+    ("solver", "stepping"): choice(
+        "solver", "cylinder", "'event'", "auto event nominal leap", refused={"'leap'": "'leap' needs an accuracy above 0"}
+    ),
+    ("solver", "accuracy"): real("solver", "cylinder", "1e-3", lower=0.0, upper=0.1),
     ("solver", "load_step"): part("solver", "cylinder", "0.05"),
     ("solver", "integration"): choice("solver", "dahl", "'explicit'", "second_order explicit"),
     ("solver", "friction_tolerance"): part("solver", "dahl", "1e-4", dear=("1e-12",)),

@@ -57,7 +57,7 @@ VARIANTS = {
         "&friction law='coulomb', mu_file='columns.txt' /",
     ],
     "&step tangential_force=2.8e-4 /": [
-        "&step force_ratio=0.4 /\n&solver stepping='leap', leap_tolerance=1e-3 /",
+        "&step force_ratio=0.4 /\n&solver stepping='leap', accuracy=1e-3 /",
         "&step shift=1e-5 /\n&solver linear_solver='fft' /",
         "&step approach=1e-4, shift=1e-5 /\n&solver algorithm='conventional', load_step=0.2, iterations=50 /",
         "&step moment=1e-6 /\n&solver stepping='nominal', linear_solver='dgesv', load_step=0.2 /",

@@ -30,7 +30,7 @@ CASES = {
     "fft": BODIES + "&mesh nodes=61 /\n&friction law='coulomb', mu=0.4 /\n&solver linear_solver='fft' /\n" + STEPS,
     "leap": "&scene coupling='goodman' /\n"
     + BODIES
-    + "&mesh nodes=61 /\n&friction law='coulomb', mu=0.4 /\n&solver stepping='leap' /\n"
+    + "&mesh nodes=61 /\n&friction law='coulomb', mu=0.4 /\n&solver stepping='leap', accuracy=1e-3 /\n"
     + PRESS_FIRST,
     "weakening": BODIES
     + "&mesh nodes=21 /\n&friction law='weakening', mu_static=0.5, mu_kinetic=0.4, weakening_distance=1e-3 /\n"

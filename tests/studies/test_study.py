@@ -382,7 +382,7 @@ def test_references_that_are_not_there(study):
 
 
 def test_values_that_do_not_go_together_are_there(study):
-    axes = {"solver%algorithm": ["mfv", "conventional"], "solver%stepping": ["event", "leap"]}
+    axes = {"solver%algorithm": ["mfv", "conventional"], "solver%stepping": ["auto", "nominal"]}
     table = mfv.study(study[0] / "base.nml", axes)
     assert list(flat(table, "outcome")[[0, 1, 3]]) == ["complete", "complete", "input error"]
     assert "has no effect with algorithm='conventional'" in flat(table, "message")[3]

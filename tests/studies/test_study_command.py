@@ -392,11 +392,11 @@ def test_values_that_do_not_go_together_are_told(tmp_path):
     write(
         tmp_path,
         "&sweep base='base.nml' /\n&vary key='solver%algorithm', values='mfv', 'conventional' /\n"
-        "&vary key='solver%stepping', values='event', 'leap' /\n",
+        "&vary key='solver%stepping', values='auto', 'nominal' /\n",
     )
     done = run("study.nml", cwd=tmp_path)
     assert done.returncode == COMPLETE and "4 cases: 3 complete, 1 input error" in done.stdout
-    assert "case 4 (base='base.nml', solver%algorithm='conventional', solver%stepping='leap'): base.nml" in done.stdout
+    assert "case 4 (base='base.nml', solver%algorithm='conventional', solver%stepping='nominal'): base.nml" in done.stdout
 
 
 def test_whole_results(tmp_path):

@@ -44,7 +44,7 @@ module mfv_advice
    !> (docs/verification.md).
    real(wp), parameter :: friction_tolerance_part = 0.3_wp
    !> Tolerance of large increments over the given error: their error is proportional to it.
-   real(wp), parameter :: leap_tolerance_part = 0.1_wp
+   real(wp), parameter :: accuracy_part = 0.1_wp
 
    type :: advice_type
       !> Status (see mfv_status), and why there is no advice; empty with advice.
@@ -61,7 +61,7 @@ module mfv_advice
       integer, allocatable :: pair_nodes(:)
       !> See method_type.
       integer :: linear_solver = solver_auto
-      real(wp) :: linear_tolerance = 0.0_wp, friction_tolerance = 0.0_wp, leap_tolerance = 0.0_wp
+      real(wp) :: linear_tolerance = 0.0_wp, friction_tolerance = 0.0_wp, accuracy = 0.0_wp
       !> Approximate number of linear solves and seconds of the run.
       real(wp) :: solves = 0.0_wp, seconds = 0.0_wp
       !> Linear solves on the finest of the coarse meshes, of &mesh nodes `tried_nodes`, by events and by large increments; 0:
@@ -227,11 +227,11 @@ contains
       type(scene_type) :: large
       type(simulation_type) :: simulation
 
-      if (scene%method%algorithm /= algorithm_mfv .or. scene%method%stepping /= stepping_event) return
+      if (scene%method%algorithm /= algorithm_mfv .or. all(scene%method%stepping /= [stepping_auto, stepping_event])) return
       if (.not. scene%friction%is_proportional() .or. .not. scene%tangential()) return
       large = scene
       large%method%stepping = stepping_leap
-      large%method%leap_tolerance = min(leap_tolerance_part*advice%wanted_error, scene%method%leap_tolerance)
+      large%method%accuracy = accuracy_part*advice%wanted_error
       advice%tried_nodes = 3*advice%pair_nodes(size(advice%pair_nodes))
       trial%message = ''
       call solve(large, advice%tried_nodes, pilot, simulation, trial, watch)
@@ -352,7 +352,7 @@ contains
       unknowns = real(advice%contact_nodes, wp)*merge(2, 1, scene%tangential())
       advice%linear_solver = cheapest_solver(unknowns)
       advice%linear_tolerance = max(tolerance_part*advice%wanted_error, usual%linear_tolerance)
-      advice%leap_tolerance = min(leap_tolerance_part*advice%wanted_error, scene%method%leap_tolerance)
+      advice%accuracy = accuracy_part*advice%wanted_error
       advice%friction_tolerance = min(friction_tolerance_part*advice%wanted_error, scene%method%friction_tolerance)
       advice%solves = law%solves*(advice%contact_nodes/law%nodes)**law%growth
       advice%seconds = advice%solves*seconds_of_solve(advice%linear_solver, unknowns)

@@ -284,8 +284,12 @@ contains
             beyond_limit = max(beyond_limit, abs(after%fields%shear(i)) - limit)
             slipped = after%fields%tangential(i) - after%fields%motion(motion_shift) &
                       - (before%fields%tangential(i) - before%fields%motion(motion_shift))
-            if (is_large .and. .not. before%fields%pressure(i) > 0.0_wp) &
-               slipped = after%fields%tangential(i) - after%fields%motion(motion_shift) - before%stuck_slip(i)
+            if (is_large) then
+               ! Within the increment nodes may have stuck, at the slip in stuck_slip; when they touched is not known.
+               if (status == node_stick) &
+                  slipped = after%fields%tangential(i) - after%fields%motion(motion_shift) - before%stuck_slip(i)
+               if (slips(status) .and. .not. before%fields%pressure(i) > 0.0_wp) slipped = 0.0_wp
+            end if
             if (status == node_stick) then
                sliding = largest_or_nan(sliding, slipped)
             else if (status == node_frictionless) then

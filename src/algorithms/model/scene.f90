@@ -12,14 +12,14 @@ module mfv_scene
    implicit none
    private
    public :: scene_type, mesh_request_type, step_type, method_type, control_keep, control_force, control_displacement, &
-             most_cycles, algorithm_mfv, algorithm_conventional, stepping_event, stepping_nominal, stepping_leap, &
+             most_cycles, algorithm_mfv, algorithm_conventional, stepping_event, stepping_nominal, stepping_leap, stepping_auto, &
              integration_second_order, integration_explicit, solver_auto, solver_dgesv, solver_reduced, solver_fft
 
    !> The Method of First Violation (dissertation section 2.3) or the conventional algorithm (2.2).
    integer, parameter :: algorithm_mfv = 1, algorithm_conventional = 2
    !> Stepping of the Method of First Violation: from rates; from a trial load step and interpolation (2.3 to 2.5); or in large
-   !> increments without events, refined until they are accurate.
-   integer, parameter :: stepping_event = 1, stepping_nominal = 2, stepping_leap = 3
+   !> increments without events, refined until they are accurate; or (auto) what costs least at the allowed error.
+   integer, parameter :: stepping_event = 1, stepping_nominal = 2, stepping_leap = 3, stepping_auto = 4
    !> Linear solvers: chosen by size and structure; the augmented system with LAPACK's dgesv; the reduced system with an updated
    !> factorisation; Krylov iteration with products through FFTW.
    integer, parameter :: solver_auto = 0, solver_dgesv = 1, solver_reduced = 2, solver_fft = 3
@@ -55,8 +55,9 @@ module mfv_scene
       integer :: linear_solver = solver_auto
       !> Tolerance of the relative residual of an iterative linear solver.
       real(wp) :: linear_tolerance = 1.0e-12_wp
-      !> Tolerance of large increments: of tractions, relative to the largest; of the dissipation of a segment, relative to that.
-      real(wp) :: leap_tolerance = 1.0e-3_wp
+      !> Allowed error of large increments: of tractions, relative to the largest; of the dissipation of a segment, relative to that
+      !> dissipation. 0: none, events are followed one by one.
+      real(wp) :: accuracy = 0.0_wp
    end type method_type
 
    !> Mesh settings of the user; what is not set is chosen from an estimate of the contact.

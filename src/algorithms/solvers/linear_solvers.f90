@@ -1,17 +1,18 @@
-!> Choice of the linear solver of a scene.
+!> Choice of the linear solver of a scene, and of its stepping.
 module mfv_linear_solvers
    use mfv_augmented_system, only: augmented_system_type
    use mfv_body, only: shape_matrix, shape_profile
    use mfv_compliance, only: block_wt
    use mfv_contact_model, only: contact_model_type
    use mfv_contact_system, only: contact_system_type
+   use mfv_kinds, only: wp
    use mfv_krylov_system, only: krylov_system_type
    use mfv_reduced_system, only: reduced_system_type
    use mfv_scene
-   use mfv_solver_costs, only: most_apart, most_at_once, most_bristles, most_coupled, most_one_way
+   use mfv_solver_costs, only: least_coupled_leap, least_leap, most_apart, most_at_once, most_bristles, most_coupled, most_one_way
    implicit none
    private
-   public :: new_contact_system
+   public :: new_contact_system, chosen_stepping
 
 contains
 
@@ -37,6 +38,18 @@ contains
          allocate (augmented_system_type :: system)
       end select
    end subroutine new_contact_system
+
+   !> The stepping of the scene of a model. 'auto': large increments if they are allowed (Coulomb friction, an accuracy) and there
+   !> are enough nodes (mfv_solver_costs).
+   pure integer function chosen_stepping(model) result(stepping)
+      type(contact_model_type), intent(in) :: model
+
+      stepping = model%scene%method%stepping
+      if (stepping /= stepping_auto) return
+      stepping = stepping_event
+      if (.not. model%scene%method%accuracy > 0.0_wp .or. .not. model%scene%friction%is_proportional()) return
+      if (model%nodes() >= merge(least_coupled_leap, least_leap, model%compliance%has_block(block_wt))) stepping = stepping_leap
+   end function chosen_stepping
 
    !> The largest number of nodes for the reduced system.
    pure integer function most_reduced(model) result(most)

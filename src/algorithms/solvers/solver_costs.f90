@@ -4,6 +4,7 @@ module mfv_solver_costs
    use mfv_scene, only: solver_dgesv, solver_fft, solver_reduced
    implicit none
    private
+   public :: least_leap, least_coupled_leap
    public :: cheapest_solver, seconds_of_solve, most_coupled, most_one_way, most_apart, most_at_once, &
              most_bristles
 
@@ -16,6 +17,11 @@ module mfv_solver_costs
    !> without coupling, where the reduced system has little to update. With bristles, whose rows change in every increment, or
    !> large increments with coupling.
    integer, parameter :: most_coupled = 1800, most_one_way = 1400, most_apart = 900, most_at_once = 100, most_bristles = 300
+
+   !> Fewest nodes of the mesh for which stepping='auto' takes large increments if an error is allowed. They take some 100 solves to
+   !> press with friction and coupling and 20 to 60 for a half-cycle, on any mesh, events about one for each node that changes its
+   !> status (docs/performance.md). Without coupling they take 4 solves.
+   integer, parameter :: least_leap = 30, least_coupled_leap = 640
 
 contains
 

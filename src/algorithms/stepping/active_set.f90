@@ -16,6 +16,7 @@ module mfv_active_set
    use mfv_kinds, only: pi, wp
    use mfv_motions, only: motions, motion_count, motion_approach, motion_shift, control_force, control_displacement
    use mfv_node_status
+   use mfv_sticking_front, only: find_fronts, fronts_type, left, right
    implicit none
    private
    public :: find_statuses, first_guess
@@ -24,27 +25,31 @@ module mfv_active_set
    real(wp), parameter :: round_off = 1.0e-11_wp
    !> Most linear solves at one load.
    integer, parameter :: most_solves = 60
+   !> Most corrections of the slip that is expected of open nodes, and the relative change below which it is not corrected.
+   integer, parameter :: most_looks = 3
+   real(wp), parameter :: same_slip = 1.0e-7_wp
 
 contains
 
    !> Statuses and fields at the fraction `done` of the segment. The first guess is the statuses of `path`; the start is its
-   !> fields.
+   !> fields. `held`: nodes that hold from the start, while others stick as the edges of their zones move (mfv_sticking_front),
+   !> shape (nodes); if absent, all nodes that stick hold at the slip of the start or of first contact.
    !> `found`: whether there are any. `path` then has the statuses, and in stuck_slip the slip from which that of the increment
    !> counts; its fields remain those of the start. If not found, the statuses are invalid: the system is singular, the statuses
    !> cycle, nothing balances a prescribed force, or every node slips.
-   subroutine find_statuses(path, segment, done, fields, found)
+   subroutine find_statuses(path, segment, done, fields, found, held)
       class(contact_path_type), intent(inout) :: path
       type(segment_type), intent(in) :: segment
       real(wp), intent(in) :: done
       type(contact_fields_type), intent(out) :: fields
       logical, intent(out) :: found
+      logical, intent(in), optional :: held(:)
       type(constraints_type) :: constraints
-      type(response_type) :: response
       integer, dimension(size(path%state%status)) :: wanted
       integer :: tried(size(path%state%status), most_solves)
-      real(wp) :: hold(size(path%state%status))
-      logical :: possible, singular, by_edges
-      integer :: solve, first
+      real(wp), dimension(size(path%state%status)) :: hold, ahead, before
+      logical :: possible, by_edges
+      integer :: solve, first, looks
 
       found = .false.
       by_edges = .true.
@@ -53,17 +58,37 @@ contains
       hold = fields%slip()
       where (path%state%status == node_stick) hold = path%state%stuck_slip
       path%state%stuck_slip = hold
+      ahead = 0.0_wp
+      looks = 0
       do solve = 1, most_solves
          tried(:, solve) = path%state%status
          call constrain(path, segment, done, constraints, possible)
          if (.not. possible) return
-         call path%system%solve(path%model, constraints, fields, response, singular)
-         if (singular) return
-         fields = response%state
-         call find_wanted(path, segment, fields, wanted)
+         path%state%stuck_slip = hold
+         call solve_with_fronts(path, constraints, path%state%stuck_slip, ahead, fields, possible, held)
+         if (.not. possible) return
+         call find_wanted(path, segment, fields, wanted, held)
          found = all(wanted == path%state%status)
-         if (found) return
-         if (by_edges) call move_edges(path%state%status, wanted)
+         if (present(held)) then
+            before = ahead
+            if (all(in_contact(wanted) .eqv. in_contact(path%state%status)) .and. &
+                (found .or. any(path%state%status == node_stick .and. .not. held))) &
+               call find_returning(path, segment, fields, held, wanted, ahead)
+         end if
+         if (all(wanted == path%state%status)) then
+            if (present(held) .and. looks < most_looks) then
+               looks = looks + 1
+               if (maxval(abs(ahead - before)) > same_slip*maxval(abs(fields%slip()))) cycle
+            end if
+            if (present(held)) found = .not. reverses(path, fields, held)
+            return
+         end if
+         if (by_edges) call move_edges(path%state%status, wanted, held)
+         if (found .and. is_among(wanted, tried(:, :solve))) then
+            found = .not. reverses(path, fields, held)
+            return
+         end if
+         found = .false.
          call find_touching(path, fields, wanted, hold)
          call path%set_status(wanted /= path%state%status, wanted)
          path%state%stuck_slip = hold
@@ -73,6 +98,126 @@ contains
          first = solve + 1
       end do
    end subroutine find_statuses
+
+   !> Solve for the fields at the end of an increment, which contain a first guess. `hold`: the slip at which nodes hold, length,
+   !> shape (nodes); that of nodes at which an edge has passed follows from the solution, if `held` is present (see find_statuses).
+   !> `ahead`: from find_returning.
+   !> `solved`: false if the system is singular or the slip of the edges is not found.
+   subroutine solve_with_fronts(path, constraints, hold, ahead, fields, solved, held)
+      class(contact_path_type), intent(inout) :: path
+      type(constraints_type), intent(inout) :: constraints
+      real(wp), intent(inout) :: hold(:)
+      real(wp), intent(in) :: ahead(:)
+      type(contact_fields_type), intent(inout) :: fields
+      logical, intent(out) :: solved
+      logical, intent(in), optional :: held(:)
+      integer, parameter :: most_passes = 20
+      real(wp), parameter :: close_enough = 1.0e-7_wp
+      type(fronts_type) :: fronts
+      type(contact_fields_type) :: change(2)
+      real(wp), allocatable :: corrections(:, :)
+      integer :: group, pass, zones
+
+      zones = 0
+      if (present(held)) then
+         associate (start => path%state%fields)
+            call find_fronts(path%state%status, held,.not. start%pressure > 0.0_wp, hold, start, path%model%gap(start), &
+                             ahead, fronts)
+         end associate
+         zones = count(any(fronts%outer > 0, dim=1))
+      end if
+      if (zones == 0) then
+         call solve_group(0)
+         return
+      end if
+      call fronts%assume(fields)
+      do pass = 1, most_passes
+         call fronts%set_hold(hold)
+         do group = left, right
+            if (fronts%number(group) == 0) cycle
+            call solve_group(group)
+            if (.not. solved) return
+         end do
+         call fronts%correct(fields, change, corrections)
+         if (zones == 1) exit
+         if (maxval(abs(corrections)) <= close_enough*maxval(abs(fronts%slip))) return
+      end do
+      solved = zones == 1
+      if (.not. solved) return
+      call fronts%set_hold(hold)
+      do group = left, right
+         if (fronts%number(group) > 0) fields = fields%plus(sum(corrections(group, :)), change(group))
+      end do
+
+   contains
+
+      !> The fields, and their changes with the slip of the outer nodes of a group (0: none).
+      subroutine solve_group(group)
+         integer, intent(in) :: group
+         type(response_type) :: response
+         logical :: singular
+
+         constraints%stuck_slip = hold
+         if (group > 0) constraints%slip_rate = fronts%group_weight(group)
+         call path%system%solve(path%model, constraints, fields, response, singular)
+         solved = .not. singular
+         if (singular) return
+         fields = response%state
+         if (group > 0) change(group) = response%rate
+      end subroutine solve_group
+   end subroutine solve_with_fronts
+
+   !> Nodes that slip, but would slip back at the end of the increment, stick in `wanted`: the edge of a stick zone has passed them.
+   !> The zone is then too small, and its nodes stay stuck but for those of `held`, since the shear traction exceeds the limit in
+   !> zones that are too small as well as in those that are too large. `ahead`: how far open nodes next to stuck ones will slip
+   !> until they touch, at the rates of the end; length, shape (nodes). Nothing is changed if the rates are not determined.
+   subroutine find_returning(path, segment, fields, held, wanted, ahead)
+      class(contact_path_type), intent(inout) :: path
+      type(segment_type), intent(in) :: segment
+      type(contact_fields_type), intent(in) :: fields
+      logical, intent(in) :: held(:)
+      integer, intent(inout) :: wanted(:)
+      real(wp), intent(inout) :: ahead(:)
+      real(wp), parameter :: negligible = 1.0e-9_wp
+      type(constraints_type) :: constraints
+      type(response_type) :: response
+      real(wp), dimension(size(wanted)) :: rate, gap, gap_rate
+      logical :: singular, returns(size(wanted)), next(size(wanted))
+
+      associate (status => path%state%status)
+         next = status == node_open .and. (eoshift(status, -1, node_open) == node_stick .or. &
+                                           eoshift(status, 1, node_open) == node_stick)
+         if (.not. any(slips(status) .and. .not. held) .and. .not. any(next)) return
+         if (.not. any(holds(status))) return
+         call path%loads_at(segment, 1.0_wp, constraints)
+         call path%set_rows(constraints, .false.)
+         call path%system%solve(path%model, constraints, fields, response, singular)
+         if (singular) return
+         rate = response%rate%slip()
+         gap = path%model%gap(fields)
+         gap_rate = path%model%gap(fields%plus(1.0_wp, response%rate)) - gap
+         ahead = 0.0_wp
+         where (next .and. gap_rate < 0.0_wp) ahead = -rate*gap/gap_rate
+         returns = -slip_sign(status)*rate > max(negligible, path%system%tolerance)*maxval(abs(rate))
+         if (.not. any(returns)) return
+         where (slips(status) .and. returns) wanted = node_stick
+         where (status == node_stick .and. slips(wanted) .and. .not. held) wanted = node_stick
+      end associate
+   end subroutine find_returning
+
+   !> Whether a node that was slipping at the start slips against its slip over the increment: it has stuck in between, where no
+   !> front is known to have passed.
+   pure logical function reverses(path, fields, held)
+      class(contact_path_type), intent(in) :: path
+      type(contact_fields_type), intent(in) :: fields
+      logical, intent(in) :: held(:)
+      real(wp), dimension(size(held)) :: slipped
+      real(wp) :: tolerance
+
+      slipped = fields%slip() - path%state%fields%slip()
+      tolerance = max(round_off, path%system%tolerance)*maxval(abs(fields%slip()))
+      reverses = any(-slip_sign(path%state%status)*slipped > tolerance .and. path%state%fields%pressure > 0.0_wp .and. .not. held)
+   end function reverses
 
    !> A first guess of the contact: nodes at which the undeformed surfaces overlap at an approach of P/(pi m), m the contact
    !> modulus (exact for a parabola under the force P). `fraction`: fraction of the segment.
@@ -132,12 +277,14 @@ contains
       constraints%load(motion_shift) = load_type(control_displacement, path%state%fields%motion(motion_shift), 0.0_wp)
    end subroutine constrain
 
-   !> The statuses that the `fields` require: nodes change where an inequality is violated.
-   subroutine find_wanted(path, segment, fields, wanted)
+   !> The statuses that the `fields` require: nodes change where an inequality is violated. `held`: see find_statuses; the slip of
+   !> other nodes since first contact is then not known here (find_returning).
+   subroutine find_wanted(path, segment, fields, wanted, held)
       class(contact_path_type), intent(in) :: path
       type(segment_type), intent(in) :: segment
       type(contact_fields_type), intent(in) :: fields
       integer, intent(out) :: wanted(:)
+      logical, intent(in), optional :: held(:)
       real(wp), dimension(size(wanted)) :: gap, slipped
       real(wp) :: traction, motion, tolerance
       integer :: i, closed
@@ -149,6 +296,7 @@ contains
       gap = path%model%gap(fields)
       slipped = 0.0_wp
       if (path%model%tangential) slipped = fields%slip() - path%state%stuck_slip
+      if (present(held)) slipped = merge(slipped, 0.0_wp, held)
       closed = node_frictionless
       if (segment%friction .and. path%model%tangential) closed = node_stick
       wanted = path%state%status
@@ -208,10 +356,11 @@ contains
       end function closes
    end subroutine follow_neighbours
 
-   !> If the changing nodes lie at one edge of their zone, move the edge to where it belongs (see above).
-   subroutine move_edges(status, wanted)
+   !> If the changing nodes lie at one edge of their zone, move the edge to where it belongs (see above). `held`: see find_statuses.
+   subroutine move_edges(status, wanted, held)
       integer, intent(in) :: status(:)
       integer, intent(inout) :: wanted(:)
+      logical, intent(in), optional :: held(:)
       integer :: original(size(wanted)), first, last, n
       logical :: left, right
 
@@ -233,6 +382,8 @@ contains
                if (first == 1) left = .false.
                if (last == n) right = .false.
                call stay_behind(first, last, left, right)
+            else if (at_front(first, last)) then
+               call stay_behind(first, last, left, right)
             else
                call go_further(first, last, left, right)
             end if
@@ -241,6 +392,15 @@ contains
       end do
 
    contains
+
+      !> Whether nodes that begin to slip lie at an edge that the slip of the zone follows. Its traction exceeds the limit as
+      !> t^(3/2) - 3/2 s t^(1/2), if the zone is too large by s: the edge belongs at two thirds of the distance.
+      pure logical function at_front(first, last)
+         integer, intent(in) :: first, last
+
+         at_front = .false.
+         if (present(held)) at_front = status(first) == node_stick .and. slips(original(first)) .and. .not. all(held(first:last))
+      end function at_front
 
       !> Whether the change enlarges a zone of contact or of stick.
       pure logical function grows(from, to)

@@ -1,10 +1,12 @@
 !> Friction dissipation of a chain of large increments.
 !>
 !> Along the exact solution the dissipation is -int tau ds, summed over the surface. The contribution of a node has corners where
-!> it begins to slip, to stick or to touch. The sum is smooth: by energy it is the work of the loads less the stored energy. Its
-!> elastic part tau C dtau is integrated exactly by any interpolation of tau, since C is symmetric. The sum is therefore integrated
-!> with parabolas through three states each (Simpson's rule), extrapolated once (Boole's rule, Richardson 1911). The change from
-!> half the number of states estimates the error.
+!> it begins to slip, to stick or to touch. The sum is smooth: by energy it is the work of the loads less the stored energy. On an
+!> interpolated path these are -int (tau ds + p dg), with the gap g; p dg is zero on the exact path only. (The elastic part
+!> tau C dtau is integrated exactly by any interpolation, since C is symmetric.) The sum is integrated with parabolas through three
+!> states each (Simpson's rule), extrapolated once (Boole's rule, Richardson 1911). If contact begins, the approach goes as
+!> f^2 ln f with the contact half-width f, and the error of Boole's rule with the fourth power of the interval: it is extrapolated
+!> once more. The change from half the number of states estimates the error.
 !>
 !> For a single node tau is mu p wherever it slips, so that its dissipation lies between its slip times the smaller and the larger
 !> limit at both ends of an increment. Under constant pressures this is exact.
@@ -21,13 +23,15 @@ module mfv_chain_dissipation
 contains
 
    !> The friction dissipation from the fields `start` through the fields `after`, evenly spaced on a smooth path, shape
-   !> (increments), a power of two; force. `error`: its estimated error, the larger of the change from half the number of states
-   !> and that from Simpson's to Boole's rule. `corners`: the error due to corners, one for each of the `changes` of status. (A
+   !> (increments), a power of two; force. `begins`: whether contact begins, even in the half-width. `error`: its estimated error, the
+   !> larger of the change from half the number of states and that from Simpson's to Boole's rule; if contact begins, the last
+   !> correction. `corners`: the error due to corners, one for each of the `changes` of status. (A
    !> corner is taken for part of a parabola: an error of random sign, on average 0.4 of that of the trapezoidal rule if all
    !> corners share the curvature.)
-   subroutine chain_dissipation(model, start, after, changes, work, error, corners)
+   subroutine chain_dissipation(model, start, after, begins, changes, work, error, corners)
       class(contact_model_type), intent(in) :: model
       type(contact_fields_type), intent(in) :: start, after(:)
+      logical, intent(in) :: begins
       integer, intent(in) :: changes
       real(wp), intent(out) :: work, error, corners
       real(wp), parameter :: share = 0.8_wp
@@ -39,9 +43,10 @@ contains
       error = abs(work)
       corners = 0.0_wp
       if (increments == 1) return
-      corners = share*abs(trapezoidal() - simpson)/sqrt(real(max(changes, 1), wp))
+      if (.not. begins) corners = share*abs(trapezoidal() - simpson)/sqrt(real(max(changes, 1), wp))
       call integrate(2, coarser, unused)
       error = max(abs(work - coarser), abs(work - simpson))
+      if (begins .and. increments >= 8) error = abs(work - boole(1))
 
    contains
 
@@ -52,8 +57,17 @@ contains
 
          simpson = composite(stride)
          best = simpson
-         if (increments/stride >= 4) best = simpson + (simpson - composite(2*stride))/15.0_wp
+         if (increments/stride >= 4) best = boole(stride)
+         if (begins .and. increments/stride >= 8) best = best + (best - boole(2*stride))/15.0_wp
       end subroutine integrate
+
+      !> Boole's rule for every `stride`-th state.
+      real(wp) function boole(stride)
+         integer, intent(in) :: stride
+
+         boole = composite(stride)
+         boole = boole + (boole - composite(2*stride))/15.0_wp
+      end function boole
 
       !> Parabolas through every `stride`-th state; a straight line for a single interval.
       real(wp) function composite(stride)
@@ -80,24 +94,31 @@ contains
          end do
       end function trapezoidal
 
-      !> -int tau ds along a straight line.
+      !> -int (tau ds + p dg) along a straight line.
       real(wp) function straight(a, b)
          type(contact_fields_type), intent(in) :: a, b
 
-         straight = -0.5_wp*model%force((a%shear + b%shear)*(b%slip() - a%slip()))
+         straight = -0.5_wp*model%force((a%shear + b%shear)*(b%slip() - a%slip()) + &
+                                        (a%pressure + b%pressure)*(model%gap(b) - model%gap(a)))
       end function straight
 
-      !> -int tau ds along parabolas through three evenly spaced states.
+      !> -int (tau ds + p dg) along parabolas through three evenly spaced states.
       real(wp) function curved(a, b, c)
          type(contact_fields_type), intent(in) :: a, b, c
-         real(wp), dimension(size(a%shear)) :: slope, turn, slip_slope, slip_turn
 
-         slope = 0.5_wp*(c%shear - a%shear)
-         turn = 0.5_wp*((c%shear - b%shear) - (b%shear - a%shear))
-         slip_slope = 0.5_wp*(c%slip() - a%slip())
-         slip_turn = 0.5_wp*((c%slip() - b%slip()) - (b%slip() - a%slip()))
-         curved = -2.0_wp*model%force(b%shear*slip_slope + (2.0_wp*slope*slip_turn + turn*slip_slope)/3.0_wp)
+         curved = -model%force(along(a%shear, b%shear, c%shear, a%slip(), b%slip(), c%slip()) + &
+                               along(a%pressure, b%pressure, c%pressure, model%gap(a), model%gap(b), model%gap(c)))
       end function curved
+
+      !> int f dg along parabolas through three evenly spaced values of f and g.
+      elemental real(wp) function along(f1, f2, f3, g1, g2, g3)
+         real(wp), intent(in) :: f1, f2, f3, g1, g2, g3
+         real(wp) :: slope, turn
+
+         slope = 0.5_wp*(g3 - g1)
+         turn = 0.5_wp*((g3 - g2) - (g2 - g1))
+         along = 2.0_wp*(f2*slope + ((f3 - f1)*turn + 0.5_wp*((f3 - f2) - (f2 - f1))*slope)/3.0_wp)
+      end function along
    end subroutine chain_dissipation
 
    !> The friction dissipation of each node from the state `before`, with the statuses of the increment, to the fields `after`;

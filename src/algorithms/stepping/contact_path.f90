@@ -12,7 +12,7 @@ module mfv_contact_path
    use mfv_friction_law, only: friction_event_type, friction_point_type, most_events
    use mfv_history, only: history_type
    use mfv_kinds, only: wp
-   use mfv_linear_solvers, only: new_contact_system
+   use mfv_linear_solvers, only: chosen_stepping, new_contact_system
    use mfv_motions, only: motions, motion_count, motion_approach, motion_shift, motion_rotation, control_force, &
                           control_displacement, arm_unit
    use mfv_node_status
@@ -135,7 +135,8 @@ contains
       type(contact_path_type), intent(out) :: self
 
       self%model = model
-      call new_contact_system(model, self%system)
+      self%model%scene%method%stepping = chosen_stepping(model)
+      call new_contact_system(self%model, self%system)
       self%state = new_contact_state(model%nodes())
       self%state%fields%motion(motion_approach) = model%nearest_approach(model%initial_gap)
       call model%displace(self%state%fields)

@@ -2,7 +2,7 @@
 !>
 !> In a large increment stuck nodes hold at the slip of its start, and every equality and inequality of dissertation Table 2.1 is
 !> satisfied at its end only, with slip counted from start to end (mfv_active_set): backward Euler. An interval is divided into 1,
-!> 2, 4, 8, ... equal increments (a chain) until tractions and dissipation change by at most half of `leap_tolerance`: tractions
+!> 2, 4, 8, ... equal increments (a chain) until tractions and dissipation change by at most half of `accuracy`: tractions
 !> relative to the largest so far, dissipation relative to that of the interval, so that every leg of every cycle meets the
 !> tolerance. If nodes slip one way only under constant pressures, one increment is exact (Mindlin).
 !>
@@ -22,7 +22,7 @@ module mfv_leap
    use mfv_error, only: error_type
    use mfv_first_violation, only: apply_by_violations
    use mfv_kinds, only: wp
-   use mfv_motions, only: motion_approach, motion_shift, control_force
+   use mfv_motions, only: motion_count, motion_approach, motion_shift, control_force
    use mfv_node_status
    use mfv_observer, only: observer_type
    use mfv_straight, only: apply_directly, before_separation, lacks_support, find_statuses_on_mesh, finish_large_increment, &
@@ -38,8 +38,13 @@ module mfv_leap
    !> Linear solves of event stepping per change of status. Less than one, since event stepping can update the inverse from solve
    !> to solve, and a large increment cannot.
    real(wp), parameter :: solves_per_change = 0.6_wp
-   !> Linear solves of an increment in a long chain.
-   real(wp), parameter :: solves_per_increment = 3.0_wp
+   !> Where contact begins, event stepping resolves the touching of single nodes. The shear tractions next to that point, or next to
+   !> the edge of a contact without slip zones, differ by up to this, relative to the largest traction, over the number of nodes in
+   !> contact (0.05 to 0.5 with 50 to 800 nodes in contact, nu from 0 to 0.4 and mu from 0.3 to 1.5); next to a slip zone of fewer
+   !> than `resolved` nodes by up to `error_unresolved`.
+   integer, parameter :: resolved = 3
+   real(wp), parameter :: error_unresolved = 10.0_wp
+   real(wp), parameter :: error_at_start = 0.5_wp
    !> Allowed difference relative to the tolerance: the error of a chain is about its difference from one with half as many
    !> increments.
    real(wp), parameter :: safety = 0.5_wp
@@ -61,11 +66,13 @@ module mfv_leap
       real(wp), allocatable :: friction_work(:, :)
       !> Whether the statuses were found; if not, whether only the mesh was too short.
       logical :: found = .false., exceeded = .false.
+      !> Whether contact begins in the interval, and whether the nodes that hold from its start are known.
+      logical :: begins = .false., fronts = .false.
       !> Linear solves, and changes of status that event stepping would make one by one.
       integer :: solves = 0, changes = 0
-      !> Estimated errors of the final tractions, force/length^2, and of the dissipation, force; the dissipation, force, and the
-      !> largest traction, force/length^2.
-      real(wp) :: traction_error = 0.0_wp, work_error = 0.0_wp, work = 0.0_wp, traction = 0.0_wp
+      !> Estimated errors of the final tractions, and their part where contact begins, force/length^2; of the dissipation, force; the
+      !> dissipation, force, and the largest traction, force/length^2.
+      real(wp) :: traction_error = 0.0_wp, start_error = 0.0_wp, work_error = 0.0_wp, work = 0.0_wp, traction = 0.0_wp
       !> Error of the dissipation due to its corners as a function of the load, one for each change of status; force.
       real(wp) :: corner_error = 0.0_wp
    end type chain_type
@@ -156,49 +163,56 @@ contains
       type(chain_type), intent(out) :: chain
       logical, intent(out) :: accepted
       type(chain_type) :: finer
+      logical, allocatable :: held(:)
       integer :: increments
 
       accepted = .false.
-      call make_chain(path, segment, done, length, 1, chain)
+      if (may_depend_on_path(path, segment)) call find_held(path, subsegment(segment, done, done + length), held)
+      call make_chain(path, segment, done, length, 1, held, chain)
       if (.not. chain%found) return
-      accepted = is_path_independent(path, segment, chain%after(1))
-      if (accepted) return
+      accepted = .not. (may_depend_on_path(path, segment) .or. any(slips(chain%before(1)%status)) .or. &
+                        has_shear(path, chain%after(1)))
+      if (accepted .or. chain%start_error > path%model%scene%method%accuracy &
+          *max(path%certificate%traction_scale(), chain%traction)) return
       increments = 2
       do
-         call make_chain(path, segment, done, length, increments, finer, chain)
+         call make_chain(path, segment, done, length, increments, held, finer, chain)
          if (finer%found) call compare(path, chain, finer)
          chain = finer
          if (.not. chain%found) return
-         call choose(path%model%scene%method%leap_tolerance, max(path%certificate%traction_scale(), chain%traction), chain, &
-                     accepted, increments)
-         if (accepted) accepted = .not. slips_back(path, subsegment(segment, done, done + length), chain)
+         call choose(path, chain, accepted, increments)
+         if (accepted .and. .not. chain%fronts) accepted = .not. slips_back(path, subsegment(segment, done, done + length), chain)
          if (accepted .or. increments == 0) return
       end do
    end subroutine refine
 
-   !> Whether a chain meets the tolerance; if not, the number of increments of the next one, 0: too many. `traction`: the largest
-   !> so far.
-   pure subroutine choose(tolerance, traction, chain, accepted, increments)
-      real(wp), intent(in) :: tolerance, traction
+   !> Whether a chain meets the tolerance; if not, the number of increments of the next one, 0: too many.
+   subroutine choose(path, chain, accepted, increments)
+      class(contact_path_type), intent(in) :: path
       type(chain_type), intent(in) :: chain
       logical, intent(out) :: accepted
       integer, intent(out) :: increments
-      real(wp) :: by_tractions, by_work, by_corners, wanted
+      real(wp) :: allowed, traction, work, by_tractions, by_work, by_corners, wanted
 
+      allowed = safety*path%model%scene%method%accuracy
+      traction = max(path%certificate%traction_scale(), chain%traction)
+      work = reference_work(path, chain)
       by_tractions = 0.0_wp
       by_work = 0.0_wp
-      if (traction > 0.0_wp) by_tractions = chain%traction_error/(safety*tolerance*traction)
+      if (traction > 0.0_wp) by_tractions = (chain%traction_error - (1.0_wp - safety)*chain%start_error)/(allowed*traction)
       by_corners = 0.0_wp
       if (chain%work_error > 0.0_wp) then
-         by_work = chain%work_error/(safety*tolerance*max(chain%work, tiny(1.0_wp)/tolerance))
-         by_corners = chain%corner_error/(safety*tolerance*max(chain%work, tiny(1.0_wp)/tolerance))
+         by_work = chain%work_error/max(allowed*work, tiny(1.0_wp))
+         by_corners = chain%corner_error/max(allowed*work, tiny(1.0_wp))
       end if
       accepted = max(by_tractions, by_work) <= 1.0_wp
       increments = 0
       if (accepted) return
-      wanted = min(max(2.0_wp, by_tractions, sqrt(sqrt(by_work)), sqrt(by_corners)), real(most_increments, wp))
+      wanted = min(max(2.0_wp, merge(1.0_wp, by_tractions, chain%fronts), sqrt(sqrt(by_work)), sqrt(by_corners)), &
+                   real(most_increments, wp))
       increments = chain%increments*2**ceiling(log(wanted)/log(2.0_wp) - 1.0e-6_wp)
-      if (increments > most_increments .or. solves_per_increment*increments > solves_per_change*chain%changes) increments = 0
+      if (increments > most_increments .or. &
+          (real(chain%solves, wp)*increments)/chain%increments > solves_per_change*chain%changes) increments = 0
    end subroutine choose
 
    !> Whether nodes that slip in the last increment would slip back at its end: they have stuck within the increment, which no
@@ -229,16 +243,99 @@ contains
       end associate
    end function slips_back
 
-   !> An interval in a number of equal `increments`. `coarser`: a chain of the same interval, for a first guess of the statuses.
-   !> `path` is unchanged.
-   subroutine make_chain(path, segment, done, length, increments, chain, coarser)
+   !> The work that the error of the dissipation of a chain is compared with, force: the dissipation. If contact begins, that is often
+   !> next to nothing: then at least a fraction of (mu P)^2/m, m the contact modulus.
+   pure real(wp) function reference_work(path, chain) result(work)
+      class(contact_path_type), intent(in) :: path
+      type(chain_type), intent(in) :: chain
+      real(wp), parameter :: fraction = 0.01_wp
+
+      work = chain%work
+      if (chain%begins) work = max(work, fraction/path%model%compliance%modulus &
+                                   *path%model%force(path%model%static_friction*chain%after(chain%increments)%pressure)**2)
+   end function reference_work
+
+   !> Nodes that hold at the start of an interval, shape (nodes): those that stick as the loads begin to change. Not allocated if
+   !> these are not found.
+   subroutine find_held(path, segment, held)
+      class(contact_path_type), intent(inout) :: path
+      type(segment_type), intent(in) :: segment
+      logical, allocatable, intent(out) :: held(:)
+      integer, parameter :: most_passes = 20
+      real(wp), parameter :: negligible = 1.0e-9_wp
+      type(contact_state_type) :: start
+      type(constraints_type) :: constraints
+      type(response_type) :: response
+      integer :: pass, wanted(size(path%state%status))
+      logical :: singular, found
+
+      if (has_constant_pressures(path, segment)) return
+      start = path%state
+      found = .not. any(in_contact(path%state%status))
+      do pass = 1, most_passes
+         if (found) exit
+         if (.not. any(holds(path%state%status))) &
+            call path%set_status(in_contact(path%state%status), spread(node_stick, 1, size(wanted)))
+         call path%loads_at(segment, 0.0_wp, constraints)
+         call path%set_rows(constraints, .false.)
+         call path%system%solve(path%model, constraints, path%state%fields, response, singular)
+         if (singular) exit
+         call find_moving(path, response%rate, max(negligible, path%system%tolerance), wanted)
+         found = all(wanted == path%state%status)
+         call path%set_status(wanted /= path%state%status, wanted)
+      end do
+      if (found) held = path%state%status == node_stick
+      path%state = start
+   end subroutine find_held
+
+   !> Whether the pressures do not change: nodes that slip then stick at reversals only.
+   pure logical function has_constant_pressures(path, segment)
+      class(contact_path_type), intent(in) :: path
+      type(segment_type), intent(in) :: segment
+      logical :: normal(motion_count)
+
+      normal = path%model%moves
+      normal(motion_shift) = .false.
+      has_constant_pressures = .not. path%model%compliance%has_block(block_wt) .and. .not. path%model%has_rigid_parts() .and. &
+                               .not. any(abs(segment%load%rate) > 0.0_wp .and. normal)
+   end function has_constant_pressures
+
+   !> Statuses of the nodes at the friction limit for the given rates, as `wanted`, shape (nodes): nodes that slip back stick, and
+   !> stuck nodes slip whose shear traction grows faster than the limit. `tolerance`: relative.
+   subroutine find_moving(path, rate, tolerance, wanted)
+      class(contact_path_type), intent(in) :: path
+      type(contact_fields_type), intent(in) :: rate
+      real(wp), intent(in) :: tolerance
+      integer, intent(out) :: wanted(:)
+      real(wp), dimension(size(wanted)) :: slip_rate, excess
+      logical :: at_limit(size(wanted))
+
+      wanted = path%state%status
+      slip_rate = rate%slip()
+      associate (fields => path%state%fields, limit => path%model%static_friction)
+         at_limit = abs(fields%shear) >= limit*fields%pressure*(1.0_wp - tolerance)
+         excess = sign(1.0_wp, fields%shear)*rate%shear - limit*rate%pressure
+         where (slips(path%state%status))
+            where (-slip_sign(path%state%status)*slip_rate > tolerance*maxval(abs(slip_rate))) wanted = node_stick
+         elsewhere(path%state%status == node_stick .and. at_limit)
+            where (excess > tolerance*maxval(abs(rate%shear))) &
+               wanted = merge(node_slip_left, node_slip_right, fields%shear > 0.0_wp)
+         end where
+      end associate
+   end subroutine find_moving
+
+   !> An interval in a number of equal `increments`. `held`: from find_held. `coarser`: a chain of the same interval, for a first
+   !> guess of the statuses. `path` is unchanged.
+   subroutine make_chain(path, segment, done, length, increments, held, chain, coarser)
       class(contact_path_type), intent(inout) :: path
       type(segment_type), intent(in) :: segment
       real(wp), intent(in) :: done, length
       integer, intent(in) :: increments
+      logical, allocatable, intent(in) :: held(:)
       type(chain_type), intent(out) :: chain
       type(chain_type), intent(in), optional :: coarser
       type(contact_state_type) :: start
+      logical, allocatable :: holding(:)
       integer, allocatable :: status(:)
       integer :: i
 
@@ -246,12 +343,17 @@ contains
       chain%increments = increments
       allocate (chain%before(increments), chain%after(increments))
       allocate (chain%friction_work(size(start%status), increments), source=0.0_wp)
+      chain%fronts = allocated(held)
+      chain%begins = .not. any(in_contact(start%status))
       chain%solves = -path%system%solves
+      if (allocated(held)) holding = held
       do i = 1, increments
          status = path%state%status
+         if (allocated(held) .and. i > 1) holding = status == node_stick
          if (i == 1) call guess_slip(path, segment, done + length*reached(i))
          if (present(coarser)) call guess_from(path, coarser, i, increments)
-         call find_statuses_on_mesh(path, segment, done + length*reached(i), chain%after(i), chain%found, chain%exceeded)
+         call find_statuses_on_mesh(path, segment, done + length*reached(i), chain%after(i), chain%found, chain%exceeded, &
+                                    holding)
          if (.not. chain%found) exit
          chain%changes = chain%changes + count_changes(status, path%state%status)
          chain%before(i) = path%state
@@ -259,6 +361,8 @@ contains
          chain%traction = max(chain%traction, maxval(abs(chain%after(i)%pressure)), maxval(abs(chain%after(i)%shear)))
       end do
       chain%solves = chain%solves + path%system%solves
+      if (chain%begins .and. chain%found) &
+         chain%start_error = error_of_edge(path%state%status, path%model%scene%friction%static%largest())*chain%traction
       path%state = start
 
    contains
@@ -273,7 +377,8 @@ contains
       end function reached
    end subroutine make_chain
 
-   !> If increment `i` ends where one of a coarser chain does, start from the statuses there.
+   !> If increment `i` ends where one of a coarser chain does, start from the statuses there: of all nodes if the slip of touching
+   !> nodes follows from the fronts.
    subroutine guess_from(path, coarser, i, increments)
       class(contact_path_type), intent(inout) :: path
       type(chain_type), intent(in) :: coarser
@@ -281,7 +386,7 @@ contains
 
       if (mod(i*coarser%increments, increments) /= 0) return
       associate (status => coarser%before(i*coarser%increments/increments)%status)
-         call path%set_status(in_contact(path%state%status) .and. in_contact(status), status)
+         call path%set_status(coarser%fronts .or. in_contact(path%state%status) .and. in_contact(status), status)
       end associate
    end subroutine guess_from
 
@@ -303,7 +408,8 @@ contains
 
       refinement = 1.0_wp/(sqrt(real(finer%increments, wp)/real(coarser%increments, wp)) - 1.0_wp)
       associate (a => coarser%after(coarser%increments), b => finer%after(finer%increments))
-         finer%traction_error = refinement*max(maxval(abs(a%pressure - b%pressure)), maxval(abs(a%shear - b%shear)))
+         finer%traction_error = finer%start_error &
+                                + refinement*max(maxval(abs(a%pressure - b%pressure)), maxval(abs(a%shear - b%shear)))
       end associate
       node_wise = 0.0_wp
       node_wise_error = 0.0_wp
@@ -313,24 +419,51 @@ contains
          node_wise = node_wise + path%model%force(finer%friction_work(:, i))
          node_wise_error = node_wise_error + unused
       end do
-      call chain_dissipation(path%model, finer%before(1)%fields, finer%after, finer%changes, finer%work, finer%work_error, &
-                             finer%corner_error)
-      if (node_wise_error <= finer%work_error .or. .not. node_wise > 0.0_wp) then
+      call chain_dissipation(path%model, finer%before(1)%fields, finer%after, finer%begins, finer%changes, finer%work, &
+                             finer%work_error, finer%corner_error)
+      if (node_wise_error <= finer%work_error) then
          finer%work = node_wise
          finer%work_error = node_wise_error
-      else
-         ! Three states can agree with a straight line by chance; then the two formulas must agree as well.
-         if (finer%increments == 2) finer%work_error = max(finer%work_error, abs(finer%work - node_wise))
-         stride = finer%increments/coarser%increments
-         ! The same formula for both chains: the error due to the path.
-         call chain_dissipation(path%model, finer%before(1)%fields, coarser%after, 1, one, unused, unused_too)
-         call chain_dissipation(path%model, finer%before(1)%fields, &
-                                finer%after(stride::stride), 1, other, unused, unused_too)
-         finer%work_error = max(finer%work_error, finer%corner_error) + refinement*abs(one - other)
-         finer%work = max(finer%work, 0.0_wp)
-         finer%friction_work = finer%friction_work*(finer%work/node_wise)
+         return
       end if
+      ! Three states can agree with a straight line by chance; then the two formulas must agree as well.
+      if (finer%increments == 2) finer%work_error = max(finer%work_error, abs(finer%work - node_wise))
+      stride = finer%increments/coarser%increments
+      ! The same formula for both chains: the error due to the path.
+      call chain_dissipation(path%model, finer%before(1)%fields, coarser%after, finer%begins, 1, one, unused, unused_too)
+      call chain_dissipation(path%model, finer%before(1)%fields, finer%after(stride::stride), finer%begins, 1, other, unused, &
+                             unused_too)
+      finer%work_error = max(finer%work_error, finer%corner_error) + refinement*abs(one - other)
+      finer%work = max(finer%work, 0.0_wp)
+      if (node_wise > 0.0_wp) finer%friction_work = finer%friction_work*(finer%work/node_wise)
    end subroutine compare
+
+   !> Error of the tractions of a contact that has begun in the interval, relative to the largest, by the `status` of its nodes: see
+   !> error_at_start. An error at the edge of a contact without slip zones is compared with the friction limit, since it changes the
+   !> slip zones of later steps. `friction`: the coefficient.
+   pure real(wp) function error_of_edge(status, friction) result(error)
+      integer, intent(in) :: status(:)
+      real(wp), intent(in) :: friction
+      integer :: i, slipping
+      logical :: inside
+
+      error = error_at_start
+      slipping = 0
+      inside = .false.
+      do i = 1, size(status)
+         if (slips(status(i))) then
+            slipping = slipping + 1
+            cycle
+         end if
+         if ((status(i) == node_open .and. inside) .or. (status(i) == node_stick .and. .not. inside)) then
+            if (slipping == 0) error = max(error, error_at_start/min(friction, 1.0_wp))
+            if (slipping > 0 .and. slipping < resolved) error = max(error, error_unresolved)
+         end if
+         inside = status(i) == node_stick
+         slipping = 0
+      end do
+      error = error/max(count(in_contact(status)), 1)
+   end function error_of_edge
 
    !> A first guess of the slipping nodes at a fraction of the segment: they slip in the direction of the tangential load. Under
    !> constant pressures and tangential force control their number is that of Mindlin's contact of cylinders: the edge of the stick
@@ -361,23 +494,27 @@ contains
       call path%set_status(in_contact(path%state%status), status)
    end subroutine guess_slip
 
-   !> Whether an increment to the fields `after` is pure pressing without coupling, tangential load or shear, which does not depend
-   !> on the path.
-   logical function is_path_independent(path, segment, after)
+   !> Whether the end of a segment may depend on the path to it: not without coupling, tangential load, shear and slip.
+   logical function may_depend_on_path(path, segment)
       class(contact_path_type), intent(in) :: path
       type(segment_type), intent(in) :: segment
-      type(contact_fields_type), intent(in) :: after
+
+      associate (compliance => path%model%compliance)
+         may_depend_on_path = compliance%has_block(block_up) .or. compliance%has_block(block_wt) .or. path%model%has_rigid_parts()
+      end associate
+      may_depend_on_path = may_depend_on_path .or. abs(segment%load(motion_shift)%rate) > 0.0_wp .or. &
+                           any(slips(path%state%status)) .or. has_shear(path, path%state%fields)
+   end function may_depend_on_path
+
+   !> Whether the shear tractions are above round-off.
+   logical function has_shear(path, fields)
+      class(contact_path_type), intent(in) :: path
+      type(contact_fields_type), intent(in) :: fields
       real(wp), parameter :: nothing = 1.0e-14_wp
 
-      associate (compliance => path%model%compliance, model => path%model)
-         is_path_independent = .not. (compliance%has_block(block_up) .or. compliance%has_block(block_wt) .or. &
-                                      model%has_rigid_parts())
-      end associate
-      if (.not. is_path_independent) return
-      is_path_independent = .not. abs(segment%load(motion_shift)%rate) > 0.0_wp .and. .not. any(slips(path%state%status)) .and. &
-                            max(maxval(abs(path%state%fields%shear)), maxval(abs(after%shear))) &
-                          <= max(nothing, path%system%tolerance)*max(path%certificate%traction_scale(), maxval(abs(after%pressure)))
-   end function is_path_independent
+      has_shear = maxval(abs(fields%shear)) > max(nothing, path%system%tolerance) &
+                  *max(path%certificate%traction_scale(), maxval(abs(fields%pressure)))
+   end function has_shear
 
    !> Accept the increments of a chain.
    subroutine accept_chain(path, chain)
@@ -391,7 +528,7 @@ contains
          call path%take_increment(chain%after(i), chain%after(i)%slip() - path%state%fields%slip(), 0.0_wp, &
                                   friction_work=chain%friction_work(:, i))
       end do
-      call path%certificate%note_large_increment(chain%traction_error, chain%work_error, chain%work)
+      call path%certificate%note_large_increment(chain%traction_error, chain%work_error, reference_work(path, chain))
    end subroutine accept_chain
 
 end module mfv_leap

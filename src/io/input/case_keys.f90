@@ -167,11 +167,13 @@ contains
 
       call keys%add('solver', 'algorithm', kind_choice, 'mfv: Method of First Violation; conventional: load steps with '// &
                     'corrections of node statuses, for comparison', default='mfv', choices='mfv conventional')
+      call keys%add('solver', 'accuracy', kind_real, 'allowed error of large increments: of the tractions, relative to the '// &
+                    'largest traction, and of the dissipation of each load segment, relative to it; 0: every event is followed', &
+                    default='0', lower=0.0_wp, upper=0.1_wp)
       call keys%add('solver', 'stepping', kind_choice, "algorithm='mfv': events found from rates (event), or from trial load "// &
-                    'steps and interpolation (nominal), with the same states (coulomb, static_kinetic); leap: large '// &
-                    'increments where they cost less than events (coulomb)', default='event', choices='event nominal leap')
-      call add_part_key(keys, 'leap_tolerance', '1e-3', "stepping='leap': tolerance of the tractions, relative to the largest "// &
-                        "traction, and of the dissipation of each load segment, relative to that dissipation")
+                    'steps and interpolation (nominal), with the same states (coulomb, static_kinetic); large increments '// &
+                    '(leap: coulomb); or large increments if accuracy allows them and they cost less than events (auto)', &
+                    default='auto', choices='auto event nominal leap')
       call add_part_key(keys, 'load_step', '0.05', "nominal load step, as a fraction of each load segment: for "// &
                         "algorithm='conventional', stepping='nominal', integration='explicit'")
       call keys%add('solver', 'integration', kind_choice, 'dahl: second order with controlled error, or explicit with '// &

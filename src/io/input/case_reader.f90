@@ -145,10 +145,14 @@ contains
       else if (method%stepping == stepping_nominal .and. .not. friction%is_linear()) then
          call reader%complain('solver', 1, 'stepping', "must be 'event' with law='"//law//"', which is not linear "// &
                               'between events', error)
-      else if (method%stepping /= stepping_event .and. .not. is_mfv) then
+      else if (method%stepping /= stepping_auto .and. .not. is_mfv) then
          call reader%complain('solver', 1, 'stepping', "has no effect with algorithm='conventional'; remove it", error)
       else if (method%stepping == stepping_leap .and. allocated(friction%law) .and. .not. friction%is_proportional()) then
          call reader%complain('solver', 1, 'stepping', "'leap' needs law='coulomb' or 'none', not '"//law//"'", error)
+      else if (method%stepping == stepping_leap .and. .not. method%accuracy > 0.0_wp) then
+         call reader%complain('solver', 1, 'stepping', "'leap' needs an accuracy above 0", error)
+      else if (method%accuracy > 0.0_wp .and. .not. (is_mfv .and. any(method%stepping == [stepping_auto, stepping_leap]))) then
+         call reader%complain('solver', 1, 'accuracy', "has an effect with stepping='auto' or 'leap' only; remove it", error)
       end if
    end subroutine check_method
 
@@ -158,11 +162,12 @@ contains
       type(method_type), intent(out) :: method
 
       method%algorithm = reader%constant('solver', 1, 'algorithm', [algorithm_mfv, algorithm_conventional])
-      method%stepping = reader%constant('solver', 1, 'stepping', [stepping_event, stepping_nominal, stepping_leap])
+      method%stepping = reader%constant('solver', 1, 'stepping', [stepping_auto, stepping_event, stepping_nominal, &
+                                                                   stepping_leap])
       method%linear_solver = reader%constant('solver', 1, 'linear_solver', &
                                              [solver_auto, solver_dgesv, solver_reduced, solver_fft])
       method%linear_tolerance = reader%real_value('solver', 1, 'linear_tolerance')
-      method%leap_tolerance = reader%real_value('solver', 1, 'leap_tolerance')
+      method%accuracy = reader%real_value('solver', 1, 'accuracy')
       method%integration = reader%constant('solver', 1, 'integration', [integration_second_order, integration_explicit])
       method%load_step = reader%real_value('solver', 1, 'load_step')
       method%friction_tolerance = reader%real_value('solver', 1, 'friction_tolerance')

@@ -105,7 +105,7 @@ contains
       call add_line(text, 'Then about '//to_text(advice%contact_nodes)//' nodes in contact, '//to_text(advice%solves, 2)// &
                     ' linear solves, '//to_text(advice%seconds, 1)//' s (estimated).')
       if (2*advice%increment_solves < advice%event_solves) &
-         call add_line(text, "stepping='leap', leap_tolerance="//to_text(advice%leap_tolerance, 2)//' needs fewer solves: '// &
+         call add_line(text, "accuracy="//to_text(advice%accuracy, 2)//' needs fewer solves: '// &
                        to_text(advice%increment_solves)//' instead of '//to_text(advice%event_solves)//' with '// &
                        to_text(advice%tried_nodes)//' nodes.')
       call add_line(text, 'Replace &mesh and &solver of the case by:')

@@ -217,7 +217,7 @@ contains
       call add('coupling', trim(word(couplings, case%scene%coupling)))
       call add('friction_law', trim(case%scene%friction%name()))
       call add('algorithm', trim(word(algorithms, case%scene%method%algorithm)))
-      call add('stepping', trim(word(steppings, case%scene%method%stepping)))
+      call add('stepping', trim(word(steppings, simulation%contact%model%scene%method%stepping)))
       call add('linear_solver', trim(simulation%contact%system%name))
       call add('lower_body', trim(body_name(case%scene%lower)))
       call add('upper_body', trim(body_name(case%scene%upper)))

@@ -1,0 +1,217 @@
+!> The slip at which nodes hold that have stuck within a large increment.
+!>
+!> While a stick zone grows, each of its new nodes holds at the slip S(x) that it had when the edge of the zone passed. Between the
+!> nodes that have held from the start of the increment and the first node E beyond the zone, S is smooth, and next to the edge c
+!> the slip differs from S by (x - c)^(5/2) only, so that S(E) is about the slip of E at the end. S is taken as the parabola through
+!> E and two nodes that have held: the outermost one, and one as far further in as E is further out. A contact that begins within
+!> the increment grows in proportion to its shape (exactly so for a power of x, under loads that grow in proportion): there S
+!> follows the gap before the increment.
+!>
+!> S depends on the slip of E, an unknown of the same increment: slip(E) = s + sum of r theta over the slips theta that are assumed
+!> for the outer nodes, r the responses to unit slips. The fronts to the left and to the right of all stick zones are two groups,
+!> whose responses are solved for; the two fronts of a zone follow from a system of two equations. This is exact for one zone; the
+!> effects of other zones are iterated.
+module mfv_sticking_front
+   use mfv_contact_fields, only: contact_fields_type
+   use mfv_kinds, only: wp
+   use mfv_node_status
+   implicit none
+   private
+   public :: fronts_type, find_fronts, left, right
+
+   !> Groups of fronts.
+   integer, parameter :: left = 1, right = 2
+
+   !> The fronts of all stick zones.
+   type :: fronts_type
+      !> The first node beyond the fronts of each zone, 0 for none, shape (2, zones); and the slip that is assumed for it, length.
+      integer, allocatable :: outer(:, :)
+      real(wp), allocatable :: slip(:, :)
+      !> For each node its zone, 0 for none, and its group, shape (nodes).
+      integer, allocatable :: zone(:), group(:)
+      !> The node holds at base + weight*slip; length; shape (nodes).
+      real(wp), allocatable :: base(:), weight(:)
+   contains
+      procedure :: number
+      procedure :: set_hold
+      procedure :: group_weight
+      procedure :: assume
+      procedure :: correct
+   end type fronts_type
+
+contains
+
+   !> The fronts for statuses at the end of an increment, shape (nodes). `held`: nodes that hold from its start, at the slip `hold`
+   !> (length); `start`: the fields there; `open`: nodes that were open there; `gap`: the gaps there, length; `ahead`: how far nodes
+   !> slip after the end of the increment until they stick, length; all shape (nodes).
+   subroutine find_fronts(status, held, open, hold, start, gap, ahead, fronts)
+      integer, intent(in) :: status(:)
+      logical, intent(in) :: held(:), open (:)
+      real(wp), intent(in) :: hold(:), gap(:), ahead(:)
+      type(contact_fields_type), intent(in) :: start
+      type(fronts_type), intent(out) :: fronts
+      integer :: first, last, zones, n
+
+      n = size(status)
+      allocate (fronts%outer(2, n), source=0)
+      allocate (fronts%zone(n), fronts%group(n), source=0)
+      allocate (fronts%base(n), fronts%weight(n), source=0.0_wp)
+      zones = 0
+      last = 0
+      do first = 1, n
+         if (first <= last .or. status(first) /= node_stick) cycle
+         last = first
+         do while (last < n)
+            if (status(last + 1) /= node_stick) exit
+            last = last + 1
+         end do
+         zones = zones + 1
+         if (any(held(first:last))) then
+            call grown_zone
+         else if (all(open (first:last))) then
+            call new_zone
+         end if
+      end do
+      fronts%outer = fronts%outer(:, :zones)
+      do first = 1, n
+         if (fronts%zone(first) > 0) fronts%base(first) = fronts%base(first) + fronts%weight(first) &
+                                                          *ahead(fronts%outer(fronts%group(first), fronts%zone(first)))
+      end do
+      allocate (fronts%slip(2, zones), source=0.0_wp)
+
+   contains
+
+      !> A zone that has grown from nodes that have held.
+      subroutine grown_zone
+         integer :: inner(2), reach
+
+         inner = [findloc(held(first:last), .true., dim=1), findloc(held(first:last), .true., dim=1, back=.true.)] + first - 1
+         reach = inner(2) - inner(1)
+         if (reach == 0) return
+         if (inner(1) > first .and. first > 1) &
+            call add_parabola(left, first, inner(1) - 1, first - 1, inner(1), inner(1) + min(inner(1) - first + 1, reach - reach/2))
+         if (inner(2) < last .and. last < n) &
+            call add_parabola(right, inner(2) + 1, last, last + 1, inner(2), inner(2) - min(last + 1 - inner(2), reach - reach/2))
+      end subroutine grown_zone
+
+      !> A front of the nodes `from` to `to`: a parabola through `outer` and the held nodes `near` and `far`.
+      subroutine add_parabola(group, from, to, outer, near, far)
+         integer, intent(in) :: group, from, to, outer, near, far
+         real(wp) :: x
+         integer :: i
+
+         fronts%outer(group, zones) = outer
+         fronts%zone(from:to) = zones
+         fronts%group(from:to) = group
+         do i = from, to
+            x = real(i, wp)
+            fronts%weight(i) = (x - near)*(x - far)/real((outer - near)*(outer - far), wp)
+            fronts%base(i) = hold(near)*(x - outer)*(x - far)/real((near - outer)*(near - far), wp) &
+                             + hold(far)*(x - outer)*(x - near)/real((far - outer)*(far - near), wp)
+         end do
+      end subroutine add_parabola
+
+      !> A zone of nodes that were open: both fronts from the node that was nearest.
+      subroutine new_zone
+         integer :: middle
+
+         middle = first - 1 + minloc(gap(first:last), dim=1)
+         if (first == 1 .or. last == n) return
+         call add_scaled(left, first, middle, first - 1, middle)
+         if (last > middle) call add_scaled(right, middle + 1, last, last + 1, middle)
+      end subroutine new_zone
+
+      !> A front whose slip since the start is in proportion to the gap there, above that of the node `middle`.
+      subroutine add_scaled(group, from, to, outer, middle)
+         integer, intent(in) :: group, from, to, outer, middle
+         real(wp) :: slip(size(gap))
+
+         if (.not. gap(outer) > gap(middle)) return
+         slip = start%slip()
+         fronts%outer(group, zones) = outer
+         fronts%zone(from:to) = zones
+         fronts%group(from:to) = group
+         fronts%weight(from:to) = (gap(from:to) - gap(middle))/(gap(outer) - gap(middle))
+         fronts%base(from:to) = slip(from:to) - fronts%weight(from:to)*slip(outer)
+      end subroutine add_scaled
+   end subroutine find_fronts
+
+   !> Number of fronts of a group.
+   pure integer function number(self, group)
+      class(fronts_type), intent(in) :: self
+      integer, intent(in) :: group
+
+      number = count(self%outer(group, :) > 0)
+   end function number
+
+   !> Set the slip at which the nodes of fronts hold, length, shape (nodes); that of others is unchanged.
+   pure subroutine set_hold(self, hold)
+      class(fronts_type), intent(in) :: self
+      real(wp), intent(inout) :: hold(:)
+      integer :: i
+
+      do i = 1, size(hold)
+         if (self%zone(i) > 0) hold(i) = self%base(i) + self%weight(i)*self%slip(self%group(i), self%zone(i))
+      end do
+   end subroutine set_hold
+
+   !> The change of the slip of all nodes with that of the outer nodes of a group, shape (nodes).
+   pure function group_weight(self, group) result(weight)
+      class(fronts_type), intent(in) :: self
+      integer, intent(in) :: group
+      real(wp) :: weight(size(self%weight))
+
+      weight = merge(self%weight, 0.0_wp, self%group == group)
+   end function group_weight
+
+   !> Assume the slip of `fields` for the outer nodes.
+   pure subroutine assume(self, fields)
+      class(fronts_type), intent(inout) :: self
+      type(contact_fields_type), intent(in) :: fields
+      real(wp) :: slip(size(self%zone))
+      integer :: group, zone
+
+      slip = fields%slip()
+      do zone = 1, size(self%outer, 2)
+         do group = left, right
+            if (self%outer(group, zone) > 0) self%slip(group, zone) = slip(self%outer(group, zone))
+         end do
+      end do
+   end subroutine assume
+
+   !> Correct the assumed slips. `fields`: the fields that follow from them; `response`: their changes with the slip of the outer
+   !> nodes of each group, shape (2). `change`: the corrections, length, shape (2, zones).
+   pure subroutine correct(self, fields, response, change)
+      class(fronts_type), intent(inout) :: self
+      type(contact_fields_type), intent(in) :: fields, response(2)
+      real(wp), allocatable, intent(out) :: change(:, :)
+      real(wp) :: slip(size(self%zone)), responses(size(self%zone), 2), matrix(2, 2), wrong(2), determinant
+      integer :: group, zone, other
+
+      allocate (change, mold=self%slip)
+      slip = fields%slip()
+      do group = left, right
+         responses(:, group) = 0.0_wp
+         if (self%number(group) > 0) responses(:, group) = response(group)%slip()
+      end do
+      do zone = 1, size(self%outer, 2)
+         wrong = 0.0_wp
+         matrix = reshape([1.0_wp, 0.0_wp, 0.0_wp, 1.0_wp], [2, 2])
+         do group = left, right
+            if (self%outer(group, zone) == 0) cycle
+            wrong(group) = slip(self%outer(group, zone)) - self%slip(group, zone)
+            do other = left, right
+               if (self%outer(other, zone) > 0) &
+                  matrix(group, other) = matrix(group, other) - responses(self%outer(group, zone), other)
+            end do
+         end do
+         determinant = matrix(1, 1)*matrix(2, 2) - matrix(1, 2)*matrix(2, 1)
+         change(:, zone) = 0.0_wp
+         if (.not. abs(determinant) > 0.0_wp) cycle
+         change(left, zone) = (matrix(2, 2)*wrong(1) - matrix(1, 2)*wrong(2))/determinant
+         change(right, zone) = (matrix(1, 1)*wrong(2) - matrix(2, 1)*wrong(1))/determinant
+      end do
+      self%slip = self%slip + change
+   end subroutine correct
+
+end module mfv_sticking_front
