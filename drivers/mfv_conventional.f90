@@ -29,6 +29,6 @@ program run_conventional
       end if
    end do
    if (.not. allocated(path)) call refuse('mfv_conventional', usage, 'a case file is missing')
-   call run_case(path, resume, .false., .false., algorithm_conventional, '_conventional')
+   call run_case(path, resume, .false., .false., algorithm=algorithm_conventional, suffix='_conventional')
 
 end program run_conventional

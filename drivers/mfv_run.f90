@@ -7,6 +7,8 @@ program mfv_run
    use mfv_error, only: error_type
    use mfv_command_line, only: fail, get_argument, has_argument, refuse, refuse_option
    use mfv_keys, only: list_keys_as_markdown
+   use mfv_kinds, only: wp
+   use mfv_numbers, only: read_real
    use mfv_output, only: begin_program, print_text
    use mfv_run_case, only: run_case
    use mfv_strings, only: shortened
@@ -16,6 +18,7 @@ program mfv_run
    save  ! implied by the standard; without it gfortran's -frecursive leaks the variables of a program
 
    character(:), allocatable :: path, text
+   real(wp), allocatable :: accuracy
    logical :: check, estimate, sensitivity, resume
 
    call begin_program('mfv_run', usage, help)
@@ -29,7 +32,7 @@ program mfv_run
       if (check) then
          call check_case(path)
       else
-         call run_case(path, resume, estimate, sensitivity)
+         call run_case(path, resume, estimate, sensitivity, accuracy)
       end if
    end if
 
@@ -44,9 +47,14 @@ contains
       estimate = .false.
       sensitivity = .false.
       resume = .false.
-      do i = 1, command_argument_count()
+      i = 0
+      do while (i < command_argument_count())
+         i = i + 1
          call get_argument(i, argument)
          select case (argument)
+         case ('--accuracy')
+            i = i + 1
+            call read_accuracy(i)
          case ('--check')
             check = .true.
          case ('--estimate')
@@ -62,9 +70,23 @@ contains
          end select
       end do
       if (.not. allocated(path)) call refuse('mfv_run', usage, 'a case file is missing')
-      if (check .and. (estimate .or. sensitivity .or. resume)) &
-         call refuse('mfv_run', usage, '--check only reads the case; remove --estimate, --sensitivity and --resume')
+      if (check .and. (estimate .or. sensitivity .or. resume .or. allocated(accuracy))) &
+         call refuse('mfv_run', usage, '--check only reads the case; remove the other options')
    end subroutine read_arguments
+
+   !> The value of --accuracy, argument number `place`.
+   subroutine read_accuracy(place)
+      integer, intent(in) :: place
+      character(:), allocatable :: argument
+      logical :: valid
+
+      valid = place <= command_argument_count()
+      if (valid) call get_argument(place, argument)
+      allocate (accuracy, source=0.0_wp)
+      if (valid) call read_real(argument, accuracy, valid)
+      if (valid) valid = accuracy >= 0.0_wp .and. accuracy <= 0.1_wp
+      if (.not. valid) call refuse('mfv_run', usage, '--accuracy needs a number from 0 to 0.1, such as 1e-3')
+   end subroutine read_accuracy
 
    subroutine check_case(path)
       character(*), intent(in) :: path

@@ -6,7 +6,7 @@ module mfv_run_help
 
    !> Printed by --help: the usage, then the help, one line per element. The manual page is made from both (docs/man).
    character(*), parameter :: usage(*) = [character(len=100) :: &
-      'usage: mfv_run [--estimate] [--sensitivity] [--resume] CASE.nml', &
+      'usage: mfv_run [--accuracy E] [--estimate] [--sensitivity] [--resume] CASE.nml', &
       '       mfv_run --advise error=1e-2 [of=stick_ratio,dissipation] CASE.nml', &
       '       mfv_run --check CASE.nml', &
       '       mfv_run --keys | --version | --help' &
@@ -32,6 +32,8 @@ module mfv_run_help
       'for example, is chosen from an estimate of the contact. Options may follow the case.', &
       '', &
       'Options:', &
+      '  --accuracy   allowed error of the tractions and of the dissipation, such as 1e-3, in place of', &
+      '               accuracy in &solver: large increments where they cost less than events', &
       '  --estimate   also solve the case on coarser meshes, for error bars of half-width, stick ratio,', &
       '               peak tractions and dissipation; takes about twice the time', &
       '  --sensitivity  solve the case once more with all coefficients of friction times 1 + 1e-12,', &

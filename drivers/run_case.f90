@@ -20,11 +20,12 @@ contains
 
    !> Read the case in the file `path`, solve it, write its result (if the library has HDF5) and print the summary; the program then
    !> ends with the exit code of the outcome. `algorithm`: replaces that of the case; `suffix`: inserted in the name of the result
-   !> file. `estimate`, `sensitivity`: compute error bars and the sensitivity to round-off even if the case does not request them;
+   !> file; `accuracy`: replaces that of the case. `estimate`, `sensitivity`: compute error bars and the sensitivity to round-off even if the case does not request them;
    !> `resume`: continue from a checkpoint.
-   subroutine run_case(path, resume, estimate, sensitivity, algorithm, suffix)
+   subroutine run_case(path, resume, estimate, sensitivity, accuracy, algorithm, suffix)
       character(*), intent(in) :: path
       logical, intent(in) :: resume, estimate, sensitivity
+      real(wp), intent(in), optional :: accuracy
       integer, intent(in), optional :: algorithm
       character(*), intent(in), optional :: suffix
       type(contact_type) :: contact
@@ -35,7 +36,7 @@ contains
 
       call use_one_thread()
       started = seconds_now()
-      call read_contact(path, contact, error, needs_steps=.true., algorithm=algorithm, suffix=suffix)
+      call read_contact(path, contact, error, needs_steps=.true., algorithm=algorithm, suffix=suffix, accuracy=accuracy)
       if (.not. allocated(error)) call contact%ask_for(estimate, sensitivity, error)
       if (.not. allocated(error)) call contact%keep_checkpoints(error)
       if (allocated(error)) call fail(error)

@@ -90,14 +90,15 @@ module mfv_contact
 contains
 
    !> The contact of the case in a namelist file. `needs_steps`: whether a case without steps is an error. `algorithm`: replaces
-   !> that of the case; `suffix`: inserted in the name of the result file. Error MFV_INPUT_ERROR.
-   subroutine read_contact(path, contact, error, needs_steps, algorithm, suffix)
+   !> that of the case, as does `accuracy`; `suffix`: inserted in the name of the result file. Error MFV_INPUT_ERROR.
+   subroutine read_contact(path, contact, error, needs_steps, algorithm, suffix, accuracy)
       character(*), intent(in) :: path
       type(contact_type), intent(out) :: contact
       type(error_type), allocatable, intent(out) :: error
       logical, intent(in), optional :: needs_steps
       integer, intent(in), optional :: algorithm
       character(*), intent(in), optional :: suffix
+      real(wp), intent(in), optional :: accuracy
       logical :: without_steps
 
       without_steps = .true.
@@ -105,6 +106,14 @@ contains
       call read_case_file(path, contact%case, error, without_steps)
       if (allocated(error)) return
       if (present(algorithm)) contact%case%scene%method%algorithm = algorithm
+      if (present(accuracy)) then
+         if (.not. contact%case%scene%method%takes_accuracy()) then
+            call set_error(error, MFV_INPUT_ERROR, contact%case%source//": --accuracy has an effect with algorithm='mfv' and "// &
+                           "stepping='auto' or 'leap' only")
+            return
+         end if
+         contact%case%scene%method%accuracy = accuracy
+      end if
       if (present(suffix)) contact%case%result_path = with_suffix(contact%case%result_path, suffix)
       call contact%begin()
    end subroutine read_contact

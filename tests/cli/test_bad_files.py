@@ -406,7 +406,7 @@ ARGUMENTS = [
     (RUN, ("case.nml", "case.nml"), "too many arguments: 'case.nml'"),
     (RUN, (), "a case file is missing"),
     (RUN, ("--check",), "a case file is missing"),
-    (RUN, ("case.nml", "--check", "--resume"), "--check only reads the case; remove --estimate, --sensitivity and --resume"),
+    (RUN, ("case.nml", "--check", "--resume"), "--check only reads the case; remove the other options"),
     (RUN, ("--chekc", "case.nml"), "unknown option '--chekc'; did you mean --check?"),
     (RUN, ("-",), "unknown option '-'"),
     (RUN, ("--" + "x" * LONG,), "unknown option '--xxx"),

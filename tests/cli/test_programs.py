@@ -153,7 +153,9 @@ def test_summary_says_where_tension_is_singular(tmp_path):
 
 
 def test_help_version_keys_and_check(tmp_path):
-    assert "usage: mfv_run [--estimate] [--sensitivity] [--resume] CASE.nml" in mfv_run("--help", cwd=tmp_path).stdout
+    assert (
+        "usage: mfv_run [--accuracy E] [--estimate] [--sensitivity] [--resume] CASE.nml" in mfv_run("--help", cwd=tmp_path).stdout
+    )
     version = (ROOT / "VERSION").read_text().strip()
     assert mfv_run("--version", cwd=tmp_path).stdout == f"mfv_run {version}\n"
     assert mfv_run("--keys", cwd=tmp_path).stdout in (ROOT / "docs/namelist.md").read_text()

@@ -58,6 +58,8 @@ module mfv_scene
       !> Allowed error of large increments: of tractions, relative to the largest; of the dissipation of a segment, relative to that
       !> dissipation. 0: none, events are followed one by one.
       real(wp) :: accuracy = 0.0_wp
+   contains
+      procedure :: takes_accuracy
    end type method_type
 
    !> Mesh settings of the user; what is not set is chosen from an estimate of the contact.
@@ -98,6 +100,13 @@ module mfv_scene
    end type scene_type
 
 contains
+
+   !> Whether an accuracy has an effect: large increments are possible.
+   elemental logical function takes_accuracy(self)
+      class(method_type), intent(in) :: self
+
+      takes_accuracy = self%algorithm == algorithm_mfv .and. (self%stepping == stepping_auto .or. self%stepping == stepping_leap)
+   end function takes_accuracy
 
    !> Whether the scene requires the tangential problem: a friction law, and a step in which it acts. A scene without steps may get
    !> such steps later.

@@ -1,8 +1,8 @@
 !> The statuses at one load, independent of the load history: all nodes that violate an inequality of dissertation Table 2.1 change
 !> together, and the system is solved again, until no inequality is violated (the primal-dual active set method: Hintermueller, Ito
 !> and Kunisch, SIAM J. Optim. 13, 2003). Without friction the result is the state of every load history. With Coulomb friction
-!> stuck nodes hold at the slip of the start (nodes that touch: at about their slip at first contact), as in one implicit step of
-!> an integrator.
+!> nodes that stick throughout hold at the slip of the start, others at the slip that they had when the edge of their zone passed
+!> (mfv_sticking_front), or, if it is not known which nodes these are, at the slip of the start or of about first contact.
 !>
 !> If a zone is slightly too large, its traction (less the friction limit) is K/sqrt(t) + A sqrt(t) at the distance t from its
 !> edge; moving the edge by s changes K by A s/2, whatever the other edges do. The edge therefore belongs at twice the distance at

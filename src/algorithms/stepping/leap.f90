@@ -1,14 +1,14 @@
 !> Large increments (`stepping='leap'`): load segments in a few implicit steps instead of event by event.
 !>
-!> In a large increment stuck nodes hold at the slip of its start, and every equality and inequality of dissertation Table 2.1 is
-!> satisfied at its end only, with slip counted from start to end (mfv_active_set): backward Euler. An interval is divided into 1,
+!> In a large increment every equality and inequality of dissertation Table 2.1 is satisfied at its end only (mfv_active_set). The
+!> slip of nodes that stick within it follows from the edges of the stick zones (mfv_sticking_front). An interval is divided into 1,
 !> 2, 4, 8, ... equal increments (a chain) until tractions and dissipation change by at most half of `accuracy`: tractions
 !> relative to the largest so far, dissipation relative to that of the interval, so that every leg of every cycle meets the
 !> tolerance. If nodes slip one way only under constant pressures, one increment is exact (Mindlin).
 !>
-!> Tractions that depend on the path have an error of first order: a node that touches during an increment holds at an estimate of
-!> its slip at first contact, and a node that slips and sticks again within an increment is treated as stuck. Dissipation: see
-!> mfv_chain_dissipation.
+!> Where it is not known which nodes hold from the start, tractions that depend on the path have an error of first order: a node
+!> that touches during an increment holds at an estimate of its slip at first contact, and a node that slips and sticks again within
+!> an increment is treated as stuck. Dissipation: see mfv_chain_dissipation.
 !>
 !> An interval that would take more solves than it has events is applied by events (mfv_first_violation), which are exact; gross
 !> sliding and separation are therefore found there. The certificate checks large increments at their ends only.

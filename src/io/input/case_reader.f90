@@ -151,7 +151,7 @@ contains
          call reader%complain('solver', 1, 'stepping', "'leap' needs law='coulomb' or 'none', not '"//law//"'", error)
       else if (method%stepping == stepping_leap .and. .not. method%accuracy > 0.0_wp) then
          call reader%complain('solver', 1, 'stepping', "'leap' needs an accuracy above 0", error)
-      else if (method%accuracy > 0.0_wp .and. .not. (is_mfv .and. any(method%stepping == [stepping_auto, stepping_leap]))) then
+      else if (method%accuracy > 0.0_wp .and. .not. method%takes_accuracy()) then
          call reader%complain('solver', 1, 'accuracy', "has an effect with stepping='auto' or 'leap' only; remove it", error)
       end if
    end subroutine check_method
