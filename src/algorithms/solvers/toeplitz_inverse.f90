@@ -12,6 +12,7 @@
 module mfv_toeplitz_inverse
    use mfv_fourier, only: back_transform, fast_length, real_transform
    use mfv_kinds, only: wp
+   use mfv_lapack, only: ddot
    implicit none
    private
    public :: toeplitz_inverse_type
@@ -31,6 +32,8 @@ module mfv_toeplitz_inverse
       procedure :: set_order
       procedure :: apply
       procedure :: copy_order
+      procedure :: move_from
+      procedure :: entries
    end type toeplitz_inverse_type
 
 contains
@@ -70,6 +73,48 @@ contains
       self%error = other%error
       self%length = 0
    end subroutine copy_order
+
+   !> Move an inverse with its storage; the other then has the order 0.
+   subroutine move_from(self, other)
+      class(toeplitz_inverse_type), intent(inout) :: self
+      class(toeplitz_inverse_type), intent(inout) :: other
+
+      self%order = other%order
+      self%error = other%error
+      self%length = other%length
+      call move_alloc(other%predictor, self%predictor)
+      call move_alloc(other%forward, self%forward)
+      call move_alloc(other%backward, self%backward)
+      call move_alloc(other%values, self%values)
+      call move_alloc(other%others, self%others)
+      call move_alloc(other%spectrum, self%spectrum)
+      call move_alloc(other%product, self%product)
+      other%order = 0
+      other%length = 0
+   end subroutine move_from
+
+   !> Entries of the inverse for rows and columns `places`, ascending; shape (places, places). Along a diagonal the formula is a sum
+   !> of products.
+   subroutine entries(self, places, matrix)
+      class(toeplitz_inverse_type), intent(in) :: self
+      integer, intent(in) :: places(:)
+      real(wp), intent(out) :: matrix(:, :)
+      integer :: count, distance, i, j
+
+      associate (a => self%predictor, m => self%order)
+         do j = 1, size(places)
+            do i = j, size(places)
+               distance = places(i) - places(j)
+               ! The inverse is symmetric about both diagonals.
+               count = min(places(j), m + 1 - places(i))
+               matrix(i, j) = ddot(count, a(distance + 1), 1, a(1), 1)
+               if (count > 1) matrix(i, j) = matrix(i, j) - ddot(count - 1, a(m + 2 - count), 1, a(m + 2 - count - distance), 1)
+               matrix(i, j) = matrix(i, j)/self%error
+               matrix(j, i) = matrix(i, j)
+            end do
+         end do
+      end associate
+   end subroutine entries
 
    !> Reserve storage for a predictor of `order` with a margin; its values are retained.
    subroutine make_room(self, order)
