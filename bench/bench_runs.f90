@@ -7,7 +7,6 @@ module bench_runs
    use mfv_clock, only: seconds_now
    use mfv_error, only: error_type
    use mfv_kinds, only: wp
-   use mfv_krylov_system, only: krylov_system_type
    use mfv_motions, only: motion_approach, motion_shift
    use mfv_reduced_system, only: reduced_system_type
    use mfv_simulation, only: history_none, new_simulation, simulation_type, states_steps
@@ -112,24 +111,18 @@ contains
    subroutine write_entry(path, entry)
       character(*), intent(in) :: path
       type(entry_type), intent(in) :: entry
-      character(len=8) :: solver
       integer :: refinements, rebuilds
 
       refinements = 0
       rebuilds = 0
       select type (system => entry%simulation%contact%system)
       type is (reduced_system_type)
-         solver = 'reduced'
          refinements = system%refinements
          rebuilds = system%rebuilds()
-      type is (krylov_system_type)
-         solver = 'fft'
-      class default
-         solver = 'dgesv'
       end select
       associate (contact => entry%simulation%contact, state => entry%simulation%contact%state)
          write (output_unit, '(4a,7(a,i0),5(a,es22.15),a)', advance='no') '{"case": "', path, '", "solver": "', &
-            trim(solver)//'"', ', "outcome": ', entry%simulation%outcome, ', "nodes": ', contact%model%nodes(), &
+            trim(contact%system%name)//'"', ', "outcome": ', entry%simulation%outcome, ', "nodes": ', contact%model%nodes(), &
             ', "contact": ', state%contact_nodes(), ', "stuck": ', state%stick_nodes(), &
             ', "refinements": ', refinements, ', "rebuilds": ', rebuilds, ', "memory": ', peak_memory(), &
             ', "certificate": ', contact%certificate%largest(), ', "dissipation": ', state%dissipation, &

@@ -3,7 +3,7 @@ module mfv_lapack
    use mfv_kinds, only: wp
    implicit none
    private
-   public :: ddot, dgemm, dgemv, dger, dgesv, dgetrf, dgetri, dpotrf, dpotri
+   public :: ddot, dgemm, dgemv, dger, dgesv, dgetrf, dgetri, dgetrs, dpotrf, dpotri
 
    interface
       pure function ddot(n, x, incx, y, incy) result(product)
@@ -56,6 +56,15 @@ module mfv_lapack
          real(wp), intent(inout) :: a(lda, *), work(*)
          integer, intent(out) :: info
       end subroutine dgetri
+
+      subroutine dgetrs(trans, n, nrhs, a, lda, ipiv, b, ldb, info)
+         import :: wp
+         character, intent(in) :: trans
+         integer, intent(in) :: n, nrhs, lda, ldb, ipiv(*)
+         real(wp), intent(in) :: a(lda, *)
+         real(wp), intent(inout) :: b(ldb, *)
+         integer, intent(out) :: info
+      end subroutine dgetrs
 
       subroutine dpotrf(uplo, n, a, lda, info)
          import :: wp

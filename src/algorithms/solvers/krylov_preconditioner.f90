@@ -1,9 +1,9 @@
 !> Approximate inverses of the diagonal blocks C_wp and C_ut on the nodes of a contact, each in O(n log n).
 !>
 !> The surface of every elastic body responds to nearby tractions like a half-plane, by the logarithm of the distance. On
-!> consecutive nodes this is a Toeplitz matrix with a known exact inverse (mfv_toeplitz_inverse). On a half-plane the iteration
-!> then only resolves the coupling of pressure and shear, whose strength does not depend on the mesh. If a set of nodes has gaps,
-!> the inverse on all nodes between its ends is restricted to it.
+!> consecutive nodes this is a Toeplitz matrix with a known exact inverse (mfv_toeplitz_inverse), on several patches a matrix of
+!> such blocks, whose coupling is of small rank (mfv_patched_inverse). On a half-plane the iteration then only resolves the coupling
+!> of pressure and shear, whose strength does not depend on the mesh.
 !>
 !> Nodes held by bristles (softness c > 0, mfv_krylov_system) need 1/(C_ut + c): their rows are interpolated between circulant
 !> inverses for a few values of c. Nodes whose friction decreases with slip (c < 0) are treated as independent: where the bodies
@@ -13,14 +13,14 @@ module mfv_krylov_preconditioner
    use mfv_fourier, only: back_transform, fast_length, real_transform
    use mfv_half_plane, only: log_kernel
    use mfv_kinds, only: wp
-   use mfv_toeplitz_inverse, only: toeplitz_inverse_type
+   use mfv_patched_inverse, only: patched_inverse_type
    implicit none
    private
    public :: krylov_preconditioner_type
 
    !> Inverse on a set of nodes.
    type :: block_type
-      type(toeplitz_inverse_type) :: inverse
+      type(patched_inverse_type) :: inverse
       !> The nodes, and the number of the node before the first.
       integer, allocatable :: nodes(:)
       integer :: before = 0
@@ -36,8 +36,6 @@ module mfv_krylov_preconditioner
       !> inverses of the levels, shape (length/2 + 1, levels).
       logical :: soft = .false.
       real(wp), allocatable :: softness(:), weight(:, :), symbol(:, :)
-      !> Work space.
-      real(wp), allocatable :: work(:)
    contains
       procedure :: prepare
       procedure :: set_contact
@@ -86,7 +84,8 @@ contains
       class(krylov_preconditioner_type), intent(inout) :: self
       integer, intent(in) :: nodes(:)
 
-      call set_nodes(self, self%contact, nodes)
+      call place_nodes(self%contact, nodes)
+      call self%contact%inverse%set_nodes(self%kernel, nodes)
    end subroutine set_contact
 
    !> Set the nodes whose shear is unknown, ascending, and their softness, shape (held).
@@ -95,26 +94,19 @@ contains
       integer, intent(in) :: nodes(:)
       real(wp), intent(in) :: softness(:)
 
-      if (size(nodes) > 0) then
-         associate (inverse => self%held%inverse, other => self%contact%inverse, wanted => nodes(size(nodes)) - nodes(1) + 1)
-            if (abs(other%order - wanted) < abs(inverse%order - wanted)) call inverse%copy_order(other)
-         end associate
-      end if
-      call set_nodes(self, self%held, nodes)
+      call place_nodes(self%held, nodes)
+      call self%held%inverse%set_nodes(self%kernel, nodes, self%contact%inverse)
       self%soft = any(abs(softness) > 0.0_wp)
       if (self%soft) call set_levels(self, softness)
    end subroutine set_held
 
-   subroutine set_nodes(self, block, nodes)
-      type(krylov_preconditioner_type), intent(inout) :: self
+   subroutine place_nodes(block, nodes)
       type(block_type), intent(inout) :: block
       integer, intent(in) :: nodes(:)
 
       block%nodes = nodes
-      if (size(nodes) == 0) return
-      block%before = nodes(1) - 1
-      call block%inverse%set_order(self%kernel, nodes(size(nodes)) - block%before)
-   end subroutine set_nodes
+      if (size(nodes) > 0) block%before = nodes(1) - 1
+   end subroutine place_nodes
 
    !> Levels of softness with a constant ratio, from negligible to dominant softness, and the weights for interpolation between
    !> them.
@@ -128,7 +120,7 @@ contains
       integer :: i, level, levels, length
 
       self%softness = softness
-      length = fast_length(2*self%held%inverse%order)
+      length = fast_length(2*(self%held%nodes(size(softness)) - self%held%before))
       allocate (values(length), spectrum(length/2 + 1))
       values(:length/2 + 1) = self%kernel(:length/2 + 1)
       values(length/2 + 2:) = self%kernel(length/2:2:-1)
@@ -156,7 +148,7 @@ contains
       class(krylov_preconditioner_type), intent(inout) :: self
       real(wp), intent(inout) :: values(:)
 
-      call apply_block(self, self%contact, values)
+      call self%contact%inverse%apply(values)
    end subroutine apply_contact
 
    !> Tractions of the held nodes by displacements, shape (held), both in `values`.
@@ -166,7 +158,7 @@ contains
       real(wp), allocatable :: right(:)
 
       if (.not. self%soft) then
-         call apply_block(self, self%held, values)
+         call self%held%inverse%apply(values)
          return
       end if
       right = values
@@ -189,7 +181,7 @@ contains
       work = 0.0_wp
       work(self%held%nodes - self%held%before) = values
       call real_transform(work, spectrum)
-      if (any(self%weight(:, 0) > 0.0_wp)) call apply_block(self, self%held, values)
+      if (any(self%weight(:, 0) > 0.0_wp)) call self%held%inverse%apply(values)
       values = self%weight(:, 0)*values
       do level = 1, size(self%symbol, 2)
          if (.not. any(self%weight(:, level) > 0.0_wp)) cycle
@@ -198,26 +190,5 @@ contains
          values = values + self%weight(:, level)*work(self%held%nodes - self%held%before)
       end do
    end subroutine add_levels
-
-   subroutine apply_block(self, block, values)
-      type(krylov_preconditioner_type), intent(inout) :: self
-      type(block_type), intent(inout) :: block
-      real(wp), intent(inout) :: values(:)
-      integer :: order
-
-      order = block%inverse%order
-      if (size(values) == order) then
-         call block%inverse%apply(values)
-         return
-      end if
-      if (allocated(self%work)) then
-         if (size(self%work) < order) deallocate (self%work)
-      end if
-      if (.not. allocated(self%work)) allocate (self%work(order + order/4 + 8))
-      self%work(:order) = 0.0_wp
-      self%work(block%nodes - block%before) = values
-      call block%inverse%apply(self%work(:order))
-      values = self%work(block%nodes - block%before)
-   end subroutine apply_block
 
 end module mfv_krylov_preconditioner

@@ -445,12 +445,17 @@ contains
       self%shear(self%held) = unknowns(m + 1:m + size(self%held))
    end subroutine spread_tractions
 
-   !> Displacements by the tractions.
+   !> Displacements by the tractions. Without tractions (rates in a large increment) they need no product.
    subroutine displace(self, model)
       class(krylov_system_type), intent(inout) :: self
       type(contact_model_type), intent(in) :: model
       real(wp) :: unit
 
+      if (.not. (any(abs(self%pressure) > 0.0_wp) .or. any(abs(self%shear) > 0.0_wp))) then
+         self%normal = 0.0_wp
+         self%tangential = 0.0_wp
+         return
+      end if
       call model%compliance%displacements(self%pressure, self%shear, self%normal, self%tangential)
       unit = self%stress/self%length
       self%normal = unit*self%normal

@@ -1,7 +1,8 @@
 !> Choice of the linear solver of a scene, and of its stepping.
 module mfv_linear_solvers
    use mfv_augmented_system, only: augmented_system_type
-   use mfv_body, only: shape_matrix, shape_profile
+   use mfv_automatic_system, only: automatic_system_type
+   use mfv_body, only: shape_matrix
    use mfv_compliance, only: block_wt
    use mfv_contact_model, only: contact_model_type
    use mfv_contact_system, only: contact_system_type
@@ -9,25 +10,33 @@ module mfv_linear_solvers
    use mfv_krylov_system, only: krylov_system_type
    use mfv_reduced_system, only: reduced_system_type
    use mfv_scene
-   use mfv_solver_costs, only: least_coupled_leap, least_leap, most_apart, most_at_once, most_bristles, most_coupled, most_one_way
+   use mfv_solver_costs, only: least_coupled_leap, least_leap, most_apart, most_at_once, most_at_once_coupled, most_bristles, &
+                               most_bristles_coupled, most_coupled, most_one_way
    implicit none
    private
    public :: new_contact_system, chosen_stepping
 
 contains
 
-   !> The linear solver of the scene of a model. 'auto': the reduced system up to a number of nodes that depends on the structure
-   !> (mfv_solver_costs), beyond it fft, whose memory is proportional to that number. A user's matrix has no fast products and
-   !> always uses the reduced system.
+   !> The linear solver of the scene of a model. 'auto': the reduced system up to a number of nodes in contact that depends on the
+   !> structure (mfv_solver_costs), beyond it fft, whose memory is proportional to that of the mesh. A user's matrix has no fast
+   !> products and always uses the reduced system.
    subroutine new_contact_system(model, system)
       type(contact_model_type), intent(in) :: model
       class(contact_system_type), allocatable, intent(out) :: system
       integer :: solver
 
       solver = model%scene%method%linear_solver
-      if (solver == solver_auto) solver = merge(solver_reduced, solver_fft, model%scene%lower%shape == shape_matrix .or. &
-                                                model%nodes() <= most_reduced(model))
+      if (solver == solver_auto .and. (model%scene%lower%shape == shape_matrix .or. model%nodes() <= most_reduced(model))) &
+         solver = solver_reduced
       select case (solver)
+      case (solver_auto)
+         allocate (automatic_system_type :: system)
+         system%name = 'reduced'
+         select type (system)
+         type is (automatic_system_type)
+            system%most = most_reduced(model)
+         end select
       case (solver_fft)
          allocate (krylov_system_type :: system)
          system%name = 'fft'
@@ -51,7 +60,7 @@ contains
       if (model%nodes() >= merge(least_coupled_leap, least_leap, model%compliance%has_block(block_wt))) stepping = stepping_leap
    end function chosen_stepping
 
-   !> The largest number of nodes for the reduced system.
+   !> Most nodes in contact for the reduced system.
    pure integer function most_reduced(model) result(most)
       type(contact_model_type), intent(in) :: model
       logical :: coupled, one_way, at_once
@@ -62,12 +71,10 @@ contains
          at_once = scene%method%algorithm == algorithm_mfv .and. &
                    (scene%method%stepping == stepping_leap .or. &
                     scene%method%stepping == stepping_event .and. .not. model%tangential)
-         if (any([scene%lower%shape, scene%upper%shape] == shape_profile)) then
-            most = most_coupled
-         else if (.not. scene%friction%sticks() .or. (at_once .and. (coupled .or. one_way))) then
-            most = most_bristles
+         if (.not. scene%friction%sticks()) then
+            most = merge(most_bristles_coupled, most_bristles, coupled)
          else if (at_once) then
-            most = most_at_once
+            most = merge(most_at_once_coupled, most_at_once, coupled)
          else
             most = most_apart
             if (one_way) most = most_one_way

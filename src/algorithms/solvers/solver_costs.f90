@@ -6,17 +6,39 @@ module mfv_solver_costs
    private
    public :: least_leap, least_coupled_leap
    public :: cheapest_solver, seconds_of_solve, most_coupled, most_one_way, most_apart, most_at_once, &
-             most_bristles
+             most_at_once_coupled, most_bristles, most_bristles_coupled
 
    !> Seconds per linear solve with m unknown tractions in event stepping, including all other work: dgesv coefficient*m^3, reduced
    !> coefficient*m^2, fft coefficient*m*log2(m). Full coupling, one thread.
    real(wp), parameter :: dgesv_seconds = 1.3e-10_wp, reduced_seconds = 2.4e-10_wp, fft_seconds = 6.8e-8_wp
 
-   !> Most nodes for which linear_solver='auto' uses the reduced system; fft beyond. Event stepping: pressures and shear coupled,
-   !> coupled one way (Goodman), and uncoupled (in the last two cases fft has an exact inverse on a half-plane). Without events and
-   !> without coupling, where the reduced system has little to update. With bristles, whose rows change in every increment, or
-   !> large increments with coupling.
-   integer, parameter :: most_coupled = 1800, most_one_way = 1400, most_apart = 900, most_at_once = 100, most_bristles = 300
+   !> Most nodes in contact for which linear_solver='auto' uses the reduced system; fft beyond. Measured times of reduced over fft
+   !> on one machine (2026-11-22; m nodes in contact on n nodes, one thread, each pair in one process):
+   !>
+   !>     by events          coupled                Goodman                uncoupled
+   !>     one patch          m 500: 0.23            m 512: 0.49            m 512: 0.89
+   !>     (n = 2 m)          m 999: 0.51            m 1024: 0.68           m 1024: 0.90
+   !>                        m 1463: 0.50           m 1500: 0.75           m 1500: 0.88
+   !>     8 to 33 patches    m 217, n 2048: 0.14                           m 223, n 2048: 0.26
+   !>                        m 526, n 2048: 0.20                           m 541, n 2048: 0.23
+   !>                        m 270, n 8192: 0.14                           m 861, n 8192: 0.42
+   !>
+   !>     large increments   coupled                                       Goodman, uncoupled
+   !>     one patch          m 129: 0.31                                   m 32: 0.8
+   !>     (n = 2 m)          m 257: 0.47                                   m 64: 1.2
+   !>                        m 514: 0.96                                   m 128: 2.7
+   !>     8 to 33 patches    m 221, n 2048: 0.40                           m 81, n 512: 0.9
+   !>                        m 538, n 2048: 1.11                           m 223, n 2048: 2.7
+   !>                        m 277, n 8192: 0.29                           m 541, n 2048: 14
+   !>
+   !>     Dahl friction      coupled                                       uncoupled
+   !>     (n = 2 m)          m 18: 0.12                                    m 64: 0.53
+   !>                        m 125: 0.44                                   m 128: 1.1
+   !>                                                                      m 256: 2.7
+   !>
+   !> In event stepping the limit is that of memory (100 MB coupled, else 2*30 MB) rather than of time.
+   integer, parameter :: most_coupled = 1800, most_one_way = 2000, most_apart = 2000, most_at_once = 60, &
+                         most_at_once_coupled = 520, most_bristles = 120, most_bristles_coupled = 260
 
    !> Fewest nodes of the mesh for which stepping='auto' takes large increments if an error is allowed. They take some 100 solves to
    !> press with friction and coupling and 20 to 60 for a half-cycle, on any mesh, events about one for each node that changes its

@@ -1,0 +1,79 @@
+!> linear_solver='auto': the reduced system while few nodes are in contact, then the iteration through FFTW.
+!>
+!> The number of nodes in contact and of patches is not known at the start of a run, that of unknowns is known at every solve. The
+!> change is made once: returning would factorise the reduced system again.
+module mfv_automatic_system
+   use mfv_contact_fields, only: contact_fields_type
+   use mfv_contact_model, only: contact_model_type
+   use mfv_contact_system
+   use mfv_krylov_system, only: krylov_system_type
+   use mfv_node_status, only: in_contact
+   use mfv_reduced_system, only: reduced_system_type
+   implicit none
+   private
+   public :: automatic_system_type
+
+   type, extends(contact_system_type) :: automatic_system_type
+      !> Most nodes in contact for the reduced system.
+      integer :: most = 0
+      !> Whether more were in contact in some solve.
+      logical, private :: iterates = .false.
+      !> (Both allocatable: otherwise gfortran 12 does not free the components of the second.)
+      type(reduced_system_type), allocatable, private :: reduced
+      type(krylov_system_type), allocatable, private :: krylov
+   contains
+      procedure :: solve
+   end type automatic_system_type
+
+contains
+
+   !> See mfv_contact_system.
+   subroutine solve(self, model, constraints, start, response, singular)
+      class(automatic_system_type), intent(inout) :: self
+      type(contact_model_type), intent(in) :: model
+      type(constraints_type), intent(in) :: constraints
+      type(contact_fields_type), intent(in) :: start
+      type(response_type), intent(inout) :: response
+      logical, intent(out) :: singular
+
+      if (.not. self%iterates) call choose(self, count(in_contact(constraints%status)))
+      if (self%iterates) then
+         call solve_by(self%krylov)
+      else
+         call solve_by(self%reduced)
+      end if
+
+   contains
+
+      !> Solve by one of the two, and take over its name, tolerance and counts.
+      subroutine solve_by(system)
+         class(contact_system_type), intent(inout) :: system
+
+         self%solves = self%solves + 1
+         self%iterations = self%iterations - system%iterations
+         self%products = self%products - system%products
+         call system%solve(model, constraints, start, response, singular)
+         self%iterations = self%iterations + system%iterations
+         self%products = self%products + system%products
+         self%name = system%name
+         self%tolerance = system%tolerance
+      end subroutine solve_by
+   end subroutine solve
+
+   !> Choose by the number of nodes in contact.
+   subroutine choose(self, contact)
+      class(automatic_system_type), intent(inout) :: self
+      integer, intent(in) :: contact
+
+      self%iterates = contact > self%most
+      if (self%iterates) then
+         if (allocated(self%reduced)) deallocate (self%reduced)
+         allocate (self%krylov)
+         self%krylov%name = 'fft'
+      else if (.not. allocated(self%reduced)) then
+         allocate (self%reduced)
+         self%reduced%name = 'reduced'
+      end if
+   end subroutine choose
+
+end module mfv_automatic_system
