@@ -19,9 +19,9 @@ module mfv_run_case
 contains
 
    !> Read the case in the file `path`, solve it, write its result (if the library has HDF5) and print the summary; the program then
-   !> ends with the exit code of the outcome. `algorithm`: replaces that of the case; `suffix`: inserted in the name of the result
-   !> file; `accuracy`: replaces that of the case. `estimate`, `sensitivity`: compute error bars and the sensitivity to round-off even if the case does not request them;
-   !> `resume`: continue from a checkpoint.
+   !> ends with the exit code of the outcome. `algorithm`, `accuracy`: replace those of the case; `suffix`: inserted in the
+   !> name of the result file. `estimate`, `sensitivity`: compute error bars and the sensitivity to round-off even if the case does
+   !> not request them; `resume`: continue from a checkpoint.
    subroutine run_case(path, resume, estimate, sensitivity, accuracy, algorithm, suffix)
       character(*), intent(in) :: path
       logical, intent(in) :: resume, estimate, sensitivity

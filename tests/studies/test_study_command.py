@@ -124,7 +124,7 @@ def test_a_case_is_printed_though_others_cannot_be_used(tmp_path):
         (("spacing='log'", "spacing='logg'"), 3, "&vary 2 spacing='logg': must be 'linear' or 'log'"),
         (("spacing='log'", "spaicng='log'"), 3, "&vary spaicng: unknown key; did you mean spacing?"),
         (("spacing='log'", "count=4"), 3, "count: given twice"),
-        (("from=1e-4", "from=-1e-4"), 3, "needs from and to of the same sign"),
+        (("from=1e-4", "from=-1e-4"), 3, "needs from and to that are nonzero and of the same sign"),
         (("count=3, ", ""), 3, "needs values=..., or from, to and count; count is missing"),
         (("count=3", "count=0"), 3, "&vary 2 count=0: must be a whole number from 1 to 100000"),
         (("count=3", "count=2.5"), 3, "&vary 2 count=2.5: must be a whole number"),

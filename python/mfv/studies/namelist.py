@@ -243,7 +243,7 @@ class _Reader:
             self._complain(group, "count", f"must be a whole number from 1 to {MOST_VALUES}", number)
         is_log = group.values.get("spacing") == ["log"]
         if is_log and not first * last > 0:
-            self._complain(group, "spacing", "needs from and to of the same sign", number)
+            self._complain(group, "spacing", "needs from and to that are nonzero and of the same sign", number)
         parts = [place / max(count - 1, 1) for place in range(count)]
         row = [first * (last / first) ** part if is_log else first + part * (last - first) for part in parts]
         if count > 1:

@@ -70,8 +70,8 @@ module mfv_leap
       logical :: begins = .false., fronts = .false.
       !> Linear solves, and changes of status that event stepping would make one by one.
       integer :: solves = 0, changes = 0
-      !> Estimated errors of the final tractions, and their part where contact begins, force/length^2; of the dissipation, force; the
-      !> dissipation, force, and the largest traction, force/length^2.
+      !> Estimated errors of the final tractions, and their part where contact begins, force/length^2; of the dissipation, force;
+      !> the dissipation, force, and the largest traction, force/length^2.
       real(wp) :: traction_error = 0.0_wp, start_error = 0.0_wp, work_error = 0.0_wp, work = 0.0_wp, traction = 0.0_wp
       !> Error of the dissipation due to its corners as a function of the load, one for each change of status; force.
       real(wp) :: corner_error = 0.0_wp
@@ -243,8 +243,8 @@ contains
       end associate
    end function slips_back
 
-   !> The work that the error of the dissipation of a chain is compared with, force: the dissipation. If contact begins, that is often
-   !> next to nothing: then at least a fraction of (mu P)^2/m, m the contact modulus.
+   !> The work that the error of the dissipation of a chain is compared with, force: the dissipation. If contact begins, that is
+   !> often next to nothing: then at least a fraction of (mu P)^2/m, m the contact modulus.
    pure real(wp) function reference_work(path, chain) result(work)
       class(contact_path_type), intent(in) :: path
       type(chain_type), intent(in) :: chain
