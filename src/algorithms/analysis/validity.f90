@@ -53,7 +53,7 @@ contains
       largest = simulation%contact%certificate%largest()
       if (largest > good) call add_text(warnings, 'the largest relative residual is '//to_text(largest, 2)// &
                                         ', well above rounding errors: results may be inaccurate; /certificate in the result '// &
-                       'file lists the residuals by name')
+                                        'file lists the residuals by name')
    end subroutine validity_warnings
 
    subroutine check_angle(simulation, name, body, warnings)

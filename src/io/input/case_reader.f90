@@ -163,7 +163,7 @@ contains
 
       method%algorithm = reader%constant('solver', 1, 'algorithm', [algorithm_mfv, algorithm_conventional])
       method%stepping = reader%constant('solver', 1, 'stepping', [stepping_auto, stepping_event, stepping_nominal, &
-                                                                   stepping_leap])
+                                                                  stepping_leap])
       method%linear_solver = reader%constant('solver', 1, 'linear_solver', &
                                              [solver_auto, solver_dgesv, solver_reduced, solver_fft])
       method%linear_tolerance = reader%real_value('solver', 1, 'linear_tolerance')
