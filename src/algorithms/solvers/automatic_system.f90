@@ -1,7 +1,7 @@
 !> linear_solver='auto': the reduced system while few nodes are in contact, then the iteration through FFTW.
 !>
-!> The number of nodes in contact and of patches is not known at the start of a run, that of unknowns is known at every solve. The
-!> change is made once: returning would factorise the reduced system again.
+!> The number of nodes in contact is not known at the start of a run, but at every solve. The reduced system returns, with a new
+!> factorisation, when less than half as many are in contact (the first guess of an active set can be far too large).
 module mfv_automatic_system
    use mfv_contact_fields, only: contact_fields_type
    use mfv_contact_model, only: contact_model_type
@@ -16,7 +16,7 @@ module mfv_automatic_system
    type, extends(contact_system_type) :: automatic_system_type
       !> Most nodes in contact for the reduced system.
       integer :: most = 0
-      !> Whether more were in contact in some solve.
+      !> Whether the last solve was by iteration.
       logical, private :: iterates = .false.
       !> (Both allocatable: otherwise gfortran 12 does not free the components of the second.)
       type(reduced_system_type), allocatable, private :: reduced
@@ -36,7 +36,7 @@ contains
       type(response_type), intent(inout) :: response
       logical, intent(out) :: singular
 
-      if (.not. self%iterates) call choose(self, count(in_contact(constraints%status)))
+      call choose(self, count(in_contact(constraints%status)))
       if (self%iterates) then
          call solve_by(self%krylov)
       else
@@ -65,12 +65,15 @@ contains
       class(automatic_system_type), intent(inout) :: self
       integer, intent(in) :: contact
 
-      self%iterates = contact > self%most
+      self%iterates = contact > merge(self%most/2, self%most, self%iterates)
       if (self%iterates) then
          if (allocated(self%reduced)) deallocate (self%reduced)
+         if (allocated(self%krylov)) return
          allocate (self%krylov)
          self%krylov%name = 'fft'
-      else if (.not. allocated(self%reduced)) then
+      else
+         if (allocated(self%krylov)) deallocate (self%krylov)
+         if (allocated(self%reduced)) return
          allocate (self%reduced)
          self%reduced%name = 'reduced'
       end if
