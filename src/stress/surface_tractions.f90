@@ -515,7 +515,7 @@ contains
       logical :: is_knot(size(patch%arc))
       !> Nodes nearer to an edge, in intervals, are not used as ends; edges at interval ends are half an interval away.
       real(wp), parameter :: apart = 0.4_wp
-      integer :: i
+      integer :: i, number
 
       roots = [stick_edges(patch), pack(patch%contact%edge, patch%contact%rooted)]
       points = [patch%contact%edge(1), stick_edges(patch), patch%contact%edge(2)]
@@ -524,12 +524,31 @@ contains
                       patch%contact%contains_place(patch%arc(i))
       end do
       points = merged(points, pack(patch%arc, is_knot))
-      knots = points(:1)
+      allocate (knots(2*size(points)))
+      knots(1) = points(1)
+      number = 1
       do i = 2, size(points)
-         if (points(i) > knots(size(knots))) &
-            knots = [knots, between(knots(size(knots)), points(i), roots, longest), points(i)]
+         if (points(i) > knots(number)) &
+            call append(knots, number, [between(knots(number), points(i), roots, longest), points(i)])
       end do
+      knots = knots(:number)
    end function knots_of
+
+   !> Append values to the first `number` of a list, whose storage grows with a margin.
+   pure subroutine append(list, number, values)
+      real(wp), allocatable, intent(inout) :: list(:)
+      integer, intent(inout) :: number
+      real(wp), intent(in) :: values(:)
+      real(wp), allocatable :: longer(:)
+
+      if (number + size(values) > size(list)) then
+         allocate (longer(2*(number + size(values))))
+         longer(:number) = list(:number)
+         call move_alloc(longer, list)
+      end if
+      list(number + 1:number + size(values)) = values
+      number = number + size(values)
+   end subroutine append
 
    !> Edges of the stick zones of a patch next to slipping nodes, ascending.
    pure function stick_edges(patch) result(edges)
