@@ -180,6 +180,7 @@ static void choose_way(generator *random, random_case *self) {
   self->limit = way == FFT || self->law >= WEAKENING ? 1e-8 : 1e-9;
   if (way == DGESV || way == REDUCED || way == FFT) put_text(self, "solver", 0, "linear_solver", way_names[way]);
   if (way == NOMINAL || way == LEAP) put_text(self, "solver", 0, "stepping", way_names[way]);
+  if (way == LEAP) put_real(self, "solver", 0, "accuracy", 1e-2);
   if (way == EXPLICIT) put_text(self, "solver", 0, "integration", "explicit");
   if (way == CONVENTIONAL) put_text(self, "solver", 0, "algorithm", "conventional");
   if (self->law >= WEAKENING && way != EXPLICIT) put_real(self, "solver", 0, "friction_tolerance", 1e-2);
