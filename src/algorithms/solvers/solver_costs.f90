@@ -31,6 +31,8 @@ module mfv_solver_costs
    !>                        m 538, n 2048: 1.11                           m 223, n 2048: 2.7
    !>                        m 277, n 8192: 0.29                           m 541, n 2048: 14
    !>
+   !> (Large increments of contacts that press and shear change many nodes at once: m 206: 0.81, m 308: 1.7, m 411: 3.0.)
+   !>
    !>     Dahl friction      coupled                                       uncoupled
    !>     (n = 2 m)          m 18: 0.12                                    m 64: 0.53
    !>                        m 125: 0.44                                   m 128: 1.1
@@ -38,7 +40,7 @@ module mfv_solver_costs
    !>
    !> In event stepping the limit is that of memory (100 MB coupled, else 2*30 MB) rather than of time.
    integer, parameter :: most_coupled = 1800, most_one_way = 2000, most_apart = 2000, most_at_once = 60, &
-                         most_at_once_coupled = 520, most_bristles = 120, most_bristles_coupled = 260
+                         most_at_once_coupled = 240, most_bristles = 120, most_bristles_coupled = 260
 
    !> Fewest nodes of the mesh for which stepping='auto' takes large increments if an error is allowed. They take some 100 solves to
    !> press with friction and coupling and 20 to 60 for a half-cycle, on any mesh, events about one for each node that changes its
