@@ -19,7 +19,7 @@ module mfv_active_set
    use mfv_sticking_front, only: find_fronts, fronts_type, left, right
    implicit none
    private
-   public :: find_statuses, first_guess
+   public :: find_statuses, first_guess, find_rates, slipping_back
 
    !> Violations below this fraction of the largest magnitude of their type are round-off.
    real(wp), parameter :: round_off = 1.0e-11_wp
@@ -178,32 +178,59 @@ contains
       logical, intent(in) :: held(:)
       integer, intent(inout) :: wanted(:)
       real(wp), intent(inout) :: ahead(:)
-      real(wp), parameter :: negligible = 1.0e-9_wp
-      type(constraints_type) :: constraints
-      type(response_type) :: response
-      real(wp), dimension(size(wanted)) :: rate, gap, gap_rate
-      logical :: singular, returns(size(wanted)), next(size(wanted))
+      type(contact_fields_type) :: rates
+      real(wp), dimension(size(wanted)) :: gap, gap_rate
+      logical :: found, returns(size(wanted)), next(size(wanted))
 
       associate (status => path%state%status)
          next = status == node_open .and. (eoshift(status, -1, node_open) == node_stick .or. &
                                            eoshift(status, 1, node_open) == node_stick)
          if (.not. any(slips(status) .and. .not. held) .and. .not. any(next)) return
          if (.not. any(holds(status))) return
-         call path%loads_at(segment, 1.0_wp, constraints)
-         call path%set_rows(constraints, .false.)
-         call path%system%solve(path%model, constraints, fields, response, singular)
-         if (singular) return
-         rate = response%rate%slip()
+         call find_rates(path, segment, 1.0_wp, fields, rates, found)
+         if (.not. found) return
          gap = path%model%gap(fields)
-         gap_rate = path%model%gap(fields%plus(1.0_wp, response%rate)) - gap
+         gap_rate = path%model%gap(fields%plus(1.0_wp, rates)) - gap
          ahead = 0.0_wp
-         where (next .and. gap_rate < 0.0_wp) ahead = -rate*gap/gap_rate
-         returns = -slip_sign(status)*rate > max(negligible, path%system%tolerance)*maxval(abs(rate))
+         where (next .and. gap_rate < 0.0_wp) ahead = -rates%slip()*gap/gap_rate
+         returns = slipping_back(path, rates)
          if (.not. any(returns)) return
-         where (slips(status) .and. returns) wanted = node_stick
+         where (returns) wanted = node_stick
          where (status == node_stick .and. slips(wanted) .and. .not. held) wanted = node_stick
       end associate
    end subroutine find_returning
+
+   !> The rates at the fraction `done` of the segment, per unit of load, for the statuses of `path`. `fields`: the fields there, a
+   !> first guess. `found`: whether the statuses determine them.
+   subroutine find_rates(path, segment, done, fields, rates, found)
+      class(contact_path_type), intent(inout) :: path
+      type(segment_type), intent(in) :: segment
+      real(wp), intent(in) :: done
+      type(contact_fields_type), intent(in) :: fields
+      type(contact_fields_type), intent(out) :: rates
+      logical, intent(out) :: found
+      type(constraints_type) :: constraints
+      type(response_type) :: response
+      logical :: singular
+
+      call path%loads_at(segment, done, constraints)
+      call path%set_rows(constraints, .false.)
+      call path%system%solve(path%model, constraints, fields, response, singular)
+      found = .not. singular
+      if (found) rates = response%rate
+   end subroutine find_rates
+
+   !> The slipping nodes that slip back at the given rates, shape (nodes).
+   pure function slipping_back(path, rates) result(back)
+      class(contact_path_type), intent(in) :: path
+      type(contact_fields_type), intent(in) :: rates
+      logical :: back(size(path%state%status))
+      real(wp), parameter :: negligible = 1.0e-9_wp
+      real(wp) :: slip(size(back))
+
+      slip = rates%slip()
+      back = -slip_sign(path%state%status)*slip > max(negligible, path%system%tolerance)*maxval(abs(slip))
+   end function slipping_back
 
    !> Whether a node that was slipping at the start slips against its slip over the increment: it has stuck in between, where no
    !> front is known to have passed.

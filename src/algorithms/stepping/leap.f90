@@ -13,12 +13,12 @@
 !> An interval that would take more solves than it has events is applied by events (mfv_first_violation), which are exact; gross
 !> sliding and separation are therefore found there. The certificate checks large increments at their ends only.
 module mfv_leap
+   use mfv_active_set, only: find_rates, slipping_back
    use mfv_chain_dissipation, only: chain_dissipation, node_wise_dissipation
    use mfv_compliance, only: block_up, block_wt
    use mfv_contact_fields, only: contact_fields_type
    use mfv_contact_path
    use mfv_contact_state, only: contact_state_type
-   use mfv_contact_system, only: constraints_type, response_type
    use mfv_error, only: error_type
    use mfv_first_violation, only: apply_by_violations
    use mfv_kinds, only: wp
@@ -223,8 +223,8 @@ contains
       type(chain_type), intent(in) :: chain
       real(wp), parameter :: negligible = 1.0e-9_wp
       type(contact_state_type) :: start
-      type(constraints_type) :: constraints
-      type(response_type) :: response
+      type(contact_fields_type) :: rates
+      logical :: found
 
       associate (last => chain%after(chain%increments), begin => chain%before(1)%fields)
          slips_back = maxval(abs(last%pressure - begin%pressure)) > max(negligible, path%system%tolerance)*chain%traction
@@ -232,13 +232,8 @@ contains
          start = path%state
          path%state = chain%before(chain%increments)
          path%state%fields = last
-         call path%loads_at(segment, 1.0_wp, constraints)
-         call path%set_rows(constraints, .false.)
-         call path%system%solve(path%model, constraints, last, response, slips_back)
-         associate (rate => response%rate%slip())
-            if (.not. slips_back) &
-               slips_back = any(-slip_sign(path%state%status)*rate > max(negligible, path%system%tolerance)*maxval(abs(rate)))
-         end associate
+         call find_rates(path, segment, 1.0_wp, last, rates, found)
+         if (found) slips_back = any(slipping_back(path, rates))
          path%state = start
       end associate
    end function slips_back
@@ -262,12 +257,10 @@ contains
       type(segment_type), intent(in) :: segment
       logical, allocatable, intent(out) :: held(:)
       integer, parameter :: most_passes = 20
-      real(wp), parameter :: negligible = 1.0e-9_wp
       type(contact_state_type) :: start
-      type(constraints_type) :: constraints
-      type(response_type) :: response
+      type(contact_fields_type) :: rates
       integer :: pass, wanted(size(path%state%status))
-      logical :: singular, found
+      logical :: determined, found
 
       if (has_constant_pressures(path, segment)) return
       start = path%state
@@ -276,11 +269,9 @@ contains
          if (found) exit
          if (.not. any(holds(path%state%status))) &
             call path%set_status(in_contact(path%state%status), spread(node_stick, 1, size(wanted)))
-         call path%loads_at(segment, 0.0_wp, constraints)
-         call path%set_rows(constraints, .false.)
-         call path%system%solve(path%model, constraints, path%state%fields, response, singular)
-         if (singular) exit
-         call find_moving(path, response%rate, max(negligible, path%system%tolerance), wanted)
+         call find_rates(path, segment, 0.0_wp, path%state%fields, rates, determined)
+         if (.not. determined) exit
+         call find_moving(path, rates, wanted)
          found = all(wanted == path%state%status)
          call path%set_status(wanted /= path%state%status, wanted)
       end do
@@ -301,26 +292,23 @@ contains
    end function has_constant_pressures
 
    !> Statuses of the nodes at the friction limit for the given rates, as `wanted`, shape (nodes): nodes that slip back stick, and
-   !> stuck nodes slip whose shear traction grows faster than the limit. `tolerance`: relative.
-   subroutine find_moving(path, rate, tolerance, wanted)
+   !> stuck nodes slip whose shear traction grows faster than the limit.
+   subroutine find_moving(path, rate, wanted)
       class(contact_path_type), intent(in) :: path
       type(contact_fields_type), intent(in) :: rate
-      real(wp), intent(in) :: tolerance
       integer, intent(out) :: wanted(:)
-      real(wp), dimension(size(wanted)) :: slip_rate, excess
+      real(wp), parameter :: negligible = 1.0e-9_wp
+      real(wp) :: excess(size(wanted)), tolerance
       logical :: at_limit(size(wanted))
 
+      tolerance = max(negligible, path%system%tolerance)
       wanted = path%state%status
-      slip_rate = rate%slip()
       associate (fields => path%state%fields, limit => path%model%static_friction)
          at_limit = abs(fields%shear) >= limit*fields%pressure*(1.0_wp - tolerance)
          excess = sign(1.0_wp, fields%shear)*rate%shear - limit*rate%pressure
-         where (slips(path%state%status))
-            where (-slip_sign(path%state%status)*slip_rate > tolerance*maxval(abs(slip_rate))) wanted = node_stick
-         elsewhere(path%state%status == node_stick .and. at_limit)
-            where (excess > tolerance*maxval(abs(rate%shear))) &
-               wanted = merge(node_slip_left, node_slip_right, fields%shear > 0.0_wp)
-         end where
+         where (slipping_back(path, rate)) wanted = node_stick
+         where (path%state%status == node_stick .and. at_limit .and. excess > tolerance*maxval(abs(rate%shear))) &
+            wanted = merge(node_slip_left, node_slip_right, fields%shear > 0.0_wp)
       end associate
    end subroutine find_moving
 
@@ -373,7 +361,7 @@ contains
          integer, intent(in) :: i
 
          reached = real(i, wp)/real(increments, wp)
-         if (.not. any(in_contact(start%status))) reached = reached**2
+         if (chain%begins) reached = reached**2
       end function reached
    end subroutine make_chain
 

@@ -15,6 +15,7 @@ module mfv_sticking_front
    use mfv_contact_fields, only: contact_fields_type
    use mfv_kinds, only: wp
    use mfv_node_status
+   use mfv_zone_edges, only: zone_type, zones_of
    implicit none
    private
    public :: fronts_type, find_fronts, left, right
@@ -50,34 +51,28 @@ contains
       real(wp), intent(in) :: hold(:), gap(:), ahead(:)
       type(contact_fields_type), intent(in) :: start
       type(fronts_type), intent(out) :: fronts
-      integer :: first, last, zones, n
+      type(zone_type), allocatable :: zones(:)
+      integer :: first, last, zone, n
 
       n = size(status)
-      allocate (fronts%outer(2, n), source=0)
+      zones = zones_of(status == node_stick)
+      allocate (fronts%outer(2, size(zones)), source=0)
+      allocate (fronts%slip(2, size(zones)), source=0.0_wp)
       allocate (fronts%zone(n), fronts%group(n), source=0)
       allocate (fronts%base(n), fronts%weight(n), source=0.0_wp)
-      zones = 0
-      last = 0
-      do first = 1, n
-         if (first <= last .or. status(first) /= node_stick) cycle
-         last = first
-         do while (last < n)
-            if (status(last + 1) /= node_stick) exit
-            last = last + 1
-         end do
-         zones = zones + 1
+      do zone = 1, size(zones)
+         first = zones(zone)%first
+         last = zones(zone)%last
          if (any(held(first:last))) then
             call grown_zone
          else if (all(open (first:last))) then
             call new_zone
          end if
       end do
-      fronts%outer = fronts%outer(:, :zones)
       do first = 1, n
          if (fronts%zone(first) > 0) fronts%base(first) = fronts%base(first) + fronts%weight(first) &
                                                           *ahead(fronts%outer(fronts%group(first), fronts%zone(first)))
       end do
-      allocate (fronts%slip(2, zones), source=0.0_wp)
 
    contains
 
@@ -100,9 +95,7 @@ contains
          real(wp) :: x
          integer :: i
 
-         fronts%outer(group, zones) = outer
-         fronts%zone(from:to) = zones
-         fronts%group(from:to) = group
+         call add_nodes(group, from, to, outer)
          do i = from, to
             x = real(i, wp)
             fronts%weight(i) = (x - near)*(x - far)/real((outer - near)*(outer - far), wp)
@@ -110,6 +103,15 @@ contains
                              + hold(far)*(x - outer)*(x - near)/real((far - outer)*(far - near), wp)
          end do
       end subroutine add_parabola
+
+      !> A front of the nodes `from` to `to`, and the node beyond it.
+      subroutine add_nodes(group, from, to, outer)
+         integer, intent(in) :: group, from, to, outer
+
+         fronts%outer(group, zone) = outer
+         fronts%zone(from:to) = zone
+         fronts%group(from:to) = group
+      end subroutine add_nodes
 
       !> A zone of nodes that were open: both fronts from the node that was nearest.
       subroutine new_zone
@@ -127,10 +129,8 @@ contains
          real(wp) :: slip(size(gap))
 
          if (.not. gap(outer) > gap(middle)) return
+         call add_nodes(group, from, to, outer)
          slip = start%slip()
-         fronts%outer(group, zones) = outer
-         fronts%zone(from:to) = zones
-         fronts%group(from:to) = group
          fronts%weight(from:to) = (gap(from:to) - gap(middle))/(gap(outer) - gap(middle))
          fronts%base(from:to) = slip(from:to) - fronts%weight(from:to)*slip(outer)
       end subroutine add_scaled
