@@ -51,6 +51,8 @@ contains
       call print_text(text)
       if (.not. has_hdf5) then
          call print_line('result              not written: '//no_hdf5_message)
+      else if (contact%is_unfinished() .and. contact%checkpoint_path == '') then
+         call print_line('result              not written: interrupted before step 1')
       else if (contact%is_unfinished()) then
          call print_line('result              '//contact%checkpoint_path//' (unfinished; --resume continues)')
       else

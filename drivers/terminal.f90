@@ -76,7 +76,8 @@ contains
       class(terminal_observer_type), intent(inout) :: self
       character(*), intent(in) :: work
 
-      self%work = work//':'
+      self%work = work
+      if (work /= '') self%work = work//':'
    end subroutine begin_work
 
    !> See mfv_observer.

@@ -244,6 +244,8 @@ class Mesh(KeyGroup):
     nodes: int | None = None
     half_width: float | None = None
     half_angle: float | None = None
+    refine: Literal["none", "edges"] | None = None
+    ends: Sequence[float] | NDArray[np.float64] | None = None
     gap: Literal["exact", "parabolic"] | None = None
     normals: Literal["vertical", "radial"] | None = None
 

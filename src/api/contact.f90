@@ -20,6 +20,7 @@ module mfv_contact
    use mfv_kinds, only: wp
    use mfv_observer, only: observer_type
    use mfv_result_fields, only: field_named, field_type, group_fields, result_attributes, result_groups
+   use mfv_refinement, only: refine_at_edges
    use mfv_result_file, only: check_writable, is_whole_result, resume_result, write_result
    use mfv_safe_file, only: delete_path
    use mfv_scene, only: most_cycles, step_type
@@ -83,7 +84,7 @@ module mfv_contact
       procedure :: find_interior
       procedure :: make_interior
       procedure :: write
-      procedure, private :: get_reals, get_integers, get_real, get_integer, begin, forget, expect_made, &
+      procedure, private :: get_reals, get_integers, get_real, get_integer, begin, refine, forget, expect_made, &
          write_checkpoint
    end type contact_type
 
@@ -219,6 +220,7 @@ contains
       is_finished = .false.
       message = 'no checkpoint found; starting from step 1'
       if (.not. exists) return
+      call self%refine()
       call resume_result(path, self%case, self%simulation, is_finished, error)
       if (allocated(error)) return
       if (is_finished) then
@@ -235,6 +237,7 @@ contains
       class(contact_type), intent(inout) :: self
       class(observer_type), intent(inout), optional :: observer
 
+      call self%refine(observer)
       if (self%status() /= MFV_COMPLETE) return
       call self%forget()
       do while (self%simulation%has_segments_left())
@@ -252,6 +255,29 @@ contains
       end if
       if (self%simulation%outcome /= MFV_COMPLETE) call self%case%explain(self%simulation)
    end subroutine run
+
+   !> Refine the mesh of a case that asks for it, before its first step.
+   subroutine refine(self, observer)
+      class(contact_type), intent(inout) :: self
+      class(observer_type), intent(inout), optional :: observer
+      logical :: keep_restart, interrupted
+
+      if (self%status() /= MFV_COMPLETE .or. .not. self%case%scene%mesh%refined) return
+      if (present(observer)) call observer%begin_work('coarser meshes')
+      call refine_at_edges(self%case%scene, interrupted, observer)
+      if (interrupted) then
+         self%simulation%outcome = MFV_INTERRUPTED
+         self%simulation%message = 'interrupted before step 1, on the coarser meshes that locate the edges'
+         self%checkpoint_path = ''
+         return
+      end if
+      if (present(observer)) call observer%begin_work('')
+      self%case%scene%mesh%refined = .false.
+      keep_restart = self%simulation%keep_restart
+      call self%forget()
+      call self%begin()
+      self%simulation%keep_restart = keep_restart
+   end subroutine refine
 
    !> Write a checkpoint if one is due. If that fails the observer is warned and the run continues.
    subroutine write_checkpoint(self, observer)
@@ -295,6 +321,7 @@ contains
 
       call find_warnings(self)
       if (self%is_unfinished()) then
+         if (self%checkpoint_path == '') return
          call write_result(self%checkpoint_path, self%case, self%simulation, self%warnings, error, with_restart=.true.)
          return
       end if
@@ -341,6 +368,7 @@ contains
          self%simulation%failed_step = 0
          self%simulation%failed_scene_step = 0
       end if
+      call self%refine(observer)
       if (self%simulation%outcome /= MFV_COMPLETE) return
       call self%forget()
       call self%simulation%advance(absolute, observer=observer)

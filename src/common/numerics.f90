@@ -5,7 +5,7 @@ module mfv_numerics
    use mfv_kinds, only: wp
    implicit none
    private
-   public :: parametric_function, root_between, gauss_legendre
+   public :: parametric_function, root_between, gauss_legendre, gauss_points
 
    abstract interface
       !> A real function of one variable `x` and parameters.
@@ -64,20 +64,30 @@ contains
       procedure(parametric_function) :: f
       real(wp), intent(in) :: parameters(:), lower, upper
       integer, intent(in) :: points
-      real(wp) :: integral
+      real(wp) :: integral, x(points), weight(points)
+      integer :: i
+
+      call gauss_points(lower, upper, x, weight)
+      integral = 0.0_wp
+      do i = 1, points
+         integral = integral + weight(i)*f(x(i), parameters)
+      end do
+   end function gauss_legendre
+
+   !> Points and weights of Gauss-Legendre quadrature from `lower` to `upper`.
+   subroutine gauss_points(lower, upper, point, weight)
+      real(wp), intent(in) :: lower, upper
+      real(wp), intent(out) :: point(:), weight(:)
       type(c_ptr) :: table
-      real(wp) :: x, weight
       integer(c_int) :: code
       integer :: i
 
-      table = gsl_integration_glfixed_table_alloc(int(points, c_size_t))
-      integral = 0.0_wp
-      do i = 1, points
-         code = gsl_integration_glfixed_point(lower, upper, int(i - 1, c_size_t), x, weight, table)
-         if (code == 0) integral = integral + weight*f(x, parameters)
+      table = gsl_integration_glfixed_table_alloc(size(point, kind=c_size_t))
+      do i = 1, size(point)
+         code = gsl_integration_glfixed_point(lower, upper, int(i - 1, c_size_t), point(i), weight(i), table)
       end do
       call gsl_integration_glfixed_table_free(table)
-   end function gauss_legendre
+   end subroutine gauss_points
 
    !> Callback of GSL: a module procedure, which needs no executable stack.
    function evaluate(x, params) result(value) bind(C, name='')

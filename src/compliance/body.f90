@@ -9,7 +9,7 @@ module mfv_body
    use mfv_half_plane, only: new_half_plane
    use mfv_kinds, only: wp
    use mfv_material, only: material_type
-   use mfv_matrix_compliance, only: new_matrix_compliance
+   use mfv_matrix_compliance, only: matrix_of, new_matrix_compliance
    implicit none
    private
    public :: body_type, new_half_plane_body, new_disk, new_hole, new_flat_punch, new_rounded_punch, new_power, new_wedge, &
@@ -292,13 +292,16 @@ contains
 
    !> Compliance of an elastic body with `nodes` intervals of the width `interval` (length); unallocated for a rigid one.
    !> `coupling`, `tangential`: see mfv_compliance. `common_radius`: with radial normals, radius of the arc with the nodes of
-   !> both bodies, to which tractions refer (length); else 0. Other shapes deform as half-planes.
-   subroutine make_compliance(self, nodes, interval, coupling, tangential, common_radius, compliance)
+   !> both bodies, to which tractions refer (length); else 0. Other shapes deform as half-planes. `ends`: of unequal intervals, arc
+   !> lengths, shape (nodes + 1).
+   subroutine make_compliance(self, nodes, interval, coupling, tangential, common_radius, compliance, ends)
       class(body_type), intent(in) :: self
       integer, intent(in) :: nodes, coupling
       real(wp), intent(in) :: interval, common_radius
       logical, intent(in) :: tangential
       class(compliance_type), allocatable, intent(out) :: compliance
+      real(wp), intent(in), optional :: ends(:)
+      class(compliance_type), allocatable :: graded
       real(wp) :: radius
 
       if (self%rigid) return
@@ -307,12 +310,15 @@ contains
          radius = merge(common_radius, self%radius, common_radius > 0.0_wp)
          allocate (compliance, source=new_circle(merge(body_disk, body_hole, self%shape == shape_disk), self%material, &
                                                  radius, nodes, interval, self%datum*(radius/self%radius), self%kernel, &
-                                                 self%harmonics, coupling, tangential, common_radius > 0.0_wp))
+                                                 self%harmonics, coupling, tangential, common_radius > 0.0_wp, ends))
       case (shape_matrix)
          allocate (compliance, source=new_matrix_compliance(self%matrix, self%width, coupling, tangential))
       case default
-         allocate (compliance, source=new_half_plane(self%material, nodes, interval, self%datum, coupling, tangential))
+         allocate (compliance, source=new_half_plane(self%material, nodes, interval, self%datum, coupling, tangential, ends))
       end select
+      if (.not. present(ends)) return
+      call move_alloc(compliance, graded)
+      allocate (compliance, source=matrix_of(graded))
    end subroutine make_compliance
 
    !> Distance at `x` between the two interpolations of a profile: linear from the chosen one, or monotone cubic from linear;

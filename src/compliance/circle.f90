@@ -18,6 +18,7 @@
 module mfv_circle
    use mfv_circle_kernels
    use mfv_compliance
+   use mfv_kernel_compliance, only: kernel_compliance_type
    use mfv_kinds, only: pi, wp
    use mfv_material, only: material_type
    use mfv_toeplitz, only: toeplitz_type, new_toeplitz
@@ -30,8 +31,10 @@ module mfv_circle
    !> Harmonics per interval of the circle by default (dissertation section 4.2.2.1).
    integer, parameter :: default_harmonics = 4
    integer, parameter :: by_normal = 1, by_shear = 2
+   !> The kernels of unequal intervals.
+   integer, parameter :: radial_kernel = 1, cross_by_normal = 2, tangential_kernel = 3, cross_by_shear = 4
 
-   type, extends(compliance_type) :: circle_type
+   type, extends(kernel_compliance_type) :: circle_type
       private
       !> body_disk or body_hole, see mfv_circle_kernels.
       integer :: body = body_disk
@@ -53,6 +56,7 @@ module mfv_circle
       real(wp) :: normal_translation = 0.0_wp, tangential_translation = 0.0_wp
    contains
       procedure :: resize
+      procedure :: kernels_at
       procedure :: entries
       procedure :: products
       procedure :: signature
@@ -65,15 +69,18 @@ contains
    !> per interval; the circle must then consist of whole intervals (circle_intervals). `datum`, length: see above.
    !> `coupling`, `tangential`: see mfv_compliance. `radial`: radial normals. With nodes at common angles on circles of
    !> different radii, `radius` and `interval` are those of the arc to which tractions refer, and `datum` is in proportion:
-   !> forces at an angle displace circles of any radius equally, except for ln(D/R).
-   function new_circle(body, material, radius, nodes, interval, datum, kernel, harmonics, coupling, tangential, radial) &
+   !> forces at an angle displace circles of any radius equally, except for ln(D/R). `ends`: of unequal intervals, of which
+   !> `interval` is the mean, arc lengths, shape (nodes + 1); such a body has the exact kernel, and entries only.
+   function new_circle(body, material, radius, nodes, interval, datum, kernel, harmonics, coupling, tangential, radial, ends) &
       result(self)
       integer, intent(in) :: body, nodes, kernel, harmonics, coupling
       type(material_type), intent(in) :: material
       real(wp), intent(in) :: radius, interval, datum
       logical, intent(in) :: tangential
       logical, intent(in), optional :: radial
+      real(wp), intent(in), optional :: ends(:)
       type(circle_type) :: self
+      integer :: i
 
       self%body = body
       if (body == body_hole) self%side = -1.0_wp
@@ -88,7 +95,13 @@ contains
       self%modulus = material%plane_modulus()
       call self%choose_blocks(coupling, tangential, self%radial)
       call set_translations(self)
-      call self%resize(nodes)
+      if (present(ends)) then
+         self%nodes = nodes
+         call self%grade(ends, odd=[.false., .true., .false., .true.])
+         call set_angles(self, [(0.5_wp*(ends(i) + ends(i + 1))/radius, i=1, nodes)])
+      else
+         call self%resize(nodes)
+      end if
    end function new_circle
 
    !> Number of intervals of the arc length `interval` on the circle, rounded; at most 4e8, so that the harmonics are an
@@ -118,7 +131,6 @@ contains
    subroutine resize(self, nodes)
       class(circle_type), intent(inout) :: self
       integer, intent(in) :: nodes
-      real(wp) :: angle
       integer :: i
 
       self%nodes = nodes
@@ -133,26 +145,45 @@ contains
       self%operator(by_shear) = self%operator(by_normal)
       if (self%radial .and. self%one_way()) &
          self%operator(by_shear) = new_toeplitz(self%kernels%radial, self%cross(:, by_shear), self%kernels%tangential)
-      if (allocated(self%cosine)) deallocate (self%cosine, self%sine, self%lean_cosine, self%lean_sine)
-      allocate (self%cosine(nodes), self%lean_cosine(nodes), source=1.0_wp)
-      allocate (self%sine(nodes), self%lean_sine(nodes), source=0.0_wp)
-      do i = 1, nodes
-         angle = 0.5_wp*(2*i - nodes - 1)*(self%interval/self%radius)
-         if (self%radial) then
-            self%lean_cosine(i) = cos(angle)
-            self%lean_sine(i) = sin(angle)
-         else
-            self%cosine(i) = cos(angle)
-            self%sine(i) = sin(angle)
-         end if
-      end do
+      call set_angles(self, [(0.5_wp*(2*i - nodes - 1)*(self%interval/self%radius), i=1, nodes)])
       self%block_values = 3*nodes
    end subroutine resize
+
+   !> The directions of the normals at the nodes, from their angles.
+   pure subroutine set_angles(self, angle)
+      class(circle_type), intent(inout) :: self
+      real(wp), intent(in) :: angle(:)
+
+      self%cosine = merge(1.0_wp, cos(angle), self%radial)
+      self%sine = merge(0.0_wp, sin(angle), self%radial)
+      self%lean_cosine = merge(cos(angle), 1.0_wp, self%radial)
+      self%lean_sine = merge(sin(angle), 0.0_wp, self%radial)
+   end subroutine set_angles
+
+   !> See mfv_kernel_compliance: the polar kernels times G/R, and the cross kernel by shear, which can lack terms (set_cross).
+   pure subroutine kernels_at(self, distance, width, kernels)
+      class(circle_type), intent(in) :: self
+      real(wp), intent(in) :: distance, width
+      real(wp), intent(out) :: kernels(:)
+      real(wp) :: dissimilar
+      integer, parameter :: cross(2) = [cross_by_normal, cross_by_shear]
+
+      call exact_values(self%body, self%material%kolosov, abs(distance)/self%radius, width/self%radius, &
+                        kernels(radial_kernel), kernels(cross_by_normal), kernels(tangential_kernel))
+      kernels(cross_by_shear) = kernels(cross_by_normal)
+      if (self%radial .and. .not. self%elastic_block(block_wt)) then
+         dissimilar = exact_cross_of_dissimilar(self%material%kolosov, abs(distance)/self%radius, width/self%radius)
+         kernels(cross_by_shear) = kernels(cross_by_shear) - dissimilar
+         if (.not. self%elastic_block(block_up)) kernels(cross_by_normal) = kernels(cross_by_shear)
+      end if
+      kernels(cross) = sign(1.0_wp, distance)*kernels(cross)
+   end subroutine kernels_at
 
    !> The cross kernels by normal and by shear traction.
    subroutine set_cross(self)
       class(circle_type), intent(inout) :: self
       real(wp) :: dissimilar(self%nodes)
+      integer :: i
 
       if (allocated(self%cross)) deallocate (self%cross)
       allocate (self%cross(0:self%nodes - 1, 2))
@@ -162,7 +193,9 @@ contains
          dissimilar = fourier_cross_of_dissimilar(self%material%kolosov, circle_intervals(self%radius, self%interval), &
                                                   self%harmonics, self%nodes)
       else
-         dissimilar = exact_cross_of_dissimilar(self%material%kolosov, self%interval/self%radius, self%nodes)
+         dissimilar = exact_cross_of_dissimilar(self%material%kolosov, &
+                                                [(i*(self%interval/self%radius), i=0, self%nodes - 1)], &
+                                                self%interval/self%radius)
       end if
       self%cross(:, by_shear) = self%cross(:, by_shear) - dissimilar
       if (.not. self%elastic_block(block_up)) self%cross(:, by_normal) = self%cross(:, by_shear)
@@ -215,9 +248,9 @@ contains
       class(circle_type), intent(in) :: self
       integer, intent(in) :: block, rows(:), columns(:)
       real(wp), intent(out) :: matrix(:, :)
-      real(wp) :: radial, shear, scale, sign, translation(2), row_components(2, size(rows))
+      real(wp) :: radial, shear, outward, cross, around, scale, translation(2), row_components(2, size(rows))
       logical :: normal_row, normal_column
-      integer :: column, distance, i, j
+      integer :: column, i, j
 
       normal_row = block == block_wp .or. block == block_wt
       normal_column = block == block_wp .or. block == block_up
@@ -229,19 +262,35 @@ contains
       do j = 1, size(columns)
          call polar_traction(self, normal_column, columns(j), radial, shear)
          translation = [self%normal_translation, self%tangential_translation]*components(self, normal_column, columns(j))
+         if (allocated(self%width)) translation = translation*(self%width(columns(j))/self%interval)
          do i = 1, size(rows)
-            distance = abs(rows(i) - columns(j))
-            sign = merge(1.0_wp, -1.0_wp, rows(i) >= columns(j))
-            associate (k => self%kernels)
-               matrix(i, j) = scale*cartesian(self%side, normal_row, &
-                                              k%radial(distance)*radial - sign*self%cross(distance, column)*shear, &
-                                              sign*self%cross(distance, column)*radial + k%tangential(distance)*shear, &
-                                              self%cosine(rows(i)), self%sine(rows(i))) &
-                              + dot_product(row_components(:, i), translation)
-            end associate
+            call polar_kernels(self, rows(i), columns(j), column, outward, cross, around)
+            matrix(i, j) = scale*cartesian(self%side, normal_row, outward*radial - cross*shear, cross*radial + around*shear, &
+                                           self%cosine(rows(i)), self%sine(rows(i))) &
+                           + dot_product(row_components(:, i), translation)
          end do
       end do
    end subroutine entries
+
+   !> Displacements times G/R at node `i` by unit polar tractions on interval `j`: u_r by sigma_rr, u_theta by sigma_rr (by normal
+   !> or by shear traction, `column`) and u_theta by sigma_rtheta.
+   pure subroutine polar_kernels(self, i, j, column, outward, cross, around)
+      class(circle_type), intent(in) :: self
+      integer, intent(in) :: i, j, column
+      real(wp), intent(out) :: outward, cross, around
+      integer :: distance
+
+      if (allocated(self%mean)) then
+         outward = self%mean(i, j, radial_kernel)
+         cross = self%mean(i, j, merge(cross_by_normal, cross_by_shear, column == by_normal))
+         around = self%mean(i, j, tangential_kernel)
+      else
+         distance = abs(i - j)
+         outward = self%kernels%radial(distance)
+         cross = merge(1.0_wp, -1.0_wp, i >= j)*self%cross(distance, column)
+         around = self%kernels%tangential(distance)
+      end if
+   end subroutine polar_kernels
 
    !> See mfv_compliance: tractions are rotated to polar components, multiplied by the Toeplitz kernels, and displacements
    !> rotated back.

@@ -31,7 +31,7 @@ module mfv_circle_kernels
    use mfv_logarithms, only: log_of_one_less
    implicit none
    private
-   public :: circle_kernels_type, exact_kernels, fourier_kernels, body_disk, body_hole
+   public :: circle_kernels_type, exact_kernels, exact_values, fourier_kernels, body_disk, body_hole
    public :: exact_cross_of_dissimilar, fourier_cross_of_dissimilar
 
    integer, parameter :: body_disk = 1, body_hole = 2
@@ -49,32 +49,36 @@ contains
    pure type(circle_kernels_type) function exact_kernels(body, kappa, dtheta, nodes) result(kernels)
       integer, intent(in) :: body, nodes
       real(wp), intent(in) :: kappa, dtheta
-      real(wp) :: theta, sine_first, sine_second, cosine_first, cosine_second, sign
       integer :: i
 
       allocate (kernels%radial(0:nodes - 1), kernels%cross(0:nodes - 1), kernels%tangential(0:nodes - 1))
-      sign = merge(1.0_wp, -1.0_wp, body == body_disk)
       do i = 0, nodes - 1
-         theta = i*dtheta
-         call differences(theta, 0.5_wp*dtheta, sine_first, sine_second, cosine_first, cosine_second)
-         kernels%radial(i) = (sign*(kappa + 1.0_wp)*sine_first - (kappa - 1.0_wp)*sine_second)/(4.0_wp*pi)
-         kernels%cross(i) = -((kappa - 1.0_wp)*cosine_first - sign*(kappa + 1.0_wp)*cosine_second)/(4.0_wp*pi)
-         kernels%tangential(i) = kernels%radial(i)
-         call add_lower_terms(body, kappa, theta, dtheta, kernels%radial(i), kernels%cross(i), kernels%tangential(i))
+         call exact_values(body, kappa, i*dtheta, dtheta, kernels%radial(i), kernels%cross(i), kernels%tangential(i))
       end do
    end function exact_kernels
 
-   !> The term (kappa-1) n/(n^2-1), n >= 2, of the exact cross kernel of a disk or a hole, times G/R, from distance 0 on.
-   pure function exact_cross_of_dissimilar(kappa, dtheta, nodes) result(cross)
-      integer, intent(in) :: nodes
-      real(wp), intent(in) :: kappa, dtheta
-      real(wp) :: cross(nodes), sine_first, sine_second, cosine_first, cosine_second
-      integer :: i
+   !> The exact kernels at an angle `theta` in [0, 2 pi) from the middle of the box, within the box or outside.
+   pure subroutine exact_values(body, kappa, theta, dtheta, radial, cross, tangential)
+      integer, intent(in) :: body
+      real(wp), intent(in) :: kappa, theta, dtheta
+      real(wp), intent(out) :: radial, cross, tangential
+      real(wp) :: sine_first, sine_second, cosine_first, cosine_second, sign
 
-      do i = 1, nodes
-         call differences((i - 1)*dtheta, 0.5_wp*dtheta, sine_first, sine_second, cosine_first, cosine_second)
-         cross(i) = -(kappa - 1.0_wp)*cosine_first/(4.0_wp*pi)
-      end do
+      sign = merge(1.0_wp, -1.0_wp, body == body_disk)
+      call differences(theta, 0.5_wp*dtheta, sine_first, sine_second, cosine_first, cosine_second)
+      radial = (sign*(kappa + 1.0_wp)*sine_first - (kappa - 1.0_wp)*sine_second)/(4.0_wp*pi)
+      cross = -((kappa - 1.0_wp)*cosine_first - sign*(kappa + 1.0_wp)*cosine_second)/(4.0_wp*pi)
+      tangential = radial
+      call add_lower_terms(body, kappa, theta, dtheta, radial, cross, tangential)
+   end subroutine exact_values
+
+   !> The term (kappa-1) n/(n^2-1), n >= 2, of the exact cross kernel of a disk or a hole, times G/R, at the angle `theta` >= 0.
+   elemental real(wp) function exact_cross_of_dissimilar(kappa, theta, dtheta) result(cross)
+      real(wp), intent(in) :: kappa, theta, dtheta
+      real(wp) :: sine_first, sine_second, cosine_first, cosine_second
+
+      call differences(theta, 0.5_wp*dtheta, sine_first, sine_second, cosine_first, cosine_second)
+      cross = -(kappa - 1.0_wp)*cosine_first/(4.0_wp*pi)
    end function exact_cross_of_dissimilar
 
    !> The same with the series truncated after `harmonics` terms, see fourier_kernels.
@@ -149,31 +153,41 @@ contains
    end function folded_coefficients
 
    !> Differences f(theta + a) - f(theta - a) of the four sums in the head of this file, for theta in [0, 2 pi). `a`: half the
-   !> angle of the box; theta is 0 or at least 2a.
+   !> angle of the box; theta may be inside it.
    pure subroutine differences(theta, a, sine_first, sine_second, cosine_first, cosine_second)
       real(wp), intent(in) :: theta, a
       real(wp), intent(out) :: sine_first, sine_second, cosine_first, cosine_second
-      real(wp) :: sin_a, cos_a, sin_t, cos_t, one_minus, log_mean, log_step, sawtooth
+      real(wp) :: sin_a, cos_a, sin_t, cos_t, one_minus, log_mean, log_step, saw_mean, saw_step
+      real(wp), parameter :: near = 0.25_wp
 
       sin_a = sin(a)
       cos_a = cos(a)
-      if (.not. theta > 0.0_wp) then
-         sine_first = 2.0_wp*sin_a*(0.25_wp - log(2.0_wp*sin(0.5_wp*a)))
-         sine_second = 1.5_wp*sin_a - 2.0_wp*sin(0.5_wp*a)**2*(pi - a)
-         cosine_first = 0.0_wp
-         cosine_second = 0.0_wp
-         return
-      end if
       sin_t = sin(theta)
       cos_t = cos(theta)
-      ! Means and differences of 1 - cos, of L and of S between theta - a and theta + a; that of S is -a.
+      ! Means and differences of 1 - cos, of L and of S between theta - a and theta + a; S jumps by pi at 0.
       one_minus = 2.0_wp*sin(0.5_wp*theta)**2 + 2.0_wp*cos_t*sin(0.5_wp*a)**2
-      log_mean = log(2.0_wp*sin(0.5_wp*theta)) + 0.5_wp*log_of_one_less((sin(0.5_wp*a)/sin(0.5_wp*theta))**2)
-      log_step = 2.0_wp*atanh(sin(0.5_wp*a)*cos(0.5_wp*theta)/(cos(0.5_wp*a)*sin(0.5_wp*theta)))
-      sawtooth = 0.5_wp*(pi - theta)
+      saw_mean = 0.5_wp*(pi - theta)
+      saw_step = -a
+      if (theta < a) then
+         saw_mean = -0.5_wp*theta
+         saw_step = pi - a
+      end if
+      if (abs(theta - a) < near*(theta + a)) then
+         ! Both from one theta - a: their large parts cancel below.
+         log_step = log(2.0_wp*sin(0.5_wp*(theta + a)))
+         log_mean = log(2.0_wp*sin(0.5_wp*max(abs(theta - a), tiny(a))))
+         log_step = log_step - log_mean
+         log_mean = log_mean + 0.5_wp*log_step
+      else if (theta < a) then
+         log_mean = log(2.0_wp*sin(0.5_wp*a)) + 0.5_wp*log_of_one_less((sin(0.5_wp*theta)/sin(0.5_wp*a))**2)
+         log_step = 2.0_wp*atanh(cos(0.5_wp*a)*sin(0.5_wp*theta)/(sin(0.5_wp*a)*cos(0.5_wp*theta)))
+      else
+         log_mean = log(2.0_wp*sin(0.5_wp*theta)) + 0.5_wp*log_of_one_less((sin(0.5_wp*a)/sin(0.5_wp*theta))**2)
+         log_step = 2.0_wp*atanh(sin(0.5_wp*a)*cos(0.5_wp*theta)/(cos(0.5_wp*a)*sin(0.5_wp*theta)))
+      end if
       sine_first = 2.0_wp*cos_t*sin_a*(0.25_wp - log_mean) - sin_t*cos_a*log_step
-      sine_second = 1.5_wp*cos_t*sin_a - 2.0_wp*sin_t*sin_a*sawtooth + a*one_minus
-      cosine_first = -sin_a*(0.5_wp*sin_t + 2.0_wp*cos_t*sawtooth) + a*sin_t*cos_a
+      sine_second = 1.5_wp*cos_t*sin_a - 2.0_wp*sin_t*sin_a*saw_mean - saw_step*one_minus
+      cosine_first = -sin_a*(0.5_wp*sin_t + 2.0_wp*cos_t*saw_mean) - saw_step*sin_t*cos_a
       cosine_second = 2.0_wp*sin_t*sin_a*(log_mean - 0.75_wp) + one_minus*log_step
    end subroutine differences
 

@@ -14,6 +14,7 @@
 !> C_wt(i,j) = C_up(j,i), and surface points move towards a pressure.
 module mfv_half_plane
    use mfv_compliance
+   use mfv_kernel_compliance, only: kernel_compliance_type
    use mfv_kinds, only: pi, wp
    use mfv_material, only: material_type
    use mfv_toeplitz, only: toeplitz_type, new_toeplitz
@@ -22,7 +23,7 @@ module mfv_half_plane
    public :: half_plane_type, new_half_plane, log_kernel, step_kernel
 
    !> Toeplitz blocks: one entry per distance.
-   type, extends(compliance_type) :: half_plane_type
+   type, extends(kernel_compliance_type) :: half_plane_type
       private
       type(material_type) :: material
       real(wp) :: datum = 1.0_wp
@@ -33,20 +34,26 @@ module mfv_half_plane
       type(toeplitz_type) :: operator
    contains
       procedure :: resize
+      procedure :: kernels_at
       procedure :: entries
       procedure :: products
       procedure :: signature
    end type half_plane_type
 
+   !> The kernels: w by pressure, and w by shear.
+   integer, parameter :: direct_kernel = 1, cross_kernel = 2
+
 contains
 
    !> Half-plane with `nodes` intervals of width `interval` (length). `datum`: distance at which displacements are measured,
-   !> length. `coupling`: see mfv_compliance. `tangential`: friction can act; otherwise only C_wp is built.
-   type(half_plane_type) function new_half_plane(material, nodes, interval, datum, coupling, tangential) result(self)
+   !> length. `coupling`: see mfv_compliance. `tangential`: friction can act; otherwise only C_wp is built. `ends`: of unequal
+   !> intervals, of which `interval` is the mean, length, shape (nodes + 1); such a body has entries only.
+   type(half_plane_type) function new_half_plane(material, nodes, interval, datum, coupling, tangential, ends) result(self)
       type(material_type), intent(in) :: material
       integer, intent(in) :: nodes, coupling
       real(wp), intent(in) :: interval, datum
       logical, intent(in) :: tangential
+      real(wp), intent(in), optional :: ends(:)
 
       self%material = material
       self%interval = interval
@@ -54,24 +61,45 @@ contains
       self%modulus = material%plane_modulus()
       call self%choose_blocks(coupling, tangential)
       self%cross = (material%kolosov - 1.0_wp)/(8.0_wp*material%shear_modulus)*interval
-      call self%resize(nodes)
+      self%nodes = nodes
+      if (present(ends)) then
+         call self%grade(ends, odd=[.false., .true.])
+      else
+         call self%resize(nodes)
+      end if
    end function new_half_plane
 
    !> See mfv_compliance.
    subroutine resize(self, nodes)
       class(half_plane_type), intent(inout) :: self
       integer, intent(in) :: nodes
-      real(wp) :: half, factor
       integer :: distance
 
-      half = self%interval/2.0_wp
-      factor = half/(pi*self%modulus)
       self%nodes = nodes
-      self%direct = [(factor*(2.0_wp*log(self%datum/half) + 2.0_wp - log_kernel(2.0_wp*distance)), &
-                      distance=0, nodes - 1)]
+      self%direct = [(normal_displacement(self, 2.0_wp*distance, self%interval), distance=0, nodes - 1)]
       self%operator = new_toeplitz(self%direct)
       self%block_values = nodes
    end subroutine resize
+
+   !> w by a unit pressure on an interval of the width `width`, at `r` times half the width from its middle, length^3/force.
+   elemental real(wp) function normal_displacement(self, r, width)
+      class(half_plane_type), intent(in) :: self
+      real(wp), intent(in) :: r, width
+      real(wp) :: half
+
+      half = width/2.0_wp
+      normal_displacement = half/(pi*self%modulus)*(2.0_wp*log(self%datum/half) + 2.0_wp - log_kernel(r))
+   end function normal_displacement
+
+   !> See mfv_kernel_compliance.
+   pure subroutine kernels_at(self, distance, width, kernels)
+      class(half_plane_type), intent(in) :: self
+      real(wp), intent(in) :: distance, width
+      real(wp), intent(out) :: kernels(:)
+
+      kernels(direct_kernel) = normal_displacement(self, 2.0_wp*distance/width, width)
+      kernels(cross_kernel) = self%cross*(width/self%interval)*step_kernel(2.0_wp*distance/width)
+   end subroutine kernels_at
 
    !> See mfv_compliance.
    pure function signature(self)
@@ -89,6 +117,11 @@ contains
       real(wp), intent(out) :: matrix(:, :)
       integer :: j
 
+      if (allocated(self%mean)) then
+         matrix = self%mean(rows, columns, merge(direct_kernel, cross_kernel, block == block_wp .or. block == block_ut))
+         if (block == block_up) matrix = -matrix
+         return
+      end if
       do j = 1, size(columns)
          select case (block)
          case (block_wp, block_ut)

@@ -1,6 +1,7 @@
-!> A body given by its compliance or stiffness matrix, for example from finite elements.
+!> A body with a stored compliance matrix: given by the user, for example from finite elements, or that of a half-plane or circle on
+!> unequal intervals.
 !>
-!> The matrices relate nodal forces and nodal displacements of the surface nodes, force/length and length per unit thickness.
+!> Given matrices relate nodal forces and nodal displacements of the surface nodes, force/length and length per unit thickness.
 !> Rows and columns: normal components of all nodes (into the body) and, for problems with shear, all tangential ones (to the
 !> right).
 module mfv_matrix_compliance
@@ -8,18 +9,21 @@ module mfv_matrix_compliance
    use mfv_compliance
    use mfv_error, only: error_type, set_error
    use mfv_kinds, only: wp
-   use mfv_lapack, only: dpotrf, dpotri
+   use mfv_lapack, only: dgemv, dpotrf, dpotri
    use mfv_status, only: MFV_INPUT_ERROR
    use mfv_strings, only: to_text
    implicit none
    private
-   public :: matrix_compliance_type, new_matrix_compliance, check_compliance, inverse_of
+   public :: matrix_compliance_type, new_matrix_compliance, matrix_of, check_compliance, inverse_of
 
    type, extends(compliance_type) :: matrix_compliance_type
       private
       !> Displacements by unit tractions, shape (n or 2n, n or 2n).
       real(wp), allocatable :: matrix(:, :)
+      !> See signature.
+      real(wp), allocatable :: constants(:)
    contains
+      procedure :: signature
       procedure :: resize
       procedure :: entries
       procedure :: products
@@ -50,6 +54,40 @@ contains
       self%modulus = sum(width)/maxval(abs(self%matrix(:n, :n)))/n
       self%block_values = size(self%matrix)
    end function new_matrix_compliance
+
+   !> The compliance of a body that has entries, as a stored matrix.
+   type(matrix_compliance_type) function matrix_of(body) result(self)
+      class(compliance_type), intent(in) :: body
+      integer :: block, before(2), i, n
+      integer, allocatable :: all_nodes(:)
+
+      n = body%nodes
+      self%nodes = n
+      self%interval = body%interval
+      self%modulus = body%modulus
+      self%has_block = body%has_block
+      self%elastic_block = body%elastic_block
+      self%constants = body%signature()
+      all_nodes = [(i, i=1, n)]
+      n = merge(2*n, n, body%has_block(block_ut))
+      allocate (self%matrix(n, n), source=0.0_wp)
+      do block = 1, 4
+         if (.not. body%has_block(block)) cycle
+         before = origin(self, block)
+         call body%entries(block, all_nodes, all_nodes, self%matrix(before(1) + 1:before(1) + self%nodes, &
+                                                                    before(2) + 1:before(2) + self%nodes))
+      end do
+      self%block_values = size(self%matrix)
+   end function matrix_of
+
+   !> See mfv_compliance.
+   pure function signature(self)
+      class(matrix_compliance_type), intent(in) :: self
+      real(wp) :: signature(4)
+
+      signature = huge(1.0_wp)/max(self%nodes, 1)
+      if (allocated(self%constants)) signature = self%constants
+   end function signature
 
    !> Check a matrix of nodal compliances or stiffnesses for `nodes` nodes, called `name` in messages. Error MFV_INPUT_ERROR.
    subroutine check_compliance(matrix, nodes, name, error)
@@ -145,24 +183,38 @@ contains
       matrix = self%matrix(before(1) + rows, before(2) + columns)
    end subroutine entries
 
-   !> See mfv_compliance; only loaded columns are used.
+   !> See mfv_compliance; only the columns between the outermost loaded ones are used.
    subroutine products(self, pressure, shear, by_block)
       class(matrix_compliance_type), intent(in) :: self
       real(wp), intent(in) :: pressure(:), shear(:)
       real(wp), intent(out) :: by_block(:, :)
-      real(wp) :: traction(self%nodes)
-      integer :: before(2), block, j
+      integer :: block
 
       by_block = 0.0_wp
       do block = 1, 4
          if (.not. self%has_block(block)) cycle
-         before = origin(self, block)
-         traction = merge(pressure, shear, before(2) == 0)
-         do j = 1, self%nodes
-            if (.not. abs(traction(j)) > 0.0_wp) cycle
-            by_block(:, block) = by_block(:, block) + traction(j)*self%matrix(before(1) + 1:before(1) + self%nodes, before(2) + j)
-         end do
+         if (block == block_wp .or. block == block_up) then
+            call multiply(self, block, pressure, by_block(:, block))
+         else
+            call multiply(self, block, shear, by_block(:, block))
+         end if
       end do
    end subroutine products
+
+   !> The product of a block with a traction.
+   subroutine multiply(self, block, traction, displacement)
+      class(matrix_compliance_type), intent(in) :: self
+      integer, intent(in) :: block
+      real(wp), contiguous, intent(in) :: traction(:)
+      real(wp), contiguous, intent(inout) :: displacement(:)
+      integer :: before(2), first, last
+
+      first = findloc(abs(traction) > 0.0_wp, .true., dim=1)
+      if (first == 0) return
+      last = findloc(abs(traction) > 0.0_wp, .true., dim=1, back=.true.)
+      before = origin(self, block)
+      call dgemv('N', self%nodes, last - first + 1, 1.0_wp, self%matrix(before(1) + 1, before(2) + first), size(self%matrix, 1), &
+                 traction(first:), 1, 0.0_wp, displacement, 1)
+   end subroutine multiply
 
 end module mfv_matrix_compliance

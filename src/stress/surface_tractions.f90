@@ -3,7 +3,8 @@
 !> A pressure vanishes at a smooth edge as the root of the distance, and so does, at the edge of a stick zone, the remaining
 !> friction |mu p| - |tau| (Hertz; Cattaneo and Mindlin, dissertation eqs. 3.1, 3.7). Both, divided by their roots, are
 !> smooth: they are interpolated linearly and extrapolated to the edges. Nodal values are corrected for the discretisation
-!> error where it is known (mfv_edge_solutions); those within two intervals of an edge are not used. Resultant forces are
+!> error where it is known (mfv_edge_solutions); those within two intervals of an edge are not used. On unequal intervals they are
+!> means, which are divided by mean roots; next to an edge only their sum is used, which is more accurate. Resultant forces are
 !> those of the nodal values. The result is projected onto linear elements that are graded towards the edges; the projection
 !> preserves the integrals of tractions with smooth functions, on which stresses depend.
 module mfv_surface_tractions
@@ -52,6 +53,7 @@ module mfv_surface_tractions
    contains
       procedure :: contains_place
       procedure :: roots
+      procedure :: mean_roots
    end type zone_type
 
    !> One contact zone: the pressure; `limit` tau/p in slip zones, linear between them; in stick zones the remaining friction,
@@ -63,8 +65,8 @@ module mfv_surface_tractions
       type(zone_type), allocatable :: stick(:)
       type(table_type) :: limit, shear_rest
       logical :: has_ratio = .true.
-      !> Whether the contact edges are ends of intervals, to be located between the nodes.
-      logical :: counted = .false.
+      !> Whether the contact edges are ends of intervals, to be located between the nodes; and whether intervals are unequal.
+      logical :: counted = .false., graded = .false.
    contains
       procedure :: tractions
    end type patch_type
@@ -82,6 +84,7 @@ contains
       real(wp), allocatable :: edges(:, :)
       logical, allocatable :: sharp(:, :)
       integer, allocatable :: owner(:)
+      real(wp), parameter :: near = 1.0e-6_wp
       integer :: i
 
       allocate (elements%from(0), elements%to(0), elements%edges(0), elements%first(0), elements%last(0))
@@ -94,6 +97,7 @@ contains
          patch%shear = pack(shear, owner == i)
          patch%contact = zone_type(edge=edges(:, i), rooted=.not. sharp(:, i), rest=table_type())
          patch%counted = i > size(zones%contact, 2)
+         patch%graded = maxval(width) - minval(width) > near*maxval(width)
          call fit_patch(patch, zones)
          call add_elements(patch, min(longest, (patch%contact%edge(2) - patch%contact%edge(1))/zones%fewest_elements), elements)
       end do
@@ -189,8 +193,8 @@ contains
 
       n = size(patch%arc)
       patch%contact%known = patch%has_ratio .and. n >= fewest_nodes .and. patch%contact%power > least_power .and. &
-                            patch%contact%power < most_power
-      if (.not. patch%has_ratio) return
+                            patch%contact%power < most_power .and. .not. patch%graded
+      if (.not. patch%has_ratio .or. patch%graded) return
       if (abs(beta) > 0.0_wp) then
          slips = outside_stick_zones(patch)
          patch%contact%known = patch%contact%known .and. &
@@ -358,6 +362,7 @@ contains
       type(zone_type), intent(in) :: zone
 
       skipped_intervals = 2
+      if (patch%graded) skipped_intervals = 4
       if (all(zone%known .or. .not. zone%rooted) .and. .not. any(abs(zone%power - 0.5_wp) > 0.0_wp)) &
          skipped_intervals = max(2, nint(0.4_wp*sqrt(real(count(zone%contains_place(patch%arc)), wp))))
    end function skipped_intervals
@@ -384,8 +389,46 @@ contains
          return
       end if
       zone%rest%x = pack(patch%arc, used)
-      zone%rest%value = pack(values, used)/zone%roots(zone%rest%x)
+      if (patch%graded) then
+         zone%rest%value = pack(values, used)/zone%mean_roots(zone%rest%x, pack(patch%width, used))
+         if (zone%rooted(1)) call add_sum(patch, values, used, zone, 1)
+         if (zone%rooted(2)) call add_sum(patch, values, used, zone, 2)
+      else
+         zone%rest%value = pack(values, used)/zone%roots(zone%rest%x)
+      end if
    end subroutine fit_zone
+
+   !> Add the point that represents the nodes between an edge and the first ones of `used`: the sum of their `values` over that of their
+   !> roots.
+   subroutine add_sum(patch, values, used, zone, side)
+      type(patch_type), intent(in) :: patch
+      real(wp), intent(in) :: values(:)
+      logical, intent(in) :: used(:)
+      type(zone_type), intent(inout) :: zone
+      integer, intent(in) :: side
+      real(wp), dimension(size(values)) :: distance, from, to, weight
+      logical :: near(size(values))
+      real(wp) :: total, x, value
+
+      distance = (3 - 2*side)*(patch%arc - zone%edge(side))
+      near = distance > -0.5_wp*patch%width .and. distance < minval(distance, mask=used)
+      if (.not. any(near)) return
+      ! Their intervals, the outermost one from the edge.
+      from = distance - 0.5_wp*patch%width
+      to = distance + 0.5_wp*patch%width
+      from = merge(0.0_wp, from, from <= minval(from, mask=near))
+      weight = zone%mean_roots(zone%edge(side) + (3 - 2*side)*0.5_wp*(from + to), to - from)*(to - from)
+      total = sum(weight, mask=near)
+      x = zone%edge(side) + (3 - 2*side)*sum(weight*0.5_wp*(from + to), mask=near)/total
+      value = sum(values*patch%width, mask=near)/total
+      if (side == 1) then
+         zone%rest%x = [x, zone%rest%x]
+         zone%rest%value = [value, zone%rest%value]
+      else
+         zone%rest%x = [zone%rest%x, x]
+         zone%rest%value = [zone%rest%value, value]
+      end if
+   end subroutine add_sum
 
    !> Whether a place is inside a zone.
    elemental logical function contains_place(self, x)
@@ -406,6 +449,27 @@ contains
          if (self%rooted(2)) roots = roots*(max(self%edge(2) - x, 0.0_wp)/length)**self%power(2)
       end associate
    end function roots
+
+   !> Their means over an interval of a `width` about x, neglecting that one root may vary where the other one does.
+   elemental real(wp) function mean_roots(self, x, width)
+      class(zone_type), intent(in) :: self
+      real(wp), intent(in) :: x, width
+      real(wp) :: distance, near, far
+      integer :: side
+
+      mean_roots = 1.0_wp
+      associate (length => max(self%edge(2) - self%edge(1), tiny(1.0_wp)))
+         do side = 1, 2
+            if (.not. self%rooted(side)) cycle
+            distance = (3 - 2*side)*(x - self%edge(side))
+            near = max(distance - 0.5_wp*width, 0.0_wp)/length
+            far = max(distance + 0.5_wp*width, 0.0_wp)/length
+            associate (power => self%power(side) + 1.0_wp)
+               mean_roots = mean_roots*(far**power - near**power)/(power*width/length)
+            end associate
+         end do
+      end associate
+   end function mean_roots
 
    !> Linear interpolation in a table, constant outside; 0 for an empty one.
    elemental real(wp) function at(self, x)

@@ -223,6 +223,13 @@ contains
       integer :: spare
 
       scene = original
+      if (allocated(scene%mesh%ends)) then
+         scene%mesh%ends = resampled(original%mesh%ends, nodes)
+         scene%mesh%nodes = nodes
+         call average(scene%friction%static, nodes, 0)
+         call average(scene%friction%kinetic, nodes, 0)
+         return
+      end if
       spare = 0
       if (scene%mesh%half_width > 0.0_wp) spare = 1
       if (scene%arc_radius() > 0.0_wp .and. scene%mesh%half_width*(nodes + 2) > pi*scene%arc_radius()*nodes) spare = 0
@@ -231,6 +238,22 @@ contains
       call average(scene%friction%static, nodes, spare)
       call average(scene%friction%kinetic, nodes, spare)
    end function scene_on_mesh
+
+   !> Ends of `nodes` intervals, graded like those between `ends`.
+   pure function resampled(ends, nodes)
+      real(wp), intent(in) :: ends(:)
+      integer, intent(in) :: nodes
+      real(wp) :: resampled(nodes + 1), place
+      integer :: i, below, n
+
+      n = size(ends) - 1
+      do i = 0, nodes
+         place = real(n, wp)*i/nodes
+         below = min(int(place), n - 1)
+         resampled(i + 1) = ends(below + 1) + (place - below)*(ends(below + 2) - ends(below + 1))
+      end do
+      resampled(nodes + 1) = ends(n + 1)
+   end function resampled
 
    !> Averages over `nodes` intervals of values that are constant on each interval; `spare` more intervals at either end take
    !> the end values.
@@ -281,8 +304,9 @@ contains
 
       associate (state => simulation%contact%state, model => simulation%contact%model)
          ! Errors of the two edges of one patch add up; those of several patches are independent.
-         contact = model%interval()*sqrt(0.5_wp*free_edges(model, in_contact(state%status)))
-         stick = model%interval()*sqrt(real(max(size(zones_of(holds(state%status))), 1), wp))
+         contact = sqrt(0.5_wp*squares_at_edges(model, in_contact(state%status)))
+         stick = model%interval()
+         if (any(holds(state%status))) stick = sqrt(0.5_wp*squares_at_edges(model, holds(state%status)))
          length = max(sum(model%width, mask=in_contact(state%status)), model%interval())
          allowances = 0.0_wp
          allowances(quantity_half_width) = 0.5_wp*contact
@@ -292,19 +316,20 @@ contains
       end associate
    end function interval_allowances
 
-   !> Edges of the contact except where a body ends between two intervals: these are exact.
-   pure integer function free_edges(model, contact)
+   !> Squares of the outermost intervals of zones, except where a body ends, where the edge is exact; length^2.
+   pure real(wp) function squares_at_edges(model, inside) result(squares)
       type(contact_model_type), intent(in) :: model
-      logical, intent(in) :: contact(:)
+      logical, intent(in) :: inside(:)
       type(zone_type), allocatable :: zones(:)
       integer :: i
 
-      zones = zones_of(contact)
-      free_edges = 2*size(zones)
+      zones = zones_of(inside)
+      squares = 0.0_wp
       do i = 1, size(zones)
-         free_edges = free_edges - count([ends_with_body(model, zones(i)%first, -1), ends_with_body(model, zones(i)%last, 1)])
+         if (.not. ends_with_body(model, zones(i)%first, -1)) squares = squares + model%width(zones(i)%first)**2
+         if (.not. ends_with_body(model, zones(i)%last, 1)) squares = squares + model%width(zones(i)%last)**2
       end do
-   end function free_edges
+   end function squares_at_edges
 
    !> Uncertainty of the peak of the shear traction, force/length^2. At the edge of a stick zone the true peak lies between
    !> two nodes, at most at the friction limit of the sticking one; elsewhere, difference to the nearer neighbouring value.

@@ -64,7 +64,7 @@ contains
          real(wp) :: arc
 
          associate (model => simulation%contact%model)
-            arc = model%arc(node) + side*model%interval()
+            arc = model%arc(node) + side*model%width(node)
             if (node + side >= 1 .and. node + side <= model%nodes()) arc = model%arc(node + side)
             ends_at = .not. model%scene%touchable(arc) .and. &
                       (.not. body%covers(model%scene%x_of_arc(arc), model%scene%mesh%parabolic) .or. &
@@ -75,14 +75,15 @@ contains
       !> From the flat of a punch to the contact edge the pressure rises to its peak and vanishes.
       subroutine check_rounded_edges()
          type(zone_edges_type) :: edges
-         real(wp) :: width
+         real(wp) :: width, interval
 
          associate (model => simulation%contact%model, state => simulation%contact%state)
             call find_zone_edges(model, state, edges)
             width = 0.5_wp*(edges%contact_right - edges%contact_left) - body%flat_half_width
-            if (.not. edges%contact .or. .not. width > 0.0_wp .or. width >= resolved_nodes*model%interval()) return
+            interval = minval(model%width, mask=in_contact(state%status))
+            if (.not. edges%contact .or. .not. width > 0.0_wp .or. width >= resolved_nodes*interval) return
             call add_text(warnings, 'the rounded edges of the '//name//' body are in contact over a width of '// &
-                          to_text(width, 3)//', '//to_text(width/model%interval(), 2)// &
+                          to_text(width, 3)//', '//to_text(width/interval, 2)// &
                           ' intervals: peak pressure, slip and stresses '// &
                           'are not resolved there; use '//trim(needed_mesh(model, state, width)))
          end associate
@@ -98,7 +99,7 @@ contains
          x = pack(simulation%contact%model%x, contact)
          departure = abs(body%from_polyline(x))
          spacing = spacing_at(body%position, x)
-         if (maxval(spacing) <= further*simulation%contact%model%interval()) return
+         if (all(spacing <= further*pack(simulation%contact%model%width, contact))) return
          associate (model => simulation%contact%model, pressure => simulation%contact%state%fields%pressure)
             if (model%scene%modulus() > 0.0_wp .and. maxval(pressure) > 0.0_wp) then
                share = pi*model%scene%modulus()*maxval(departure/spacing)/maxval(pressure)

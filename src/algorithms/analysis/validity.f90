@@ -1,6 +1,7 @@
 !> Warnings where the assumptions of the model do not hold.
 module mfv_validity
    use mfv_body, only: body_type, shape_matrix
+   use mfv_contact_model, only: needs_equal_intervals
    use mfv_contact_state, only: contact_state_type
    use mfv_interior, only: interior_type
    use mfv_kinds, only: pi, wp
@@ -106,7 +107,7 @@ contains
    subroutine check_slip_zones(simulation, warnings)
       type(simulation_type), intent(in) :: simulation
       type(string_type), allocatable, intent(inout) :: warnings(:)
-      character(:), allocatable :: names, text
+      character(:), allocatable :: names, text, remedy
       integer :: nodes
       real(wp) :: width, interval
 
@@ -130,9 +131,13 @@ contains
       if (names == '') return
       text = 'slip zones have only '//to_text(nodes)//trim(merge(' node ', ' nodes', nodes == 1))
       if (nodes == 0) text = 'no node slips: slip zones are narrower than the mesh resolves'
+      remedy = trim(needed_mesh(simulation%contact%model, simulation%contact%state, width))
+      associate (scene => simulation%contact%model%scene)
+         if (.not. (allocated(scene%mesh%ends) .or. scene%lower%shape == shape_matrix .or. needs_equal_intervals(scene))) &
+            remedy = "refine='edges' in &mesh, or "//remedy
+      end associate
       call add_text(warnings, text//' ('//to_text(width/interval, 2)//' intervals); not resolved: '//names(3:)//'; use '// &
-                    trim(needed_mesh(simulation%contact%model, simulation%contact%state, width))// &
-                    ' for '//to_text(resolved_nodes)//' nodes in each slip zone')
+                    remedy//' for '//to_text(resolved_nodes)//' nodes in each slip zone')
 
    contains
 

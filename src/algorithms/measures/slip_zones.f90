@@ -225,7 +225,7 @@ contains
       real(wp), intent(out) :: width, work
       real(wp), parameter :: largest_room = 2.0_wp, least_room = 0.05_wp, tolerance = 1.0e-6_wp
       real(wp), dimension(3) :: limit, before, towards, room
-      real(wp) :: room_number, slope, lack_slope, intervals
+      real(wp) :: room_number, slope, lack_slope, apart
       integer :: node(3), i
 
       width = 0.0_wp
@@ -239,15 +239,18 @@ contains
       room_number = min(max(1.0_wp - sum(before/limit)/3, least_room), largest_room)
       if (before(2) < 0.0_wp .and. towards(2) <= 2.0_wp*abs(before(2))*(1.0_wp + tolerance)) room_number = largest_room
       room = room_number*limit
-      slope = 0.5_wp*(room(3)**2 - room(1)**2)
+      apart = abs(model%arc(node(3)) - model%arc(node(1)))
+      slope = (room(3)**2 - room(1)**2)/apart
       room(1) = max(room(1) - towards(1), 0.0_wp)
       room(3) = max(room(3) - towards(3), 0.0_wp)
-      lack_slope = 0.5_wp*(room(3)**2 - room(1)**2)
+      lack_slope = (room(3)**2 - room(1)**2)/apart
       if (.not. lack_slope > 0.0_wp) return
-      intervals = (room_number*limit(1))**2/slope - room(1)**2/lack_slope
-      if (.not. intervals > negligible) return
-      width = intervals*model%width(edge)
-      work = pi*slope/model%width(edge)*width**3/(24.0_wp*room_number*model%compliance%modulus)
+      width = (room_number*limit(1))**2/slope - room(1)**2/lack_slope
+      if (.not. width > negligible*model%width(edge)) then
+         width = 0.0_wp
+         return
+      end if
+      work = pi*slope*width**3/(24.0_wp*room_number*model%compliance%modulus)
    end subroutine hidden_at_edge
 
    !> Record of the segments since another record of the same run.

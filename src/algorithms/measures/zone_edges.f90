@@ -7,7 +7,8 @@
 !> zone). Behind the edge of a growing stick zone the exponent is larger by one, the integral of the root, as in Spence's
 !> closed forms; the exponent with the straighter fit is used. A traction raised to the inverse exponent is nearly linear: a
 !> parabola through a few nodes is extrapolated to its zero. The outermost node has the largest discretisation error and is
-!> not used; the error of the others is known and corrected (mfv_edge_solutions).
+!> not used; the error of the others is known and corrected (mfv_edge_solutions). On a graded mesh tractions are means over unequal
+!> intervals: their integral from the edge is extrapolated instead, whose exponent is larger by one.
 module mfv_zone_edges
    use, intrinsic :: ieee_arithmetic, only: ieee_quiet_nan, ieee_value
    use mfv_body, only: shape_matrix
@@ -64,14 +65,14 @@ module mfv_zone_edges
    integer, parameter :: fewest_slipping = 6
 
    !> A traction near an edge: values at the outermost nodes of a zone, outermost first, and their distances from the first
-   !> one, in intervals.
+   !> one, in intervals; or the integrals of the traction from the edge to the inner ends of these intervals.
    type :: samples_type
       !> Number of values, and of nodes in the whole zone.
       integer :: number = 0, zone = 0
       real(wp) :: inwards(0:most_samples - 1) = 0.0_wp, value(0:most_samples - 1) = 0.0_wp
-      !> Exponent of the distance, and whether the discretisation error is known.
+      !> Exponent of the distance, whether the discretisation error is known, and whether values are integrals of the traction.
       real(wp) :: power = 0.5_wp
-      logical :: is_regular = .false.
+      logical :: is_regular = .false., is_integral = .false.
    end type samples_type
 
 contains
@@ -339,6 +340,13 @@ contains
             samples%value(i) = traction(outermost + side*i)
             samples%inwards(i) = abs(model%arc(outermost + side*i) - model%arc(outermost))/unit
          end do
+         samples%is_integral = allocated(model%scene%mesh%ends)
+         if (.not. samples%is_integral) return
+         do i = 0, samples%number - 1
+            samples%value(i) = samples%value(i)*model%width(outermost + side*i)/unit
+            if (i > 0) samples%value(i) = samples%value(i) + samples%value(i - 1)
+            samples%inwards(i) = samples%inwards(i) + 0.5_wp*model%width(outermost + side*i)/unit
+         end do
       end associate
    end function sampled
 
@@ -414,7 +422,8 @@ contains
       straight%is_regular = samples%is_regular .and. power > least_power .and. power < most_power
       largest = maxval(samples%value(:samples%number - 1))
       straight%value = 0.0_wp
-      if (largest > 0.0_wp) straight%value = max(samples%value/largest, 0.0_wp)**(1.0_wp/power)
+      if (largest > 0.0_wp) straight%value = max(samples%value/largest, 0.0_wp)**(1.0_wp/merge(power + 1.0_wp, power, &
+                                                                                               samples%is_integral))
    end function straightened
 
    !> Deviation of the exponent from 1/2 where nodes near `node` slip with shear traction over pressure `ratio`: nonzero with
@@ -469,6 +478,7 @@ contains
       integer :: j
 
       has_known_error = .false.
+      if (allocated(model%scene%mesh%ends)) return
       if (samples < fewest .or. node - about < 1 .or. node + about > model%nodes()) return
       call model%compliance%entries(block_wp, [node], [(node + j, j=-about, about)], entries)
       entries(1, :) = entries(1, :)/model%width(node - about:node + about)

@@ -2,7 +2,7 @@
 !>
 !> With vertical normals (limits in docs/theory.md) nodes are at equal arc lengths from the origin of x on both bodies. Gaps are
 !> exact at the x of the nodes, on the circle of scene%arc_radius. On a body of another radius the nodes would be at another x; the
-!> difference is of third order in the angle. With radial normals, for a disk in a hole, nodes are at equal angles on both bodies,
+!> difference is of third order in the angle. On unequal intervals gaps are means, as displacements are. With radial normals, for a disk in a hole, nodes are at equal angles on both bodies,
 !> gaps are along the radii of the hole, and tractions are per unit of its arc.
 module mfv_contact_model
    use mfv_body, only: body_type, gap_between, radial_gap_between, shape_matrix
@@ -12,6 +12,7 @@ module mfv_contact_model
    use mfv_contact_fields, only: contact_fields_type
    use mfv_kinds, only: pi, wp
    use mfv_lapack, only: ddot
+   use mfv_numerics, only: gauss_points
    use mfv_motions, only: motions, motion_count, motion_approach, motion_shift, motion_rotation
    use mfv_reference_indenter, only: indenter_type
    use mfv_clock, only: seconds_now
@@ -19,7 +20,8 @@ module mfv_contact_model
    use mfv_scene_indenter, only: indenter_of, largest_half_width
    implicit none
    private
-   public :: contact_model_type, new_contact_model, choose_mesh, can_choose_mesh, has_touchable_node, intervals_round
+   public :: contact_model_type, new_contact_model, choose_mesh, can_choose_mesh, has_touchable_node, intervals_round, &
+             needs_equal_intervals
 
    type :: contact_model_type
       type(scene_type) :: scene
@@ -112,7 +114,10 @@ contains
 
       nodes = scene%mesh%nodes
       growing = .false.
-      if (scene%lower%shape == shape_matrix) then
+      if (allocated(scene%mesh%ends)) then
+         nodes = size(scene%mesh%ends) - 1
+         interval = (scene%mesh%ends(nodes + 1) - scene%mesh%ends(1))/nodes
+      else if (scene%lower%shape == shape_matrix) then
          nodes = size(scene%lower%position)
          interval = sum(scene%lower%width)/nodes
       else if (scene%mesh%whole_circle) then
@@ -126,7 +131,7 @@ contains
       else
          interval = 2.0_wp*estimated_half_width(scene)/nodes
          growing = .true.
-         if (by_fourier(scene)) interval = 2.0_wp*pi*scene%arc_radius()/circle_intervals(scene%arc_radius(), interval)
+         if (needs_equal_intervals(scene)) interval = 2.0_wp*pi*scene%arc_radius()/circle_intervals(scene%arc_radius(), interval)
       end if
    end subroutine choose_mesh
 
@@ -135,7 +140,8 @@ contains
    pure logical function can_choose_mesh(scene)
       type(scene_type), intent(in) :: scene
 
-      can_choose_mesh = scene%lower%shape == shape_matrix .or. scene%mesh%half_width > 0.0_wp .or. scene%mesh%whole_circle .or. &
+      can_choose_mesh = scene%lower%shape == shape_matrix .or. allocated(scene%mesh%ends) .or. &
+                        scene%mesh%half_width > 0.0_wp .or. scene%mesh%whole_circle .or. &
                         min(scene%lower%half_extent(), scene%upper%half_extent()) < huge(1.0_wp)
       if (.not. can_choose_mesh) can_choose_mesh = largest_half_width(scene, huge(1.0_wp)) > 0.0_wp
    end function can_choose_mesh
@@ -160,6 +166,9 @@ contains
       if (scene%lower%shape == shape_matrix) then
          has_touchable_node = any(scene%touchable(scene%lower%position))
          return
+      else if (allocated(scene%mesh%ends)) then
+         has_touchable_node = any(scene%touchable(middles(scene%mesh%ends)))
+         return
       end if
       call choose_mesh(scene, nodes, interval, growing)
       has_touchable_node = .false.
@@ -169,13 +178,21 @@ contains
       end do
    end function has_touchable_node
 
-   !> Whether a body's kernel requires an integer number of intervals on its circle.
-   pure logical function by_fourier(scene)
+   !> The middles of the intervals between `ends`, shape (size(ends) - 1).
+   pure function middles(ends)
+      real(wp), intent(in) :: ends(:)
+      real(wp) :: middles(size(ends) - 1)
+
+      middles = 0.5_wp*(ends(:size(ends) - 1) + ends(2:))
+   end function middles
+
+   !> Whether a body's kernel is a Fourier series, which requires equal intervals, a whole number of them on its circle.
+   pure logical function needs_equal_intervals(scene)
       type(scene_type), intent(in) :: scene
 
-      by_fourier = scene%arc_radius() > 0.0_wp .and. &
-                   any([scene%lower%kernel, scene%upper%kernel] == kernel_fourier)
-   end function by_fourier
+      needs_equal_intervals = scene%arc_radius() > 0.0_wp .and. &
+                              any([scene%lower%kernel, scene%upper%kernel] == kernel_fourier)
+   end function needs_equal_intervals
 
    !> Larger stiffnesses, force/length^2, are ratios to a displacement of round-off.
    pure real(wp) function largest_stiffness(self)
@@ -211,8 +228,8 @@ contains
       started = seconds_now()
       associate (scene => self%scene)
          common_radius = merge(scene%arc_radius(), 0.0_wp, scene%mesh%radial)
-         call scene%lower%make_compliance(nodes, interval, scene%coupling, self%tangential, common_radius, lower)
-         call scene%upper%make_compliance(nodes, interval, scene%coupling, self%tangential, common_radius, upper)
+         call scene%lower%make_compliance(nodes, interval, scene%coupling, self%tangential, common_radius, lower, scene%mesh%ends)
+         call scene%upper%make_compliance(nodes, interval, scene%coupling, self%tangential, common_radius, upper, scene%mesh%ends)
       end associate
       call new_body_pair(lower, upper, self%compliance)
       self%assembly_seconds = self%assembly_seconds + seconds_now() - started
@@ -224,7 +241,7 @@ contains
       nodes = self%compliance%nodes
    end function nodes
 
-   !> Width of an interval, length (of a matrix body's: the mean).
+   !> Width of an interval, length (of unequal ones: the mean).
    pure real(wp) function interval(self)
       class(contact_model_type), intent(in) :: self
 
@@ -365,8 +382,8 @@ contains
       integer :: n
 
       n = self%nodes()
-      reaches_end = contact(1) .and. self%scene%touchable(self%arc(1) - self%interval()) &
-                    .or. contact(n) .and. self%scene%touchable(self%arc(n) + self%interval())
+      reaches_end = contact(1) .and. self%scene%touchable(self%arc(1) - self%width(1)) &
+                    .or. contact(n) .and. self%scene%touchable(self%arc(n) + self%width(n))
    end function reaches_end
 
    !> Number of nodes that can still be added at either end; limited on a circle.
@@ -400,23 +417,54 @@ contains
       if (self%scene%lower%shape == shape_matrix) then
          self%arc = self%scene%lower%position
          self%width = self%scene%lower%width
+      else if (allocated(self%scene%mesh%ends)) then
+         self%arc = middles(self%scene%mesh%ends)
+         self%width = self%scene%mesh%ends(2:) - self%scene%mesh%ends(:n)
       else
          self%arc = [(0.5_wp*self%interval()*(2*i - n - 1), i=1, n)]
          self%width = spread(self%interval(), 1, n)
       end if
       self%x = self%scene%x_of_arc(self%arc)
-      if (self%scene%mesh%radial) then
-         self%initial_gap = radial_gap_between(self%scene%lower, self%scene%upper, &
-                                               self%arc/self%scene%arc_radius())
-      else
-         self%initial_gap = gap_between(self%scene%lower, self%scene%upper, self%x, self%scene%mesh%parabolic)
-      end if
+      self%initial_gap = gap_at(self%scene, self%arc)
+      if (allocated(self%scene%mesh%ends)) self%initial_gap = mean_gaps(self%scene, self%scene%mesh%ends)
       self%can_touch = self%scene%touchable(self%arc)
       self%static_friction = self%scene%friction%static%at(self%x)
       self%kinetic_friction = self%scene%friction%kinetic%at(self%x)
       self%friction_scale = min(self%scene%friction%static%largest(), 1.0_wp)
       call place_arms(self)
    end subroutine place_nodes
+
+   !> Undeformed gaps at arc lengths from the origin of x, lengths.
+   function gap_at(scene, arc) result(gap)
+      type(scene_type), intent(in) :: scene
+      real(wp), intent(in) :: arc(:)
+      real(wp) :: gap(size(arc))
+
+      if (scene%mesh%radial) then
+         gap = radial_gap_between(scene%lower, scene%upper, arc/scene%arc_radius())
+      else
+         gap = gap_between(scene%lower, scene%upper, scene%x_of_arc(arc), scene%mesh%parabolic)
+      end if
+   end function gap_at
+
+   !> Mean undeformed gaps of the intervals between `ends`, as their compliance gives mean displacements: over both halves of each by
+   !> Gauss quadrature, which is exact for a corner in the middle.
+   function mean_gaps(scene, ends) result(gap)
+      type(scene_type), intent(in) :: scene
+      real(wp), intent(in) :: ends(:)
+      real(wp) :: gap(size(ends) - 1)
+      integer, parameter :: points = 4
+      real(wp) :: point(points), weight(points), half(size(ends) - 1)
+      integer :: i, n
+
+      n = size(ends) - 1
+      call gauss_points(0.0_wp, 0.5_wp, point, weight)
+      half = ends(2:) - ends(:n)
+      gap = 0.0_wp
+      do i = 1, points
+         gap = gap + weight(i)*(gap_at(scene, ends(:n) + point(i)*half) + gap_at(scene, ends(2:) - point(i)*half))
+      end do
+   end function mean_gaps
 
    !> Arms of the rotation of the upper body: about its centre if it is a circle, else about that of the lower one if that is, else
    !> about the origin of x. Counterclockwise it lifts the right side and moves a surface below the centre to the right (eq. 4.24,
@@ -482,26 +530,29 @@ contains
    !> a constant that the approach compensates. For a parabola g = K arc^2/2 the change is -K s arc: the arm is the arc length. For
    !> other gaps, g = K arc^2/2 (1 + b arc^2), the arm arc + 2 b arc^3/3 keeps the least gap at s, to fourth order; the relative
    !> error of the curvature there is 2 b s^2 (see rolling_error).
-   pure function rolling_arm(self) result(arm)
+   function rolling_arm(self) result(arm)
       class(contact_model_type), intent(in) :: self
-      real(wp) :: arm(self%compliance%nodes)
+      real(wp), dimension(self%compliance%nodes) :: arm, gap
 
       arm = self%arc
-      where (self%initial_gap > 0.0_wp .and. abs(self%arc) > 0.0_wp) &
-         arm = (self%arc + 4.0_wp*self%initial_gap/(self%scene%curvature()*self%arc))/3.0_wp
+      gap = gap_at(self%scene, self%arc)
+      where (gap > 0.0_wp .and. abs(self%arc) > 0.0_wp) &
+         arm = (self%arc + 4.0_wp*gap/(self%scene%curvature()*self%arc))/3.0_wp
    end function rolling_arm
 
    !> Relative error of the curvature where the contact has rolled to, see rolling_arm: zero for parabolas on straight lines.
-   pure real(wp) function rolling_error(self, fields)
+   real(wp) function rolling_error(self, fields)
       class(contact_model_type), intent(in) :: self
       type(contact_fields_type), intent(in) :: fields
+      real(wp) :: gap(1)
       integer :: i
 
       rolling_error = 0.0_wp
       if (.not. self%rolls()) return
       i = minloc(abs(self%arc - self%rolled(fields)), dim=1)
-      if (abs(self%arc(i)) < self%interval()) return
-      rolling_error = 2.0_wp*(2.0_wp*self%initial_gap(i)/(self%scene%curvature()*self%arc(i)**2) - 1.0_wp)
+      if (abs(self%arc(i)) < self%width(i)) return
+      gap = gap_at(self%scene, [self%arc(i)])
+      rolling_error = 2.0_wp*(2.0_wp*gap(1)/(self%scene%curvature()*self%arc(i)**2) - 1.0_wp)
    end function rolling_error
 
    !> The arms with radial normals: where the normal is inclined, approach and shift have components along both directions; a

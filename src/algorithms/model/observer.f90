@@ -40,7 +40,7 @@ module mfv_observer
 
 contains
 
-   !> Called when another stage of the work begins, such as solving on coarser meshes.
+   !> Called when another stage of the work begins, such as solving on coarser meshes; '': the case itself.
    subroutine begin_work(self, work)
       class(observer_type), intent(inout) :: self
       character(*), intent(in) :: work

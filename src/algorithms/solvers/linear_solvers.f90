@@ -19,7 +19,7 @@ module mfv_linear_solvers
 contains
 
    !> The linear solver of the scene of a model. 'auto': the reduced system up to a number of nodes in contact that depends on the
-   !> structure (mfv_solver_costs), beyond it fft, whose memory is proportional to that of the mesh. A user's matrix has no fast
+   !> structure (mfv_solver_costs), beyond it fft, whose memory is proportional to that of the mesh. A stored matrix has no fast
    !> products and always uses the reduced system.
    subroutine new_contact_system(model, system)
       type(contact_model_type), intent(in) :: model
@@ -27,8 +27,8 @@ contains
       integer :: solver
 
       solver = model%scene%method%linear_solver
-      if (solver == solver_auto .and. (model%scene%lower%shape == shape_matrix .or. model%nodes() <= most_reduced(model))) &
-         solver = solver_reduced
+      if (solver == solver_auto .and. (model%scene%lower%shape == shape_matrix .or. allocated(model%scene%mesh%ends) .or. &
+                                       model%nodes() <= most_reduced(model))) solver = solver_reduced
       select case (solver)
       case (solver_auto)
          allocate (automatic_system_type :: system)

@@ -106,6 +106,12 @@ contains
       call keys%add('mesh', 'half_angle', kind_real, 'instead of half_width if a body is an elastic disk or hole: the '// &
                     'intervals cover this angle on either side; 180: the whole circle, of which only the nodes near the '// &
                     'contact are computed', unit='degrees', above=0.0_wp, upper=180.0_wp)
+      call keys%add('mesh', 'refine', kind_choice, 'edges: unequal intervals, small at the edges of contact and stick zones at '// &
+                    'the ends of the steps, which are found on coarser meshes; without nodes their number follows from '// &
+                    'accuracy in &solver', default='none', choices='none edges')
+      call keys%add('mesh', 'ends', kind_real, 'instead of nodes, half_width and half_angle: the ends of all intervals, '// &
+                    'which may be unequal, from left to right along the surface', unit='length')
+      keys%keys(keys%size)%is_list = .true.
       call keys%add('mesh', 'gap', kind_choice, 'gap of disks and holes: exact circles, or the parabolas x^2/(2R) of Hertz', &
                     default='exact', choices='exact parabolic')
       call keys%add('mesh', 'normals', kind_choice, 'vertical: pressure, gap and approach are vertical at every node; radial: '// &
@@ -136,8 +142,8 @@ contains
       type(catalogue_type), intent(inout) :: keys
       character(*), intent(in) :: name, meaning
 
-      call keys%add('friction', name, kind_real, meaning//'; one value, or one per node of a mesh with half_width or half_angle', &
-                    lower=0.0_wp)
+      call keys%add('friction', name, kind_real, meaning//'; one value, or one per node of a mesh with half_width, '// &
+                    'half_angle or ends', lower=0.0_wp)
       keys%keys(keys%size)%is_list = .true.
    end subroutine add_coefficient_key
 

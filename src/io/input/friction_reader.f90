@@ -179,8 +179,13 @@ contains
       if (size(given) == 2 .and. .not. any(abs(given - anint(given)) > 0.0_wp)) advice = decimal_point
       nodes = scene%mesh%nodes
       if (scene%lower%shape == shape_matrix) nodes = size(scene%lower%position)
-      if (scene%lower%shape /= shape_matrix .and. .not. scene%mesh%half_width > 0.0_wp) then
-         call reader%complain('friction', 1, key, 'one value per node needs a mesh with half_width or half_angle'//advice, error)
+      if (scene%mesh%refined) then
+         call reader%complain('friction', 1, key, "one value per node needs refine='none'; use mu_file"//advice, error)
+         return
+      end if
+      if (scene%lower%shape /= shape_matrix .and. .not. (scene%mesh%half_width > 0.0_wp .or. allocated(scene%mesh%ends))) then
+         call reader%complain('friction', 1, key, 'one value per node needs a mesh with half_width, half_angle or ends'//advice, &
+                              error)
       else if (size(scene%friction%static%value) /= nodes) then
          call reader%complain('friction', 1, key, 'must have one value, or one per node ('//to_text(nodes)//'), not '// &
                               to_text(size(scene%friction%static%value))//advice, error)

@@ -2,7 +2,7 @@
 module mfv_mesh_reader
    use mfv_body
    use mfv_circle, only: kernel_fourier
-   use mfv_contact_model, only: can_choose_mesh, choose_mesh, has_touchable_node, intervals_round
+   use mfv_contact_model, only: can_choose_mesh, choose_mesh, has_touchable_node, intervals_round, needs_equal_intervals
    use mfv_error, only: error_type
    use mfv_key_reader
    use mfv_kinds, only: pi, wp
@@ -11,6 +11,9 @@ module mfv_mesh_reader
    implicit none
    private
    public :: read_mesh
+
+   !> Most unequal intervals, whose compliance is a full matrix.
+   integer, parameter :: most_graded = 5000
 
 contains
 
@@ -36,13 +39,16 @@ contains
          call reader%complain('mesh', 1, 'normals', "must be 'vertical' with gap='parabolic'", error)
       end if
       if (allocated(error)) return
-      keys = list_of_words('nodes half_width half_angle')
+      keys = list_of_words('nodes half_width half_angle ends refine')
       do i = 1, size(keys)
          if (scene%lower%shape /= shape_matrix .or. .not. reader%has('mesh', 1, keys(i)%text)) cycle
          call reader%complain('mesh', 1, keys(i)%text, 'has no effect for a matrix, which has its own nodes; remove it', error)
          return
       end do
-      if (reader%has('mesh', 1, 'half_angle')) call read_half_angle(reader, scene, error)
+      scene%mesh%refined = reader%text_value('mesh', 1, 'refine') == 'edges'
+      if (scene%mesh%refined) call check_refined(reader, scene, error)
+      if (.not. allocated(error) .and. reader%has('mesh', 1, 'ends')) call read_ends(reader, scene, error)
+      if (.not. allocated(error) .and. reader%has('mesh', 1, 'half_angle')) call read_half_angle(reader, scene, error)
       if (allocated(error)) return
       if (scene%mesh%nodes > most_carried .and. .not. scene%mesh%whole_circle) then
          call reader%complain('mesh', 1, 'nodes', 'can be more than '//to_text(most_carried)//' only with half_angle=180', &
@@ -61,6 +67,71 @@ contains
       if (.not. allocated(error)) call check_circle(reader, 2, scene, scene%upper, error)
    end subroutine read_mesh
 
+   !> Error if a mesh cannot be refined at edges.
+   subroutine check_refined(reader, scene, error)
+      type(reader_type), intent(in) :: reader
+      type(scene_type), intent(inout) :: scene
+      type(error_type), allocatable, intent(out) :: error
+
+      scene%mesh%nodes_by_accuracy = .not. reader%has('mesh', 1, 'nodes')
+      if (reader%has('mesh', 1, 'ends')) then
+         call reader%complain('mesh', 1, 'refine', "must be 'none' with ends, which are the mesh already", error)
+      else if (scene%mesh%nodes > most_graded) then
+         call reader%complain('mesh', 1, 'nodes', 'can be at most '//to_text(most_graded)//" with refine='edges'", error)
+      else if (size(scene%steps) == 0) then
+         call reader%complain('mesh', 1, 'refine', "must be 'none' in a scene without steps, from which the edges are found", error)
+      else
+         call check_kernels(reader, 'refine', scene, error)
+      end if
+   end subroutine check_refined
+
+   !> Error for bodies whose compliance needs equal intervals. `key`: asks for unequal ones.
+   subroutine check_kernels(reader, key, scene, error)
+      type(reader_type), intent(in) :: reader
+      character(*), intent(in) :: key
+      type(scene_type), intent(in) :: scene
+      type(error_type), allocatable, intent(out) :: error
+
+      if (needs_equal_intervals(scene)) &
+         call reader%complain('mesh', 1, key, "needs kernel='exact'; a Fourier series needs equal intervals", error)
+   end subroutine check_kernels
+
+   !> The ends of unequal intervals.
+   subroutine read_ends(reader, scene, error)
+      type(reader_type), intent(in) :: reader
+      type(scene_type), intent(inout) :: scene
+      type(error_type), allocatable, intent(out) :: error
+      type(string_type), allocatable :: others(:)
+      real(wp), allocatable :: ends(:)
+      integer :: i, place
+
+      others = list_of_words('nodes half_width half_angle')
+      do i = 1, size(others)
+         if (.not. reader%has('mesh', 1, others(i)%text)) cycle
+         call reader%complain('mesh', 1, others(i)%text, 'has no effect with ends; remove one of them', error)
+         return
+      end do
+      call reader%real_values('mesh', 1, 'ends', ends)
+      place = findloc(ends(2:) > ends(:size(ends) - 1), .false., dim=1)
+      if (size(ends) < 2) then
+         call reader%complain('mesh', 1, 'ends', 'must have at least two values, the ends of one interval', error)
+      else if (size(ends) - 1 > most_graded) then
+         call reader%complain('mesh', 1, 'ends', 'must have at most '//to_text(most_graded + 1)//' values, not '// &
+                              to_text(size(ends))//'; use equal intervals (nodes) for finer meshes', error)
+      else if (place > 0) then
+         call reader%complain('mesh', 1, 'ends', 'must increase; value '//to_text(place + 1)//', '// &
+                              to_text(ends(place + 1))//', is not above the one before it, '//to_text(ends(place)), error)
+      else if (maxval(abs(ends)) > 0.5_wp*pi*scene%arc_radius() .and. scene%arc_radius() > 0.0_wp) then
+         call reader%complain('mesh', 1, 'ends', 'must not be beyond a quarter of the circle, '// &
+                              to_text(0.5_wp*pi*scene%arc_radius()), error)
+      else
+         call check_kernels(reader, 'ends', scene, error)
+      end if
+      if (allocated(error)) return
+      scene%mesh%nodes = size(ends) - 1
+      call move_alloc(ends, scene%mesh%ends)
+   end subroutine read_ends
+
    subroutine read_half_angle(reader, scene, error)
       type(reader_type), intent(in) :: reader
       type(scene_type), intent(inout) :: scene
@@ -76,6 +147,8 @@ contains
                               error)
       else
          scene%mesh%whole_circle = .not. half_angle < half_turn
+         if (scene%mesh%whole_circle .and. scene%mesh%refined) &
+            call reader%complain('mesh', 1, 'half_angle', "must be below 180 with refine='edges'", error)
          if (.not. scene%mesh%whole_circle) scene%mesh%half_width = scene%arc_radius()*pi*half_angle/half_turn
       end if
    end subroutine read_half_angle
@@ -88,6 +161,7 @@ contains
       key = 'nodes'
       if (reader%has('mesh', 1, 'half_width')) key = 'half_width'
       if (reader%has('mesh', 1, 'half_angle')) key = 'half_angle'
+      if (reader%has('mesh', 1, 'ends')) key = 'ends'
    end function mesh_key
 
    !> Error for a mesh longer than the circle. A Fourier series also needs a whole number of intervals on the circle, and at least
@@ -109,13 +183,15 @@ contains
       if (nodes > intervals*(1.0_wp + whole)) then
          call reader%complain('mesh', 1, trim(mesh_key(reader)), &
                               'wraps around body '//to_text(number)//' more than once; reduce it', error)
-      else if (body%kernel == kernel_fourier .and. intervals > most_intervals) then
+      else if (body%kernel /= kernel_fourier) then
+         return
+      else if (intervals > most_intervals) then
          call reader%complain('body', number, 'kernel', 'the circle would have '//to_text(intervals, 3)// &
                               ' intervals, more than '//to_text(most_intervals)//"; use kernel='exact'", error)
-      else if (body%kernel == kernel_fourier .and. abs(intervals - anint(intervals)) > whole*intervals) then
+      else if (abs(intervals - anint(intervals)) > whole*intervals) then
          call reader%complain('body', number, 'kernel', 'needs a whole number of intervals around the circle, not '// &
                               to_text(intervals, 10)//"; make 180*nodes/half_angle whole, or use kernel='exact'", error)
-      else if (body%kernel == kernel_fourier .and. body%harmonics > 0) then
+      else if (body%harmonics > 0) then
          fewest = (nint(intervals) + 1)/2
          if (body%harmonics < fewest) &
             call reader%complain('body', number, 'harmonics', 'must be at least '//to_text(fewest)//', half the '// &

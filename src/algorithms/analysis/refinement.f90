@@ -1,0 +1,185 @@
+!> A mesh that is fine at the edges of contact and stick zones, found by solving the same scene on coarser meshes: first on equal
+!> intervals, then on intervals graded by its edges, which resolve slip zones that were narrower than an interval. Contact edges are
+!> those on equal intervals, where their discretisation error is known (mfv_zone_edges).
+module mfv_refinement
+   use mfv_discretisation_error, only: scene_on_mesh
+   use mfv_graded_mesh, only: graded_ends
+   use mfv_kinds, only: wp
+   use mfv_observer, only: observer_type, relay_type
+   use mfv_reference_indenter, only: indenter_type
+   use mfv_scene, only: scene_type
+   use mfv_scene_indenter, only: indenter_of
+   use mfv_simulation, only: history_none, new_simulation, simulation_type, states_reversals
+   use mfv_status, only: MFV_INTERRUPTED
+   use mfv_zone_edges, only: find_patches, patch_type
+   implicit none
+   private
+   public :: refine_at_edges, nodes_for_accuracy
+
+   !> Coarser meshes have this part of the nodes, and at least so many.
+   real(wp), parameter :: coarse_part = 0.5_wp
+   integer, parameter :: fewest_coarse = 60
+   !> Room beyond the outermost contact edges, relative to the distance between them.
+   real(wp), parameter :: room = 0.03_wp
+   !> Most cycles of a step on the coarser meshes.
+   integer, parameter :: most_cycles = 2
+
+   !> The edges of some states, the last state first, whether they are those of a contact, and the outermost ones; lengths.
+   type :: edges_type
+      real(wp), allocatable :: points(:)
+      logical, allocatable :: is_contact(:)
+      real(wp) :: left = huge(1.0_wp), right = -huge(1.0_wp)
+      !> Whether a body ends at the outermost edge.
+      logical :: left_ends = .false., right_ends = .false.
+   end type edges_type
+
+contains
+
+   !> Set the mesh of a scene to intervals that are small at the edges at the ends of its steps and reversals. Without contact the mesh
+   !> is unchanged. `interrupted`: `observer` stopped it; the mesh is unchanged.
+   subroutine refine_at_edges(scene, interrupted, observer)
+      type(scene_type), intent(inout) :: scene
+      logical, intent(out) :: interrupted
+      class(observer_type), intent(inout), target, optional :: observer
+      integer, parameter :: passes = 3
+      type(relay_type) :: watch
+      type(scene_type) :: trial
+      type(simulation_type) :: coarse
+      type(edges_type) :: edges, first
+      real(wp), allocatable :: ends(:)
+      integer :: nodes, pass
+
+      interrupted = .false.
+      nodes = scene%mesh%nodes
+      if (scene%mesh%nodes_by_accuracy .and. scene%method%accuracy > 0.0_wp) nodes = nodes_for_accuracy(scene%method%accuracy)
+      if (present(observer)) watch%caller => observer
+      watch%runs = passes
+      trial = scene_on_mesh(scene, max(nint(coarse_part*nodes), fewest_coarse))
+      trial%steps%cycles = min(trial%steps%cycles, most_cycles)
+      do pass = 1, passes
+         watch%before = pass - 1
+         coarse = new_simulation(trial, history_none, states_reversals)
+         call coarse%run(watch)
+         interrupted = coarse%outcome == MFV_INTERRUPTED
+         if (interrupted) return
+         call find_edges(coarse, edges)
+         if (.not. edges%left < edges%right) return
+         if (pass == 1) then
+            first = edges
+         else
+            call take_contact(first, edges)
+         end if
+         call add_tip(scene, edges)
+         call limit(scene, edges)
+         call graded_ends(edges%points, edges%left, edges%right, merge(nodes, trial%mesh%nodes, pass == passes), ends)
+         trial%mesh%ends = ends
+         trial%mesh%nodes = size(ends) - 1
+      end do
+      scene%mesh%ends = ends
+      scene%mesh%nodes = size(ends) - 1
+   end subroutine refine_at_edges
+
+   !> Nodes with which the tractions on a refined mesh have about the given error (in the mean, relative to the largest); measured for
+   !> Cattaneo's problem: 6 over the square of the number of nodes (docs/verification.md).
+   pure integer function nodes_for_accuracy(accuracy) result(nodes)
+      real(wp), intent(in) :: accuracy
+      real(wp), parameter :: error_of_one = 6.0_wp
+      integer, parameter :: fewest = 60
+
+      nodes = max(fewest, ceiling(sqrt(error_of_one/accuracy)))
+   end function nodes_for_accuracy
+
+   !> The edges at the ends of all steps and reversals, and at the end of the run.
+   subroutine find_edges(simulation, edges)
+      type(simulation_type), intent(in) :: simulation
+      type(edges_type), intent(out) :: edges
+      type(patch_type), allocatable :: patches(:)
+      integer :: i, j, k
+
+      allocate (edges%points(0), edges%is_contact(0))
+      do i = simulation%snapshot_count + 1, 1, -1
+         if (i > simulation%snapshot_count) then
+            call find_patches(simulation%contact%model, simulation%contact%state, patches)
+         else
+            call find_patches(simulation%contact%model, simulation%padded_state(i), patches)
+         end if
+         do j = 1, size(patches)
+            associate (patch => patches(j))
+               edges%points = [edges%points, patch%left, patch%right]
+               edges%is_contact = [edges%is_contact, .true., .true.]
+               do k = 1, size(patch%stick)
+                  edges%points = [edges%points, patch%stick(k)%left, patch%stick(k)%right]
+                  edges%is_contact = [edges%is_contact, .false., .false.]
+               end do
+               if (patch%left < edges%left) edges%left_ends = patch%left_ends
+               if (patch%right > edges%right) edges%right_ends = patch%right_ends
+               edges%left = min(edges%left, patch%left)
+               edges%right = max(edges%right, patch%right)
+            end associate
+         end do
+      end do
+   end subroutine find_edges
+
+   !> Replace contact edges by those of the first pass that are very near, relative to the distance of the outermost ones.
+   subroutine take_contact(first, edges)
+      type(edges_type), intent(in) :: first
+      type(edges_type), intent(inout) :: edges
+      real(wp), parameter :: very_near = 2.0e-3_wp
+      integer :: i, nearest
+
+      do i = 1, size(edges%points)
+         if (.not. edges%is_contact(i)) cycle
+         nearest = minloc(abs(first%points - edges%points(i)), dim=1, mask=first%is_contact)
+         if (abs(first%points(nearest) - edges%points(i)) <= very_near*(first%right - first%left)) &
+            edges%points(i) = first%points(nearest)
+      end do
+   end subroutine take_contact
+
+   !> The tip of a wedge is a point of large pressure too.
+   subroutine add_tip(scene, edges)
+      type(scene_type), intent(in) :: scene
+      type(edges_type), intent(inout) :: edges
+      type(indenter_type) :: indenter
+
+      indenter = indenter_of(scene)
+      if (indenter%is_flat() .or. .not. indenter%is_pointed()) return
+      edges%points = [0.0_wp, edges%points]
+      edges%is_contact = [.false., edges%is_contact]
+   end subroutine add_tip
+
+   !> Widen the range of the edges to that of the mesh: some room beyond the contact, but not beyond the mesh of the user or the end of
+   !> a body, which must be an end of an interval.
+   subroutine limit(scene, edges)
+      type(scene_type), intent(in) :: scene
+      type(edges_type), intent(inout) :: edges
+      real(wp) :: extra, most
+
+      extra = room*(edges%right - edges%left)
+      most = huge(1.0_wp)
+      if (scene%mesh%half_width > 0.0_wp) most = scene%mesh%half_width
+      if (.not. edges%left_ends) edges%left = max(last_touchable(scene, edges%left, edges%left - extra), -most)
+      if (.not. edges%right_ends) edges%right = min(last_touchable(scene, edges%right, edges%right + extra), most)
+   end subroutine limit
+
+   !> `outside`, or the end of the surface between it and `inside` (by bisection); arc lengths.
+   real(wp) function last_touchable(scene, inside, outside) result(last)
+      type(scene_type), intent(in) :: scene
+      real(wp), intent(in) :: inside, outside
+      real(wp) :: beyond, middle
+      integer :: i
+
+      last = outside
+      if (scene%touchable(outside)) return
+      last = inside
+      beyond = outside
+      do i = 1, digits(1.0_wp)
+         middle = 0.5_wp*(last + beyond)
+         if (scene%touchable(middle)) then
+            last = middle
+         else
+            beyond = middle
+         end if
+      end do
+   end function last_touchable
+
+end module mfv_refinement
