@@ -4,7 +4,7 @@
 !> friction |mu p| - |tau| (Hertz; Cattaneo and Mindlin, dissertation eqs. 3.1, 3.7). Both, divided by their roots, are
 !> smooth: they are interpolated linearly and extrapolated to the edges. Nodal values are corrected for the discretisation
 !> error where it is known (mfv_edge_solutions); those within two intervals of an edge are not used. On unequal intervals they are
-!> means, which are divided by mean roots; next to an edge only their sum is used, which is more accurate. Resultant forces are
+!> means, which are divided by mean roots, and near an edge its distance is less certain. Resultant forces are
 !> those of the nodal values. The result is projected onto linear elements that are graded towards the edges; the projection
 !> preserves the integrals of tractions with smooth functions, on which stresses depend.
 module mfv_surface_tractions
@@ -362,7 +362,6 @@ contains
       type(zone_type), intent(in) :: zone
 
       skipped_intervals = 2
-      if (patch%graded) skipped_intervals = 4
       if (all(zone%known .or. .not. zone%rooted) .and. .not. any(abs(zone%power - 0.5_wp) > 0.0_wp)) &
          skipped_intervals = max(2, nint(0.4_wp*sqrt(real(count(zone%contains_place(patch%arc)), wp))))
    end function skipped_intervals
@@ -378,8 +377,8 @@ contains
 
       do intervals = skipped_intervals(patch, zone), 0, -1
          used = zone%contains_place(patch%arc)
-         if (zone%rooted(1)) used = used .and. patch%arc - zone%edge(1) > intervals*patch%width
-         if (zone%rooted(2)) used = used .and. zone%edge(2) - patch%arc > intervals*patch%width
+         if (zone%rooted(1)) used = used .and. patch%arc - zone%edge(1) > intervals*width_from(zone%edge(1))
+         if (zone%rooted(2)) used = used .and. zone%edge(2) - patch%arc > intervals*width_from(zone%edge(2))
          if (count(used) > merge(1, 0, intervals > 0)) exit
       end do
       if (.not. any(used)) then
@@ -391,44 +390,22 @@ contains
       zone%rest%x = pack(patch%arc, used)
       if (patch%graded) then
          zone%rest%value = pack(values, used)/zone%mean_roots(zone%rest%x, pack(patch%width, used))
-         if (zone%rooted(1)) call add_sum(patch, values, used, zone, 1)
-         if (zone%rooted(2)) call add_sum(patch, values, used, zone, 2)
       else
          zone%rest%value = pack(values, used)/zone%roots(zone%rest%x)
       end if
+
+   contains
+
+      !> Widths of the intervals; of unequal ones at least some times that at the edge.
+      function width_from(edge) result(width)
+         real(wp), intent(in) :: edge
+         real(wp) :: width(size(values))
+         real(wp), parameter :: times = 16.0_wp
+
+         width = patch%width
+         if (patch%graded) width = max(width, times*width(minloc(abs(patch%arc - edge), dim=1)))
+      end function width_from
    end subroutine fit_zone
-
-   !> Add the point that represents the nodes between an edge and the first ones of `used`: the sum of their `values` over that of their
-   !> roots.
-   subroutine add_sum(patch, values, used, zone, side)
-      type(patch_type), intent(in) :: patch
-      real(wp), intent(in) :: values(:)
-      logical, intent(in) :: used(:)
-      type(zone_type), intent(inout) :: zone
-      integer, intent(in) :: side
-      real(wp), dimension(size(values)) :: distance, from, to, weight
-      logical :: near(size(values))
-      real(wp) :: total, x, value
-
-      distance = (3 - 2*side)*(patch%arc - zone%edge(side))
-      near = distance > -0.5_wp*patch%width .and. distance < minval(distance, mask=used)
-      if (.not. any(near)) return
-      ! Their intervals, the outermost one from the edge.
-      from = distance - 0.5_wp*patch%width
-      to = distance + 0.5_wp*patch%width
-      from = merge(0.0_wp, from, from <= minval(from, mask=near))
-      weight = zone%mean_roots(zone%edge(side) + (3 - 2*side)*0.5_wp*(from + to), to - from)*(to - from)
-      total = sum(weight, mask=near)
-      x = zone%edge(side) + (3 - 2*side)*sum(weight*0.5_wp*(from + to), mask=near)/total
-      value = sum(values*patch%width, mask=near)/total
-      if (side == 1) then
-         zone%rest%x = [x, zone%rest%x]
-         zone%rest%value = [value, zone%rest%value]
-      else
-         zone%rest%x = [zone%rest%x, x]
-         zone%rest%value = [zone%rest%value, value]
-      end if
-   end subroutine add_sum
 
    !> Whether a place is inside a zone.
    elemental logical function contains_place(self, x)

@@ -258,6 +258,16 @@ CASE: dict[tuple[str, str], Row] = {
     ),
     ("mesh", "half_width"): positive("mesh", "cylinder", "0.02", "length"),
     ("mesh", "half_angle"): real("mesh", "elastic disk", "9", "degrees", lower=0.0, above=True, upper=180.0),
+    ("mesh", "refine"): choice("mesh", "cylinder", "'edges'", "none edges"),
+    ("mesh", "ends"): real(
+        "mesh",
+        "cylinder",
+        "-0.02, -0.005, 0.004, 0.02",
+        "length",
+        is_list=True,
+        without=("nodes", "half_width"),
+        refused=dict.fromkeys(("1e100", "-1e100", "1e-100", "-1e-100", "1e-400", "-0.0", "0"), "at least two values"),
+    ),
     ("mesh", "gap"): choice("mesh", "cylinder", "'exact'", "exact parabolic"),
     ("mesh", "normals"): choice("mesh", "bore", "'radial'", "vertical radial"),
     ("friction", "law"): choice(
