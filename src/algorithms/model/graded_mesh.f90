@@ -97,8 +97,10 @@ contains
       type(piece_type), allocatable :: pieces(:)
       logical, allocatable :: keep(:)
       integer, allocatable :: order(:)
-      real(wp) :: smallest, apart
-      integer :: i, closest
+      real(wp), parameter :: alike = 1.0e-3_wp
+      real(wp), allocatable :: apart(:)
+      real(wp) :: smallest
+      integer :: i
 
       keep = points >= left .and. points <= right
       do
@@ -107,11 +109,12 @@ contains
          if (size(used) < 2) return
          call find_pieces(used, left, right, pieces)
          smallest = (sum(weight(pieces, 1.0_wp/grading))/nodes)**grading
-         apart = minval(used(2:) - used(:size(used) - 1))
-         if (apart > smallest .and. size(used)*fewest_intervals <= nodes) return
-         closest = minloc(used(2:) - used(:size(used) - 1), dim=1)
-         i = max(order(closest), order(closest + 1))
-         keep(i) = .false.
+         apart = used(2:) - used(:size(used) - 1)
+         if (minval(apart) > smallest .and. size(used)*fewest_intervals <= nodes) return
+         ! Pairs that are equally close together, so that the mesh of a symmetric contact is symmetric.
+         do i = 1, size(apart)
+            if (apart(i) <= (1.0_wp + alike)*minval(apart)) keep(max(order(i), order(i + 1))) = .false.
+         end do
       end do
    end subroutine choose_points
 
