@@ -330,6 +330,7 @@ contains
       type(contact_model_type), intent(in) :: model
       real(wp), intent(in) :: traction(:)
       integer, intent(in) :: outermost, other
+      real(wp) :: total
       integer :: i, side
 
       side = merge(1, -1, other >= outermost)
@@ -342,9 +343,10 @@ contains
          end do
          samples%is_integral = allocated(model%scene%mesh%ends)
          if (.not. samples%is_integral) return
+         total = 0.0_wp
          do i = 0, samples%number - 1
-            samples%value(i) = samples%value(i)*model%width(outermost + side*i)/unit
-            if (i > 0) samples%value(i) = samples%value(i) + samples%value(i - 1)
+            total = total + samples%value(i)*model%width(outermost + side*i)/unit
+            samples%value(i) = total
             samples%inwards(i) = samples%inwards(i) + 0.5_wp*model%width(outermost + side*i)/unit
          end do
       end associate
