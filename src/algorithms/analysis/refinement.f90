@@ -16,7 +16,7 @@ module mfv_refinement
    private
    public :: refine_at_edges, nodes_for_accuracy
 
-   !> Coarser meshes have this part of the nodes, and at least so many.
+   !> Coarser meshes have this part of the nodes, and at least this many.
    real(wp), parameter :: coarse_part = 0.5_wp
    integer, parameter :: fewest_coarse = 60
    !> Room beyond the outermost contact edges, relative to the distance between them.
@@ -35,8 +35,8 @@ module mfv_refinement
 
 contains
 
-   !> Set the mesh of a scene to intervals that are small at the edges at the ends of its steps and reversals. Without contact the mesh
-   !> is unchanged. `interrupted`: `observer` stopped it; the mesh is unchanged.
+   !> Set the mesh of a scene to intervals that are small at the edges at the ends of its steps and reversals. Without contact the
+   !> mesh is unchanged. `interrupted`: `observer` stopped it; the mesh is unchanged.
    subroutine refine_at_edges(scene, interrupted, observer)
       type(scene_type), intent(inout) :: scene
       logical, intent(out) :: interrupted
@@ -79,8 +79,8 @@ contains
       scene%mesh%nodes = size(ends) - 1
    end subroutine refine_at_edges
 
-   !> Nodes with which the tractions on a refined mesh have about the given error (in the mean, relative to the largest); measured for
-   !> Cattaneo's problem: 6 over the square of the number of nodes (docs/verification.md).
+   !> Nodes with which the tractions on a refined mesh have about the given error (in the mean, relative to the largest); measured
+   !> for Cattaneo's problem: 6 over the square of the number of nodes (docs/verification.md).
    pure integer function nodes_for_accuracy(accuracy) result(nodes)
       real(wp), intent(in) :: accuracy
       real(wp), parameter :: error_of_one = 6.0_wp
@@ -147,8 +147,8 @@ contains
       edges%is_contact = [.false., edges%is_contact]
    end subroutine add_tip
 
-   !> Widen the range of the edges to that of the mesh: some room beyond the contact, but not beyond the mesh of the user or the end of
-   !> a body, which must be an end of an interval.
+   !> Widen the range of the edges to that of the mesh: some room beyond the contact, but not beyond the mesh of the user or the end
+   !> of a body, which must be an end of an interval.
    subroutine limit(scene, edges)
       type(scene_type), intent(in) :: scene
       type(edges_type), intent(inout) :: edges

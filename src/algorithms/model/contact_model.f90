@@ -2,8 +2,9 @@
 !>
 !> With vertical normals (limits in docs/theory.md) nodes are at equal arc lengths from the origin of x on both bodies. Gaps are
 !> exact at the x of the nodes, on the circle of scene%arc_radius. On a body of another radius the nodes would be at another x; the
-!> difference is of third order in the angle. On unequal intervals gaps are means, as displacements are. With radial normals, for a disk in a hole, nodes are at equal angles on both bodies,
-!> gaps are along the radii of the hole, and tractions are per unit of its arc.
+!> difference is of third order in the angle. With radial normals, for a disk in a hole, nodes are at equal angles on both bodies,
+!> gaps are along the radii of the hole, and tractions are per unit of its arc. On unequal intervals gaps are means, as
+!> displacements are.
 module mfv_contact_model
    use mfv_body, only: body_type, gap_between, radial_gap_between, shape_matrix
    use mfv_body_pair, only: body_pair_type, new_body_pair
@@ -447,8 +448,8 @@ contains
       end if
    end function gap_at
 
-   !> Mean undeformed gaps of the intervals between `ends`, as their compliance gives mean displacements: over both halves of each by
-   !> Gauss quadrature, which is exact for a corner in the middle.
+   !> Mean undeformed gaps of the intervals between `ends`, as their compliance gives mean displacements: over both halves of each
+   !> by Gauss quadrature, which is exact for a corner in the middle.
    function mean_gaps(scene, ends) result(gap)
       type(scene_type), intent(in) :: scene
       real(wp), intent(in) :: ends(:)

@@ -24,7 +24,8 @@ module mfv_graded_mesh
 contains
 
    !> Ends of about `nodes` intervals from `left` to `right` that are small at the `points` in between, of which there is at least
-   !> one; the most important come first: of two that are too close for this number of intervals, the later one is not used. Lengths.
+   !> one; the most important come first: of two that are too close for this number of intervals, the later one is not used.
+   !> Lengths.
    pure subroutine graded_ends(points, left, right, nodes, ends)
       real(wp), intent(in) :: points(:), left, right
       integer, intent(in) :: nodes
@@ -60,8 +61,8 @@ contains
       weight = piece%density*piece%length**power
    end function weight
 
-   !> Distance d/L at which the part `t` of the intervals of a piece is reached: the root of t = (1 - even) s + even s**3, s the cube
-   !> root of d/L (by the hyperbolic solution of the cubic equation).
+   !> Distance d/L at which the part `t` of the intervals of a piece is reached: the root of t = (1 - even) s + even s**3, s the
+   !> cube root of d/L (by the hyperbolic solution of the cubic equation).
    elemental real(wp) function distance_at(t, even) result(distance)
       real(wp), intent(in) :: t, even
       real(wp) :: scale
@@ -88,8 +89,8 @@ contains
       if (points(n) < right) pieces = [pieces, piece_type(points(n), right - points(n), density_outside, 1)]
    end subroutine find_pieces
 
-   !> The points that are used, increasing: not beyond the ends, not closer to a more important one than the smallest interval, and not
-   !> too many.
+   !> The points that are used, increasing: not beyond the ends, not closer to a more important one than the smallest interval, and
+   !> not too many.
    pure subroutine choose_points(points, left, right, nodes, used)
       real(wp), intent(in) :: points(:), left, right
       integer, intent(in) :: nodes

@@ -70,8 +70,8 @@ module mfv_scene
       real(wp) :: half_width = 0.0_wp
       !> Ends of unequal intervals, increasing arc lengths from the origin of x, shape (nodes + 1); unallocated for equal ones.
       real(wp), allocatable :: ends(:)
-      !> Whether such intervals are to be chosen, small at the edges of contact and stick zones; and whether their number follows from
-      !> the accuracy.
+      !> Whether such intervals are to be chosen, small at the edges of contact and stick zones; and whether their number follows
+      !> from the accuracy.
       logical :: refined = .false., nodes_by_accuracy = .false.
       !> Whether `nodes` intervals cover the whole circle; only those near the contact are modelled.
       logical :: whole_circle = .false.
