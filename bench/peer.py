@@ -1,199 +1,214 @@
-"""The jobs of the table in which CONTACT (Vollebregt), run as a one-row line model, has been measured."""
+"""Jobs for which CONTACT (Vollebregt) has been measured, as a one-row line model: its times are quoted, MFV is measured."""
 
 from __future__ import annotations
 
+import math
+import os
+import subprocess
+import tempfile
+import time
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from pathlib import Path
 from typing import Any
 
 import numpy as np
-from harness import Bench, Case, Tractions, duration, number, plain, stamp, table
+from harness import ENVIRONMENT, ROOT, Bench, Case, duration, stamp, table
 
 from mfv import reference
 
-WINDOW, HALF_WIDTH, RADIUS, MODULUS, MU, SHARE, POISSON = 4.0, 1.0, 1.0, 1.0, 0.7, 0.65, 0.3
-#: Hertz: P = pi E* a^2/(4 R), E* = E/(1 - nu^2).
-FORCE = float(np.pi) * MODULUS * HALF_WIDTH**2 / (4.0 * RADIUS)
+MFV_RUN = Path(os.environ.get("MFV_RUN", ROOT / "build/release/bin/mfv_run"))
+#: E* = R = a = 1: P = pi E* a^2/(4 R); a rigid disk on a half-plane with E* = E/(1 - nu^2).
+FORCE = math.pi / 4.0
+SHARE, MU, SLIDING_MU, CYCLE_SHARE = 0.65, 0.7, 0.3, 0.8
 SHEAR = SHARE * MU * FORCE
-NODES = (512, 2048, 8192)
-#: The mesh that just spans the contact, relative to the window.
-NARROW = 1.02 * 2.0 * HALF_WIDTH / WINDOW
-REPEATS = 60
-#: Stick ratio of the frictional press (nu = 0, mu = 0.7), of the issue.
-PRESS_STICK_RATIO = 0.745
+#: Runs take the least of this many, fewer if one takes longer than a second.
+REPEATS = 20
+#: Nodes up to which events are the reference of a job that depends on the path.
+MOST_BY_EVENTS = 2048
 
 
-@dataclass(frozen=True)
-class Published:
-    """Time of CONTACT in seconds, including process and start-up, and its error."""
-
-    seconds: float
-    error: float
-
-
-PUBLISHED = {
-    "hertz": (Published(14e-3, 8.6e-4), Published(41e-3, 2.1e-4), Published(169e-3, 5.4e-5)),
-    "cattaneo": (Published(36e-3, 2.0e-3), Published(120e-3, 4.7e-4), Published(387e-3, 1.0e-4)),
-    "cycle": (Published(80e-3, 1.5e-4), Published(0.37, 1.5e-4), Published(2.1, 1.5e-4)),
-}
-NAMES = {
-    "hertz": "Hertz, l2 error of p",
-    "cattaneo": "Cattaneo-Mindlin, l2 error of q",
-    "cycle": "0, Q, -Q, Q, error of the dissipation",
-}
+def case_of(steps: Sequence[dict[str, Any]], nodes: int, window: float, mu: float | None, nu: float, coupling: str) -> Case:
+    """A rigid disk on a half-plane, with `nodes` nodes across a window (in units of a)."""
+    elastic = {"shape": "half_plane", "youngs_modulus": 1.0 - nu**2, "poisson_ratio": nu}
+    mesh = {"nodes": nodes, "half_width": 0.5 * window, "gap": "parabolic"}
+    return Case([elastic, {"shape": "disk", "radius": 1.0, "rigid": True}], list(steps), mesh, mu, coupling)
 
 
-def case_of(job: str, nodes: int, narrow: bool = False) -> Case:
-    """A job on `nodes` nodes across the window, or `narrow`: on intervals of the same width that span the contact alone."""
-    elastic = {"shape": "half_plane", "youngs_modulus": MODULUS * (1.0 - POISSON**2), "poisson_ratio": POISSON}
-    half_width = 0.5 * WINDOW
-    if narrow:
-        few = int(np.ceil(0.5 * NARROW * nodes)) * 2
-        half_width, nodes = half_width * few / nodes, few
-    steps: list[dict[str, Any]] = [{"normal_force": FORCE}]
-    if job != "hertz":
-        steps = [{"normal_force": FORCE, "friction": False}, {"tangential_force": SHEAR}]
-    if job == "cycle":
-        steps.append({"tangential_force": -SHEAR, "cycles": 1})
-    return Case(
-        [elastic, {"shape": "disk", "radius": RADIUS, "rigid": True}],
-        steps,
-        {"nodes": nodes, "half_width": half_width, "gap": "parabolic"},
-        None if job == "hertz" else MU,
-        "none",
-        {"stepping": "leap", "accuracy": 1e-3} if job != "hertz" else {},
-    )
+def uncoupled(*forces: float) -> Callable[[int], Case]:
+    """Pressed without friction, then sheared to these forces."""
+    press = {"normal_force": FORCE} | ({"friction": False} if forces else {})
+    steps = [press, *({"tangential_force": force} for force in forces)]
+    return lambda nodes: case_of(steps, nodes, 4.0, MU if forces else None, 0.3, "none")
 
 
-def press_case(nodes: int) -> Case:
-    """The frictional press, full coupling."""
-    elastic = {"shape": "half_plane", "youngs_modulus": MODULUS, "poisson_ratio": 0.0}
-    return Case(
-        [elastic, {"shape": "disk", "radius": RADIUS, "rigid": True}],
-        [{"normal_force": FORCE}],
-        {"nodes": nodes, "half_width": 0.5 * WINDOW, "gap": "parabolic"},
-        MU,
-    )
+def press(nodes: int) -> Case:
+    """Pressed with friction and full coupling."""
+    return case_of([{"normal_force": FORCE}], nodes, 4.0, MU, 0.0, "full")
 
 
-def error_of(job: str, result: dict[str, Any]) -> float:
-    """Against the closed form: l2 over the nodes, or relative."""
-    tractions: Tractions = result["tractions"]
-    if job == "cycle":
-        cycle = reference.mindlin_dissipation(SHEAR, FORCE, HALF_WIDTH, RADIUS, MU)
-        # First loading dissipates a quarter of a cycle.
-        return abs(float(result["dissipation"] / (1.25 * cycle)) - 1.0)
-    if job == "hertz":
-        found, exact = tractions.pressure, reference.hertz_pressure(tractions.x, FORCE, HALF_WIDTH)
-    else:
-        found, exact = tractions.shear, reference.mindlin_shear(tractions.x, SHEAR, FORCE, HALF_WIDTH, MU)
+def cycles(coupling: str, count: int) -> Callable[[int], Case]:
+    """Pressed with friction, sheared back and forth `count` times."""
+    shear = CYCLE_SHARE * SLIDING_MU * FORCE
+    steps = [{"normal_force": FORCE}, {"tangential_force": shear}, {"tangential_force": -shear, "cycles": count}]
+    return lambda nodes: case_of(steps, nodes, 2.5, SLIDING_MU, 0.0, coupling)
+
+
+def hertz_error(result: dict[str, Any]) -> float:
+    """Relative l2 error of the pressure."""
+    tractions = result["tractions"]
+    return relative(tractions.pressure, reference.hertz_pressure(tractions.x, FORCE, 1.0))
+
+
+def mindlin_error(result: dict[str, Any]) -> float:
+    """Relative l2 error of the shear."""
+    tractions = result["tractions"]
+    return relative(tractions.shear, reference.mindlin_shear(tractions.x, SHEAR, FORCE, 1.0, MU))
+
+
+def cycle_error(result: dict[str, Any]) -> float:
+    """Relative error of the dissipation of first loading and a cycle, of which the former is a quarter."""
+    return abs(float(result["dissipation"] / (1.25 * reference.mindlin_dissipation(SHEAR, FORCE, 1.0, 1.0, MU)) - 1.0))
+
+
+def relative(found: Any, exact: Any) -> float:
+    """Relative l2 difference."""
     return float(np.linalg.norm(found - exact) / np.linalg.norm(exact))
 
 
+@dataclass(frozen=True)
+class Row:
+    """A job: what is quoted of CONTACT for each number of nodes, the accuracies to try, the error (None: against events)."""
+
+    name: str
+    case: Callable[[int], Case]
+    contact: dict[int, str]
+    accuracies: tuple[float, ...]
+    error: Callable[[dict[str, Any]], float] | None = None
+
+
+ROWS = (
+    Row("Hertz", uncoupled(), {512: "4.7 ms", 2048: "14 ms", 8192: "144 ms"}, (0.0,), hertz_error),
+    Row(
+        "Cattaneo-Mindlin",
+        uncoupled(SHEAR),
+        {512: "11 ms", 2048: "43 ms", 8192: "345 ms", 32768: "1.6 s", 131072: "23.6 s"},
+        (1e-3,),
+        mindlin_error,
+    ),
+    Row(
+        "Q, -Q, Q, dissipation",
+        uncoupled(SHEAR, -SHEAR, SHEAR),
+        {512: "40 ms, 1.3e-4", 2048: "186 ms, 9e-6", 8192: "1.7 s, 1e-7"},
+        (1e-3,),
+        cycle_error,
+    ),
+    Row(
+        "press with friction, full coupling",
+        press,
+        {
+            512: "0.31 s (32 steps, 4e-3), 1.4 s (128, 5e-4)",
+            2048: "1.9 s (32, 5e-3), 6.6 s (128, 7e-4)",
+            8192: "6.7 s (16, 1.2e-2), 21 s (32, 5e-3)",
+        },
+        (0.0, 1e-2, 2e-3),
+    ),
+    Row(
+        "press, two cycles, full coupling",
+        cycles("full", 2),
+        {512: "1.3 s", 1024: "3.1 s", 2048: "6.3 s (1.7e-3 after pressing, 7e-5 in cycles at 512)", 8192: "34 s"},
+        (0.0, 1e-2, 2e-3),
+    ),
+)
+
+
 def measure(bench: Bench, quick: bool) -> dict[str, Any]:
-    """All cells: compute time in the process, wall time of the process, error; for every solver that makes sense."""
-    jobs: dict[str, list[dict[str, Any]]] = {}
-    for job in NAMES:
-        jobs[job] = []
-        for nodes, published in zip(NODES, PUBLISHED[job], strict=True):
-            cell = _cell(bench, job, case_of(job, nodes), 3 if quick else REPEATS)
-            if not reaches(cell["error"], published.error):
-                cell["enough"] = _smallest(bench, job, nodes, published.error)
-            jobs[job].append(cell)
-    return stamp() | {"jobs": jobs, "solvers": _solvers(bench), "press": _press(bench), "start": _start(bench)}
-
-
-def _cell(bench: Bench, job: str, case: Case, repeats: int) -> dict[str, Any]:
-    """One job on one mesh."""
-    result = bench.run([case])[0]
-    error = error_of(job, result)
-    process = bench.process(case, repeats)
-    return plain(process) | {"error": error, "seconds": process["whole"]["seconds"], "given_nodes": case.mesh["nodes"]}
-
-
-def _smallest(bench: Bench, job: str, nodes: int, wanted: float) -> dict[str, Any]:
-    """The smallest of some meshes that reaches an error, spanning the contact alone."""
-    fine = nodes
-    for _ in range(20):
-        fine = int(fine * 1.05) // 2 * 2
-        case = case_of(job, fine, True)
-        if reaches(error_of(job, bench.run([case])[0]), wanted):
-            return _cell(bench, job, case, REPEATS) | {"window_nodes": fine}
-    return {}
-
-
-def _solvers(bench: Bench) -> list[dict[str, Any]]:
-    """Times of the linear solvers for these jobs at n = 512, in one process."""
+    """All rows: computing time, wall time of mfv_run, error; start-up; a cycle of many."""
     rows = []
-    for job in NAMES:
-        case = case_of(job, NODES[0])
-        for result in bench.run([case.by(linear_solver=solver) for solver in ("reduced", "fft")], 3):
-            rows.append({"job": job, "solver": result["solver"], "seconds": result["whole"]["seconds"]})
-    return rows
+    for row in ROWS:
+        for nodes, contact in row.contact.items():
+            if quick and nodes > MOST_BY_EVENTS:
+                continue
+            exact = None
+            for accuracy in row.accuracies:
+                if accuracy == 0.0 and row.error is None and nodes > MOST_BY_EVENTS:
+                    continue
+                case = row.case(nodes).by(accuracy=accuracy)
+                result = bench.run([case], 1 if row.error is None and nodes >= MOST_BY_EVENTS else 3)[0]
+                if row.error is not None:
+                    error = row.error(result)
+                elif accuracy == 0.0:
+                    exact, error = result["tractions"].shear, 0.0
+                else:
+                    error = math.nan if exact is None else relative(result["tractions"].shear, exact)
+                rows.append(
+                    {
+                        "job": row.name,
+                        "nodes": nodes,
+                        "contact": contact,
+                        "accuracy": accuracy,
+                        "solver": result["solver"],
+                        "solves": result["whole"]["solves"],
+                        "seconds": result["whole"]["seconds"],
+                        "wall": wall_time(case.text()),
+                        "error": error,
+                    }
+                )
+    trivial = uncoupled()(16).text()
+    start = {"--version": wall_time("", "--version"), "16 nodes": wall_time(trivial, steps=False)}
+    return stamp() | {"rows": rows, "start": start, "cycle": [_cycle(bench, coupling) for coupling in ("none", "full")]}
 
 
-def _press(bench: Bench) -> list[dict[str, Any]]:
-    """The frictional press by events."""
-    rows = []
-    for solver in ("reduced", "fft"):
-        result = bench.process(press_case(NODES[0]).by(linear_solver=solver), 3)
-        rows.append(plain(result) | {"ratio": result["stuck"] / result["contact"]})
-    return rows
+def wall_time(text: str, *options: str, steps: bool = True) -> float:
+    """Least wall time of mfv_run, with a result file without history."""
+    least, spent = math.inf, 0.0
+    with tempfile.TemporaryDirectory() as folder:
+        (Path(folder) / "case.nml").write_text(text + ("&output history='none', states='none' /\n" if steps else ""))
+        call = [str(MFV_RUN), *(options or ("case.nml",))]
+        for _ in range(REPEATS):
+            started = time.perf_counter()
+            subprocess.run(call, check=True, stdout=subprocess.PIPE, env=ENVIRONMENT, cwd=folder, close_fds=False)
+            least = min(least, time.perf_counter() - started)
+            spent += time.perf_counter() - started
+            if spent > 3.0:
+                break
+    return least
 
 
-def _start(bench: Bench) -> float:
-    """Wall time of a process with a trivial case."""
-    return float(bench.process(case_of("hertz", 16), REPEATS)["wall"])
-
-
-def reaches(error: float, published: float) -> bool:
-    """Whether an error is no larger than a published one, to its two digits."""
-    return float(f"{error:.1e}") <= published
-
-
-def ahead(job: str, place: int, cell: dict[str, Any]) -> tuple[float, dict[str, Any]]:
-    """Speed-up over the published time at the same or a smaller error, and its cell."""
-    own = cell.get("enough") or cell
-    return PUBLISHED[job][place].seconds / own["wall"], own
+def _cycle(bench: Bench, coupling: str) -> dict[str, Any]:
+    """Computing time of one of 100 cycles on 512 nodes."""
+    seconds = [
+        bench.run([cycles(coupling, count)(512).by(accuracy=1e-2, stepping="leap")], 3)[0]["whole"]["seconds"] for count in (1, 101)
+    ]
+    return {"coupling": coupling, "seconds": (seconds[1] - seconds[0]) / 100.0}
 
 
 def section(data: dict[str, Any]) -> str:
     """The text."""
-    rows = []
-    for job, cells in data["jobs"].items():
-        for place, cell in enumerate(cells):
-            published = PUBLISHED[job][place]
-            ratio, own = ahead(job, place, cell)
-            fine = "" if own is cell else f"{own['window_nodes']} ({own['contact']}): {duration(own['wall'])}, {own['error']:.1e}"
-            rows.append(
-                [
-                    NAMES[job],
-                    NODES[place],
-                    f"{duration(published.seconds)}, {published.error:.1e}",
-                    f"{duration(cell['seconds'])}",
-                    f"{duration(cell['wall'])}, {cell['error']:.1e}",
-                    fine,
-                    number(ratio),
-                ]
-            )
-    press = data["press"][0]
-    head = ["job", "n", "CONTACT", "MFV computes", "MFV, process", "finer: n (in contact)", "ratio"]
-    solvers = sorted({row["solver"] for row in data["solvers"]})
-    best = {(row["job"], row["solver"]): row["seconds"] for row in data["solvers"]}
+    head = ["job", "n", "CONTACT: time, error", "accuracy", "MFV computes", "mfv_run", "solves", "error"]
+    rows = [
+        [
+            row["job"],
+            row["nodes"],
+            row["contact"],
+            f"{row['accuracy']:g}",
+            f"{duration(row['seconds'])} ({row['solver']})",
+            duration(row["wall"]),
+            row["solves"],
+            "-" if not row["error"] > 0.0 else f"{row['error']:.1e}",
+        ]
+        for row in data["rows"]
+    ]
+    cycle = {row["coupling"]: duration(row["seconds"]) for row in data["cycle"]}
     return f"""## Against CONTACT
 
-Vollebregt's CONTACT as a one-row line model; its times, including its start-up of about 10 ms, were measured elsewhere on a similar machine, so that ratios are only indicative.
-E* = R = a = 1, n nodes across a window of 4a, of which n/2 are in contact; mu = {MU}, Q = {SHARE} mu P. MFV solves frictionless jobs directly and the others with
-`stepping='leap'`, `accuracy=1e-3`, solver `auto`. Errors are against Hertz and Cattaneo-Mindlin at the nodes, that of the dissipation over first loading and a whole cycle. *Process* is
-the wall time of a process that reads the case and solves it (the least of {REPEATS}), of which start-up takes {duration(data["start"])}. If the error on the same mesh
-is larger, *finer* is the mesh, over the contact only, that reaches CONTACT's error. *Ratio* is CONTACT's time over that of the MFV process at the same or a smaller error.
+E* = R = a = 1, n nodes across a window of 4a (cycles: 2.5a). CONTACT's times, of whole processes, were measured beside an older MFV (cf1d146) on another machine, both compiled
+with gfortran -O3 on one core; on the same mesh its errors in the uncoupled jobs are those of MFV. *mfv_run* is a whole process that also writes its result. The error is the
+relative l2 error of the pressure (Hertz), of the shear (Cattaneo-Mindlin: mu = {MU:g}, Q = {SHARE:g} mu P) or that of the dissipation, against the closed form; with coupling
+(nu = 0) that of the shear, against events (`accuracy=0`) on the same mesh up to n = {MOST_BY_EVENTS}. Press: mu = {MU:g}; cycles: mu = {SLIDING_MU:g}, Q = {CYCLE_SHARE:g} mu P.
 
 {table(head, rows)}
 
-Pressing a rigid cylinder with friction, full coupling, mu = {MU}, nu = 0, n = {NODES[0]}, by events: MFV
-{duration(press["wall"])} with reduced ({press["whole"]["events"]} events, {press["whole"]["solves"]} solves) and {duration(data["press"][1]["wall"])} with fft. The stick ratio is {press["ratio"]:.3f}; the
-limit is {PRESS_STICK_RATIO}.
-
-Computing times of the solvers at n = {NODES[0]} in one process.
-
-{table(["job", *solvers], [[NAMES[job], *(duration(best[job, solver]) for solver in solvers)] for job in NAMES])}
+Start-up: `mfv_run --version` {duration(data["start"]["--version"])}, a run of 16 nodes with its result file {duration(data["start"]["16 nodes"])}; CONTACT 2 ms. One of 100 cycles on
+512 nodes by large increments (`accuracy=1e-2`): uncoupled {cycle["none"]}, coupled {cycle["full"]}; CONTACT 35 and 262 ms.
 """

@@ -484,6 +484,15 @@ def test_progress_shows_on_a_terminal_only(tmp_path):
     assert re.search(rb"\r  coarser meshes: \d+ %, load segment \d+ of 15", seen)
 
 
+def test_refined_meshes_resolve_small_slip_zones(tmp_path):
+    call = [sys.executable, ROOT / "examples/microslip.py", "-o", tmp_path / "microslip.png"]
+    run = subprocess.run(call, capture_output=True, text=True, timeout=300)
+    assert run.returncode == 0, run.stderr
+    equal, *refined = np.array([line.split() for line in run.stdout.splitlines()[1:]], dtype=float).T[1:]
+    assert equal[0] > 0.3 and max(refined[0]) < 5e-3 and max(refined[1]) < 1e-3, run.stdout
+    assert (tmp_path / "microslip.png").stat().st_size > 10000
+
+
 def test_mesh_study_converges(tmp_path):
     run = subprocess.run(
         [sys.executable, ROOT / "examples/mesh_study.py", "--finest", "101", "-o", tmp_path / "study.png"],
