@@ -68,6 +68,8 @@ module mfv_leap
       logical :: found = .false., exceeded = .false.
       !> Whether contact begins in the interval, and whether the nodes that hold from its start are known.
       logical :: begins = .false., fronts = .false.
+      !> Nodes that hold from the start of the last increment, if known, shape (nodes).
+      logical, allocatable :: held(:)
       !> Linear solves, and changes of status that event stepping would make one by one.
       integer :: solves = 0, changes = 0
       !> Estimated errors of the final tractions, and their part where contact begins, force/length^2; of the dissipation, force;
@@ -119,6 +121,9 @@ contains
 
       associate (done => progress%done, goal => progress%goal, length => progress%length)
          call refine(path, segment, done, length, chain, accepted)
+         if (accepted .and. path%system%allowed > 0.0_wp) call finish_chain(path, segment, done + length, chain, accepted)
+         path%system%allowed = 0.0_wp
+         path%system%allowed_in_rates = 0.0_wp
          if (chain%exceeded) then
             call grow_mesh(path, grown)
             if (grown) return
@@ -168,6 +173,7 @@ contains
 
       accepted = .false.
       if (may_depend_on_path(path, segment)) call find_held(path, subsegment(segment, done, done + length), held)
+      call allow_errors(path)
       call make_chain(path, segment, done, length, 1, held, chain)
       if (.not. chain%found) return
       accepted = .not. (may_depend_on_path(path, segment) .or. any(slips(chain%before(1)%status)) .or. &
@@ -185,6 +191,39 @@ contains
          if (accepted .or. increments == 0) return
       end do
    end subroutine refine
+
+   !> Allow errors of iterative solvers that are negligible beside that of a chain: of the rates, only signs and corrections of
+   !> slips are used. Without coupling this would save nothing: the preconditioner is exact.
+   subroutine allow_errors(path)
+      class(contact_path_type), intent(inout) :: path
+      real(wp), parameter :: negligible = 1.0e-5_wp, most = 1.0e-7_wp, in_rates = 1.0e-2_wp
+
+      if (.not. (path%model%compliance%has_block(block_up) .and. path%model%compliance%has_block(block_wt))) return
+      associate (accuracy => path%model%scene%method%accuracy)
+         path%system%allowed = min(negligible*accuracy, most)
+         path%system%allowed_in_rates = in_rates*accuracy
+      end associate
+   end subroutine allow_errors
+
+   !> Solve for the end of a chain without the error allowed so far, which later events and statuses would depend on. `last`: the
+   !> fraction of the segment there.
+   subroutine finish_chain(path, segment, last, chain, found)
+      class(contact_path_type), intent(inout) :: path
+      type(segment_type), intent(in) :: segment
+      real(wp), intent(in) :: last
+      type(chain_type), intent(inout) :: chain
+      logical, intent(out) :: found
+      type(contact_state_type) :: start
+
+      start = path%state
+      path%system%allowed = 0.0_wp
+      path%state = chain%before(chain%increments)
+      call find_statuses_on_mesh(path, segment, last, chain%after(chain%increments), found, chain%exceeded, chain%held)
+      chain%found = found
+      chain%before(chain%increments)%status = path%state%status
+      chain%before(chain%increments)%stuck_slip = path%state%stuck_slip
+      path%state = start
+   end subroutine finish_chain
 
    !> Whether a chain meets the tolerance; if not, the number of increments of the next one, 0: too many.
    subroutine choose(path, chain, accepted, increments)
@@ -340,6 +379,7 @@ contains
          if (allocated(held) .and. i > 1) holding = status == node_stick
          if (i == 1) call guess_slip(path, segment, done + length*reached(i))
          if (present(coarser)) call guess_from(path, coarser, i, increments)
+         chain%after(i) = path%state%fields
          call find_statuses_on_mesh(path, segment, done + length*reached(i), chain%after(i), chain%found, chain%exceeded, &
                                     holding)
          if (.not. chain%found) exit
@@ -349,6 +389,7 @@ contains
          chain%traction = max(chain%traction, maxval(abs(chain%after(i)%pressure)), maxval(abs(chain%after(i)%shear)))
       end do
       chain%solves = chain%solves + path%system%solves
+      if (allocated(holding)) call move_alloc(holding, chain%held)
       if (chain%begins .and. chain%found) &
          chain%start_error = error_of_edge(path%state%status, path%model%scene%friction%static%largest())*chain%traction
       path%state = start
