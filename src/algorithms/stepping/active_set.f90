@@ -209,7 +209,7 @@ contains
          gap_rate = path%model%gap(fields%plus(1.0_wp, rates)) - gap
          ahead = 0.0_wp
          where (next .and. gap_rate < 0.0_wp) ahead = -rates%slip()*gap/gap_rate
-         returns = slipping_back(path, rates)
+         returns = slipping_back(path, status, rates)
          if (.not. any(returns)) return
          where (returns) wanted = node_stick
          where (status == node_stick .and. slips(wanted) .and. .not. held) wanted = node_stick
@@ -237,16 +237,17 @@ contains
       if (found) rates = response%rate
    end subroutine find_rates
 
-   !> The slipping nodes that slip back at the given rates, shape (nodes).
-   pure function slipping_back(path, rates) result(back)
+   !> The nodes that slip by their `status`, but slip back at the given rates, shape (nodes).
+   pure function slipping_back(path, status, rates) result(back)
       class(contact_path_type), intent(in) :: path
+      integer, intent(in) :: status(:)
       type(contact_fields_type), intent(in) :: rates
-      logical :: back(size(path%state%status))
+      logical :: back(size(status))
       real(wp), parameter :: negligible = 1.0e-9_wp
       real(wp) :: slip(size(back))
 
       slip = rates%slip()
-      back = -slip_sign(path%state%status)*slip > max(negligible, path%system%rate_tolerance)*maxval(abs(slip))
+      back = -slip_sign(status)*slip > max(negligible, path%system%rate_tolerance)*maxval(abs(slip))
    end function slipping_back
 
    !> Whether a node that was slipping at the start slips against its slip over the increment: it has stuck in between, where no
