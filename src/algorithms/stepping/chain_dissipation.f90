@@ -109,16 +109,18 @@ contains
 
    !> The friction dissipation of a contact that begins, force, by its rates at the ends of increments that are even in the
    !> half-width, per unit of load over the interval, shape (increments), a power of two. `error`: its estimated error, force: the
-   !> change from half the number of increments, and that due to edges of zones which move node by node. To the dissipation it is of
-   !> second order in one over the number of `slipping` nodes (0.01 % with 240 of them, up to 4 % with 50).
+   !> change from half the number of increments, or that due to edges of zones which move node by node, by the number of `slipping`
+   !> nodes (up to 4 % with 50 of them, 0.5 % with 120, 0.14 % with 450).
    pure subroutine dissipation_by_rates(rates, slipping, work, error)
       real(wp), intent(in) :: rates(:)
       integer, intent(in) :: slipping
       real(wp), intent(out) :: work, error
       real(wp), parameter :: few = 8.0_wp
+      real(wp) :: by_nodes
 
       work = simpson(rates)
-      error = abs(work - simpson(rates(2::2))) + abs(work)*(few/max(slipping, 1))**2
+      by_nodes = max((few/max(slipping, 1))**2, 1.0_wp/max(slipping, 1))
+      error = max(abs(work - simpson(rates(2::2))), by_nodes*abs(work))
 
    contains
 

@@ -2,7 +2,7 @@
 !>
 !> In a large increment every equality and inequality of dissertation Table 2.1 is satisfied at its end only (mfv_active_set). The
 !> slip of nodes that stick within it follows from the edges of the stick zones (mfv_sticking_front). An interval is divided into 1,
-!> 2, 4, 8, ... equal increments (a chain) until tractions and dissipation change by at most half of `accuracy`: tractions
+!> 2, 4, 8, ... equal increments (a chain) until the estimated errors of tractions and dissipation are within `accuracy`: tractions
 !> relative to the largest so far, dissipation relative to that of the interval, so that every leg of every cycle meets the
 !> tolerance. If nodes slip one way only under constant pressures, one increment is exact (Mindlin).
 !>
