@@ -31,8 +31,8 @@ module mfv_active_set
 contains
 
    !> Statuses and fields at the fraction `done` of the segment. The first guess is the statuses of `path` and `fields`; the start
-   !> is the fields of `path`. `held`: nodes that hold from the start, while others stick as the edges of their zones move (mfv_sticking_front),
-   !> shape (nodes); if absent, all nodes that stick hold at the slip of the start or of first contact.
+   !> is the fields of `path`. `held`: nodes that hold from the start, while others stick as the edges of their zones move
+   !> (mfv_sticking_front), shape (nodes); if absent, all nodes that stick hold at the slip of the start or of first contact.
    !> `found`: whether there are any. `path` then has the statuses, and in stuck_slip the slip from which that of the increment
    !> counts; its fields remain those of the start. If not found, the statuses are invalid: the system is singular, the statuses
    !> cycle, nothing balances a prescribed force, or every node slips.
