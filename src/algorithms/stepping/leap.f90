@@ -520,7 +520,8 @@ contains
 
    !> Error of the tractions of a contact that has begun (`begins`) or grown in the interval, relative to the largest, by the
    !> `status` of its nodes: see error_at_start and error_of_growth. An error at the edge of a contact without slip zones is
-   !> compared with the friction limit, since it changes the slip zones of later steps. `presses`: whether the normal load changes; `friction`: the coefficient.
+   !> compared with the friction limit, since it changes the slip zones of later steps. `presses`: whether the normal load changes;
+   !> `friction`: the coefficient.
    pure real(wp) function error_of_edge(status, begins, presses, friction) result(error)
       integer, intent(in) :: status(:)
       logical, intent(in) :: begins, presses
