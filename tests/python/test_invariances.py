@@ -23,7 +23,10 @@ TOLERANCE = 1.0e-8
 #: The largest tension is searched for, and is at a place where two branches of a curve meet.
 TENSION = 1.0e-6
 #: What depends on how a problem is solved, not on the problem.
-WORK = {"events", "leaps", "linear_solves", "largest_residual", "steps_done", "cycle_change", "change", "status", "step"}
+WORK = {
+    "events", "leaps", "linear_solves", "largest_residual", "steps_done", "cycle_change", "change", "status", "step",
+    "increment_traction_error", "increment_dissipation_error",
+}  # fmt: skip
 #: Numbers of nodes, which begin at the left end; and counts that an event at the very end of a step may change.
 NUMBERS = {"first_node", "last_node", "stick_nodes", "slip_nodes"}
 #: Quantities that change their sign in the mirror image.
@@ -223,10 +226,14 @@ def exchanged(name: str, unit: str, values: np.ndarray) -> tuple[str, np.ndarray
     return other_body(other_side(name)), sign * values[::-1] if is_along_the_surface(name) else sign * values
 
 
+def mirror_differences(case: Contact, tolerance: float = TOLERANCE) -> dict[str, float]:
+    """Differences of a contact from its mirror image."""
+    return differences(case.run(), case.run(steps=list(case.steps(sign=-1.0))), mirrored, tolerance=tolerance)
+
+
 @pytest.mark.parametrize("seed", SEEDS)
 def test_mirror_image(seed: int) -> None:
-    case = contact(seed)
-    assert differences(case.run(), case.run(steps=list(case.steps(sign=-1.0))), mirrored) == {}
+    assert mirror_differences(contact(seed)) == {}
 
 
 @pytest.mark.parametrize("seed", SEEDS)
@@ -270,11 +277,16 @@ def converter(length: float, stress: float) -> Callable[[str, str, np.ndarray], 
     return converted
 
 
+def unit_differences(case: Contact, seed: int, tolerance: float = TOLERANCE) -> dict[str, float]:
+    """Differences of a contact from the same in other units of length and stress, drawn at random."""
+    length, stress = 10.0 ** np.random.default_rng(seed).uniform(-4, 4, 2)
+    other = stretched(case, length, stress)
+    return differences(case.run(), other.run(), converter(length, stress), tolerance=tolerance)
+
+
 @pytest.mark.parametrize("seed", SEEDS)
 def test_other_units(seed: int) -> None:
-    length, stress = 10.0 ** np.random.default_rng(seed).uniform(-4, 4, 2)
-    case = contact(seed)
-    assert differences(case.run(), stretched(case, length, stress).run(), converter(length, stress)) == {}
+    assert unit_differences(contact(seed), seed) == {}
 
 
 @pytest.mark.parametrize("seed", SEEDS)
@@ -291,6 +303,26 @@ def test_mirror_image_bodies_exchanged_and_units_on_refined_meshes(seed: int) ->
         found = differences(first, other, change, common="rigid" in case.upper, tolerance=1e-6)
         # At the end of a repeated cycle round-off decides which nodes count as stuck (docs/theory.md, edges between nodes).
         assert found.keys() <= {"summary/stick_ratio"}
+
+
+@pytest.mark.parametrize("seed", SEEDS)
+@pytest.mark.parametrize("accuracy", (1e-2, 1e-3))
+def test_large_increments(seed: int, accuracy: float) -> None:
+    """The reduced system solves exactly, and the statuses do not depend on the statement."""
+    case = contact(seed, nodes=160 + seed % 2, solver={"stepping": "leap", "accuracy": accuracy, "linear_solver": "reduced"})
+    assert mirror_differences(case) == {}
+    assert unit_differences(case, seed) == {}
+
+
+@pytest.mark.parametrize("seed", SEEDS)
+def test_large_increments_by_iteration(seed: int) -> None:
+    """Within an interval fully coupled contacts are solved to 1e-5 of the accuracy, which stays in the slip of nodes that have stuck
+    there, and unit responses to 1e-2 of it."""
+    accuracy = 1e-3
+    case = contact(seed, nodes=160 + seed % 2, solver={"stepping": "leap", "accuracy": accuracy, "linear_solver": "fft"})
+    tolerance = 1e-2 * accuracy if case.coupling == "full" else TOLERANCE
+    assert mirror_differences(case, tolerance) == {}
+    assert unit_differences(case, seed, tolerance) == {}
 
 
 LAWS = {

@@ -9,6 +9,10 @@ module mfv_contact_system
    implicit none
    private
    public :: contact_system_type, load_type, response_type, constraints_type, prescribed_type, find_prescribed, initial_loads
+   public :: rates_of_loads, rates_at_end, rates_of_fronts, kinds_of_rates
+
+   !> Kinds of rates: of the loads, of the loads at the end of a large increment, and with the slip of fronts to the left and right.
+   integer, parameter :: rates_of_loads = 1, rates_at_end = 2, rates_of_fronts(2) = [3, 4], kinds_of_rates = 4
 
    !> A controlled load: force (moment) or displacement (rotation), its present value and its rate per unit of load.
    type :: load_type
@@ -37,6 +41,8 @@ module mfv_contact_system
       real(wp), allocatable :: gap_rate(:), slip_rate(:)
       !> The load of every motion; meaningless for motions that are not modelled.
       type(load_type) :: load(motion_count)
+      !> Rates of one kind, such as those of the loads, resemble each other: a first guess of iterative solvers.
+      integer :: kind = rates_of_loads
    end type constraints_type
 
    !> Prescribed values of the state, or of its rates per unit of load.
@@ -60,8 +66,12 @@ module mfv_contact_system
       integer :: solves = 0
       !> Numbers of iterations, and of products with the compliance, so far (iterative solvers).
       integer(int64) :: iterations = 0, products = 0
-      !> Tolerance of tractions, motions and their rates, relative to the largest; 0: round-off.
-      real(wp) :: tolerance = 0.0_wp
+      !> Tolerance of tractions, motions and their rates of the last solve, relative to the largest; 0: round-off.
+      !> `rate_tolerance`: the same of the rates that may be less accurate.
+      real(wp) :: tolerance = 0.0_wp, rate_tolerance = 0.0_wp
+      !> Relative errors of states, and of rates but those of the loads, that iterative solvers may leave, if above the
+      !> linear_tolerance of the scene.
+      real(wp) :: allowed = 0.0_wp, allowed_in_rates = 0.0_wp
    contains
       procedure(solve_interface), deferred :: solve
    end type contact_system_type

@@ -40,6 +40,15 @@ module mfv_krylov_system
       real(wp) :: motion(motion_count) = 0.0_wp
    end type right_side_type
 
+   !> Rates as a first guess of later ones.
+   type :: rates_type
+      !> Tractions, shape (nodes), and motions, in the units of the system.
+      real(wp), allocatable :: pressure(:), shear(:)
+      real(wp) :: motion(motion_count) = 0.0_wp
+      !> First and last node in contact and held node; zero if there were gaps.
+      integer :: contact(2) = 0, held(2) = 0
+   end type rates_type
+
    type, extends(contact_system_type) :: krylov_system_type
       private
       type(krylov_preconditioner_type) :: preconditioner
@@ -61,11 +70,8 @@ module mfv_krylov_system
       !> Tractions and displacements of the last product, shape (nodes); and those of the last residual: pressure, shear, normal,
       !> tangential, shape (nodes, 4).
       real(wp), allocatable :: pressure(:), shear(:), normal(:), tangential(:), found(:, :)
-      !> The last rates, shape (nodes), and their motions.
-      real(wp), allocatable :: last_pressure(:), last_shear(:)
-      !> First and last node in contact and held node for these rates; zero if there were gaps.
-      integer :: last_contact(2) = 0, last_held(2) = 0
-      real(wp) :: last_motion(motion_count) = 0.0_wp
+      !> The last rates of each kind.
+      type(rates_type) :: last(kinds_of_rates)
    contains
       procedure :: solve
    end type krylov_system_type
@@ -90,7 +96,8 @@ contains
       real(wp), allocatable :: unknowns(:)
 
       self%solves = self%solves + 1
-      self%tolerance = max(self%tolerance, margin*model%scene%method%linear_tolerance)
+      self%tolerance = margin*max(model%scene%method%linear_tolerance, self%allowed)
+      self%rate_tolerance = max(self%tolerance, margin*self%allowed_in_rates)
       call fit_to_mesh(self, model)
       call choose_unknowns(self, model, constraints)
       call prepare_preconditioner(self, model, singular)
@@ -100,21 +107,24 @@ contains
       right = right_side(self, model, constraints%status, prescribed)
       unknowns = [start%pressure(self%contact)/self%stress, start%shear(self%held)/self%stress, &
                   start%motion(self%free)/self%motion_unit(self%free)]
-      call iterate(self, model, right, unknowns, singular)
+      call iterate(self, model, right, self%tolerance/margin, unknowns, singular)
       if (singular) return
       response%state = fields_of(self, model, prescribed, right, unknowns)
 
       call find_prescribed(constraints, model, .true., prescribed)
       right = right_side(self, model, constraints%status, prescribed)
-      unknowns = guess_of_rates(self)
-      call iterate(self, model, right, unknowns, singular)
+      unknowns = guess_of_rates(self, self%last(constraints%kind))
+      call iterate(self, model, right, merge(self%tolerance, self%rate_tolerance, constraints%kind == rates_of_loads)/margin, &
+                   unknowns, singular)
       if (singular) return
       response%rate = fields_of(self, model, prescribed, right, unknowns)
-      self%last_pressure = self%found(:, 1)
-      self%last_shear = self%found(:, 2)
-      self%last_contact = ends_of(self%contact)
-      self%last_held = ends_of(self%held)
-      self%last_motion = motion_of(self, right%motion, unknowns)
+      associate (last => self%last(constraints%kind))
+         last%pressure = self%found(:, 1)
+         last%shear = self%found(:, 2)
+         last%contact = ends_of(self%contact)
+         last%held = ends_of(self%held)
+         last%motion = motion_of(self, right%motion, unknowns)
+      end associate
    end subroutine solve
 
    !> Set units, arms and work space for the present mesh; move the last rates to a mesh that has grown.
@@ -143,12 +153,16 @@ contains
          self%tangential_arm(:, i) = self%tangential_arm(:, i)/self%arm(i)
       end do
       self%width = model%width/self%length
-      if (allocated(self%last_pressure)) then
-         where (self%last_contact > 0) self%last_contact = self%last_contact + (n - size(self%last_pressure))/2
-         where (self%last_held > 0) self%last_held = self%last_held + (n - size(self%last_pressure))/2
-      end if
-      call widen(self%last_pressure, n)
-      call widen(self%last_shear, n)
+      do i = 1, kinds_of_rates
+         associate (last => self%last(i))
+            if (allocated(last%pressure)) then
+               where (last%contact > 0) last%contact = last%contact + (n - size(last%pressure))/2
+               where (last%held > 0) last%held = last%held + (n - size(last%pressure))/2
+            end if
+            call widen(last%pressure, n)
+            call widen(last%shear, n)
+         end associate
+      end do
    end subroutine fit_to_mesh
 
    !> Extend values to a mesh of `n` nodes that has grown equally at either end.
@@ -270,18 +284,19 @@ contains
       end associate
    end function right_side
 
-   !> The last rates as a guess: stretched to the present ends of consecutive nodes, so that singularities stay at the ends; node
+   !> The `last` rates as a guess: stretched to the present ends of consecutive nodes, so that singularities stay at the ends; node
    !> by node if there are gaps.
-   function guess_of_rates(self) result(unknowns)
+   function guess_of_rates(self, last) result(unknowns)
       class(krylov_system_type), intent(in) :: self
+      type(rates_type), intent(in) :: last
       real(wp), allocatable :: unknowns(:)
-      real(wp), dimension(size(self%last_pressure)) :: pressure, shear
+      real(wp), dimension(size(last%pressure)) :: pressure, shear
 
-      pressure = self%last_pressure
-      shear = self%last_shear
-      call stretch(self%last_contact, ends_of(self%contact), pressure)
-      call stretch(self%last_held, ends_of(self%held), shear)
-      unknowns = [pressure(self%contact), shear(self%held), self%last_motion(self%free)]
+      pressure = last%pressure
+      shear = last%shear
+      call stretch(last%contact, ends_of(self%contact), pressure)
+      call stretch(last%held, ends_of(self%held), shear)
+      unknowns = [pressure(self%contact), shear(self%held), last%motion(self%free)]
    end function guess_of_rates
 
    !> First and last of consecutive nodes; zero if there are gaps or no nodes.
@@ -321,11 +336,12 @@ contains
       motion(self%free) = unknowns(size(self%contact) + size(self%held) + 1:)
    end function motion_of
 
-   !> Iterate until the `unknowns` meet the tolerance. `fails`: they do not. `found` then belongs to them.
-   subroutine iterate(self, model, right, unknowns, fails)
+   !> Iterate until the `unknowns` meet the relative `tolerance`. `fails`: they do not. `found` then belongs to them.
+   subroutine iterate(self, model, right, tolerance, unknowns, fails)
       class(krylov_system_type), intent(inout) :: self
       type(contact_model_type), intent(in) :: model
       type(right_side_type), intent(in) :: right
+      real(wp), intent(in) :: tolerance
       real(wp), intent(inout) :: unknowns(:)
       logical, intent(out) :: fails
       real(wp), parameter :: worth_keeping = 0.5_wp, progress = 0.5_wp, near_enough = 2.0_wp, good_enough = 1.0e-9_wp
@@ -355,7 +371,7 @@ contains
             end if
          end if
          scale = max(scale, reached, norm2(unknowns))
-         target = max(model%scene%method%linear_tolerance*scale, round_off(self, right))
+         target = max(tolerance*scale, round_off(self, right))
          ! A guess within the tolerance is not changed.
          if (reached <= merge(near_enough, 1.0_wp, pass == 1)*target) return
          if (reached > progress*before) exit

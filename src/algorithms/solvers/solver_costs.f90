@@ -42,9 +42,9 @@ module mfv_solver_costs
    integer, parameter :: most_coupled = 1800, most_one_way = 2000, most_apart = 2000, most_at_once = 60, &
                          most_at_once_coupled = 240, most_bristles = 120, most_bristles_coupled = 260
 
-   !> Fewest nodes of the mesh for which stepping='auto' takes large increments if an error is allowed. They take some 100 solves to
-   !> press with friction and coupling and 20 to 60 for a half-cycle, on any mesh, events about one for each node that changes its
-   !> status (docs/performance.md). Without coupling they take 4 solves.
+   !> Fewest nodes of the mesh for which stepping='auto' takes large increments if an error is allowed. They take 40 to 200 solves
+   !> to press with friction and coupling and 20 to 60 for a half-cycle, on any mesh, events about one for each node that
+   !> changes its status (docs/performance.md). Without coupling they take 4 solves.
    integer, parameter :: least_leap = 30, least_coupled_leap = 640
 
 contains

@@ -25,15 +25,14 @@ module mfv_active_set
    real(wp), parameter :: round_off = 1.0e-11_wp
    !> Most linear solves at one load.
    integer, parameter :: most_solves = 60
-   !> Most corrections of the slip that is expected of open nodes, and the relative change below which it is not corrected.
+   !> Most corrections of the slip that is expected of open nodes.
    integer, parameter :: most_looks = 3
-   real(wp), parameter :: same_slip = 1.0e-7_wp
 
 contains
 
-   !> Statuses and fields at the fraction `done` of the segment. The first guess is the statuses of `path`; the start is its
-   !> fields. `held`: nodes that hold from the start, while others stick as the edges of their zones move (mfv_sticking_front),
-   !> shape (nodes); if absent, all nodes that stick hold at the slip of the start or of first contact.
+   !> Statuses and fields at the fraction `done` of the segment. The first guess is the statuses of `path` and `fields`; the start
+   !> is the fields of `path`. `held`: nodes that hold from the start, while others stick as the edges of their zones move
+   !> (mfv_sticking_front), shape (nodes); if absent, all nodes that stick hold at the slip of the start or of first contact.
    !> `found`: whether there are any. `path` then has the statuses, and in stuck_slip the slip from which that of the increment
    !> counts; its fields remain those of the start. If not found, the statuses are invalid: the system is singular, the statuses
    !> cycle, nothing balances a prescribed force, or every node slips.
@@ -41,7 +40,7 @@ contains
       class(contact_path_type), intent(inout) :: path
       type(segment_type), intent(in) :: segment
       real(wp), intent(in) :: done
-      type(contact_fields_type), intent(out) :: fields
+      type(contact_fields_type), intent(inout) :: fields
       logical, intent(out) :: found
       logical, intent(in), optional :: held(:)
       type(constraints_type) :: constraints
@@ -54,8 +53,7 @@ contains
       found = .false.
       by_edges = .true.
       first = 1
-      fields = path%state%fields
-      hold = fields%slip()
+      hold = path%state%fields%slip()
       where (path%state%status == node_stick) hold = path%state%stuck_slip
       path%state%stuck_slip = hold
       ahead = 0.0_wp
@@ -78,7 +76,7 @@ contains
          if (all(wanted == path%state%status)) then
             if (present(held) .and. looks < most_looks) then
                looks = looks + 1
-               if (maxval(abs(ahead - before)) > same_slip*maxval(abs(fields%slip()))) cycle
+               if (maxval(abs(ahead - before)) > same_slip(path)*maxval(abs(fields%slip()))) cycle
             end if
             if (present(held)) found = .not. reverses(path, fields, held)
             return
@@ -112,10 +110,10 @@ contains
       logical, intent(out) :: solved
       logical, intent(in), optional :: held(:)
       integer, parameter :: most_passes = 20
-      real(wp), parameter :: close_enough = 1.0e-7_wp
       type(fronts_type) :: fronts
       type(contact_fields_type) :: change(2)
       real(wp), allocatable :: corrections(:, :)
+      real(wp) :: wrong
       integer :: group, pass, zones
 
       zones = 0
@@ -133,21 +131,26 @@ contains
       call fronts%assume(fields)
       do pass = 1, most_passes
          call fronts%set_hold(hold)
+         if (pass > 1) call solve_group(0)
          do group = left, right
-            if (fronts%number(group) == 0) cycle
+            if (pass > 1 .or. fronts%number(group) == 0) cycle
             call solve_group(group)
             if (.not. solved) return
          end do
+         if (.not. solved) return
          call fronts%correct(fields, change, corrections)
-         if (zones == 1) exit
-         if (maxval(abs(corrections)) <= close_enough*maxval(abs(fronts%slip))) return
+         wrong = maxval(abs(corrections))
+         if (zones == 1) then
+            ! The fields change in proportion, but for the error of the responses.
+            call fronts%set_hold(hold)
+            do group = left, right
+               if (fronts%number(group) > 0) fields = fields%plus(sum(corrections(group, :)), change(group))
+            end do
+            wrong = path%system%rate_tolerance*wrong
+         end if
+         if (wrong <= same_slip(path)*maxval(abs(fronts%slip))) return
       end do
-      solved = zones == 1
-      if (.not. solved) return
-      call fronts%set_hold(hold)
-      do group = left, right
-         if (fronts%number(group) > 0) fields = fields%plus(sum(corrections(group, :)), change(group))
-      end do
+      solved = .false.
 
    contains
 
@@ -158,7 +161,12 @@ contains
          logical :: singular
 
          constraints%stuck_slip = hold
-         if (group > 0) constraints%slip_rate = fronts%group_weight(group)
+         if (allocated(constraints%slip_rate)) deallocate (constraints%slip_rate)
+         constraints%kind = rates_of_loads
+         if (group > 0) then
+            constraints%slip_rate = fronts%group_weight(group)
+            constraints%kind = rates_of_fronts(group)
+         end if
          call path%system%solve(path%model, constraints, fields, response, singular)
          solved = .not. singular
          if (singular) return
@@ -166,6 +174,14 @@ contains
          if (group > 0) change(group) = response%rate
       end subroutine solve_group
    end subroutine solve_with_fronts
+
+   !> Slips that differ by less than this fraction of the largest are the same.
+   pure real(wp) function same_slip(path)
+      class(contact_path_type), intent(in) :: path
+      real(wp), parameter :: same = 1.0e-7_wp, negligible = 1.0e-4_wp
+
+      same_slip = max(same, path%system%tolerance, negligible*path%model%scene%method%accuracy)
+   end function same_slip
 
    !> Nodes that slip, but would slip back at the end of the increment, stick in `wanted`: the edge of a stick zone has passed them.
    !> The zone is then too small, and its nodes stay stuck but for those of `held`, since the shear traction exceeds the limit in
@@ -193,7 +209,7 @@ contains
          gap_rate = path%model%gap(fields%plus(1.0_wp, rates)) - gap
          ahead = 0.0_wp
          where (next .and. gap_rate < 0.0_wp) ahead = -rates%slip()*gap/gap_rate
-         returns = slipping_back(path, rates)
+         returns = slipping_back(path, status, rates)
          if (.not. any(returns)) return
          where (returns) wanted = node_stick
          where (status == node_stick .and. slips(wanted) .and. .not. held) wanted = node_stick
@@ -215,21 +231,23 @@ contains
 
       call path%loads_at(segment, done, constraints)
       call path%set_rows(constraints, .false.)
+      if (done > 0.0_wp) constraints%kind = rates_at_end
       call path%system%solve(path%model, constraints, fields, response, singular)
       found = .not. singular
       if (found) rates = response%rate
    end subroutine find_rates
 
-   !> The slipping nodes that slip back at the given rates, shape (nodes).
-   pure function slipping_back(path, rates) result(back)
+   !> The nodes that slip by their `status`, but slip back at the given rates, shape (nodes).
+   pure function slipping_back(path, status, rates) result(back)
       class(contact_path_type), intent(in) :: path
+      integer, intent(in) :: status(:)
       type(contact_fields_type), intent(in) :: rates
-      logical :: back(size(path%state%status))
+      logical :: back(size(status))
       real(wp), parameter :: negligible = 1.0e-9_wp
       real(wp) :: slip(size(back))
 
       slip = rates%slip()
-      back = -slip_sign(path%state%status)*slip > max(negligible, path%system%tolerance)*maxval(abs(slip))
+      back = -slip_sign(status)*slip > max(negligible, path%system%rate_tolerance)*maxval(abs(slip))
    end function slipping_back
 
    !> Whether a node that was slipping at the start slips against its slip over the increment: it has stuck in between, where no

@@ -6,10 +6,14 @@
 !> tau C dtau is integrated exactly by any interpolation, since C is symmetric.) The sum is integrated with parabolas through three
 !> states each (Simpson's rule), extrapolated once (Boole's rule, Richardson 1911). If contact begins, the approach goes as
 !> f^2 ln f with the contact half-width f, and the error of Boole's rule with the fourth power of the interval: it is extrapolated
-!> once more. The change from half the number of states estimates the error.
+!> once more.
 !>
 !> For a single node tau is mu p wherever it slips, so that its dissipation lies between its slip times the smaller and the larger
 !> limit at both ends of an increment. Under constant pressures this is exact.
+!>
+!> The errors of the two sums are of different origin, and their difference is about as large as either. If contact begins, a third
+!> sum is better than both: the rates -tau ds/df at the ends of increments, by Simpson's rule. While a contact grows in proportion
+!> to its shape, its dissipation goes as f^4, and the rule is exact.
 module mfv_chain_dissipation
    use mfv_contact_fields, only: contact_fields_type
    use mfv_contact_model, only: contact_model_type
@@ -18,48 +22,30 @@ module mfv_chain_dissipation
    use mfv_node_status
    implicit none
    private
-   public :: chain_dissipation, node_wise_dissipation
+   public :: chain_dissipation, dissipation_by_rates, node_wise_dissipation
 
 contains
 
    !> The friction dissipation from the fields `start` through the fields `after`, evenly spaced on a smooth path, shape
-   !> (increments), a power of two; force. `begins`: whether contact begins, with increments even in the half-width. `error`: its
-   !> estimated error, the larger of the change from half the number of states and that from Simpson's to Boole's rule; if contact
-   !> begins, the last correction. `corners`: the error due to corners, one for each of the `changes` of status. (A corner is taken
-   !> for part of a parabola: an error of random sign, on average 0.4 of that of the trapezoidal rule if all corners share the
-   !> curvature.)
-   subroutine chain_dissipation(model, start, after, begins, changes, work, error, corners)
+   !> (increments), a power of two; force. `begins`: whether contact begins, with increments even in the half-width. `corners`: the
+   !> error due to corners, one for each of the `changes` of status. (A corner is taken for part of a parabola: an error of random
+   !> sign, on average 0.4 of that of the trapezoidal rule if all corners share the curvature.)
+   subroutine chain_dissipation(model, start, after, begins, changes, work, corners)
       class(contact_model_type), intent(in) :: model
       type(contact_fields_type), intent(in) :: start, after(:)
       logical, intent(in) :: begins
       integer, intent(in) :: changes
-      real(wp), intent(out) :: work, error, corners
+      real(wp), intent(out) :: work, corners
       real(wp), parameter :: share = 0.8_wp
       integer :: increments
-      real(wp) :: simpson, coarser, unused
 
       increments = size(after)
-      call integrate(1, work, simpson)
-      error = abs(work)
-      corners = 0.0_wp
-      if (increments == 1) return
-      if (.not. begins) corners = share*abs(trapezoidal() - simpson)/sqrt(real(max(changes, 1), wp))
-      call integrate(2, coarser, unused)
-      error = max(abs(work - coarser), abs(work - simpson))
-      if (begins .and. increments >= 8) error = abs(work - boole(1))
+      work = composite(1)
+      corners = share*abs(trapezoidal() - work)/sqrt(real(max(changes, 1), wp))
+      if (increments >= 4) work = boole(1)
+      if (begins .and. increments >= 8) work = work + (work - boole(2))/15.0_wp
 
    contains
-
-      !> The best rule for every `stride`-th state, and Simpson's rule.
-      subroutine integrate(stride, best, simpson)
-         integer, intent(in) :: stride
-         real(wp), intent(out) :: best, simpson
-
-         simpson = composite(stride)
-         best = simpson
-         if (increments/stride >= 4) best = boole(stride)
-         if (begins .and. increments/stride >= 8) best = best + (best - boole(2*stride))/15.0_wp
-      end subroutine integrate
 
       !> Boole's rule for every `stride`-th state.
       real(wp) function boole(stride)
@@ -120,6 +106,36 @@ contains
          along = 2.0_wp*(f2*slope + ((f3 - f1)*turn + 0.5_wp*((f3 - f2) - (f2 - f1))*slope)/3.0_wp)
       end function along
    end subroutine chain_dissipation
+
+   !> The friction dissipation of a contact that begins, force, by its rates at the ends of increments that are even in the
+   !> half-width, per unit of load over the interval, shape (increments), a power of two. `error`: its estimated error, force: the
+   !> change from half the number of increments, or that due to edges of zones which move node by node, by the number of `slipping`
+   !> nodes (up to 4 % with 50 of them, 0.5 % with 120, 0.14 % with 450).
+   pure subroutine dissipation_by_rates(rates, slipping, work, error)
+      real(wp), intent(in) :: rates(:)
+      integer, intent(in) :: slipping
+      real(wp), intent(out) :: work, error
+      real(wp), parameter :: few = 8.0_wp
+      real(wp) :: by_nodes
+
+      work = simpson(rates)
+      by_nodes = max((few/max(slipping, 1))**2, 1.0_wp/max(slipping, 1))
+      error = max(abs(work - simpson(rates(2::2))), by_nodes*abs(work))
+
+   contains
+
+      !> Loads go as the square of the half-width f. A single interval is a fourth power of f.
+      pure real(wp) function simpson(rates) result(work)
+         real(wp), intent(in) :: rates(:)
+         real(wp) :: by_width(size(rates))
+         integer :: i, n
+
+         n = size(rates)
+         by_width = [(2.0_wp*i/n*rates(i), i=1, n)]
+         work = by_width(n)/4.0_wp
+         if (n > 1) work = (4.0_wp*sum(by_width(1::2)) + 2.0_wp*sum(by_width(2:n - 2:2)) + by_width(n))/(3.0_wp*n)
+      end function simpson
+   end subroutine dissipation_by_rates
 
    !> The friction dissipation of each node from the state `before`, with the statuses of the increment, to the fields `after`;
    !> force/length, shape (nodes). `error`: estimated error of its sum, force. Nodes that slip from the start follow the

@@ -24,12 +24,13 @@ module mfv_first_violation
    use mfv_motions, only: motion_approach, control_force
    use mfv_node_status
    use mfv_observer, only: observer_type
+   use mfv_scene, only: stepping_leap
    use mfv_rate_problem, only: find_statuses_by_rates
    use mfv_status
    use mfv_strings, only: to_text
    implicit none
    private
-   public :: apply_by_violations, failed_certificate, tolerance_factor
+   public :: apply_by_violations, most_residual
 
    !> Most consecutive steps below the tie tolerance.
    integer, parameter :: most_tiny_steps = 200
@@ -226,10 +227,21 @@ contains
          call response%state%move(increment%step, response%rate)
       end associate
       call path%take_increment(increment%response%state, increment%response%rate%slip(), merge(increment%step, 0.0_wp, relaxing))
-      if (path%certificate%largest() > max(failed_certificate, tolerance_factor*path%system%tolerance)) &
+      if (path%certificate%largest() > most_residual(path)) &
          call path%no_continuation('the equations are no longer satisfied (certificate '// &
                                    to_text(path%certificate%largest())//')', error)
    end subroutine advance
+
+   !> The largest admissible residual of the certificate. In large increments the linear solver may be less accurate.
+   pure real(wp) function most_residual(path)
+      class(contact_path_type), intent(in) :: path
+      real(wp), parameter :: negligible = 1.0e-2_wp
+
+      most_residual = max(failed_certificate, tolerance_factor*path%system%tolerance)
+      associate (method => path%model%scene%method)
+         if (method%stepping == stepping_leap) most_residual = max(most_residual, negligible*method%accuracy)
+      end associate
+   end function most_residual
 
    !> Change the statuses of the nodes whose inequalities are violated first, together.
    !> Errors MFV_NO_CONTINUATION: all alternatives have been tried at this load; MFV_MESH_EXCEEDED.

@@ -2,7 +2,7 @@
 !>
 !> In a large increment every equality and inequality of dissertation Table 2.1 is satisfied at its end only (mfv_active_set). The
 !> slip of nodes that stick within it follows from the edges of the stick zones (mfv_sticking_front). An interval is divided into 1,
-!> 2, 4, 8, ... equal increments (a chain) until tractions and dissipation change by at most half of `accuracy`: tractions
+!> 2, 4, 8, ... equal increments (a chain) until the estimated errors of tractions and dissipation are within `accuracy`: tractions
 !> relative to the largest so far, dissipation relative to that of the interval, so that every leg of every cycle meets the
 !> tolerance. If nodes slip one way only under constant pressures, one increment is exact (Mindlin).
 !>
@@ -14,7 +14,7 @@
 !> sliding and separation are therefore found there. The certificate checks large increments at their ends only.
 module mfv_leap
    use mfv_active_set, only: find_rates, slipping_back
-   use mfv_chain_dissipation, only: chain_dissipation, node_wise_dissipation
+   use mfv_chain_dissipation, only: chain_dissipation, dissipation_by_rates, node_wise_dissipation
    use mfv_compliance, only: block_up, block_wt
    use mfv_contact_fields, only: contact_fields_type
    use mfv_contact_path
@@ -45,8 +45,11 @@ module mfv_leap
    integer, parameter :: resolved = 3
    real(wp), parameter :: error_unresolved = 10.0_wp
    real(wp), parameter :: error_at_start = 0.5_wp
-   !> Allowed difference relative to the tolerance: the error of a chain is about its difference from one with half as many
-   !> increments.
+   !> The same where nodes touch later under a changing normal load, and where fewer than `resolved` nodes slip at an edge: the
+   !> outermost node may have closed and stuck or not (up to 1.5 with 80 to 400 nodes). Under a constant one, contact grows where it
+   !> slips.
+   real(wp), parameter :: error_of_growth = 1.5_wp
+   !> Allowed part of the tolerance for errors of tractions by the path, which can be twice as large as estimated.
    real(wp), parameter :: safety = 0.5_wp
 
    !> Progress in a segment, as fractions of it: what is done, the goal of large increments, and the length of the next interval.
@@ -68,13 +71,15 @@ module mfv_leap
       logical :: found = .false., exceeded = .false.
       !> Whether contact begins in the interval, and whether the nodes that hold from its start are known.
       logical :: begins = .false., fronts = .false.
+      !> Nodes that hold from the start of the last increment, if known, shape (nodes).
+      logical, allocatable :: held(:)
       !> Linear solves, and changes of status that event stepping would make one by one.
       integer :: solves = 0, changes = 0
       !> Estimated errors of the final tractions, and their part where contact begins, force/length^2; of the dissipation, force;
       !> the dissipation, force, and the largest traction, force/length^2.
       real(wp) :: traction_error = 0.0_wp, start_error = 0.0_wp, work_error = 0.0_wp, work = 0.0_wp, traction = 0.0_wp
-      !> Error of the dissipation due to its corners as a function of the load, one for each change of status; force.
-      real(wp) :: corner_error = 0.0_wp
+      !> The dissipation by node_wise_dissipation and its estimated error, force.
+      real(wp) :: node_wise = 0.0_wp, node_wise_error = 0.0_wp
    end type chain_type
 
 contains
@@ -119,6 +124,9 @@ contains
 
       associate (done => progress%done, goal => progress%goal, length => progress%length)
          call refine(path, segment, done, length, chain, accepted)
+         if (accepted .and. path%system%allowed > 0.0_wp) call finish_chain(path, segment, done + length, chain, accepted)
+         path%system%allowed = 0.0_wp
+         path%system%allowed_in_rates = 0.0_wp
          if (chain%exceeded) then
             call grow_mesh(path, grown)
             if (grown) return
@@ -168,6 +176,7 @@ contains
 
       accepted = .false.
       if (may_depend_on_path(path, segment)) call find_held(path, subsegment(segment, done, done + length), held)
+      call allow_errors(path)
       call make_chain(path, segment, done, length, 1, held, chain)
       if (.not. chain%found) return
       accepted = .not. (may_depend_on_path(path, segment) .or. any(slips(chain%before(1)%status)) .or. &
@@ -177,7 +186,7 @@ contains
       increments = 2
       do
          call make_chain(path, segment, done, length, increments, held, finer, chain)
-         if (finer%found) call compare(path, chain, finer)
+         if (finer%found) call compare(path, subsegment(segment, done, done + length), chain, finer)
          chain = finer
          if (.not. chain%found) return
          call choose(path, chain, accepted, increments)
@@ -186,29 +195,58 @@ contains
       end do
    end subroutine refine
 
+   !> Allow errors of iterative solvers that are negligible beside that of a chain: of the rates, only signs and corrections of
+   !> slips are used. Without coupling this would save nothing: the preconditioner is exact.
+   subroutine allow_errors(path)
+      class(contact_path_type), intent(inout) :: path
+      real(wp), parameter :: negligible = 1.0e-5_wp, most = 1.0e-7_wp, in_rates = 1.0e-2_wp
+
+      if (.not. (path%model%compliance%has_block(block_up) .and. path%model%compliance%has_block(block_wt))) return
+      associate (accuracy => path%model%scene%method%accuracy)
+         path%system%allowed = min(negligible*accuracy, most)
+         path%system%allowed_in_rates = in_rates*accuracy
+      end associate
+   end subroutine allow_errors
+
+   !> Solve for the end of a chain without the error allowed so far, which later events and statuses would depend on. `last`: the
+   !> fraction of the segment there.
+   subroutine finish_chain(path, segment, last, chain, found)
+      class(contact_path_type), intent(inout) :: path
+      type(segment_type), intent(in) :: segment
+      real(wp), intent(in) :: last
+      type(chain_type), intent(inout) :: chain
+      logical, intent(out) :: found
+      type(contact_state_type) :: start
+
+      start = path%state
+      path%system%allowed = 0.0_wp
+      path%state = chain%before(chain%increments)
+      call find_statuses_on_mesh(path, segment, last, chain%after(chain%increments), found, chain%exceeded, chain%held)
+      chain%found = found
+      chain%before(chain%increments)%status = path%state%status
+      chain%before(chain%increments)%stuck_slip = path%state%stuck_slip
+      path%state = start
+   end subroutine finish_chain
+
    !> Whether a chain meets the tolerance; if not, the number of increments of the next one, 0: too many.
    subroutine choose(path, chain, accepted, increments)
       class(contact_path_type), intent(in) :: path
       type(chain_type), intent(in) :: chain
       logical, intent(out) :: accepted
       integer, intent(out) :: increments
-      real(wp) :: allowed, traction, work, by_tractions, by_work, by_corners, wanted
+      real(wp) :: accuracy, traction, work, by_tractions, by_work, wanted
 
-      allowed = safety*path%model%scene%method%accuracy
+      accuracy = path%model%scene%method%accuracy
       traction = max(path%certificate%traction_scale(), chain%traction)
       work = reference_work(path, chain)
       by_tractions = 0.0_wp
       by_work = 0.0_wp
-      if (traction > 0.0_wp) by_tractions = (chain%traction_error - (1.0_wp - safety)*chain%start_error)/(allowed*traction)
-      by_corners = 0.0_wp
-      if (chain%work_error > 0.0_wp) then
-         by_work = chain%work_error/max(allowed*work, tiny(1.0_wp))
-         by_corners = chain%corner_error/max(allowed*work, tiny(1.0_wp))
-      end if
+   if (traction > 0.0_wp) by_tractions = ((chain%traction_error - chain%start_error)/safety + chain%start_error)/(accuracy*traction)
+      if (chain%work_error > 0.0_wp) by_work = chain%work_error/max(accuracy*work, tiny(1.0_wp))
       accepted = max(by_tractions, by_work) <= 1.0_wp
       increments = 0
       if (accepted) return
-      wanted = min(max(2.0_wp, merge(1.0_wp, by_tractions, chain%fronts), sqrt(sqrt(by_work)), sqrt(by_corners)), &
+      wanted = min(max(2.0_wp, merge(1.0_wp, by_tractions, chain%fronts), by_work**merge(0.25_wp, 0.5_wp, chain%begins)), &
                    real(most_increments, wp))
       increments = chain%increments*2**ceiling(log(wanted)/log(2.0_wp) - 1.0e-6_wp)
       if (increments > most_increments .or. &
@@ -222,19 +260,14 @@ contains
       type(segment_type), intent(in) :: segment
       type(chain_type), intent(in) :: chain
       real(wp), parameter :: negligible = 1.0e-9_wp
-      type(contact_state_type) :: start
       type(contact_fields_type) :: rates
       logical :: found
 
       associate (last => chain%after(chain%increments), begin => chain%before(1)%fields)
          slips_back = maxval(abs(last%pressure - begin%pressure)) > max(negligible, path%system%tolerance)*chain%traction
          if (.not. slips_back) return
-         start = path%state
-         path%state = chain%before(chain%increments)
-         path%state%fields = last
-         call find_rates(path, segment, 1.0_wp, last, rates, found)
-         if (found) slips_back = any(slipping_back(path, rates))
-         path%state = start
+         call find_rates_after(path, segment, chain, chain%increments, rates, found)
+         if (found) slips_back = any(slipping_back(path, chain%before(chain%increments)%status, rates))
       end associate
    end function slips_back
 
@@ -243,7 +276,7 @@ contains
    pure real(wp) function reference_work(path, chain) result(work)
       class(contact_path_type), intent(in) :: path
       type(chain_type), intent(in) :: chain
-      real(wp), parameter :: fraction = 0.01_wp
+      real(wp), parameter :: fraction = 1.0e-4_wp
 
       work = chain%work
       if (chain%begins) work = max(work, fraction/path%model%compliance%modulus &
@@ -306,7 +339,7 @@ contains
       associate (fields => path%state%fields, limit => path%model%static_friction)
          at_limit = abs(fields%shear) >= limit*fields%pressure*(1.0_wp - tolerance)
          excess = sign(1.0_wp, fields%shear)*rate%shear - limit*rate%pressure
-         where (slipping_back(path, rate)) wanted = node_stick
+         where (slipping_back(path, path%state%status, rate)) wanted = node_stick
          where (path%state%status == node_stick .and. at_limit .and. excess > tolerance*maxval(abs(rate%shear))) &
             wanted = merge(node_slip_left, node_slip_right, fields%shear > 0.0_wp)
       end associate
@@ -340,17 +373,21 @@ contains
          if (allocated(held) .and. i > 1) holding = status == node_stick
          if (i == 1) call guess_slip(path, segment, done + length*reached(i))
          if (present(coarser)) call guess_from(path, coarser, i, increments)
+         chain%after(i) = path%state%fields
          call find_statuses_on_mesh(path, segment, done + length*reached(i), chain%after(i), chain%found, chain%exceeded, &
                                     holding)
          if (.not. chain%found) exit
          chain%changes = chain%changes + count_changes(status, path%state%status)
          chain%before(i) = path%state
+         call add_node_wise(path, chain, i)
          path%state%fields = chain%after(i)
          chain%traction = max(chain%traction, maxval(abs(chain%after(i)%pressure)), maxval(abs(chain%after(i)%shear)))
       end do
       chain%solves = chain%solves + path%system%solves
-      if (chain%begins .and. chain%found) &
-         chain%start_error = error_of_edge(path%state%status, path%model%scene%friction%static%largest())*chain%traction
+      if (allocated(holding)) call move_alloc(holding, chain%held)
+      if (chain%found .and. any(in_contact(path%state%status) .and. .not. in_contact(start%status))) &
+         chain%start_error = error_of_edge(path%state%status, chain%begins, abs(segment%load(motion_approach)%rate) > 0.0_wp, &
+                                           path%model%scene%friction%static%largest())*chain%traction
       path%state = start
 
    contains
@@ -364,6 +401,18 @@ contains
          if (chain%begins) reached = reached**2
       end function reached
    end subroutine make_chain
+
+   !> Add the dissipation of increment `i` of a chain, node by node.
+   subroutine add_node_wise(path, chain, i)
+      class(contact_path_type), intent(in) :: path
+      type(chain_type), intent(inout) :: chain
+      integer, intent(in) :: i
+      real(wp) :: error
+
+    call node_wise_dissipation(path%model, chain%before(i), chain%after(i), path%system%tolerance, chain%friction_work(:, i), error)
+      chain%node_wise = chain%node_wise + path%model%force(chain%friction_work(:, i))
+      chain%node_wise_error = chain%node_wise_error + error
+   end subroutine add_node_wise
 
    !> If increment `i` ends where one of a coarser chain does, start from the statuses there: of all nodes if the slip of touching
    !> nodes follows from the fronts.
@@ -385,57 +434,102 @@ contains
       count_changes = count(before /= after .and. .not. (slips(before) .and. after == node_stick))
    end function count_changes
 
-   !> Errors of the finer of two chains: tractions at first order, dissipation by mfv_chain_dissipation, which is distributed over
-   !> the nodes.
-   subroutine compare(path, coarser, finer)
-      class(contact_path_type), intent(in) :: path
+   !> Errors of the finer of two chains: tractions at first order, dissipation by mfv_chain_dissipation.
+   subroutine compare(path, segment, coarser, finer)
+      class(contact_path_type), intent(inout) :: path
+      type(segment_type), intent(in) :: segment
       type(chain_type), intent(in) :: coarser
       type(chain_type), intent(inout) :: finer
-      real(wp) :: refinement, node_wise, node_wise_error, one, other, unused, unused_too
-      integer :: i, stride
+      real(wp) :: refinement
 
       refinement = 1.0_wp/(sqrt(real(finer%increments, wp)/real(coarser%increments, wp)) - 1.0_wp)
       associate (a => coarser%after(coarser%increments), b => finer%after(finer%increments))
          finer%traction_error = finer%start_error &
                                 + refinement*max(maxval(abs(a%pressure - b%pressure)), maxval(abs(a%shear - b%shear)))
       end associate
-      node_wise = 0.0_wp
-      node_wise_error = 0.0_wp
-      do i = 1, finer%increments
-         call node_wise_dissipation(path%model, finer%before(i), finer%after(i), path%system%tolerance, finer%friction_work(:, i), &
-                                    unused)
-         node_wise = node_wise + path%model%force(finer%friction_work(:, i))
-         node_wise_error = node_wise_error + unused
-      end do
-      call chain_dissipation(path%model, finer%before(1)%fields, finer%after, finer%begins, finer%changes, finer%work, &
-                             finer%work_error, finer%corner_error)
-      if (node_wise_error <= finer%work_error) then
-         finer%work = node_wise
-         finer%work_error = node_wise_error
-         return
-      end if
-      ! Three states can agree with a straight line by chance; then the two formulas must agree as well.
-      if (finer%increments == 2) finer%work_error = max(finer%work_error, abs(finer%work - node_wise))
-      stride = finer%increments/coarser%increments
-      ! The same formula for both chains: the error due to the path.
-      call chain_dissipation(path%model, finer%before(1)%fields, coarser%after, finer%begins, 1, one, unused, unused_too)
-      call chain_dissipation(path%model, finer%before(1)%fields, finer%after(stride::stride), finer%begins, 1, other, unused, &
-                             unused_too)
-      finer%work_error = max(finer%work_error, finer%corner_error) + refinement*abs(one - other)
-      finer%work = max(finer%work, 0.0_wp)
-      if (node_wise > 0.0_wp) finer%friction_work = finer%friction_work*(finer%work/node_wise)
+      call find_dissipation(path, segment, coarser, finer)
+      if (finer%node_wise > 0.0_wp) finer%friction_work = finer%friction_work*(finer%work/finer%node_wise)
    end subroutine compare
 
-   !> Error of the tractions of a contact that has begun in the interval, relative to the largest, by the `status` of its nodes: see
-   !> error_at_start. An error at the edge of a contact without slip zones is compared with the friction limit, since it changes the
-   !> slip zones of later steps. `friction`: the coefficient.
-   pure real(wp) function error_of_edge(status, friction) result(error)
+   !> The dissipation of the finer of two chains and its estimated error. `segment`: that of the chain.
+   subroutine find_dissipation(path, segment, coarser, finer)
+      class(contact_path_type), intent(inout) :: path
+      type(segment_type), intent(in) :: segment
+      type(chain_type), intent(in) :: coarser
+      type(chain_type), intent(inout) :: finer
+      !> If contact begins, the smooth sum is worse than the rates with fewer increments.
+      integer, parameter :: smooth_from = 8
+      real(wp) :: smooth, corners, difference, by_rates, error
+
+      call chain_dissipation(path%model, finer%before(1)%fields, finer%after, finer%begins, finer%changes, smooth, corners)
+      difference = abs(smooth - finer%node_wise)
+      finer%work = 0.5_wp*(max(smooth, 0.0_wp) + finer%node_wise)
+   finer%work_error = max(difference, abs(finer%node_wise - coarser%node_wise)*(real(coarser%increments, wp)/finer%increments)**2, &
+                             corners)
+      if (finer%begins .and. finer%increments > 1) then
+         call dissipation_by_rates(dissipation_rates(path, segment, finer), count(slips(finer%before(finer%increments)%status)), &
+                                   by_rates, error)
+         if (finer%increments >= smooth_from .and. abs(smooth - by_rates) < error) then
+            error = abs(smooth - by_rates)
+            by_rates = 0.5_wp*(smooth + by_rates)
+         end if
+         if (error < finer%work_error) then
+            finer%work = by_rates
+            finer%work_error = error
+         end if
+      end if
+      if (finer%node_wise_error <= finer%work_error) then
+         finer%work = finer%node_wise
+         finer%work_error = finer%node_wise_error
+      end if
+   end subroutine find_dissipation
+
+   !> The friction dissipation per unit of load at the ends of the increments of a chain, force, shape (increments).
+   function dissipation_rates(path, segment, chain) result(dissipated)
+      class(contact_path_type), intent(inout) :: path
+      type(segment_type), intent(in) :: segment
+      type(chain_type), intent(in) :: chain
+      real(wp) :: dissipated(chain%increments)
+      type(contact_fields_type) :: rates
+      logical :: found
+      integer :: i
+
+      dissipated = 0.0_wp
+      do i = 1, chain%increments
+         call find_rates_after(path, segment, chain, i, rates, found)
+         if (found) dissipated(i) = -path%model%force(chain%after(i)%shear*rates%slip())
+      end do
+   end function dissipation_rates
+
+   !> The rates at the end of increment `i` of a chain. `path` is unchanged.
+   subroutine find_rates_after(path, segment, chain, i, rates, found)
+      class(contact_path_type), intent(inout) :: path
+      type(segment_type), intent(in) :: segment
+      type(chain_type), intent(in) :: chain
+      integer, intent(in) :: i
+      type(contact_fields_type), intent(out) :: rates
+      logical, intent(out) :: found
+      type(contact_state_type) :: start
+
+      start = path%state
+      path%state = chain%before(i)
+      path%state%fields = chain%after(i)
+      call find_rates(path, segment, 1.0_wp, chain%after(i), rates, found)
+      path%state = start
+   end subroutine find_rates_after
+
+   !> Error of the tractions of a contact that has begun (`begins`) or grown in the interval, relative to the largest, by the
+   !> `status` of its nodes: see error_at_start and error_of_growth. An error at the edge of a contact without slip zones is
+   !> compared with the friction limit, since it changes the slip zones of later steps. `presses`: whether the normal load changes;
+   !> `friction`: the coefficient.
+   pure real(wp) function error_of_edge(status, begins, presses, friction) result(error)
       integer, intent(in) :: status(:)
+      logical, intent(in) :: begins, presses
       real(wp), intent(in) :: friction
       integer :: i, slipping
       logical :: inside
 
-      error = error_at_start
+      error = merge(error_at_start, merge(error_of_growth, 0.0_wp, presses), begins)
       slipping = 0
       inside = .false.
       do i = 1, size(status)
@@ -444,8 +538,9 @@ contains
             cycle
          end if
          if ((status(i) == node_open .and. inside) .or. (status(i) == node_stick .and. .not. inside)) then
-            if (slipping == 0) error = max(error, error_at_start/min(friction, 1.0_wp))
-            if (slipping > 0 .and. slipping < resolved) error = max(error, error_unresolved)
+            if (slipping < resolved .and. .not. begins) error = error_of_growth
+            if (slipping == 0 .and. begins) error = max(error, error_at_start/min(friction, 1.0_wp))
+            if (slipping > 0 .and. slipping < resolved .and. begins) error = max(error, error_unresolved)
          end if
          inside = status(i) == node_stick
          slipping = 0

@@ -113,14 +113,15 @@ contains
          fronts%group(from:to) = group
       end subroutine add_nodes
 
-      !> A zone of nodes that were open: both fronts from the node that was nearest.
+      !> A zone of nodes that were open: both fronts from the node that was nearest, which belongs to either of them.
       subroutine new_zone
-         integer :: middle
+         integer :: middle, from
 
          middle = first - 1 + minloc(gap(first:last), dim=1)
          if (first == 1 .or. last == n) return
          call add_scaled(left, first, middle, first - 1, middle)
-         if (last > middle) call add_scaled(right, middle + 1, last, last + 1, middle)
+         from = merge(middle + 1, middle, fronts%zone(middle) > 0)
+         if (from <= last) call add_scaled(right, from, last, last + 1, middle)
       end subroutine new_zone
 
       !> A front whose slip since the start is in proportion to the gap there, above that of the node `middle`.

@@ -8,7 +8,7 @@ module mfv_straight
    use mfv_contact_state, only: contact_state_type
    use mfv_contact_system, only: load_type
    use mfv_error, only: error_type
-   use mfv_first_violation, only: failed_certificate, apply_by_violations, tolerance_factor
+   use mfv_first_violation, only: apply_by_violations, most_residual
    use mfv_kinds, only: wp
    use mfv_motions, only: motion_approach, control_force
    use mfv_node_status
@@ -63,7 +63,7 @@ contains
       class(observer_type), intent(inout), optional :: observer
       type(error_type), allocatable, intent(out) :: error
 
-      if (path%certificate%largest() > max(failed_certificate, tolerance_factor*path%system%tolerance)) &
+      if (path%certificate%largest() > most_residual(path)) &
          call path%no_continuation('the equations are no longer satisfied (certificate '// &
                                    to_text(path%certificate%largest())//')', error)
       if (.not. allocated(error)) call path%notify(segment, fraction, observer, error)
@@ -82,6 +82,7 @@ contains
 
       do
          start = path%state
+         fields = start%fields
          call find_statuses_on_mesh(path, segment, fraction, fields, found, exceeded)
          if (found) return
          path%state = start
@@ -91,14 +92,14 @@ contains
       end do
    end subroutine find_statuses_and_grow
 
-   !> Statuses and fields at a fraction of the segment, on the present mesh. The first guess is the statuses of `path`, or an
-   !> estimate if nothing is in contact. `found`: whether there are any; if not, the statuses are invalid. `exceeded`: whether only
-   !> the mesh is too short. The fields of `path` remain those of the start. `held`: see find_statuses.
+   !> Statuses and fields at a fraction of the segment, on the present mesh. The first guess is `fields` and the statuses of `path`,
+   !> or an estimate if nothing is in contact. `found`: whether there are any; if not, the statuses are invalid. `exceeded`: whether
+   !> only the mesh is too short. The fields of `path` remain those of the start. `held`: see find_statuses.
    subroutine find_statuses_on_mesh(path, segment, fraction, fields, found, exceeded, held)
       class(contact_path_type), intent(inout) :: path
       type(segment_type), intent(in) :: segment
       real(wp), intent(in) :: fraction
-      type(contact_fields_type), intent(out) :: fields
+      type(contact_fields_type), intent(inout) :: fields
       logical, intent(out) :: found, exceeded
       logical, intent(in), optional :: held(:)
 
