@@ -525,7 +525,9 @@ contains
       integer :: i
       real(wp) :: force(motion_count)
 
-      force = [(self%contact%certificate%force_scale()*arm_unit(i, self%contact%model%length()), i=1, motion_count)]
+      associate (model => self%contact%model)
+         force = self%contact%certificate%force_scale()*arm_unit([(i, i=1, motion_count)], model%length(), model%compliance%modulus)
+      end associate
       associate (segment => self%leg%segment, fields => self%contact%state%fields)
          segment%load = load_towards(start_of(fields%force, fields%motion, targets), targets, force)
          segment%friction = step%friction
