@@ -464,6 +464,15 @@ static void wrong_numbers(void) {
     status = mfv_advance(b.handle, &step);
     CHECK((status == MFV_BAD_ARGUMENT) == !(isfinite(odd[i]) && odd[i] >= 0));
     CHECK(mfv_restore(b.handle, b.state) == MFV_COMPLETE);
+    step = (mfv_step)MFV_STEP_INIT;
+    step.control[MFV_LOWER_BULK] = MFV_DISPLACEMENT;
+    step.target[MFV_LOWER_BULK] = odd[i];
+    status = mfv_advance(b.handle, &step);
+    CHECK((status == MFV_BAD_ARGUMENT) == !isfinite(odd[i]));
+    CHECK(mfv_restore(b.handle, b.state) == MFV_COMPLETE);
+    status = mfv_stress_under(b.handle, MFV_LOWER, NODES, b.x, b.width, b.pressure, b.pressure, NULL, NULL, odd[i], 1, points, down,
+                              stresses, NULL, NULL);
+    CHECK((status == MFV_BAD_ARGUMENT) == !isfinite(odd[i]));
     CHECK(mfv_stress(b.handle, MFV_LOWER, 0, 2, points, down, stresses, NULL, NULL) == MFV_COMPLETE);
     CHECK(isfinite(odd[i]) || (isnan(stresses[0]) && isnan(stresses[MFV_STRESS_COUNT + MFV_VON_MISES])));
     status = mfv_tangent(b.handle, 2, direction, b.numbers);
@@ -508,6 +517,9 @@ static void wrong_numbers(void) {
     step.control[MFV_ROTATION] = whole[i];
     refused(&b, mfv_advance(b.handle, &step), "control");
     step = (mfv_step)MFV_STEP_INIT;
+    step.control[MFV_LOWER_BULK] = whole[i];
+    refused(&b, mfv_advance(b.handle, &step), "control");
+    step = (mfv_step)MFV_STEP_INIT;
     step.cycles = whole[i];
     int status = mfv_advance(b.handle, &step);
     CHECK(whole[i] == 3 || whole[i] == 7 || status == MFV_BAD_ARGUMENT);
@@ -520,6 +532,12 @@ static void wrong_numbers(void) {
     CHECK((mfv_status_text(whole[i], b.buffer, ROOM, b.other, ROOM) == MFV_COMPLETE) == (whole[i] == 3 || whole[i] == 7));
     CHECK(mfv_scene_set_integer(b.scene, "friction%mu", whole[i]) == MFV_COMPLETE);
   }
+  mfv_step step = MFV_STEP_INIT;
+  step.control[MFV_LOWER_BULK] = MFV_FORCE;
+  refused(&b, mfv_advance(b.handle, &step), "MFV_DISPLACEMENT");
+  step = (mfv_step)MFV_STEP_INIT;
+  step.control[MFV_UPPER_BULK] = MFV_DISPLACEMENT; /* the upper body is a rigid disk */
+  refused(&b, mfv_advance(b.handle, &step), "half-plane");
   still_works(&b, "wrong numbers");
   free_bench(&b);
 }
