@@ -50,7 +50,7 @@ contains
          do i = 1, motion_count
             if (.not. (motions(i)%optional .and. model%moves(i))) cycle
             if (motions(i)%is_stress) then
-               call add_line(text, motions(i)%key(:index(motions(i)%key, '_') - 1)//' bulk', amount(fields, trim(motions(i)%key)))
+               call add_line(text, motions(i)%key(:5)//' bulk stress', amount(fields, trim(motions(i)%key)))
             else
                call add_line(text, trim(motions(i)%force_name), amount(fields, trim(motions(i)%force_key))//', '// &
                              trim(motions(i)%key)//' '//amount(fields, trim(motions(i)%key)))
