@@ -34,12 +34,14 @@ typedef enum mfv_status {
  *   MFV_APPROACH  approach [length];                      normal force P >= 0 [force/length]
  *   MFV_SHIFT     shift [length], to the right;           tangential force Q [force/length], on the lower body to the right
  *   MFV_ROTATION  rotation [radians], counterclockwise;   moment M [force], counterclockwise, about the centre of rotation
- *   MFV_LOWER_BULK, MFV_UPPER_BULK   in place of a displacement a bulk stress: a uniform stress sigma_xx [force/length^2], positive in
- *                 tension, of an elastic body that deforms like a half-plane. Prescribe it with MFV_DISPLACEMENT. Its force is the
- *                 area [length^2] by which the shear tractions shorten the body. Since 0.10.0.
+ *   MFV_LOWER_BULK_STRESS, MFV_UPPER_BULK_STRESS
+ *                 in place of a displacement a bulk stress: a uniform stress sigma_xx [force/length^2], positive in tension, of an
+ *                 elastic body that deforms like a half-plane. Prescribe it with MFV_DISPLACEMENT. Its force is the area [length^2]
+ *                 by which the shear tractions shorten the body. Since 0.10.0.
  * Later versions may add motions. Arrays have MFV_MOTIONS members; the library refuses structures of another size: compile
  * again. */
-enum { MFV_APPROACH = 0, MFV_SHIFT = 1, MFV_ROTATION = 2, MFV_LOWER_BULK = 3, MFV_UPPER_BULK = 4, MFV_MOTIONS = 5 };
+enum { MFV_APPROACH = 0, MFV_SHIFT = 1, MFV_ROTATION = 2, MFV_LOWER_BULK_STRESS = 3, MFV_UPPER_BULK_STRESS = 4,
+       MFV_MOTIONS = 5 };
 
 /* Control of a motion in a step: hold its load, or prescribe its force or its displacement. */
 enum { MFV_KEEP = 0, MFV_FORCE = 1, MFV_DISPLACEMENT = 2 };
@@ -259,7 +261,7 @@ int mfv_stress(mfv_case *handle, int body, int step, size_t count, const double 
  * stick_edge: edges of contact and stick zones between the nodes, the left and the right one of each zone in turn, at any
  * nodes in ascending order, NaN at all others (state/contact_edge and state/stick_edge); or NULL: edges of contact are
  * located from the nodal tractions, those of stick zones are not. bulk_stress: a uniform sigma_xx of the body
- * [force/length^2], 0 for a disk or hole. stresses, place and tension may be NULL. Since 0.1.0; bulk_stress since 0.10.0. */
+ * [force/length^2], 0 for a disk or hole. stresses, place and tension may be NULL. Since 0.1.0. (bulk_stress: since 0.10.0.) */
 int mfv_stress_under(mfv_case *handle, int body, size_t nodes, const double *arc, const double *width,
                      const double *pressure, const double *shear, const double *contact_edge, const double *stick_edge,
                      double bulk_stress, size_t count, const double *x, const double *y, double *stresses, double *place, double *tension);

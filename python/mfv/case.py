@@ -62,7 +62,7 @@ _NO_TARGET: list[Any] = [0.0] * len(MOTIONS)
 
 #: Motion and control by the name of a target.
 _CONTROLLED = {
-    **{motion.force: (number, _FORCE) for number, motion in enumerate(MOTIONS)},
+    **{motion.force: (number, _FORCE) for number, motion in enumerate(MOTIONS) if not motion.is_stress},
     **{motion.displacement: (number, _DISPLACEMENT) for number, motion in enumerate(MOTIONS)},
 }
 

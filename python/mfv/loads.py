@@ -10,6 +10,13 @@ class Motion(NamedTuple):
 
     displacement: str
     force: str
+    #: Whether it is a bulk stress, in place of a displacement: a step cannot prescribe its force.
+    is_stress: bool = False
+
+    @property
+    def targets(self) -> tuple[str, ...]:
+        """The quantities that a step can prescribe, the force first."""
+        return (self.displacement,) if self.is_stress else (self.force, self.displacement)
 
 
 #: The motions in the order of the library (MFV_APPROACH, ...). What follows names the same, with types.
@@ -17,8 +24,8 @@ MOTIONS = (
     Motion("approach", "normal_force"),
     Motion("shift", "tangential_force"),
     Motion("rotation", "moment"),
-    Motion("lower_bulk_stress", "lower_contraction"),
-    Motion("upper_bulk_stress", "upper_contraction"),
+    Motion("lower_bulk_stress", "lower_contraction", is_stress=True),
+    Motion("upper_bulk_stress", "upper_contraction", is_stress=True),
 )
 
 

@@ -465,8 +465,8 @@ static void wrong_numbers(void) {
     CHECK((status == MFV_BAD_ARGUMENT) == !(isfinite(odd[i]) && odd[i] >= 0));
     CHECK(mfv_restore(b.handle, b.state) == MFV_COMPLETE);
     step = (mfv_step)MFV_STEP_INIT;
-    step.control[MFV_LOWER_BULK] = MFV_DISPLACEMENT;
-    step.target[MFV_LOWER_BULK] = odd[i];
+    step.control[MFV_LOWER_BULK_STRESS] = MFV_DISPLACEMENT;
+    step.target[MFV_LOWER_BULK_STRESS] = odd[i];
     status = mfv_advance(b.handle, &step);
     CHECK((status == MFV_BAD_ARGUMENT) == !isfinite(odd[i]));
     CHECK(mfv_restore(b.handle, b.state) == MFV_COMPLETE);
@@ -517,7 +517,7 @@ static void wrong_numbers(void) {
     step.control[MFV_ROTATION] = whole[i];
     refused(&b, mfv_advance(b.handle, &step), "control");
     step = (mfv_step)MFV_STEP_INIT;
-    step.control[MFV_LOWER_BULK] = whole[i];
+    step.control[MFV_LOWER_BULK_STRESS] = whole[i];
     refused(&b, mfv_advance(b.handle, &step), "control");
     step = (mfv_step)MFV_STEP_INIT;
     step.cycles = whole[i];
@@ -533,10 +533,10 @@ static void wrong_numbers(void) {
     CHECK(mfv_scene_set_integer(b.scene, "friction%mu", whole[i]) == MFV_COMPLETE);
   }
   mfv_step step = MFV_STEP_INIT;
-  step.control[MFV_LOWER_BULK] = MFV_FORCE;
+  step.control[MFV_LOWER_BULK_STRESS] = MFV_FORCE;
   refused(&b, mfv_advance(b.handle, &step), "MFV_DISPLACEMENT");
   step = (mfv_step)MFV_STEP_INIT;
-  step.control[MFV_UPPER_BULK] = MFV_DISPLACEMENT; /* the upper body is a rigid disk */
+  step.control[MFV_UPPER_BULK_STRESS] = MFV_DISPLACEMENT; /* the upper body is a rigid disk */
   refused(&b, mfv_advance(b.handle, &step), "half-plane");
   still_works(&b, "wrong numbers");
   free_bench(&b);
