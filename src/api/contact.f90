@@ -396,6 +396,7 @@ contains
       type(step_type), intent(in) :: step
       type(scene_type), intent(in) :: scene
       type(error_type), allocatable, intent(out) :: error
+      character(*), parameter :: why_not = ': it must be elastic and deform like a half-plane, not a disk, hole or matrix'
       integer :: wrong
       logical :: strains(motion_count)
 
@@ -408,10 +409,10 @@ contains
       else if (any(strains .and. step%control == control_force)) then
          call set_error(error, MFV_BAD_ARGUMENT, 'the control of a bulk stress must be MFV_KEEP or MFV_DISPLACEMENT, which '// &
                         'prescribes it')
-      else if (strains(motion_lower_bulk) .and. .not. scene%can_have_bulk_stress(.false.) .or. &
-               strains(motion_upper_bulk) .and. .not. scene%can_have_bulk_stress(.true.)) then
-         call set_error(error, MFV_BAD_ARGUMENT, 'only an elastic body that deforms like a half-plane can have a bulk stress, '// &
-                        'not a disk, a hole, a matrix or a rigid body')
+      else if (strains(motion_lower_bulk) .and. .not. scene%can_have_bulk_stress(.false.)) then
+         call set_error(error, MFV_BAD_ARGUMENT, 'the lower body cannot have a bulk stress'//why_not)
+      else if (strains(motion_upper_bulk) .and. .not. scene%can_have_bulk_stress(.true.)) then
+         call set_error(error, MFV_BAD_ARGUMENT, 'the upper body cannot have a bulk stress'//why_not)
       else if (.not. all(ieee_is_finite(step%target))) then
          call set_error(error, MFV_BAD_ARGUMENT, 'a target is not finite')
       else if (wrong > 0) then

@@ -516,8 +516,8 @@ contains
          call self%contact%record(merge(event_stopped, event_step_end, allocated(error)), 0, 0, self%leg%segment%step)
    end subroutine apply_leg
 
-   !> Whether a bulk stress changes in a segment. It moves the stick zone while the shear narrows it, so that an edge may turn within
-   !> the segment, which large increments do not resolve.
+   !> Whether a bulk stress changes in a segment. It moves the stick zone while the shear narrows it, so that an edge may turn
+   !> within the segment, which large increments do not resolve.
    pure logical function strains(segment)
       type(segment_type), intent(in) :: segment
 
