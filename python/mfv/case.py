@@ -256,9 +256,9 @@ class Case:
 
         Loads change linearly from their present values to the targets; a load without a target is constant. Prescribe
         `normal_force` [force/length] or `approach` [length], `tangential_force` or `shift` likewise, `moment` [force] or
-        `rotation` [radians], `lower_bulk_stress` and `upper_bulk_stress` [force/length^2]. `relative`: targets are increments of the present loads. `friction`: whether friction acts during
-        this step (None: it does, as for a Step). `cycles`: number of cycles to the targets and back; they end early when
-        the tractions of two consecutive cycles differ by at most `steady_tolerance` times the largest one (0: never).
+        `rotation` [radians], `lower_bulk_stress` and `upper_bulk_stress` [force/length^2]. `relative`: targets are increments
+        of the present loads. `friction`: whether friction acts during this step (None: it does, as for a Step). `cycles`:
+        number of cycles to the targets and back; they end early when the tractions of two consecutive cycles differ by at most `steady_tolerance` times the largest one (0: never).
         `check`: as for `run`.
         Raises BadArgument.
         """
