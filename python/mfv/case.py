@@ -258,8 +258,8 @@ class Case:
         `normal_force` [force/length] or `approach` [length], `tangential_force` or `shift` likewise, `moment` [force] or
         `rotation` [radians], `lower_bulk_stress` and `upper_bulk_stress` [force/length^2]. `relative`: targets are increments
         of the present loads. `friction`: whether friction acts during this step (None: it does, as for a Step). `cycles`:
-        number of cycles to the targets and back; they end early when the tractions of two consecutive cycles differ by at most `steady_tolerance` times the largest one (0: never).
-        `check`: as for `run`.
+        number of cycles to the targets and back; they end early when the tractions of two consecutive cycles differ by at most
+        `steady_tolerance` times the largest one (0: never). `check`: as for `run`.
         Raises BadArgument.
         """
         control, target = _NO_CONTROL.copy(), _NO_TARGET.copy()
