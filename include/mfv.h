@@ -29,13 +29,19 @@ typedef enum mfv_status {
   MFV_STATUS_COUNT
 } mfv_status;
 
-/* Motions of the upper body, and how many there are: indices of the arrays below. Each has a displacement and a force:
+/* Motions of the upper body and bulk stresses of either body, and how many there are: indices of the arrays below. Each has a
+ * displacement and a force:
  *   MFV_APPROACH  approach [length];                      normal force P >= 0 [force/length]
  *   MFV_SHIFT     shift [length], to the right;           tangential force Q [force/length], on the lower body to the right
  *   MFV_ROTATION  rotation [radians], counterclockwise;   moment M [force], counterclockwise, about the centre of rotation
- * Later versions may add motions: arrays have MFV_MOTIONS members, and the library takes their number from the size of a
- * structure. */
-enum { MFV_APPROACH = 0, MFV_SHIFT = 1, MFV_ROTATION = 2, MFV_MOTIONS = 3 };
+ *   MFV_LOWER_BULK_STRESS, MFV_UPPER_BULK_STRESS
+ *                 in place of a displacement a bulk stress: a uniform stress sigma_xx [force/length^2], positive in tension, of an
+ *                 elastic body that deforms like a half-plane. Prescribe it with MFV_DISPLACEMENT. Its force is the area [length^2]
+ *                 by which the shear tractions shorten the body. Since 0.10.0.
+ * Later versions may add motions. Arrays have MFV_MOTIONS members; the library refuses structures of another size: compile
+ * again. */
+enum { MFV_APPROACH = 0, MFV_SHIFT = 1, MFV_ROTATION = 2, MFV_LOWER_BULK_STRESS = 3, MFV_UPPER_BULK_STRESS = 4,
+       MFV_MOTIONS = 5 };
 
 /* Control of a motion in a step: hold its load, or prescribe its force or its displacement. */
 enum { MFV_KEEP = 0, MFV_FORCE = 1, MFV_DISPLACEMENT = 2 };
@@ -61,7 +67,8 @@ typedef struct mfv_step {
   int relative;               /* 1: targets are increments of the present loads */
   int unused[2];              /* 0 */
 } mfv_step;
-#define MFV_STEP_INIT {sizeof(mfv_step), {0.0, 0.0, 0.0}, 0.0, {MFV_KEEP, MFV_KEEP, MFV_KEEP}, 1, 0, 0, {0, 0}}
+#define MFV_STEP_INIT {sizeof(mfv_step), {0.0, 0.0, 0.0, 0.0, 0.0}, 0.0, {MFV_KEEP, MFV_KEEP, MFV_KEEP, MFV_KEEP, MFV_KEEP}, \
+                       1, 0, 0, {0, 0}}
 
 /* Version of the library, such as "0.1.0". Since 0.1.0. */
 int mfv_version(char *buffer, size_t size);
@@ -149,22 +156,22 @@ int mfv_message(const mfv_case *handle, char *buffer, size_t size);
 /* Loads and motions of the present state. */
 typedef struct mfv_loads {
   size_t size;                /* sizeof(mfv_loads) */
-  double force[MFV_MOTIONS];  /* of every motion: P, Q, M */
-  double motion[MFV_MOTIONS]; /* displacements of the upper body: approach, shift, rotation */
+  double force[MFV_MOTIONS];  /* of every motion: P, Q, M, and areas */
+  double motion[MFV_MOTIONS]; /* displacements of the upper body: approach, shift, rotation; and bulk stresses */
   double dissipation;         /* energy dissipated by friction so far [force] */
   int contact_nodes, stick_nodes, slip_nodes;
   int events;                 /* number of loads at which nodes have changed their status */
   int linear_solves;          /* so far */
   int unused;                 /* 0 */
 } mfv_loads;
-#define MFV_LOADS_INIT {sizeof(mfv_loads), {0.0, 0.0, 0.0}, {0.0, 0.0, 0.0}, 0.0, 0, 0, 0, 0, 0, 0}
+#define MFV_LOADS_INIT {sizeof(mfv_loads), {0.0, 0.0, 0.0, 0.0, 0.0}, {0.0, 0.0, 0.0, 0.0, 0.0}, 0.0, 0, 0, 0, 0, 0, 0}
 
 /* Present loads and motions; cheaper than the fields of "summary". Since 0.1.0. */
 int mfv_get_loads(const mfv_case *handle, mfv_loads *loads);
 
 /* Consistent tangent at the present state: tangent[i*motions + j] is the derivative of the force of motion i with respect to the
  * displacement of motion j, such as i = MFV_SHIFT, j = MFV_APPROACH. motions: 2 (the rotation is held, also if a moment is
- * prescribed) or MFV_MOTIONS. It is exact up to the next node that changes its status. The tangent depends on the direction of
+ * prescribed), 3 (with it) or MFV_MOTIONS. It is exact up to the next node that changes its status. The tangent depends on the direction of
  * loading: it is that of further motion in `direction` (an array of `motions` values, such as {0, 1} for a shift to the right, of
  * any length; with friction, if the scene has any); if `direction` is NULL, that of the last increment, with unchanged node
  * statuses. After a step that prescribed two motions at once, it differs across the direction of that step from the derivative of
@@ -244,8 +251,8 @@ enum {
  * the points x[i], y[i] [length], y up from the contact: stresses[i*MFV_STRESS_COUNT + MFV_SIGMA_XX] and so on. NaN
  * outside the body. The largest von Mises stress, found by refinement: place = {stress, x, y}. The largest tension along the
  * surface: tension likewise; NaN if it is singular (shear acts at a sharp corner of the body); its x and y are NaN if there is
- * no tension. stresses (then with count = 0), place and tension may be NULL. MFV_BAD_ARGUMENT for a rigid body or one given
- * by a matrix. Since 0.1.0. */
+ * no tension. x and y of either are NaN if the bulk stress far from the contact is the largest. stresses (then with count = 0),
+ * place and tension may be NULL. MFV_BAD_ARGUMENT for a rigid body or one given by a matrix. Since 0.1.0. */
 int mfv_stress(mfv_case *handle, int body, int step, size_t count, const double *x, const double *y, double *stresses,
                double *place, double *tension);
 
@@ -253,10 +260,11 @@ int mfv_stress(mfv_case *handle, int body, int step, size_t count, const double 
  * right) at `nodes` nodes with intervals of the lengths width[] around the positions arc[] along the surface. contact_edge,
  * stick_edge: edges of contact and stick zones between the nodes, the left and the right one of each zone in turn, at any
  * nodes in ascending order, NaN at all others (state/contact_edge and state/stick_edge); or NULL: edges of contact are
- * located from the nodal tractions, those of stick zones are not. stresses, place and tension may be NULL. Since 0.1.0. */
+ * located from the nodal tractions, those of stick zones are not. bulk_stress: a uniform sigma_xx of the body
+ * [force/length^2], 0 for a disk or hole. stresses, place and tension may be NULL. Since 0.1.0. (bulk_stress: since 0.10.0.) */
 int mfv_stress_under(mfv_case *handle, int body, size_t nodes, const double *arc, const double *width,
                      const double *pressure, const double *shear, const double *contact_edge, const double *stick_edge,
-                     size_t count, const double *x, const double *y, double *stresses, double *place, double *tension);
+                     double bulk_stress, size_t count, const double *x, const double *y, double *stresses, double *place, double *tension);
 
 /* Write the result file (HDF5) to `path`, or to the file of &output if `path` is NULL. An existing file is
  * replaced only by a complete one. Since 0.1.0. */

@@ -156,7 +156,7 @@ SIGNATURES: dict[str, tuple[type, ...]] = {
     "mfv_copy_real": (c_int, _handle, _text, _array, c_size_t),
     "mfv_copy_integer": (c_int, _handle, _text, POINTER(c_int32), c_size_t),
     "mfv_stress": (c_int, _handle, c_int, c_int, c_size_t, *(_array,) * 5),
-    "mfv_stress_under": (c_int, _handle, c_int, c_size_t, *(_array,) * 6, c_size_t, *(_array,) * 5),
+    "mfv_stress_under": (c_int, _handle, c_int, c_size_t, *(_array,) * 6, c_double, c_size_t, *(_array,) * 5),
     "mfv_write": (c_int, _handle, _text),
 }
 

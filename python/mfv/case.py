@@ -62,7 +62,7 @@ _NO_TARGET: list[Any] = [0.0] * len(MOTIONS)
 
 #: Motion and control by the name of a target.
 _CONTROLLED = {
-    **{motion.force: (number, _FORCE) for number, motion in enumerate(MOTIONS)},
+    **{motion.force: (number, _FORCE) for number, motion in enumerate(MOTIONS) if not motion.is_stress},
     **{motion.displacement: (number, _DISPLACEMENT) for number, motion in enumerate(MOTIONS)},
 }
 
@@ -256,10 +256,10 @@ class Case:
 
         Loads change linearly from their present values to the targets; a load without a target is constant. Prescribe
         `normal_force` [force/length] or `approach` [length], `tangential_force` or `shift` likewise, `moment` [force] or
-        `rotation` [radians]. `relative`: targets are increments of the present loads. `friction`: whether friction acts during
-        this step (None: it does, as for a Step). `cycles`: number of cycles to the targets and back; they end early when
-        the tractions of two consecutive cycles differ by at most `steady_tolerance` times the largest one (0: never).
-        `check`: as for `run`.
+        `rotation` [radians], `lower_bulk_stress` and `upper_bulk_stress` [force/length^2]. `relative`: targets are increments
+        of the present loads. `friction`: whether friction acts during this step (None: it does, as for a Step). `cycles`:
+        number of cycles to the targets and back; they end early when the tractions of two consecutive cycles differ by at most
+        `steady_tolerance` times the largest one (0: never). `check`: as for `run`.
         Raises BadArgument.
         """
         control, target = _NO_CONTROL.copy(), _NO_TARGET.copy()
@@ -317,8 +317,8 @@ class Case:
         (and moment) with respect to approach, shift (and rotation).
 
         The tangent of contact and friction depends on the direction of motion: `direction` has a number for every motion, such
-        as (0, 1) for a shift to the right; if omitted, the direction of the last step is used. `motions`: 2, or 3 with
-        rotation. Raises BadArgument if the contact does not determine it.
+        as (0, 1) for a shift to the right; if omitted, the direction of the last step is used. `motions`: 2, 3 with the
+        rotation, or 5 with the bulk stresses. Raises BadArgument if the contact does not determine it.
         """
         towards = None
         if direction is not None:

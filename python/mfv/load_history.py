@@ -15,7 +15,7 @@ from .loads import MOTIONS
 from .result import Field, Group, Result, is_last
 
 #: Keys of a step that prescribe a load or a displacement.
-LOADS = tuple(key for motion in MOTIONS for key in (motion.force, motion.displacement))
+LOADS = tuple(key for motion in MOTIONS for key in motion.targets)
 
 #: Keys of a step that this module knows; a step with any other cannot be divided.
 KNOWN = (*LOADS, "force_ratio", "friction", "cycles", "steady_tolerance")

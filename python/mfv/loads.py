@@ -1,4 +1,4 @@
-"""The motions of the upper body, the loads of a case, the progress of a run."""
+"""The motions of the upper body and the bulk stresses, the loads of a case, the progress of a run."""
 
 from __future__ import annotations
 
@@ -6,14 +6,27 @@ from typing import NamedTuple, TypedDict
 
 
 class Motion(NamedTuple):
-    """A motion of the upper body and its conjugate force: the names of keys, fields and attributes."""
+    """A motion of the upper body, or a bulk stress, and its conjugate force: the names of keys, fields and attributes."""
 
     displacement: str
     force: str
+    #: Whether it is a bulk stress, in place of a displacement: a step cannot prescribe its force.
+    is_stress: bool = False
+
+    @property
+    def targets(self) -> tuple[str, ...]:
+        """The quantities that a step can prescribe, the force first."""
+        return (self.displacement,) if self.is_stress else (self.force, self.displacement)
 
 
 #: The motions in the order of the library (MFV_APPROACH, ...). What follows names the same, with types.
-MOTIONS = (Motion("approach", "normal_force"), Motion("shift", "tangential_force"), Motion("rotation", "moment"))
+MOTIONS = (
+    Motion("approach", "normal_force"),
+    Motion("shift", "tangential_force"),
+    Motion("rotation", "moment"),
+    Motion("lower_bulk_stress", "lower_contraction", is_stress=True),
+    Motion("upper_bulk_stress", "upper_contraction", is_stress=True),
+)
 
 
 class Targets(TypedDict, total=False):
@@ -25,6 +38,8 @@ class Targets(TypedDict, total=False):
     shift: float | None  #: of the upper body to the right [length]
     moment: float | None  #: M [force], counterclockwise
     rotation: float | None  #: of the upper body [radians], counterclockwise
+    lower_bulk_stress: float | None  #: uniform sigma_xx of the lower body [force/length^2], positive in tension
+    upper_bulk_stress: float | None  #: the same of the upper body
 
 
 class Loads(NamedTuple):
@@ -33,9 +48,13 @@ class Loads(NamedTuple):
     normal_force: float  #: P [force/length]
     tangential_force: float  #: Q [force/length], on the lower body to the right
     moment: float  #: M [force], counterclockwise, about the centre of rotation
+    lower_contraction: float  #: area by which the shear tractions shorten the lower body [length^2], conjugate to its bulk stress
+    upper_contraction: float  #: the same of the upper body
     approach: float  #: of the upper body [length]
     shift: float  #: of the upper body to the right [length]
     rotation: float  #: of the upper body [radians], counterclockwise
+    lower_bulk_stress: float  #: uniform sigma_xx of the lower body [force/length^2], positive in tension
+    upper_bulk_stress: float  #: the same of the upper body
     dissipation: float  #: energy dissipated by friction so far [force]
     contact_nodes: int
     stick_nodes: int
@@ -55,9 +74,13 @@ class Progress(NamedTuple):
     normal_force: float  #: these as of Loads
     tangential_force: float
     moment: float
+    lower_contraction: float
+    upper_contraction: float
     approach: float
     shift: float
     rotation: float
+    lower_bulk_stress: float
+    upper_bulk_stress: float
 
     @property
     def done(self) -> float:

@@ -60,6 +60,8 @@ KEY_NUMBERS = (
     ("summary", "normal_force", "normal force P"),
     ("summary", "tangential_force", "tangential force Q"),
     ("summary", "moment", "moment M"),
+    ("summary", "lower_bulk_stress", "bulk stress of the lower body"),
+    ("summary", "upper_bulk_stress", "bulk stress of the upper body"),
     ("summary", "approach", "approach"),
     ("summary", "shift", "shift U"),
     ("summary", "edge_half_width", "contact half-width"),

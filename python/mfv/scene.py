@@ -300,6 +300,8 @@ class Step(KeyGroup):
     force_ratio: float | None = None
     moment: float | None = None
     rotation: float | None = None
+    lower_bulk_stress: float | None = None
+    upper_bulk_stress: float | None = None
     friction: bool | None = None
     cycles: int | None = None
     steady_tolerance: float | None = None

@@ -53,7 +53,7 @@ class StressField:
     y: Array
     values: dict[str, Array]
     #: Half the length of the loaded surface, its middle, the largest pressure, the largest von Mises stress, the largest tension along
-    #: the surface (NaN if it is singular; its place is NaN without tension).
+    #: the surface (NaN if it is singular; its place is NaN without tension). Places are NaN if the bulk stress is the largest.
     half_width: float
     middle: float
     largest_pressure: float
@@ -86,6 +86,7 @@ def stress(result: Result, x: ArrayLike, y: ArrayLike, *, body: str = "lower", s
             BODIES.index(body),
             arc.size,
             *map(real_pointer, loads),
+            _bulk_stress(result, body, step),
             across.size,
             *map(real_pointer, (across, up, values, largest, tension)),
         )
@@ -159,6 +160,12 @@ def surface(result: Result, body: str, x: Array) -> Array:
 def _arc(result: Result) -> Array:
     """Positions of the nodes along the surface."""
     return np.ascontiguousarray(result.mesh.arc if "arc" in result.mesh else result.mesh.x)
+
+
+def _bulk_stress(result: Result, body: str, step: int | None) -> float:
+    """The bulk stress of a body, 0 in a result without."""
+    loads = result.summary if step is None else result.steps[step - 1]
+    return float(loads.get(f"{body}_bulk_stress", 0.0))
 
 
 def _loaded_surface(result: Result, step: int | None) -> tuple[float, float]:

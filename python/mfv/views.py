@@ -37,7 +37,13 @@ ROTATIONAL = Curve("rotation", "moment", ("rotation", "\N{GREEK SMALL LETTER PHI
 NORMAL = Curve("approach", "normal_force", ("approach", "h"), ("normal force", "P"))
 
 #: Loads that a state is described by, with their symbols.
-LOADS = (("P", "normal_force"), ("Q", "tangential_force"), ("M", "moment"))
+LOADS = (
+    ("P", "normal_force"),
+    ("Q", "tangential_force"),
+    ("M", "moment"),
+    ("lower \N{GREEK SMALL LETTER SIGMA}", "lower_bulk_stress"),
+    ("upper \N{GREEK SMALL LETTER SIGMA}", "upper_bulk_stress"),
+)
 
 
 def curve_of(result: Result) -> Curve:

@@ -9,8 +9,8 @@ module mfv_contact
    use mfv_contact_fields, only: contact_fields_type
    use mfv_contact_state, only: contact_state_type
    use mfv_discretisation_error, only: estimate_error, has_coarser_meshes
-   use mfv_motions, only: motions, motion_count, motion_approach, motion_shift, motion_rotation, control_keep, control_force, &
-                          control_displacement
+   use mfv_motions, only: motions, motion_count, motion_approach, motion_shift, motion_rotation, motion_lower_bulk, &
+                          motion_upper_bulk, control_keep, control_force, control_displacement
    use mfv_sensitivity, only: find_sensitivity
    use mfv_draft, only: draft_type
    use mfv_error, only: error_type, set_error
@@ -23,7 +23,7 @@ module mfv_contact
    use mfv_refinement, only: refine_at_edges
    use mfv_result_file, only: check_writable, is_whole_result, resume_result, write_result
    use mfv_safe_file, only: delete_path
-   use mfv_scene, only: most_cycles, step_type
+   use mfv_scene, only: most_cycles, scene_type, step_type
    use mfv_simulation, only: new_simulation, simulation_type
    use mfv_state_interior, only: state_interior
    use mfv_status
@@ -39,8 +39,9 @@ module mfv_contact
    !> Invalid control: a force and a displacement for one direction.
    integer, parameter :: control_both = -huge(1)
 
-   !> Loads and motions of a state, of motion_approach, motion_shift and motion_rotation: forces [force/length], moment [force];
-   !> lengths, radians; dissipation [force]; and counts.
+   !> Loads and motions of a state, of motion_approach, motion_shift, motion_rotation, motion_lower_bulk and motion_upper_bulk:
+   !> forces [force/length], moment [force], areas [length^2]; lengths, radians, bulk stresses [force/length^2]; dissipation
+   !> [force]; and counts.
    type :: loads_type
       real(wp) :: force(motion_count) = 0.0_wp, motion(motion_count) = 0.0_wp, dissipation = 0.0_wp
       integer :: contact_nodes = 0, stick_nodes = 0, slip_nodes = 0, events = 0, linear_solves = 0
@@ -361,7 +362,7 @@ contains
       if (present(relative)) then
          if (relative) call add_present(self%simulation%contact%state%fields, absolute)
       end if
-      call check_step(absolute, error)
+      call check_step(absolute, self%case%scene, error)
       if (allocated(error)) return
       if (self%simulation%outcome == MFV_INTERRUPTED) then
          self%simulation%outcome = MFV_COMPLETE
@@ -374,11 +375,12 @@ contains
       call self%simulation%advance(absolute, observer=observer)
    end subroutine advance
 
-   !> A step to the given targets: normal_force or approach, tangential_force or shift, moment or rotation; units and the rest as in
-   !> step_type.
-   pure function step_to(normal_force, approach, tangential_force, shift, moment, rotation, friction, cycles, steady_tolerance) &
-      result(step)
-      real(wp), intent(in), optional :: normal_force, approach, tangential_force, shift, moment, rotation, steady_tolerance
+   !> A step to the given targets: normal_force or approach, tangential_force or shift, moment or rotation, bulk stresses; units and
+   !> the rest as in step_type.
+   pure function step_to(normal_force, approach, tangential_force, shift, moment, rotation, friction, cycles, steady_tolerance, &
+                         lower_bulk_stress, upper_bulk_stress) result(step)
+      real(wp), intent(in), optional :: normal_force, approach, tangential_force, shift, moment, rotation, steady_tolerance, &
+                                        lower_bulk_stress, upper_bulk_stress
       logical, intent(in), optional :: friction
       integer, intent(in), optional :: cycles
       type(step_type) :: step
@@ -386,6 +388,8 @@ contains
       call choose(normal_force, approach, step%control(motion_approach), step%target(motion_approach))
       call choose(tangential_force, shift, step%control(motion_shift), step%target(motion_shift))
       call choose(moment, rotation, step%control(motion_rotation), step%target(motion_rotation))
+      call choose(displacement=lower_bulk_stress, control=step%control(motion_lower_bulk), target=step%target(motion_lower_bulk))
+      call choose(displacement=upper_bulk_stress, control=step%control(motion_upper_bulk), target=step%target(motion_upper_bulk))
       if (present(friction)) step%friction = friction
       if (present(cycles)) step%cycles = cycles
       if (present(steady_tolerance)) step%steady_tolerance = steady_tolerance
@@ -415,17 +419,28 @@ contains
       where (step%control == control_displacement) step%target = step%target + fields%motion
    end subroutine add_present
 
-   !> Error MFV_BAD_ARGUMENT for an invalid step.
-   subroutine check_step(step, error)
+   !> Error MFV_BAD_ARGUMENT for a step that is not possible in `scene`.
+   subroutine check_step(step, scene, error)
       type(step_type), intent(in) :: step
+      type(scene_type), intent(in) :: scene
       type(error_type), allocatable, intent(out) :: error
+      character(*), parameter :: why_not = ': it must be elastic and deform like a half-plane, not a disk, hole or matrix'
       integer :: wrong
+      logical :: strains(motion_count)
 
+      strains = motions%is_stress .and. step%control /= control_keep
       wrong = findloc(motions%pushes .and. step%control == control_force .and. step%target < 0.0_wp, .true., dim=1)
       if (any(step%control == control_both)) then
          call set_error(error, MFV_BAD_ARGUMENT, 'prescribe either the force or the displacement of a direction, not both')
       else if (any(step%control < control_keep .or. step%control > control_displacement)) then
          call set_error(error, MFV_BAD_ARGUMENT, 'a control must be MFV_KEEP, MFV_FORCE or MFV_DISPLACEMENT')
+      else if (any(strains .and. step%control == control_force)) then
+         call set_error(error, MFV_BAD_ARGUMENT, 'the control of a bulk stress must be MFV_KEEP or MFV_DISPLACEMENT, which '// &
+                        'prescribes it')
+      else if (strains(motion_lower_bulk) .and. .not. scene%can_have_bulk_stress(.false.)) then
+         call set_error(error, MFV_BAD_ARGUMENT, 'the lower body cannot have a bulk stress'//why_not)
+      else if (strains(motion_upper_bulk) .and. .not. scene%can_have_bulk_stress(.true.)) then
+         call set_error(error, MFV_BAD_ARGUMENT, 'the upper body cannot have a bulk stress'//why_not)
       else if (.not. all(ieee_is_finite(step%target))) then
          call set_error(error, MFV_BAD_ARGUMENT, 'a target is not finite')
       else if (wrong > 0) then
@@ -469,8 +484,8 @@ contains
       loads%linear_solves = self%simulation%contact%system%solves
    end function loads
 
-   !> The consistent tangent at the present state, see mfv_tangent. `tangent`: shape (2, 2) with fixed rotation, or (3, 3);
-   !> `direction` of further motion: shape (2) or (3). Error MFV_BAD_ARGUMENT.
+   !> The consistent tangent at the present state, see mfv_tangent. `tangent`: of the first 2 motions, or more, up to motion_count;
+   !> `direction` of further motion: of the same motions. Error MFV_BAD_ARGUMENT.
    subroutine get_tangent(self, tangent, error, direction)
       class(contact_type), intent(in) :: self
       real(wp), intent(out) :: tangent(:, :)
@@ -481,7 +496,7 @@ contains
       call self%expect_made(error)
       if (allocated(error)) return
       if (size(tangent, 1) /= size(tangent, 2) .or. size(tangent, 1) < 2 .or. size(tangent, 1) > motion_count) then
-         call set_error(error, MFV_BAD_ARGUMENT, 'the tangent must have 2 motions, or 3 with rotation')
+         call set_error(error, MFV_BAD_ARGUMENT, 'the tangent must have from 2 to '//to_text(motion_count)//' motions')
          return
       end if
       if (present(direction)) then
@@ -683,17 +698,22 @@ contains
 
    !> A body under tractions (on the lower body, to the right; force/length^2) at nodes with the intervals `width` around `arc`
    !> along the surface; `contact_edge`, `stick_edge`: edges between them, as in the state of a result, NaN if there is
-   !> none; shapes (nodes). Error MFV_BAD_ARGUMENT: no such body, a rigid one or a matrix.
-   subroutine make_interior(self, body, arc, width, pressure, shear, contact_edge, stick_edge, interior, error)
+   !> none; shapes (nodes). `bulk_stress`: see step_to. Error MFV_BAD_ARGUMENT: no such body, a rigid one or a matrix; a bulk stress
+   !> in a disk or hole.
+   subroutine make_interior(self, body, arc, width, pressure, shear, contact_edge, stick_edge, bulk_stress, interior, error)
       class(contact_type), intent(in) :: self
       integer, intent(in) :: body
       real(wp), intent(in), dimension(:) :: arc, width, pressure, shear, contact_edge, stick_edge
+      real(wp), intent(in) :: bulk_stress
       type(interior_type), intent(out) :: interior
       type(error_type), allocatable, intent(out) :: error
       logical :: available
 
-      call self%case%scene%interior(body == body_upper, arc, width, pressure, shear, contact_edge, stick_edge, interior, available)
+      call self%case%scene%interior(body == body_upper, arc, width, pressure, shear, contact_edge, stick_edge, bulk_stress, &
+                                    interior, available)
       call expect_inside(body, available, error)
+      if (abs(bulk_stress) > 0.0_wp .and. .not. self%case%scene%can_have_bulk_stress(body == body_upper) .and. &
+          .not. allocated(error)) call set_error(error, MFV_BAD_ARGUMENT, 'a disk or hole cannot have a bulk stress')
    end subroutine make_interior
 
    !> Error MFV_BAD_ARGUMENT for an invalid body number or a body without interior stresses.

@@ -56,8 +56,8 @@ CASE(mfv_stress,
      (object, body, step, count, x, y, stresses, place, tension))
 CASE(mfv_stress_under,
      (mfv_case *handle, int body, size_t nodes, const double *arc, const double *width, const double *pressure, const double *shear,
-      const double *contact_edge, const double *stick_edge, size_t count, const double *x, const double *y, double *stresses,
-      double *place, double *tension),
-     (object, body, nodes, arc, width, pressure, shear, contact_edge, stick_edge, count, x, y, stresses, place, tension))
+      const double *contact_edge, const double *stick_edge, double bulk_stress, size_t count, const double *x, const double *y,
+      double *stresses, double *place, double *tension),
+     (object, body, nodes, arc, width, pressure, shear, contact_edge, stick_edge, bulk_stress, count, x, y, stresses, place, tension))
 CASE(mfv_write, (mfv_case *handle, const char *path), (object, path))
 GUARD(mfv_message, MFV_KIND_CASE, MFV_READING, (const mfv_case *handle, char *buffer, size_t size), (object, buffer, size))

@@ -597,7 +597,7 @@ contains
       real(wp) :: found(motion_count, motion_count)
 
       call c_f_pointer(handle, self)
-      status = expected(self, motions >= 2 .and. motions <= motion_count, 'mfv_tangent: motions must be 2, or 3 with rotation')
+      status = expected(self, motions >= 2 .and. motions <= motion_count, 'mfv_tangent: motions must be from 2 to MFV_MOTIONS')
       if (status /= MFV_COMPLETE) return
       status = expected(self, present(tangent), 'mfv_tangent: tangent is null')
       if (status /= MFV_COMPLETE) return
@@ -923,11 +923,12 @@ contains
    end function place_of
 
    integer(c_int) function mfv_stress_under_unguarded(handle, body, nodes, arc, width, pressure, shear, contact_edge, stick_edge, &
-                                                      count, x, y, stresses, place, tension) result(status) bind(C)
+                                                      bulk_stress, count, x, y, stresses, place, tension) result(status) bind(C)
       type(c_ptr), value :: handle
       integer(c_int), value :: body
       integer(c_size_t), value :: nodes, count
       real(c_double), intent(in), optional, dimension(nodes) :: arc, width, pressure, shear, contact_edge, stick_edge
+      real(c_double), value :: bulk_stress
       real(c_double), intent(in), optional :: x(count), y(count)
       real(c_double), intent(inout), optional :: stresses(stress_count, count), place(3), tension(3)
       type(handle_type), pointer :: self
@@ -941,12 +942,12 @@ contains
       if (status /= MFV_COMPLETE) return
       status = expected(self, is_size(nodes), 'mfv_stress_under: nodes must be at least 1 and the number of tractions')
       if (status /= MFV_COMPLETE) return
-      usable = all(ieee_is_finite([arc, width, pressure, shear]))
+      usable = all(ieee_is_finite([arc, width, pressure, shear, bulk_stress]))
       if (usable) usable = all(width > 0.0_wp)
       status = expected(self, usable, 'mfv_stress_under: values must be finite and widths positive')
       if (status /= MFV_COMPLETE) return
       call self%contact%make_interior(int(body), arc, width, pressure, shear, edges_or_nan(nodes, contact_edge), &
-                                      edges_or_nan(nodes, stick_edge), interior, error)
+                                      edges_or_nan(nodes, stick_edge), bulk_stress, interior, error)
       status = failed(self, error)
       if (status == MFV_COMPLETE) status = answered(self, interior, count, x, y, stresses, place, tension)
    end function mfv_stress_under_unguarded

@@ -1,6 +1,6 @@
-!> Stresses inside a body of a scene under its surface tractions: coordinates, signs and invariants. Tractions are continuous
-!> between nodes, see mfv_surface_tractions. x to the right and y up from the initial point of contact; the upper body is the
-!> mirror image of a lower one with the shear reversed.
+!> Stresses inside a body of a scene under its surface tractions and, in a half-plane, a uniform bulk stress: coordinates, signs
+!> and invariants. Tractions are continuous between nodes, see mfv_surface_tractions. x to the right and y up from the initial point
+!> of contact; the upper body is the mirror image of a lower one with the shear reversed.
 module mfv_interior
    use, intrinsic :: ieee_arithmetic, only: ieee_is_finite, ieee_is_nan, ieee_quiet_nan, ieee_value
    use mfv_body, only: body_type, shape_disk, shape_hole, shape_matrix
@@ -38,10 +38,13 @@ module mfv_interior
       type(circle_load_type) :: circle
       !> Largest pressure at the nodes, force/length^2; unit of the elements of a half-plane, length.
       real(wp) :: peak = 0.0_wp, length = 1.0_wp
+      !> Bulk stress of a half-plane: a uniform sigma_xx, force/length^2.
+      real(wp) :: bulk = 0.0_wp
    contains
       procedure :: stress
       procedure :: all_stresses
       procedure :: surface_stress
+      procedure :: remote_stress
       procedure :: half_width
       procedure :: surface
       procedure :: middle
@@ -172,6 +175,7 @@ contains
       else
          values(:3) = half_plane_stress(self%elements%from, self%elements%to, self%elements%first, self%elements%last, &
                                         x/self%length, abs(y)/self%length)
+         values(stress_xx) = values(stress_xx) + self%bulk
       end if
       values(stress_xy) = self%side*values(stress_xy)
       values(stress_zz) = self%out_of_plane*(values(stress_xx) + values(stress_yy))
@@ -186,9 +190,19 @@ contains
          surface_stress = self%circle%surface_stress(arc/self%body%radius)
       else
          surface_stress = half_plane_surface_stress(self%elements%from, self%elements%to, self%elements%first, &
-                                                    self%elements%last, arc/self%length)
+                                                    self%elements%last, arc/self%length) + self%bulk
       end if
    end function surface_stress
+
+   !> Stresses as of `stress` far from the contact, force/length^2.
+   pure function remote_stress(self) result(values)
+      class(interior_type), intent(in) :: self
+      real(wp) :: values(4)
+
+      values = 0.0_wp
+      values(stress_xx) = self%bulk
+      values(stress_zz) = self%out_of_plane*self%bulk
+   end function remote_stress
 
    !> All stresses of `stress_names` at (x, y), force/length^2, and the direction in radians; NaN outside the body; polar
    !> stresses NaN in a half-plane.

@@ -24,7 +24,8 @@ contains
 
    !> Largest von Mises stress. The best points of a coarse grid below the contact, graded towards the surface, are refined by
    !> a simplex search (GSL), those on the surface along it. A disk is searched to half its radius, and not where stresses
-   !> only rise towards the force at its centre. Zero without load.
+   !> only rise towards the force at its centre. Zero without load; of the bulk stress, with `x` and `y` NaN, if the contact raises
+   !> it nowhere.
    type(largest_type) function largest_von_mises(interior) result(largest)
       type(interior_type), intent(in) :: interior
       integer, parameter :: across = 41, down = 21, starts = 6, neighbours = 2
@@ -34,6 +35,9 @@ contains
       type(search_type) :: search
       integer :: best(2), i, j, start
 
+      largest%value = von_mises_stress(interior%remote_stress())
+      if (largest%value > 0.0_wp) largest%x = ieee_value(1.0_wp, ieee_quiet_nan)
+      largest%y = largest%x
       length = 2.0_wp*interior%half_width()
       if (.not. length > 0.0_wp) return
       reach = length
@@ -89,25 +93,24 @@ contains
 
    !> Largest tension at the surface, force/length^2: at edges of contact and stick zones, where it has cusps, between them
    !> and beside the contact (on a circle, everywhere). NaN where tractions are singular, at the end of a surface under shear;
-   !> `x` and `y` are NaN without any tension.
+   !> `x` and `y` are NaN without any tension, and if the bulk stress is the largest.
    type(largest_type) function largest_tension(interior) result(largest)
       type(interior_type), intent(in) :: interior
-      real(wp) :: place, point(2)
+      real(wp) :: place, point(2), value
 
       largest%x = ieee_value(1.0_wp, ieee_quiet_nan)
       largest%y = largest%x
+      largest%value = max(interior%bulk, 0.0_wp)
       if (.not. interior%half_width() > 0.0_wp) return
       if (.not. interior%body%circular() .and. .not. interior%is_sheared()) return
-      largest%value = ieee_value(1.0_wp, ieee_quiet_nan)
-      if (interior%elements%singular) return
-      call refine_on_surface(interior, candidates(interior), .false., place, largest%value)
-      if (largest%value > 0.0_wp) then
-         point = interior%point_at(place, 0.0_wp)
-         largest%x = point(1)
-         largest%y = point(2)
-      else
-         largest%value = 0.0_wp
+      if (interior%elements%singular) then
+         largest%value = ieee_value(1.0_wp, ieee_quiet_nan)
+         return
       end if
+      call refine_on_surface(interior, candidates(interior), .false., place, value)
+      if (.not. value > largest%value) return
+      point = interior%point_at(place, 0.0_wp)
+      largest = largest_type(value, point(1), point(2))
    end function largest_tension
 
    !> Candidate points for the largest tension, ascending: zone edges, some knots between them, and points beside the contact

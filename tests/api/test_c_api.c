@@ -228,11 +228,11 @@ static void stresses_inside(void) {
   CHECK(place[0] > stress[MFV_STRESS_COUNT + MFV_VON_MISES] / 2 && place[2] < 0 && fabs(place[1]) < 1e-4);
   CHECK(mfv_stress(handle, MFV_LOWER, 0, 0, NULL, NULL, NULL, place, NULL) == MFV_COMPLETE);
   double *contact_edge = array(handle, "state/contact_edge", &nodes), *stick_edge = array(handle, "state/stick_edge", &nodes);
-  CHECK(mfv_stress_under(handle, MFV_LOWER, nodes, x, width, pressure, shear, contact_edge, stick_edge, 0, NULL, NULL, NULL, again,
+  CHECK(mfv_stress_under(handle, MFV_LOWER, nodes, x, width, pressure, shear, contact_edge, stick_edge, 0.0, 0, NULL, NULL, NULL, again,
                          NULL) == MFV_COMPLETE);
   CHECK(memcmp(place, again, sizeof place) == 0);
   CHECK(mfv_stress(handle, MFV_LOWER, 0, 0, NULL, NULL, NULL, NULL, place) == MFV_COMPLETE && place[0] > 0 && place[2] == 0);
-  CHECK(mfv_stress_under(handle, MFV_LOWER, nodes, x, width, pressure, shear, contact_edge, stick_edge, 0, NULL, NULL, NULL, NULL,
+  CHECK(mfv_stress_under(handle, MFV_LOWER, nodes, x, width, pressure, shear, contact_edge, stick_edge, 0.0, 0, NULL, NULL, NULL, NULL,
                          again) == MFV_COMPLETE);
   CHECK(memcmp(place, again, sizeof place) == 0);
   free(contact_edge);

@@ -344,7 +344,7 @@ static void misuse_is_told(void) {
   other = created(scene);
   CHECK(mfv_restore(other, state) == MFV_BAD_ARGUMENT);
   CHECK(mfv_message(other, message, sizeof message) == MFV_COMPLETE && strstr(message, "another scene") != NULL);
-  CHECK(mfv_tangent(handle, 4, NULL, tangent) == MFV_BAD_ARGUMENT && mfv_tangent(handle, 2, NULL, NULL) == MFV_BAD_ARGUMENT);
+  CHECK(mfv_tangent(handle, MFV_MOTIONS + 1, NULL, tangent) == MFV_BAD_ARGUMENT && mfv_tangent(handle, 2, NULL, NULL) == MFV_BAD_ARGUMENT);
   CHECK(mfv_tangent(handle, 2000000, NULL, tangent) == MFV_BAD_ARGUMENT && mfv_tangent(handle, -1, NULL, tangent) == MFV_BAD_ARGUMENT);
   const double none[2] = {0, 0}, infinite[2] = {0, INFINITY};
   CHECK(mfv_tangent(handle, 2, none, tangent) == MFV_BAD_ARGUMENT && mfv_tangent(handle, 2, infinite, tangent) == MFV_BAD_ARGUMENT);

@@ -197,7 +197,7 @@ ROW(mfv_stress) {
 }
 ROW(mfv_stress_under) {
   return mfv_stress_under(OR_NULL(0, b->handle), MFV_LOWER, NODES, OR_NULL(1, b->x), OR_NULL(2, b->width), OR_NULL(3, b->pressure),
-                          OR_NULL(4, b->pressure), OR_NULL(5, b->x), OR_NULL(6, b->x), NODES, OR_NULL(7, b->x), OR_NULL(8, b->x),
+                          OR_NULL(4, b->pressure), OR_NULL(5, b->x), OR_NULL(6, b->x), 0.0, NODES, OR_NULL(7, b->x), OR_NULL(8, b->x),
                           OR_NULL(9, b->numbers), OR_NULL(10, b->direction), OR_NULL(11, b->direction));
 }
 ROW(mfv_write) { return mfv_write(OR_NULL(0, b->handle), OR_NULL(1, "no/such/folder/x.h5")); }
@@ -419,9 +419,9 @@ static void wrong_sizes(void) {
     refused(&b, mfv_attribute_name(b.handle, size, b.buffer, ROOM), "attributes");
     if (size == INT_MAX) continue;
     refused(&b, mfv_stress(b.handle, MFV_LOWER, 0, size, b.x, b.x, b.numbers, NULL, NULL), "count");
-    refused(&b, mfv_stress_under(b.handle, MFV_LOWER, size, b.x, b.width, b.pressure, b.pressure, NULL, NULL, 0, NULL, NULL, NULL, b.numbers, NULL),
+    refused(&b, mfv_stress_under(b.handle, MFV_LOWER, size, b.x, b.width, b.pressure, b.pressure, NULL, NULL, 0.0, 0, NULL, NULL, NULL, b.numbers, NULL),
             "nodes");
-    refused(&b, mfv_stress_under(b.handle, MFV_LOWER, NODES, b.x, b.width, b.pressure, b.pressure, NULL, NULL, size, b.x, b.x, b.numbers, NULL, NULL),
+    refused(&b, mfv_stress_under(b.handle, MFV_LOWER, NODES, b.x, b.width, b.pressure, b.pressure, NULL, NULL, 0.0, size, b.x, b.x, b.numbers, NULL, NULL),
             "count");
     CHECK(mfv_scene_set_reals(b.scene, "friction%mu", b.x, size) == MFV_BAD_ARGUMENT);
     CHECK(mfv_scene_set_data(b.scene, "file", "x", size, 1, b.x) == MFV_BAD_ARGUMENT);
@@ -429,7 +429,7 @@ static void wrong_sizes(void) {
   }
   CHECK(mfv_scene_set_reals(b.scene, "friction%mu", b.x, 0) == MFV_BAD_ARGUMENT);
   CHECK(mfv_stress(b.handle, MFV_LOWER, 0, 0, NULL, NULL, NULL, NULL, NULL) == MFV_COMPLETE);
-  refused(&b, mfv_stress_under(b.handle, MFV_LOWER, 0, b.x, b.width, b.pressure, b.pressure, NULL, NULL, 0, NULL, NULL, NULL, b.numbers, NULL),
+  refused(&b, mfv_stress_under(b.handle, MFV_LOWER, 0, b.x, b.width, b.pressure, b.pressure, NULL, NULL, 0.0, 0, NULL, NULL, NULL, b.numbers, NULL),
             "nodes");
   /* Texts are cut to the room that there is. */
   char tiny[2] = "z";
@@ -464,6 +464,15 @@ static void wrong_numbers(void) {
     status = mfv_advance(b.handle, &step);
     CHECK((status == MFV_BAD_ARGUMENT) == !(isfinite(odd[i]) && odd[i] >= 0));
     CHECK(mfv_restore(b.handle, b.state) == MFV_COMPLETE);
+    step = (mfv_step)MFV_STEP_INIT;
+    step.control[MFV_LOWER_BULK_STRESS] = MFV_DISPLACEMENT;
+    step.target[MFV_LOWER_BULK_STRESS] = odd[i];
+    status = mfv_advance(b.handle, &step);
+    CHECK((status == MFV_BAD_ARGUMENT) == !isfinite(odd[i]));
+    CHECK(mfv_restore(b.handle, b.state) == MFV_COMPLETE);
+    status = mfv_stress_under(b.handle, MFV_LOWER, NODES, b.x, b.width, b.pressure, b.pressure, NULL, NULL, odd[i], 1, points, down,
+                              stresses, NULL, NULL);
+    CHECK((status == MFV_BAD_ARGUMENT) == !isfinite(odd[i]));
     CHECK(mfv_stress(b.handle, MFV_LOWER, 0, 2, points, down, stresses, NULL, NULL) == MFV_COMPLETE);
     CHECK(isfinite(odd[i]) || (isnan(stresses[0]) && isnan(stresses[MFV_STRESS_COUNT + MFV_VON_MISES])));
     status = mfv_tangent(b.handle, 2, direction, b.numbers);
@@ -488,14 +497,14 @@ static void wrong_numbers(void) {
       memcpy(list[2], b.pressure, sizeof b.pressure);
       memcpy(list[3], b.pressure, sizeof b.pressure);
       list[k][3] = odd[i];
-      status = mfv_stress_under(b.handle, MFV_LOWER, NODES, list[0], list[1], list[2], list[3], NULL, NULL, 1, points, down, stresses,
+      status = mfv_stress_under(b.handle, MFV_LOWER, NODES, list[0], list[1], list[2], list[3], NULL, NULL, 0.0, 1, points, down, stresses,
                                 NULL, NULL);
       CHECK(status == MFV_COMPLETE || status == MFV_BAD_ARGUMENT);
       CHECK(isfinite(odd[i]) || status == MFV_BAD_ARGUMENT);
       /* Edges are the caller's too: what is no zone is none. */
       memcpy(edges, b.x, sizeof edges);
       edges[k] = odd[i];
-      status = mfv_stress_under(b.handle, MFV_LOWER, NODES, b.x, b.width, b.pressure, b.pressure, edges, edges, 1, points, down, stresses,
+      status = mfv_stress_under(b.handle, MFV_LOWER, NODES, b.x, b.width, b.pressure, b.pressure, edges, edges, 0.0, 1, points, down, stresses,
                                 NULL, b.numbers);
       CHECK(status == MFV_COMPLETE);
     }
@@ -506,6 +515,9 @@ static void wrong_numbers(void) {
     refused(&b, mfv_advance(b.handle, &step), "control");
     step = (mfv_step)MFV_STEP_INIT;
     step.control[MFV_ROTATION] = whole[i];
+    refused(&b, mfv_advance(b.handle, &step), "control");
+    step = (mfv_step)MFV_STEP_INIT;
+    step.control[MFV_LOWER_BULK_STRESS] = whole[i];
     refused(&b, mfv_advance(b.handle, &step), "control");
     step = (mfv_step)MFV_STEP_INIT;
     step.cycles = whole[i];
@@ -520,6 +532,12 @@ static void wrong_numbers(void) {
     CHECK((mfv_status_text(whole[i], b.buffer, ROOM, b.other, ROOM) == MFV_COMPLETE) == (whole[i] == 3 || whole[i] == 7));
     CHECK(mfv_scene_set_integer(b.scene, "friction%mu", whole[i]) == MFV_COMPLETE);
   }
+  mfv_step step = MFV_STEP_INIT;
+  step.control[MFV_LOWER_BULK_STRESS] = MFV_FORCE;
+  refused(&b, mfv_advance(b.handle, &step), "MFV_DISPLACEMENT");
+  step = (mfv_step)MFV_STEP_INIT;
+  step.control[MFV_UPPER_BULK_STRESS] = MFV_DISPLACEMENT; /* the upper body is a rigid disk */
+  refused(&b, mfv_advance(b.handle, &step), "half-plane");
   still_works(&b, "wrong numbers");
   free_bench(&b);
 }

@@ -46,6 +46,9 @@ SCENES: dict[str, Groups] = {
     "power": scene(
         ELASTIC, {"shape": "'power'", "coefficient": "2.0", "exponent": "2", "rigid": ".true."}, MESH, {}, {"normal_force": "1e-3"}
     ),
+    "elastic power": scene(
+        ELASTIC, ELASTIC | {"shape": "'power'", "coefficient": "2.0", "exponent": "2"}, MESH, COULOMB, PRESS, SHEAR
+    ),
     "profile": scene(
         ELASTIC, {"shape": "'profile'", "file": "'profile.txt'", "rigid": ".true."}, MESH, {}, {"normal_force": "1e-3"}
     ),
@@ -332,6 +335,8 @@ CASE: dict[tuple[str, str], Row] = {
     ("step", "force_ratio"): real("step(2)", "cylinder", "0.4", lower=-1e6, upper=1e6, without=("tangential_force",)),
     ("step", "moment"): real("step(2)", "rolling", "1e-6", "force"),
     ("step", "rotation"): real("step(2)", "rolling", "1e-6", "radians", without=("moment",)),
+    ("step", "lower_bulk_stress"): real("step(2)", "cylinder", "1e-3", "force/length^2"),
+    ("step", "upper_bulk_stress"): real("step(2)", "elastic power", "1e-3", "force/length^2"),
     ("step", "friction"): logical("step(2)", "cylinder", ".true.", refused={".false.": NO_FRICTION, "f": NO_FRICTION}),
     ("step", "cycles"): whole("step(3)", "cycles", "2", 0, 1000000, refused={"0": "has no effect without cycles of 2 or more"}),
     ("step", "steady_tolerance"): positive("step(3)", "cycles", "1e-6"),

@@ -110,7 +110,7 @@ def test_structures_are_those_of_the_header() -> None:
         assert structure._fields_[0] == ("size", ctypes.c_size_t)
     assert tuple(mfv.Loads._fields) == names_of(_library.LoadsStructure)[:-1]
     assert tuple(mfv.Progress._fields) == names_of(_library.ProgressStructure)
-    assert set(Targets.__annotations__) == {name for motion in MOTIONS for name in motion}
+    assert set(Targets.__annotations__) == {name for motion in MOTIONS for name in motion.targets}
 
 
 def test_structures_are_packed_as_they_are_laid_out() -> None:

@@ -62,19 +62,26 @@ class Contact:
     cycles: int = 1
     refine: str | None = None
     solver: dict[str, Any] = dataclasses.field(default_factory=dict)
+    #: Bulk stresses of the lower and the upper body over that ratio of the forces; None: none.
+    bulk: tuple[float | None, float | None] = (None, None)
+
+    def strain(self, ratio: float) -> dict[str, float]:
+        """The bulk stresses that go with a ratio of the forces."""
+        return {f"{body}_bulk_stress": ratio * stress for body, stress in zip(("lower", "upper"), self.bulk) if stress is not None}
 
     def steps(self, sign: float = 1.0, pieces: int = 1) -> Iterator[mfv.Step]:
-        """Press, shear to each force in turn; the last one in cycles."""
+        """Press, shear to each force in turn, with bulk stresses in proportion; the last one in cycles."""
         yield mfv.Step(normal_force=self.force, friction=not self.frictionless_press)
         largest = self.friction.get("mu", self.friction.get("mu_kinetic"))
         before = 0.0
         for number, ratio in enumerate(self.ratios):
-            force = sign * ratio * largest * self.force
+            limit = sign * largest * self.force
             last = number == len(self.ratios) - 1 and self.cycles > 0
             for piece in range(pieces - 1 if not last else 0):
-                yield mfv.Step(tangential_force=before + (force - before) * (piece + 1) / pieces)
-            yield mfv.Step(tangential_force=force, cycles=self.cycles if last else None)
-            before = force
+                between = before + (ratio - before) * (piece + 1) / pieces
+                yield mfv.Step(tangential_force=between * limit, **self.strain(between))
+            yield mfv.Step(tangential_force=ratio * limit, cycles=self.cycles if last else None, **self.strain(ratio))
+            before = ratio
 
     def scene(self, **changes: Any) -> mfv.Scene:
         steps = changes.pop("steps", None) or list(self.steps())
@@ -128,6 +135,20 @@ def contact(seed: int, **changes: Any) -> Contact:
         "nodes": 36 + seed % 2,
     }
     return Contact(**{**reference, **changes})
+
+
+def strained(seed: int) -> Contact:
+    """Contact number `seed` of bodies that deform like half-planes, with bulk stresses of those that are elastic: in or out of phase
+    with the shear, small and large."""
+    case = contact(4 * (seed + 10))
+    random = np.random.default_rng(seed + 100)
+    case.upper = {**case.upper, "shape": "power", "coefficient": 0.5 / case.upper["radius"], "exponent": 2.0}
+    del case.upper["radius"]
+    case.coupling = ("full", "none", "goodman")[seed % 3]
+    pressure = 2 * case.friction["mu"] * case.force / (np.pi * case.half_width)
+    lower, upper = (pressure * random.choice([-1, 1]) * 10 ** random.uniform(-1, 1) for _ in range(2))
+    case.bulk = (None if seed == 1 else lower, None if case.upper.get("rigid") else upper)
+    return case
 
 
 def scale_of(name: str, half_width: float) -> float:
@@ -231,22 +252,27 @@ def mirror_differences(case: Contact, tolerance: float = TOLERANCE) -> dict[str,
     return differences(case.run(), case.run(steps=list(case.steps(sign=-1.0))), mirrored, tolerance=tolerance)
 
 
-@pytest.mark.parametrize("seed", SEEDS)
-def test_mirror_image(seed: int) -> None:
-    assert mirror_differences(contact(seed)) == {}
+KINDS = (contact, strained)
 
 
+@pytest.mark.parametrize("kind", KINDS)
 @pytest.mark.parametrize("seed", SEEDS)
-def test_bodies_exchanged(seed: int) -> None:
-    case = contact(seed)
-    other = dataclasses.replace(case, lower=case.upper, upper=case.lower)
+def test_mirror_image(seed: int, kind: Callable[[int], Contact]) -> None:
+    assert mirror_differences(kind(seed)) == {}
+
+
+@pytest.mark.parametrize("kind", KINDS)
+@pytest.mark.parametrize("seed", SEEDS)
+def test_bodies_exchanged(seed: int, kind: Callable[[int], Contact]) -> None:
+    case = kind(seed)
+    other = dataclasses.replace(case, lower=case.upper, upper=case.lower, bulk=case.bulk[::-1])
     assert differences(case.run(), other.run(), exchanged, common="rigid" in case.upper) == {}
 
 
 def stretched(case: Contact, length: float, stress: float) -> Contact:
     """The same contact with other units of length and stress."""
     factors = {
-        "radius": length, "shear_modulus": stress, "youngs_modulus": stress,
+        "radius": length, "coefficient": 1.0 / length, "shear_modulus": stress, "youngs_modulus": stress,
         "weakening_distance": length, "stiffness": stress / length,
     }  # fmt: skip
 
@@ -260,6 +286,7 @@ def stretched(case: Contact, length: float, stress: float) -> Contact:
         friction=scaled(case.friction),
         half_width=case.half_width * length,
         force=case.force * stress * length,
+        bulk=tuple(None if bulk is None else bulk * stress for bulk in case.bulk),
     )
 
 
@@ -284,9 +311,10 @@ def unit_differences(case: Contact, seed: int, tolerance: float = TOLERANCE) -> 
     return differences(case.run(), other.run(), converter(length, stress), tolerance=tolerance)
 
 
+@pytest.mark.parametrize("kind", KINDS)
 @pytest.mark.parametrize("seed", SEEDS)
-def test_other_units(seed: int) -> None:
-    assert unit_differences(contact(seed), seed) == {}
+def test_other_units(seed: int, kind: Callable[[int], Contact]) -> None:
+    assert unit_differences(kind(seed), seed) == {}
 
 
 @pytest.mark.parametrize("seed", SEEDS)
@@ -428,10 +456,23 @@ def test_a_matrix_of_a_half_plane_is_the_half_plane(coupling: str) -> None:
     assert found == {}
 
 
+@pytest.mark.parametrize("kind", KINDS)
 @pytest.mark.parametrize("seed", SEEDS[:4])
-def test_split_steps(seed: int) -> None:
-    case = contact(seed)
+def test_split_steps(seed: int, kind: Callable[[int], Contact]) -> None:
+    case = kind(seed)
     assert differences(case.run(), case.run(steps=list(case.steps(pieces=4)))) == {}
+
+
+def test_only_the_difference_of_the_strains_acts() -> None:
+    """Equal strains of both bodies change their own stresses and displacements, but nothing between them. (A loss factor is defined
+    for cycles of shear alone.)"""
+    material = {"shear_modulus": 1.0, "poisson_ratio": 0.3}
+    case = strained(0)
+    case.lower, case.upper = {**case.lower, **material}, {"shape": "power", "coefficient": 0.5, "exponent": 2.0, **material}
+    case.half_width, case.force = 0.03, 7e-4
+    none, both = (dataclasses.replace(case, bulk=(stress, stress)).run() for stress in (0.0, 1e-2))
+    own = ("bulk_stress", "tension", "loss_factor", "upper_tangential_displacement", "tangential_displacement")
+    assert {path for path in differences(none, both) if not path.endswith((*own, "tension_x"))} == set()
 
 
 @pytest.mark.parametrize("seed", SEEDS[:4])
@@ -490,9 +531,10 @@ def test_dahls_law_tends_to_coulombs() -> None:
     assert errors[0] > 3 * errors[1] > 9 * errors[2], errors
 
 
+@pytest.mark.parametrize("kind", KINDS)
 @pytest.mark.parametrize("seed", SEEDS[:4])
-def test_linear_solvers(seed: int) -> None:
-    case = contact(seed)
+def test_linear_solvers(seed: int, kind: Callable[[int], Contact]) -> None:
+    case = kind(seed)
     first = case.run()
     for solver in ("reduced", "dgesv", "fft"):
         keys = {"linear_solver": solver, **({"linear_tolerance": 1e-12} if solver == "fft" else {})}

@@ -166,9 +166,10 @@ static void lead(story *self, const mfv_step *step) {
   }
   for (int i = 0; i < parts; ++i) {
     if (i + 1 == parts && parts > 1) part = *step; /* round-off must not make the force negative */
-    note(self, "advance normal %d %.17g tangential %d %.17g rotational %d %.17g friction %d cycles %d steady %g relative %d",
+    note(self, "advance normal %d %.17g tangential %d %.17g rotational %d %.17g bulk %d %.17g friction %d cycles %d steady %g relative %d",
          part.control[MFV_APPROACH], part.target[MFV_APPROACH], part.control[MFV_SHIFT], part.target[MFV_SHIFT],
-         part.control[MFV_ROTATION], part.target[MFV_ROTATION], part.friction, part.cycles, part.steady_tolerance, part.relative);
+         part.control[MFV_ROTATION], part.target[MFV_ROTATION], part.control[MFV_LOWER_BULK_STRESS],
+         part.target[MFV_LOWER_BULK_STRESS], part.friction, part.cycles, part.steady_tolerance, part.relative);
     led(self, mfv_advance(self->handle, &part));
     if (self->out.status != MFV_COMPLETE) return;
   }

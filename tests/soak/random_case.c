@@ -216,12 +216,18 @@ static mfv_step random_step(generator *random, const random_case *self, int is_f
     step.control[MFV_ROTATION] = MFV_FORCE;
     step.target[MFV_ROTATION] = between(random, -0.3, 0.3) * *normal * self->force * self->half_width;
   }
+  generator apart = generator_of(random->state, 1); /* other steps are what they are without bulk stresses */
+  if (friction && !(self->radius > 0) && chance(&apart, 0.2)) {
+    step.control[MFV_LOWER_BULK_STRESS] = MFV_DISPLACEMENT;
+    step.target[MFV_LOWER_BULK_STRESS] =
+        between(&apart, -1, 1) * pow(10, between(&apart, -1, 1)) * self->mu * self->force / self->half_width;
+  }
   return step;
 }
 
 static void put_step(random_case *self, int number, const mfv_step *step) {
   static const char *keys[][MFV_MOTIONS] = {[MFV_FORCE] = {"normal_force", "tangential_force", "moment"},
-                                            [MFV_DISPLACEMENT] = {"approach", "shift", "rotation"}};
+                                            [MFV_DISPLACEMENT] = {"approach", "shift", "rotation", "lower_bulk_stress", NULL}};
   for (int i = 0; i < MFV_MOTIONS; ++i)
     if (step->control[i] != MFV_KEEP) put_real(self, "step", number, keys[step->control[i]][i], step->target[i]);
   if (self->law != NO_FRICTION) put_logical(self, "step", number, "friction", step->friction);

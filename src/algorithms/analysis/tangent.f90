@@ -71,7 +71,7 @@ contains
 
       motion = 0.0_wp
       motion(:size(direction)) = direction
-      largest = maxval(abs(motion)*[(arm_unit(i, path%model%length()), i=1, motion_count)])
+      largest = maxval(abs(motion)*[(arm_unit(i, path%model%length(), path%model%compliance%modulus), i=1, motion_count)])
       if (.not. largest > 0.0_wp) then
          call set_error(error, MFV_BAD_ARGUMENT, 'the direction of the tangent must not be all zeros')
          return

@@ -5,7 +5,8 @@ module mfv_validity
    use mfv_contact_state, only: contact_state_type
    use mfv_interior, only: interior_type
    use mfv_kinds, only: pi, wp
-   use mfv_motions, only: motion_approach, motion_shift, motion_rotation, control_displacement
+   use mfv_motions, only: motion_approach, motion_shift, motion_rotation, motion_lower_bulk, motion_upper_bulk, &
+                          control_displacement
    use mfv_node_status, only: in_contact
    use mfv_simulation, only: simulation_type
    use mfv_slip_zones, only: contact_interval, needed_mesh, resolved_nodes, slip_record_type
@@ -181,8 +182,8 @@ contains
                        'columns must have all normal components first, then all tangential ones')
    end subroutine check_order
 
-   !> The last state and, at the ends of steps, those of largest normal force and largest tangential force in either
-   !> direction.
+   !> The last state and, at the ends of steps, those of largest normal force, and of largest tangential force and bulk stress in
+   !> either direction.
    subroutine check_yield(simulation, upper, body, warnings)
       type(simulation_type), intent(in) :: simulation
       logical, intent(in) :: upper
@@ -190,16 +191,19 @@ contains
       type(string_type), allocatable, intent(inout) :: warnings(:)
       type(largest_type) :: largest, other
       character(:), allocatable :: where_it_is
-      integer :: candidates(3), i, n
+      integer :: candidates(5), i, n, bulk
 
       if (.not. body%yield_strength > 0.0_wp) return
       largest = largest_below(simulation, upper, simulation%contact%state)
       where_it_is = 'in the last state'
       n = simulation%snapshot_count
       candidates = 0
+      bulk = merge(motion_upper_bulk, motion_lower_bulk, upper)
       if (n > 1) candidates = [maxloc([(simulation%snapshots(i)%state%fields%force(motion_approach), i=1, n)]), &
                                maxloc([(simulation%snapshots(i)%state%fields%force(motion_shift), i=1, n)]), &
-                               minloc([(simulation%snapshots(i)%state%fields%force(motion_shift), i=1, n)])]
+                               minloc([(simulation%snapshots(i)%state%fields%force(motion_shift), i=1, n)]), &
+                               maxloc([(simulation%snapshots(i)%state%fields%motion(bulk), i=1, n)]), &
+                               minloc([(simulation%snapshots(i)%state%fields%motion(bulk), i=1, n)])]
       do i = 1, size(candidates)
          if (candidates(i) == 0 .or. candidates(i) == n) cycle
          other = largest_below(simulation, upper, simulation%padded_state(candidates(i)))

@@ -31,7 +31,7 @@ module mfv_certificate
 
    !> Names of the residuals in the result file, and the quantities that they measure.
    character(*), parameter :: residual_names(residual_count) = &
-                              [character(24) :: 'elasticity_normal', 'elasticity_tangential', motions(:motion_shift)%balance, &
+                              [character(26) :: 'elasticity_normal', 'elasticity_tangential', motions(:motion_shift)%balance, &
                      'contact_gap', 'open_traction', 'stick_slip', 'slip_traction', 'pressure_sign', 'gap_sign', 'friction_limit', &
                                                'slip_direction', 'continuity', 'energy_balance', motions(motion_shift + 1:)%balance]
    character(*), parameter :: residual_descriptions(residual_count) = &
@@ -206,7 +206,8 @@ contains
       do i = 1, motion_count
          if (motions(i)%optional) then
             if (.not. self%applies(force_balance(i))) cycle
-            self%force(i) = max(self%force(i), abs(fields%force(i)), self%force(motion_approach)*arm_unit(i, model%length()), &
+            self%force(i) = max(self%force(i), abs(fields%force(i)), &
+                                self%force(motion_approach)*arm_unit(i, model%length(), model%compliance%modulus), &
                                 model%force(abs(model%normal_arm(:, i)*fields%pressure)) &
                                 + model%force(abs(model%tangential_arm(:, i)*fields%shear)))
          end if

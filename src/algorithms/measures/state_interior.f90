@@ -5,6 +5,7 @@ module mfv_state_interior
    use mfv_contact_state, only: contact_state_type
    use mfv_interior, only: interior_type
    use mfv_kinds, only: wp
+   use mfv_motions, only: motion_lower_bulk, motion_upper_bulk
    use mfv_zone_edges, only: find_patches, patch_type
    implicit none
    private
@@ -12,8 +13,8 @@ module mfv_state_interior
 
 contains
 
-   !> The lower or `upper` body under the tractions of a state; `available`: false for a rigid body and a matrix.
-   !> `fewest_elements`: see mfv_surface_tractions.
+   !> The lower or `upper` body under the tractions and the bulk stress of a state; `available`: false for a rigid body and a
+   !> matrix. `fewest_elements`: see mfv_surface_tractions.
    subroutine state_interior(model, state, upper, interior, available, fewest_elements)
       type(contact_model_type), intent(in) :: model
       type(contact_state_type), intent(in) :: state
@@ -25,7 +26,8 @@ contains
 
       call find_edges_at_nodes(model, state, contact_edge, stick_edge)
       call model%scene%interior(upper, model%arc, model%width, state%fields%pressure, state%fields%shear, contact_edge, &
-                                stick_edge, interior, available, fewest_elements)
+                                stick_edge, state%fields%motion(merge(motion_upper_bulk, motion_lower_bulk, upper)), interior, &
+                                available, fewest_elements)
    end subroutine state_interior
 
    !> Edges of contact and stick zones, arc lengths from the origin of x, at the first and last node of each zone; NaN

@@ -12,12 +12,13 @@ module mfv_contact_fields
       real(wp), allocatable :: pressure(:), shear(:)
       !> Relative displacements of the surfaces except for approach and shift, length, shape (nodes). Normal: separation, the sum
       !> of w of both bodies, each positive into the body. Tangential: u of the lower less u of the upper body, to the right. Both
-      !> include the effect of the rotation of the upper body.
+      !> include the effect of the rotation of the upper body and of the bulk stresses.
       real(wp), allocatable :: normal(:), tangential(:)
-      !> Motions of the upper body (mfv_motions): approach (down) and shift (right), length; rotation (counterclockwise), radians.
+      !> Motions of the upper body (mfv_motions): approach (down) and shift (right), length; rotation (counterclockwise), radians;
+      !> bulk stresses of both bodies, force/length^2.
       real(wp) :: motion(motion_count) = 0.0_wp
       !> Forces of these motions, of the upper on the lower body per unit thickness: P (down) and Q (right), force/length; moment M
-      !> (counterclockwise) about the centre of rotation, force.
+      !> (counterclockwise) about the centre of rotation, force; areas by which the shear tractions shorten the bodies, length^2.
       real(wp) :: force(motion_count) = 0.0_wp
    contains
       procedure :: plus

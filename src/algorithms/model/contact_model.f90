@@ -14,7 +14,8 @@ module mfv_contact_model
    use mfv_kinds, only: pi, wp
    use mfv_lapack, only: ddot
    use mfv_numerics, only: gauss_points
-   use mfv_motions, only: motions, motion_count, motion_approach, motion_shift, motion_rotation
+   use mfv_motions, only: motions, motion_count, motion_approach, motion_shift, motion_rotation, motion_lower_bulk, &
+                          motion_upper_bulk
    use mfv_reference_indenter, only: indenter_type
    use mfv_clock, only: seconds_now
    use mfv_scene, only: scene_type
@@ -35,7 +36,8 @@ module mfv_contact_model
       !> Whether both bodies have a surface at the node, so that it can touch.
       logical, allocatable :: can_touch(:)
       !> Decrease of the gap, and displacement of the upper surface to the right along the lower one, for a unit of every motion of
-      !> the upper body (mfv_motions); shape (nodes, motion_count). Approach and shift: without unit; rotation: lengths.
+      !> the upper body (mfv_motions); shape (nodes, motion_count). Approach and shift: without unit; rotation: lengths; bulk
+      !> stresses: length^3/force.
       real(wp), allocatable :: normal_arm(:, :), tangential_arm(:, :)
       !> Whether normals are vertical: approach only closes gaps, and shift only slides.
       logical :: upright = .true.
@@ -64,6 +66,7 @@ module mfv_contact_model
       procedure :: relative_displacements
       procedure :: displace
       procedure :: has_rigid_parts
+      procedure :: motions_couple
       procedure :: lifts
       procedure :: rigid_normal
       procedure :: rigid_tangential
@@ -305,6 +308,14 @@ contains
       has_rigid_parts = any(self%moves .and. motions%optional) .or. .not. self%upright
    end function has_rigid_parts
 
+   !> Whether motions couple the normal and the tangential problem: all but approach, shift and bulk stresses do, and all do with
+   !> inclined normals.
+   pure logical function motions_couple(self)
+      class(contact_model_type), intent(in) :: self
+
+      motions_couple = any(self%moves .and. motions%optional .and. .not. motions%is_stress) .or. .not. self%upright
+   end function motions_couple
+
    !> Whether a motion changes gaps; otherwise it only slides.
    pure logical function lifts(self, motion)
       class(contact_model_type), intent(in) :: self
@@ -469,7 +480,8 @@ contains
 
    !> Arms of the rotation of the upper body: about its centre if it is a circle, else about that of the lower one if that is, else
    !> about the origin of x. Counterclockwise it lifts the right side and moves a surface below the centre to the right (eq. 4.24,
-   !> where M is in units of R and has its own signs). Circles roll: see rolling_arm.
+   !> where M is in units of R and has its own signs). Circles roll: see rolling_arm. Arms of the bulk stresses: a uniform stress
+   !> sigma strains the surface of its body by sigma (kappa + 1)/(8 G), about the origin of x.
    subroutine place_arms(self)
       class(contact_model_type), intent(inout) :: self
       integer :: n
@@ -487,6 +499,12 @@ contains
       self%normal_arm(:, motion_rotation) = -self%x
       if (self%rolls()) self%normal_arm(:, motion_rotation) = -rolling_arm(self)
       self%tangential_arm(:, motion_rotation) = self%centre_height()
+      associate (scene => self%scene)
+         if (scene%can_have_bulk_stress(.false.)) &
+            self%tangential_arm(:, motion_lower_bulk) = -0.5_wp/scene%lower%material%plane_modulus()*self%arc
+         if (scene%can_have_bulk_stress(.true.)) &
+            self%tangential_arm(:, motion_upper_bulk) = 0.5_wp/scene%upper%material%plane_modulus()*self%arc
+      end associate
    end subroutine place_arms
 
    !> Height of the centre of rotation above the origin of x, length: negative for a disk below; 0 without a circle.

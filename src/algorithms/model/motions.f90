@@ -1,4 +1,5 @@
-!> The motions of the upper body relative to the lower one, and their forces: a table with a row for each. Arrays with a value for
+!> The motions of the upper body relative to the lower one, and their forces: a table with a row for each. Bulk stresses are motions
+!> too: a uniform stress sigma_xx displaces the surface of its body in proportion to the position. Arrays with a value for
 !> every motion (loads, controls, arms, records, tangents, keys, fields) have the order of the rows. A new motion requires a row
 !> here, its arms (place_arms of mfv_contact_model), and its names for users: in mfv, step_to of mfv_contact, include/mfv.h,
 !> python/mfv/loads.py and Step of python/mfv/scene.py.
@@ -6,39 +7,43 @@ module mfv_motions
    use mfv_kinds, only: wp
    implicit none
    private
-   public :: motion_type, motions, motion_count, motion_approach, motion_shift, motion_rotation, control_keep, control_force, &
-             control_displacement, controlled_key, arm_unit
+   public :: motion_type, motions, motion_count, motion_approach, motion_shift, motion_rotation, motion_lower_bulk, &
+             motion_upper_bulk, control_keep, control_force, control_displacement, controlled_key, arm_unit
 
-   !> Approach (down), shift (to the right) and rotation (counterclockwise) of the upper body, and the number of motions.
-   integer, parameter :: motion_approach = 1, motion_shift = 2, motion_rotation = 3, motion_count = 3
+   !> Approach (down), shift (to the right) and rotation (counterclockwise) of the upper body; the bulk stress of either body; and
+   !> the number of motions.
+   integer, parameter :: motion_approach = 1, motion_shift = 2, motion_rotation = 3, motion_lower_bulk = 4, motion_upper_bulk = 5, &
+                         motion_count = 5
 
    !> Control of a motion by a step: unchanged load, prescribed force (moment), prescribed displacement (rotation).
    integer, parameter :: control_keep = 0, control_force = 1, control_displacement = 2
 
    type :: motion_type
       !> Keys and field names of the displacement and its force.
-      character(len=8) :: key
-      character(len=16) :: force_key
+      character(len=17) :: key
+      character(len=17) :: force_key
       !> Name of the force in messages.
-      character(len=16) :: force_name
+      character(len=17) :: force_name
       !> Units in terms of length and force (forces are per unit thickness).
-      character(len=7) :: unit
+      character(len=14) :: unit
       character(len=12) :: force_unit
       !> Meaning of the fields of a result.
-      character(len=64) :: meaning
-      character(len=96) :: force_meaning
+      character(len=80) :: meaning
+      character(len=112) :: force_meaning
       !> Meaning of the keys of a &step.
-      character(len=96) :: target
+      character(len=144) :: target
       character(len=144) :: force_target
       !> The residual of its balance with the tractions, and its meaning.
-      character(len=24) :: balance
-      character(len=32) :: balance_meaning
+      character(len=26) :: balance
+      character(len=40) :: balance_meaning
       !> Whether the force cannot be negative.
       logical :: pushes = .false.
       !> Whether its arms are lengths, so that its force is a moment.
       logical :: turns = .false.
       !> Whether it is fixed and not modelled until a step controls it; approach and shift are always modelled.
       logical :: optional = .false.
+      !> Whether it is a bulk stress: always prescribed, by its value.
+      logical :: is_stress = .false.
    end type motion_type
 
    type(motion_type), parameter :: motions(motion_count) = [ &
@@ -61,25 +66,42 @@ module mfv_motions
                                    target='target of the rotation of the upper body about the same point, in place of moment', &
             force_target='target of the moment M about the centre of the upper disk or hole, else of the lower one, else about '// &
                                    'the origin of x; counterclockwise', &
-                            balance='moment_balance', balance_meaning='M - moment of the tractions', turns=.true., optional=.true.)]
+                          balance='moment_balance', balance_meaning='M - moment of the tractions', turns=.true., optional=.true.), &
+                                   motion_type( &
+                    key='lower_bulk_stress', force_key='lower_contraction', force_name='lower contraction', unit='force/length^2', &
+                                   force_unit='length^2', &
+                                   meaning='bulk stress sigma_xx of the lower body, positive in tension', &
+                           force_meaning='area by which the shear tractions shorten the lower body, conjugate to its bulk stress', &
+                             target='target of the bulk stress of the lower body: a uniform stress sigma_xx, positive in tension', &
+                                   force_target='', balance='lower_contraction_balance', &
+                                   balance_meaning='contraction - that by the tractions', optional=.true., is_stress=.true.), &
+                                   motion_type( &
+                    key='upper_bulk_stress', force_key='upper_contraction', force_name='upper contraction', unit='force/length^2', &
+                                   force_unit='length^2', &
+                                   meaning='bulk stress sigma_xx of the upper body, positive in tension', &
+                           force_meaning='area by which the shear tractions shorten the upper body, conjugate to its bulk stress', &
+                                   target='target of the bulk stress of the upper body, likewise', &
+                                   force_target='', balance='upper_contraction_balance', &
+                                   balance_meaning='contraction - that by the tractions', optional=.true., is_stress=.true.)]
 
 contains
 
    !> The key for the force or the displacement of a motion; padded with blanks.
-   pure character(len=16) function controlled_key(motion, control)
+   pure character(len=17) function controlled_key(motion, control)
       integer, intent(in) :: motion, control
 
       controlled_key = motions(motion)%key
       if (control == control_force) controlled_key = motions(motion)%force_key
    end function controlled_key
 
-   !> Unit of the arms of a motion: `length`, or 1 if they are dimensionless.
-   elemental real(wp) function arm_unit(motion, length)
+   !> Unit of the arms of a motion: 1; `length` for a moment; `length` over `modulus`, force/length^2, for a bulk stress.
+   elemental real(wp) function arm_unit(motion, length, modulus)
       integer, intent(in) :: motion
-      real(wp), intent(in) :: length
+      real(wp), intent(in) :: length, modulus
 
       arm_unit = 1.0_wp
       if (motions(motion)%turns) arm_unit = length
+      if (motions(motion)%is_stress) arm_unit = length/modulus
    end function arm_unit
 
 end module mfv_motions

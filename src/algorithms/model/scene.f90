@@ -4,7 +4,7 @@ module mfv_scene
    use mfv_body, only: body_type
    use mfv_compliance, only: coupling_full
    use mfv_friction, only: friction_type
-   use mfv_interior, only: interior_type, new_interior
+   use mfv_interior, only: has_interior, interior_type, new_interior
    use mfv_kinds, only: pi, wp
    use mfv_material, only: plane_strain
    use mfv_motions, only: motions, motion_count, control_keep, control_force, control_displacement
@@ -31,7 +31,8 @@ module mfv_scene
    !> A step of the load history; targets are reached linearly from the previous step.
    type :: step_type
       !> Control of every motion (mfv_motions), and its target: normal force P >= 0 or approach delta, tangential force Q or shift
-      !> U to the right, moment M or rotation counterclockwise; force/length, force (moment), length, radians.
+      !> U to the right, moment M or rotation counterclockwise; force/length, force (moment), length, radians; bulk stresses,
+      !> force/length^2, with control_displacement.
       integer :: control(motion_count) = control_keep
       real(wp) :: target(motion_count) = 0.0_wp
       !> Whether friction acts during this step.
@@ -101,6 +102,7 @@ module mfv_scene
       procedure :: arc_radius
       procedure :: x_of_arc
       procedure :: touchable
+      procedure :: can_have_bulk_stress
       procedure :: interior
    end type scene_type
 
@@ -236,15 +238,29 @@ contains
       if (radius > 0.0_wp) touchable = touchable .and. abs(arc) < 0.5_wp*pi*radius
    end function touchable
 
+   !> Whether the lower or `upper` body can have a bulk stress: an elastic body that deforms like a half-plane.
+   pure logical function can_have_bulk_stress(self, upper)
+      class(scene_type), intent(in) :: self
+      logical, intent(in) :: upper
+
+      if (upper) then
+         can_have_bulk_stress = has_interior(self%upper) .and. .not. self%upper%circular()
+      else
+         can_have_bulk_stress = has_interior(self%lower) .and. .not. self%lower%circular()
+      end if
+   end function can_have_bulk_stress
+
    !> The lower or `upper` body under tractions, see mfv_interior. With radial normals the angles of the nodes are common to both
    !> bodies and their forces are equal; arcs and tractions are not.
    !> `contact_edge`, `stick_edge`: edges of the zones between nodes, ascending at the nodes with finite values, the left and the
-   !> right one of each zone in turn; shape (nodes). `available`: false for a rigid body or a given matrix. `fewest_elements`: see
-   !> mfv_surface_tractions.
-   subroutine interior(self, upper, arc, width, pressure, shear, contact_edge, stick_edge, inside, available, fewest_elements)
+   !> right one of each zone in turn; shape (nodes). `bulk`: its bulk stress, force/length^2. `available`: false for a rigid body or
+   !> a given matrix. `fewest_elements`: see mfv_surface_tractions.
+   subroutine interior(self, upper, arc, width, pressure, shear, contact_edge, stick_edge, bulk, inside, available, &
+                       fewest_elements)
       class(scene_type), intent(in) :: self
       logical, intent(in) :: upper
       real(wp), intent(in), dimension(:) :: arc, width, pressure, shear, contact_edge, stick_edge
+      real(wp), intent(in) :: bulk
       type(interior_type), intent(out) :: inside
       logical, intent(out) :: available
       integer, intent(in), optional :: fewest_elements
@@ -273,6 +289,7 @@ contains
          call new_interior(self%lower, upper, self%plane, self%mesh%radial, ratio*arc, ratio*width, pressure/ratio, &
                            shear/ratio, zones, inside, available)
       end if
+      inside%bulk = bulk
    end subroutine interior
 
    !> The finite values as pairs, shape (2, pairs); none if they are not ascending.

@@ -100,7 +100,7 @@ contains
       assembly%length = model%length()
       assembly%shear_stress = assembly%stress
       if (assembly%tangential) assembly%shear_stress = assembly%stress*model%friction_scale
-      assembly%arm = [(arm_unit(i, assembly%length), i=1, motion_count)]
+      assembly%arm = [(arm_unit(i, assembly%length, assembly%stress), i=1, motion_count)]
       assembly%motion_unit = assembly%length/assembly%arm
       assembly%force_unit = assembly%stress*(assembly%length*assembly%arm)
       assembly%force_unit(motion_shift) = assembly%shear_stress*assembly%length

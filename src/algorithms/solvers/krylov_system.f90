@@ -137,7 +137,7 @@ contains
       if (.not. self%length > 0.0_wp) then
          self%length = model%length()
          self%stress = model%compliance%modulus
-         self%arm = [(arm_unit(i, self%length), i=1, motion_count)]
+         self%arm = [(arm_unit(i, self%length, self%stress), i=1, motion_count)]
          self%motion_unit = self%length/self%arm
       end if
       call self%preconditioner%prepare(model%compliance, self%length/self%stress)

@@ -91,7 +91,7 @@ contains
       logical, intent(out) :: singular
 
       self%solves = self%solves + 1
-      if (model%compliance%one_way() .and. model%has_rigid_parts()) then
+      if (model%compliance%one_way() .and. model%motions_couple()) then
          self%name = self%augmented%name
          call self%augmented%solve(model, constraints, start, response, singular)
          return
@@ -171,7 +171,7 @@ contains
       self%block = model%compliance%has_block
       self%moves = model%moves
       self%length = model%length()
-      self%apart = .not. (self%block(block_wt) .or. model%has_rigid_parts())
+      self%apart = .not. (self%block(block_wt) .or. model%motions_couple())
       self%nodes = n
       if (allocated(self%place)) deallocate (self%place, self%constraint_of)
       allocate (self%place(room, a_motion), self%constraint_of(room, a_motion), source=0)
@@ -211,9 +211,9 @@ contains
       wanted(:self%nodes, a_shear) = has_shear(constraints%status)
       wanted(motion_approach, a_motion) = any(wanted(:, a_pressure))
       wanted(motion_shift, a_motion) = any(wanted(:, a_shear))
-      ! A motion that only slides (a rotation with radial normals) is determined by friction alone.
+      ! A motion that only slides (a rotation with radial normals) is determined by friction alone. Bulk stresses are known.
       do i = 1, motion_count
-         if (motions(i)%optional .and. model%moves(i)) &
+         if (motions(i)%optional .and. model%moves(i) .and. .not. motions(i)%is_stress) &
             wanted(i, a_motion) = count(wanted(:, a_pressure)) > 1 .and. (wanted(motion_shift, a_motion) .or. model%lifts(i))
       end do
       call remove_constraints(self, constraints, wanted)
@@ -431,8 +431,8 @@ contains
       associate (n => size(entries), sort => subsystem%sort, of => subsystem%of)
          if (column_sort == a_motion) then
             do i = 1, n
-               if (sort(i) == a_pressure) entries(i) = -model%normal_arm(of(i), column_of)/arm_unit(column_of, length)
-               if (sort(i) == a_shear) entries(i) = -model%tangential_arm(of(i), column_of)/arm_unit(column_of, length)
+   if (sort(i) == a_pressure) entries(i) = -model%normal_arm(of(i), column_of)/arm_unit(column_of, length, model%compliance%modulus)
+  if (sort(i) == a_shear) entries(i) = -model%tangential_arm(of(i), column_of)/arm_unit(column_of, length, model%compliance%modulus)
             end do
             return
          end if
@@ -450,8 +450,8 @@ contains
          end do
          do i = 1, n
             if (sort(i) /= a_motion) cycle
-            if (column_sort == a_pressure) entries(i) = -model%normal_arm(column_of, of(i))/arm_unit(of(i), length)
-            if (column_sort == a_shear) entries(i) = -model%tangential_arm(column_of, of(i))/arm_unit(of(i), length)
+   if (column_sort == a_pressure) entries(i) = -model%normal_arm(column_of, of(i))/arm_unit(of(i), length, model%compliance%modulus)
+  if (column_sort == a_shear) entries(i) = -model%tangential_arm(column_of, of(i))/arm_unit(of(i), length, model%compliance%modulus)
          end do
       end associate
    end subroutine entries_of
@@ -631,13 +631,13 @@ contains
                   gap_rest = max(gap_rest, abs(missing))
                   subsystem%right(i) = missing*by_length
                else if (subsystem%sort(i) == a_motion .and. self%constraint_of(node, a_motion) > 0) then
-                  missing = (prescribed%load(node) - fields%motion(node))*arm_unit(node, self%length)
+                  missing = (prescribed%load(node) - fields%motion(node))*arm_unit(node, self%length, model%compliance%modulus)
                   largest = max(largest, relative(abs(missing), scales%normal))
                   subsystem%values(self%constraint_of(node, a_motion)) = missing*by_length
                   subsystem%right(i) = 0.0_wp
                else if (subsystem%sort(i) == a_motion) then
                   missing = (model%resultant(node, fields%pressure, fields%shear) - prescribed%load(node)) &
-                            /arm_unit(node, self%length)
+                            /arm_unit(node, self%length, model%compliance%modulus)
                   largest = max(largest, relative(abs(missing), merge(scales%shear_force, scales%force, node == motion_shift)))
                   subsystem%right(i) = missing*by_stress
                else if (constraints%status(node) == node_stick) then
@@ -760,7 +760,7 @@ contains
          do i = 1, subsystem%unknowns
             associate (node => subsystem%of(i), change => subsystem%solution(i))
                if (subsystem%sort(i) == a_motion) then
-                  fields%motion(node) = fields%motion(node) + change*self%length/arm_unit(node, self%length)
+                fields%motion(node) = fields%motion(node) + change*self%length/arm_unit(node, self%length, model%compliance%modulus)
                else if (subsystem%sort(i) == a_pressure) then
                   fields%pressure(node) = fields%pressure(node) + stress/model%width(node)*change
                else

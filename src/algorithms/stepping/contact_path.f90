@@ -366,7 +366,7 @@ contains
 
       if (self%state%contact_nodes() < 2) then
          associate (load => constraints%load(motion), length => self%model%length())
-            scale = self%model%compliance%modulus*(length*arm_unit(motion, length))
+            scale = self%model%compliance%modulus*(length*arm_unit(motion, length, self%model%compliance%modulus))
             if (max(abs(load%value), abs(load%rate), abs(self%state%fields%force(motion) - load%value)) > no_moment*scale) &
                call no_continuation(self, 'fewer than two nodes are in contact; the '//trim(motions(motion)%force_name)// &
                                     ' tips the upper body over', error)
@@ -398,7 +398,7 @@ contains
       wanted = constraints%load(motion)%rate
       none = max(nothing, tolerance_factor*self%system%tolerance)
       constraints%load(motion) = load_type(control_displacement, self%state%fields%motion(motion), 0.0_wp)
-      arm = arm_unit(motion, self%model%length())
+      arm = arm_unit(motion, self%model%length(), self%model%compliance%modulus)
       negligible = none*self%certificate%force_scale()*arm
       pressed = self%state%fields%force(motion_approach) > none*self%certificate%force_scale()
       if (.not. any(slips(self%state%status))) then

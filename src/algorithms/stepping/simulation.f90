@@ -14,7 +14,7 @@ module mfv_simulation
    use mfv_kinds, only: wp
    use mfv_leap, only: apply_by_large_increments
    use mfv_load_way, only: load_summary_type
-   use mfv_motions, only: motion_count, control_keep, control_force, arm_unit
+   use mfv_motions, only: motions, motion_count, control_keep, control_force, arm_unit
    use mfv_node_status, only: event_none, event_step_end, event_stopped
    use mfv_observer, only: observer_type
    use mfv_scene
@@ -502,7 +502,7 @@ contains
       associate (method => self%contact%model%scene%method)
          if (method%algorithm == algorithm_conventional) then
             call apply_conventionally(self%contact, self%leg%segment, observer, error)
-         else if (method%stepping == stepping_leap) then
+         else if (method%stepping == stepping_leap .and. .not. strains(self%leg%segment)) then
             call apply_by_large_increments(self%contact, self%leg%segment, observer, error)
          else
             call apply_directly(self%contact, self%leg%segment, observer, error)
@@ -516,6 +516,14 @@ contains
          call self%contact%record(merge(event_stopped, event_step_end, allocated(error)), 0, 0, self%leg%segment%step)
    end subroutine apply_leg
 
+   !> Whether a bulk stress changes in a segment. It moves the stick zone while the shear narrows it, so that an edge may turn
+   !> within the segment, which large increments do not resolve.
+   pure logical function strains(segment)
+      type(segment_type), intent(in) :: segment
+
+      strains = any(motions%is_stress .and. abs(segment%load%rate) > 0.0_wp)
+   end function strains
+
    !> The load segment from the present state to `targets`.
    subroutine begin_segment(self, targets, step, before, segments)
       class(simulation_type), intent(inout) :: self
@@ -525,7 +533,9 @@ contains
       integer :: i
       real(wp) :: force(motion_count)
 
-      force = [(self%contact%certificate%force_scale()*arm_unit(i, self%contact%model%length()), i=1, motion_count)]
+      associate (model => self%contact%model)
+         force = self%contact%certificate%force_scale()*arm_unit([(i, i=1, motion_count)], model%length(), model%compliance%modulus)
+      end associate
       associate (segment => self%leg%segment, fields => self%contact%state%fields)
          segment%load = load_towards(start_of(fields%force, fields%motion, targets), targets, force)
          segment%friction = step%friction

@@ -153,7 +153,8 @@ contains
 
       do i = 1, motion_count
          associate (motion => motions(i))
-            call keys%add('step', trim(motion%force_key), kind_real, trim(motion%force_target), unit=trim(motion%force_unit))
+            if (.not. motion%is_stress) &
+               call keys%add('step', trim(motion%force_key), kind_real, trim(motion%force_target), unit=trim(motion%force_unit))
             if (motion%pushes) keys%keys(keys%size)%lower = 0.0_wp
             call keys%add('step', trim(motion%key), kind_real, trim(motion%target), unit=trim(motion%unit))
          end associate

@@ -13,8 +13,8 @@ module mfv_case_reader
    use mfv_kinds, only: wp
    use mfv_material, only: plane_strain, plane_stress
    use mfv_mesh_reader, only: read_mesh
-   use mfv_motions, only: motions, motion_count, motion_approach, motion_shift, control_keep, control_force, &
-                          control_displacement, controlled_key
+   use mfv_motions, only: motions, motion_count, motion_approach, motion_shift, motion_upper_bulk, control_keep, &
+                          control_force, control_displacement, controlled_key
    use mfv_namelist, only: group_type, parse_namelists
    use mfv_scene
    use mfv_simulation, only: history_events, history_none, history_steps, states_none, states_reversals, states_steps
@@ -190,6 +190,8 @@ contains
          associate (step => scene%steps(i))
             do j = 1, motion_count
                call read_target(reader, i, j, step%control(j), step%target(j), error)
+               if (motions(j)%is_stress .and. step%control(j) /= control_keep .and. .not. allocated(error)) &
+                  call check_bulk_stress(reader, i, j, scene, error)
                if (j == motion_shift .and. .not. allocated(error)) call read_force_ratio(reader, i, scene, error)
                if (allocated(error)) return
             end do
@@ -203,12 +205,32 @@ contains
             end if
             if (all(step%control == control_keep)) then
                call fail(reader, line_of(reader, 'step', i), '&step '//to_text(i)//': needs a target: normal_force or '// &
-                         'approach, tangential_force, force_ratio or shift, moment or rotation', error)
+                         'approach, tangential_force, force_ratio or shift, moment or rotation, lower_bulk_stress, '// &
+                         'upper_bulk_stress', error)
                return
             end if
          end associate
       end do
    end subroutine read_steps
+
+   !> Error for a bulk stress (`motion`) in step `number` of a body that does not deform like a half-plane.
+   subroutine check_bulk_stress(reader, number, motion, scene, error)
+      type(reader_type), intent(in) :: reader
+      integer, intent(in) :: number, motion
+      type(scene_type), intent(in) :: scene
+      type(error_type), allocatable, intent(out) :: error
+      character(:), allocatable :: kind
+      integer :: body
+      logical :: upper
+
+      upper = motion == motion_upper_bulk
+      if (scene%can_have_bulk_stress(upper)) return
+      body = merge(2, 1, upper)
+      kind = reader%text_value('body', body, 'shape')
+      if (reader%logical_value('body', body, 'rigid')) kind = 'rigid '//kind
+      call reader%complain('step', number, trim(motions(motion)%key), 'the '//merge('upper', 'lower', upper)//' body is a '// &
+                           kind//'; a bulk stress needs an elastic half_plane, wedge, power, rounded_punch or profile', error)
+   end subroutine check_bulk_stress
 
    !> The tangential target of step `number` as a fraction of the sliding limit mu P. The normal targets up to this step are known.
    subroutine read_force_ratio(reader, number, scene, error)
@@ -253,7 +275,7 @@ contains
 
       control = control_keep
       target = 0.0_wp
-      do i = control_force, control_displacement
+      do i = merge(control_displacement, control_force, motions(motion)%is_stress), control_displacement
          if (.not. reader%has('step', number, trim(controlled_key(motion, i)))) cycle
          if (control /= control_keep) then
             call reader%complain('step', number, trim(motions(motion)%key), trim(motions(motion)%force_key)// &

@@ -11,7 +11,8 @@ module mfv_result_fields
    use mfv_error_bar
    use mfv_cycle, only: cycle_type
    use mfv_kinds, only: wp
-   use mfv_motions, only: motions, motion_count, motion_approach, motion_shift, motion_rotation
+   use mfv_motions, only: motions, motion_count, motion_approach, motion_shift, motion_rotation, motion_lower_bulk, &
+                          motion_upper_bulk
    use mfv_node_status, only: event_names, holds, in_contact, node_status_names
    use mfv_observables, only: observable_count, observables, observables_of
    use mfv_scene, only: stepping_leap
@@ -371,12 +372,14 @@ contains
       type(contact_state_type), intent(in) :: state
       real(wp), dimension(simulation%contact%model%nodes()) :: normal, tangential
       character(*), parameter :: prefix(2) = [character(6) :: '', 'upper_'], body(2) = [character(5) :: 'lower', 'upper']
+      integer, parameter :: bulk(2) = [motion_lower_bulk, motion_upper_bulk]
       integer :: side
 
       do side = lower_body, upper_body
-         associate (pair => simulation%contact%model%compliance)
+         associate (pair => simulation%contact%model%compliance, arm => simulation%contact%model%tangential_arm(:, bulk(side)))
             if (.not. pair%deforms(side)) cycle
             call pair%body_displacements(side, state%fields%pressure, state%fields%shear, normal, tangential)
+            tangential = tangential + merge(-1.0_wp, 1.0_wp, side == lower_body)*arm*state%fields%motion(bulk(side))
          end associate
          call list%add(trim(prefix(side))//'normal_displacement', normal, along_nodes, 'length', 'displacement w of the '// &
                        body(side)//' surface into its body')
@@ -731,6 +734,7 @@ contains
       logical, intent(in) :: which(motion_count)
       real(wp), intent(in) :: force(:, :), motion(:, :)
       integer, intent(in) :: along
+      character(len=len(motions%unit)) :: unit
       integer :: i
 
       do i = 1, motion_count
@@ -738,8 +742,9 @@ contains
                                      trim(motions(i)%force_meaning))
       end do
       do i = 1, motion_count
-         if (which(i)) call list%add(trim(motions(i)%key), motion(:, i), along, trim(merge('1      ', motions(i)%unit, &
-                                                                           motions(i)%unit == 'radians')), trim(motions(i)%meaning))
+         unit = motions(i)%unit
+         if (unit == 'radians') unit = '1'
+         if (which(i)) call list%add(trim(motions(i)%key), motion(:, i), along, trim(unit), trim(motions(i)%meaning))
       end do
    end subroutine add_motions
 

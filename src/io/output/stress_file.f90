@@ -11,6 +11,7 @@ module mfv_stress_file
    use mfv_hdf5_writer
    use mfv_interior
    use mfv_kinds, only: wp
+   use mfv_motions, only: motions, motion_lower_bulk, motion_upper_bulk
    use mfv_result_fields, only: add_real, along_nodes, along_nothing, field_type, step_group
    use mfv_status, only: MFV_FILE_ERROR, MFV_INPUT_ERROR
    use mfv_stress_search, only: largest_tension, largest_type, largest_von_mises
@@ -88,7 +89,7 @@ contains
       character(:), allocatable :: text, source, directory, state, position
       !> Limit of numbers in a result; products of larger ones would overflow.
       real(wp), parameter :: largest_size = 1.0e100_wp
-      real(wp), allocatable, dimension(:) :: arc, width, pressure, shear, contact_edge, stick_edge
+      real(wp), allocatable, dimension(:) :: arc, width, pressure, shear, contact_edge, stick_edge, bulk
       logical :: available
 
       call open_to_read(path, file, error)
@@ -109,9 +110,10 @@ contains
       if (.not. allocated(error)) call read_vector(file, state//'/shear', size(arc), shear, error)
       if (.not. allocated(error)) call read_edges(file, state//'/contact_edge', size(arc), contact_edge, error)
       if (.not. allocated(error)) call read_edges(file, state//'/stick_edge', size(arc), stick_edge, error)
+      if (.not. allocated(error)) call read_bulk(file, request, bulk, error)
       call close_read(file)
       if (.not. allocated(error)) then
-         if (any(abs([arc, width, pressure, shear, pack(contact_edge,.not. ieee_is_nan(contact_edge)), &
+         if (any(abs([arc, width, pressure, shear, bulk, pack(contact_edge,.not. ieee_is_nan(contact_edge)), &
                       pack(stick_edge,.not. ieee_is_nan(stick_edge))]) > largest_size)) &
             call set_error(error, MFV_INPUT_ERROR, 'mesh or '//state//' has values beyond 1e100')
       end if
@@ -119,7 +121,8 @@ contains
                                                       without_steps=.true.)
       if (allocated(error)) return
       result%yield_strength = merge(case%scene%upper%yield_strength, case%scene%lower%yield_strength, request%upper)
-      call case%scene%interior(request%upper, arc, width, pressure, shear, contact_edge, stick_edge, interior, available)
+      call case%scene%interior(request%upper, arc, width, pressure, shear, contact_edge, stick_edge, bulk(1), &
+                               interior, available)
       if (.not. available) call set_error(error, MFV_INPUT_ERROR, 'the '//body_name(request)//' body is rigid or given by a '// &
                                           'matrix: its stresses cannot be computed')
    end subroutine read_interior
@@ -138,6 +141,24 @@ contains
          allocate (edges(nodes), source=ieee_value(1.0_wp, ieee_quiet_nan))
       end if
    end subroutine read_edges
+
+   !> The bulk stress of the body, shape (1); 0 if the file has none.
+   subroutine read_bulk(file, request, bulk, error)
+      integer(hid_t), intent(in) :: file
+      type(stress_request_type), intent(in) :: request
+      real(wp), allocatable, intent(out) :: bulk(:)
+      type(error_type), allocatable, intent(inout) :: error
+      character(:), allocatable :: path
+
+      path = 'summary/'
+      if (request%step > 0) path = step_group(request%step)//'/'
+      path = path//trim(motions(merge(motion_upper_bulk, motion_lower_bulk, request%upper))%key)
+      if (has(file, path)) then
+         call read_vector(file, path, 1, bulk, error)
+      else
+         bulk = [0.0_wp]
+      end if
+   end subroutine read_bulk
 
    !> lower or upper.
    pure function body_name(request) result(name)

@@ -63,8 +63,12 @@ contains
       real(wp), intent(in) :: value, x, y
       character(:), allocatable, intent(out) :: text
 
-      text = to_text(value)//unit_suffix(result%stress_unit)//' = '//to_text(value/result%largest_pressure, 4)// &
-             ' p0, at x, y = '//to_text(x)//', '//to_text(y)//unit_suffix(result%length_unit)//' = '// &
+      text = to_text(value)//unit_suffix(result%stress_unit)//' = '//to_text(value/result%largest_pressure, 4)//' p0, '
+      if (.not. ieee_is_finite(x)) then
+         text = text//'far from the contact'
+         return
+      end if
+      text = text//'at x, y = '//to_text(x)//', '//to_text(y)//unit_suffix(result%length_unit)//' = '// &
              to_text(x/result%half_width, 4)//', '//to_text(y/result%half_width, 4)//' a'
    end subroutine describe
 

@@ -6,7 +6,7 @@ module mfv_summary
    use mfv_error_bar
    use mfv_interior, only: has_interior
    use mfv_kinds, only: wp
-   use mfv_motions, only: motions, motion_count, motion_rotation
+   use mfv_motions, only: motions, motion_count, motion_rotation, motion_lower_bulk, motion_upper_bulk
    use mfv_result_fields, only: field_named, field_type, group_fields
    use mfv_simulation, only: simulation_type
    use mfv_status, only: status_outcome
@@ -48,9 +48,13 @@ contains
          call group_fields(case, simulation, 'observables', seen)
          if (simulation%cycle_count > 0) call add_last_cycle(text, seen)
          do i = 1, motion_count
-            if (motions(i)%optional .and. model%moves(i)) &
+            if (.not. (motions(i)%optional .and. model%moves(i))) cycle
+            if (motions(i)%is_stress) then
+               call add_line(text, motions(i)%key(:5)//' bulk stress', amount(fields, trim(motions(i)%key)))
+            else
                call add_line(text, trim(motions(i)%force_name), amount(fields, trim(motions(i)%force_key))//', '// &
                              trim(motions(i)%key)//' '//amount(fields, trim(motions(i)%key)))
+            end if
          end do
          if (model%moves(motion_rotation) .and. field_named(seen, 'creepage_number') > 0) &
             call add_line(text, 'creepage', amount(seen, 'creepage')//', over mu a K '//amount(seen, 'creepage_number'))
@@ -116,6 +120,7 @@ contains
       type(contact_model_type), intent(in) :: model
       logical, intent(in) :: touches
       character(*), parameter :: bodies(2) = ['lower', 'upper']
+      integer, parameter :: bulk(2) = [motion_lower_bulk, motion_upper_bulk]
       character(:), allocatable :: words
       logical :: has_stresses(2)
       integer :: i
@@ -126,6 +131,8 @@ contains
          if (field_named(fields, bodies(i)//'_tension_x') > 0) then
             words = words//', '//bodies(i)//' body '//amount(fields, bodies(i)//'_tension')//' at x = '// &
                     amount(fields, bodies(i)//'_tension_x')
+         else if (model%moves(bulk(i)) .and. field_named(fields, bodies(i)//'_tension') > 0) then
+            words = words//', '//bodies(i)//' body '//amount(fields, bodies(i)//'_tension')//' far from the contact'
          else if (touches .and. has_stresses(i) .and. field_named(fields, bodies(i)//'_tension') == 0) then
             words = words//', '//bodies(i)//' body singular at a sharp corner'
          end if
