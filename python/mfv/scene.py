@@ -38,6 +38,8 @@ else:
 
 #: A coefficient of friction: one value, or one per node.
 Coefficient = Union[float, Sequence[float], NDArray[np.float64]]
+#: Positions along the surface.
+Positions = Union[Sequence[float], NDArray[np.float64]]
 
 #: Arrays in place of a file: datasets by name.
 Data = Mapping[str, NDArray[np.float64]]
@@ -245,7 +247,7 @@ class Mesh(KeyGroup):
     half_width: float | None = None
     half_angle: float | None = None
     refine: Literal["none", "edges"] | None = None
-    ends: Sequence[float] | NDArray[np.float64] | None = None
+    ends: Positions | None = None
     gap: Literal["exact", "parabolic"] | None = None
     normals: Literal["vertical", "radial"] | None = None
 
