@@ -122,6 +122,8 @@ contains
 
       if (.not. has_coarser_meshes(scene)) then
          advice%message = "a body with shape='matrix' has a fixed mesh"
+      else if (allocated(scene%mesh%ends)) then
+         advice%message = 'ends in &mesh fix the mesh'
       else if (allocated(scene%friction%static%value) .and. .not. allocated(scene%friction%static%position)) then
          if (size(scene%friction%static%value) > 1) &
             advice%message = 'the coefficient of friction is given by one value per node; give it by mu_file, which suits any mesh'

@@ -71,7 +71,7 @@ contains
       text = ''
       call add_reasons(case, advice, text)
       call parse_namelists(case%text, case%source, groups, error)
-      call add_group(text, groups, 'mesh', 'nodes', 'nodes='//to_text(advice%nodes))
+      call add_group(text, groups, 'mesh', 'nodes refine', 'nodes='//to_text(advice%nodes))
       call add_solver(case, advice, groups, text)
    end subroutine write_advice
 
@@ -108,6 +108,8 @@ contains
          call add_line(text, "accuracy="//to_text(advice%accuracy, 2)//' needs fewer solves: '// &
                        to_text(advice%increment_solves)//' instead of '//to_text(advice%event_solves)//' with '// &
                        to_text(advice%tried_nodes)//' nodes.')
+      if (case%scene%mesh%refined) &
+         call add_line(text, "This is for equal intervals: refine='edges' needs fewer nodes; --estimate gives its errors.")
       call add_line(text, 'Replace &mesh and &solver of the case by:')
    end subroutine add_reasons
 
