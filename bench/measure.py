@@ -35,7 +35,7 @@ HEAD = """# Performance
 Written by `bench/measure.py`; do not edit. Counts do not depend on the machine. Times are of one machine ({machine}) with one thread, the least
 of several runs: compare them with each other, not with yours. Measured: {dates}.
 
-Every run has to be complete, with a certificate below {direct:.0e} ({iterative:.0e} with fft): {gate}
+Every run has to be complete, with a certificate below {direct:.0e} ({iterative:.0e} with fft, 0.01 of the accuracy of large increments): {gate}
 """
 
 

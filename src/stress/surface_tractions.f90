@@ -266,11 +266,11 @@ contains
    subroutine find_limit(patch)
       type(patch_type), intent(inout) :: patch
       logical :: slips(size(patch%arc))
-      integer :: i, node
+      real(wp), dimension(size(patch%arc) + 2*size(patch%stick)) :: x, value
+      integer :: i, node, number
 
       slips = slipping_nodes(patch)
-      patch%limit = table_type()
-      allocate (patch%limit%x(0), patch%limit%value(0))
+      number = 0
       node = 0
       do i = 1, size(patch%stick)
          associate (zone => patch%stick(i))
@@ -281,6 +281,9 @@ contains
          end associate
       end do
       call add_nodes_before(huge(1.0_wp))
+      patch%limit = table_type()
+      patch%limit%x = x(:number)
+      patch%limit%value = value(:number)
 
    contains
 
@@ -295,12 +298,13 @@ contains
       end subroutine add_nodes_before
 
       !> Add a point with tau/p of a node.
-      subroutine add(x, from)
-         real(wp), intent(in) :: x
+      subroutine add(place, from)
+         real(wp), intent(in) :: place
          integer, intent(in) :: from
 
-         patch%limit%x = [patch%limit%x, x]
-         patch%limit%value = [patch%limit%value, patch%shear(from)/patch%pressure(from)]
+         number = number + 1
+         x(number) = place
+         value(number) = patch%shear(from)/patch%pressure(from)
       end subroutine add
    end subroutine find_limit
 

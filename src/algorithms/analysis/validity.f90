@@ -53,9 +53,10 @@ contains
       call check_order(simulation%contact%model%scene%lower, warnings)
       call check_rotation(simulation, warnings)
       largest = simulation%contact%certificate%largest()
-      if (largest > good) call add_text(warnings, 'the largest relative residual is '//to_text(largest, 2)// &
-                                        ', well above rounding errors: results may be inaccurate; /certificate in the result '// &
-                                        'file lists the residuals by name')
+      if (largest > max(good, simulation%contact%model%scene%method%allowed_residual())) &
+         call add_text(warnings, 'the largest relative residual is '//to_text(largest, 2)// &
+                       ', well above rounding errors: results may be inaccurate; /certificate in the result file lists the '// &
+                       'residuals by name')
    end subroutine validity_warnings
 
    subroutine check_angle(simulation, name, body, warnings)

@@ -61,6 +61,7 @@ module mfv_scene
       real(wp) :: accuracy = 0.0_wp
    contains
       procedure :: takes_accuracy
+      procedure :: allowed_residual
    end type method_type
 
    !> Mesh settings of the user; what is not set is chosen from an estimate of the contact.
@@ -114,6 +115,15 @@ contains
 
       takes_accuracy = self%algorithm == algorithm_mfv .and. (self%stepping == stepping_auto .or. self%stepping == stepping_leap)
    end function takes_accuracy
+
+   !> Residual of the certificate that large increments may leave; 0 by events.
+   elemental real(wp) function allowed_residual(self)
+      class(method_type), intent(in) :: self
+      real(wp), parameter :: negligible = 1.0e-2_wp
+
+      allowed_residual = 0.0_wp
+      if (self%stepping == stepping_leap) allowed_residual = negligible*self%accuracy
+   end function allowed_residual
 
    !> Whether the scene requires the tangential problem: a friction law, and a step in which it acts. A scene without steps may get
    !> such steps later.

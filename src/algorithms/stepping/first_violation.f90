@@ -24,7 +24,6 @@ module mfv_first_violation
    use mfv_motions, only: motion_approach, control_force
    use mfv_node_status
    use mfv_observer, only: observer_type
-   use mfv_scene, only: stepping_leap
    use mfv_rate_problem, only: find_statuses_by_rates
    use mfv_status
    use mfv_strings, only: to_text
@@ -235,12 +234,8 @@ contains
    !> The largest admissible residual of the certificate. In large increments the linear solver may be less accurate.
    pure real(wp) function most_residual(path)
       class(contact_path_type), intent(in) :: path
-      real(wp), parameter :: negligible = 1.0e-2_wp
 
-      most_residual = max(failed_certificate, tolerance_factor*path%system%tolerance)
-      associate (method => path%model%scene%method)
-         if (method%stepping == stepping_leap) most_residual = max(most_residual, negligible*method%accuracy)
-      end associate
+      most_residual = max(failed_certificate, tolerance_factor*path%system%tolerance, path%model%scene%method%allowed_residual())
    end function most_residual
 
    !> Change the statuses of the nodes whose inequalities are violated first, together.
