@@ -88,6 +88,7 @@ contains
       integer :: i
 
       allocate (elements%from(0), elements%to(0), elements%edges(0), elements%first(0), elements%last(0))
+      patch%graded = maxval(width) - minval(width) > near*maxval(width)
       call assign_nodes(arc, width, abs(pressure) > 0.0_wp .or. abs(shear) > 0.0_wp, zones, edges, sharp, owner)
       do i = 1, size(edges, 2)
          if (.not. any(owner == i)) cycle
@@ -97,7 +98,6 @@ contains
          patch%shear = pack(shear, owner == i)
          patch%contact = zone_type(edge=edges(:, i), rooted=.not. sharp(:, i), rest=table_type())
          patch%counted = i > size(zones%contact, 2)
-         patch%graded = maxval(width) - minval(width) > near*maxval(width)
          call fit_patch(patch, zones)
          call add_elements(patch, min(longest, (patch%contact%edge(2) - patch%contact%edge(1))/zones%fewest_elements), elements)
       end do

@@ -10,7 +10,7 @@ module mfv_tangent
    use mfv_error, only: error_type, set_error
    use mfv_first_violation, only: apply_by_violations
    use mfv_kinds, only: wp
-   use mfv_motions, only: motion_count, control_displacement, arm_unit
+   use mfv_motions, only: motion_count, control_displacement
    use mfv_node_status, only: in_contact
    use mfv_observer, only: observer_type
    use mfv_status, only: MFV_BAD_ARGUMENT, MFV_INTERRUPTED
@@ -71,7 +71,7 @@ contains
 
       motion = 0.0_wp
       motion(:size(direction)) = direction
-      largest = maxval(abs(motion)*[(arm_unit(i, path%model%length(), path%model%compliance%modulus), i=1, motion_count)])
+      largest = maxval(abs(motion)*path%model%unit_of_arm([(i, i=1, motion_count)]))
       if (.not. largest > 0.0_wp) then
          call set_error(error, MFV_BAD_ARGUMENT, 'the direction of the tangent must not be all zeros')
          return

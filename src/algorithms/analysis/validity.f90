@@ -5,7 +5,7 @@ module mfv_validity
    use mfv_contact_state, only: contact_state_type
    use mfv_interior, only: interior_type
    use mfv_kinds, only: pi, wp
-   use mfv_motions, only: motion_approach, motion_shift, motion_rotation, motion_lower_bulk, motion_upper_bulk, &
+   use mfv_motions, only: motion_approach, motion_shift, motion_rotation, bulk_motions, &
                           control_displacement
    use mfv_node_status, only: in_contact
    use mfv_simulation, only: simulation_type
@@ -199,7 +199,7 @@ contains
       where_it_is = 'in the last state'
       n = simulation%snapshot_count
       candidates = 0
-      bulk = merge(motion_upper_bulk, motion_lower_bulk, upper)
+      bulk = bulk_motions(merge(2, 1, upper))
       if (n > 1) candidates = [maxloc([(simulation%snapshots(i)%state%fields%force(motion_approach), i=1, n)]), &
                                maxloc([(simulation%snapshots(i)%state%fields%force(motion_shift), i=1, n)]), &
                                minloc([(simulation%snapshots(i)%state%fields%force(motion_shift), i=1, n)]), &

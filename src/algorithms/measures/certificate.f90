@@ -10,7 +10,7 @@ module mfv_certificate
    use mfv_contact_state, only: contact_state_type
    use mfv_friction_law, only: friction_point_type
    use mfv_kinds, only: wp
-   use mfv_motions, only: motions, motion_count, motion_approach, motion_shift, arm_unit
+   use mfv_motions, only: motions, motion_count, motion_approach, motion_shift
    use mfv_node_status
    use mfv_scene, only: algorithm_mfv, integration_explicit
    implicit none
@@ -207,7 +207,7 @@ contains
          if (motions(i)%optional) then
             if (.not. self%applies(force_balance(i))) cycle
             self%force(i) = max(self%force(i), abs(fields%force(i)), &
-                                self%force(motion_approach)*arm_unit(i, model%length(), model%compliance%modulus), &
+                                self%force(motion_approach)*model%unit_of_arm(i), &
                                 model%force(abs(model%normal_arm(:, i)*fields%pressure)) &
                                 + model%force(abs(model%tangential_arm(:, i)*fields%shear)))
          end if

@@ -5,7 +5,7 @@ module mfv_state_interior
    use mfv_contact_state, only: contact_state_type
    use mfv_interior, only: interior_type
    use mfv_kinds, only: wp
-   use mfv_motions, only: motion_lower_bulk, motion_upper_bulk
+   use mfv_motions, only: bulk_motions
    use mfv_zone_edges, only: find_patches, patch_type
    implicit none
    private
@@ -26,7 +26,7 @@ contains
 
       call find_edges_at_nodes(model, state, contact_edge, stick_edge)
       call model%scene%interior(upper, model%arc, model%width, state%fields%pressure, state%fields%shear, contact_edge, &
-                                stick_edge, state%fields%motion(merge(motion_upper_bulk, motion_lower_bulk, upper)), interior, &
+                                stick_edge, state%fields%motion(bulk_motions(merge(2, 1, upper))), interior, &
                                 available, fewest_elements)
    end subroutine state_interior
 

@@ -15,7 +15,7 @@ module mfv_contact_model
    use mfv_lapack, only: ddot
    use mfv_numerics, only: gauss_points
    use mfv_motions, only: motions, motion_count, motion_approach, motion_shift, motion_rotation, motion_lower_bulk, &
-                          motion_upper_bulk
+                          motion_upper_bulk, arm_unit
    use mfv_reference_indenter, only: indenter_type
    use mfv_clock, only: seconds_now
    use mfv_scene, only: scene_type
@@ -62,6 +62,7 @@ module mfv_contact_model
       procedure :: intervals
       procedure :: largest_stiffness
       procedure :: length
+      procedure :: unit_of_arm
       procedure :: gap
       procedure :: relative_displacements
       procedure :: displace
@@ -267,6 +268,14 @@ contains
       length = 0.5_wp*self%interval()*self%nodes()
    end function length
 
+   !> Unit of the arms of a motion, see arm_unit of mfv_motions.
+   elemental real(wp) function unit_of_arm(self, motion)
+      class(contact_model_type), intent(in) :: self
+      integer, intent(in) :: motion
+
+      unit_of_arm = arm_unit(motion, self%length(), self%compliance%modulus)
+   end function unit_of_arm
+
    !> Gap g0 - delta + w of every node, length (meaningless where a node faces no surface).
    pure function gap(self, fields)
       class(contact_model_type), intent(in) :: self
@@ -437,8 +446,11 @@ contains
          self%width = spread(self%interval(), 1, n)
       end if
       self%x = self%scene%x_of_arc(self%arc)
-      self%initial_gap = gap_at(self%scene, self%arc)
-      if (allocated(self%scene%mesh%ends)) self%initial_gap = mean_gaps(self%scene, self%scene%mesh%ends)
+      if (allocated(self%scene%mesh%ends)) then
+         self%initial_gap = mean_gaps(self%scene, self%scene%mesh%ends)
+      else
+         self%initial_gap = gap_at(self%scene, self%arc)
+      end if
       self%can_touch = self%scene%touchable(self%arc)
       self%static_friction = self%scene%friction%static%at(self%x)
       self%kinetic_friction = self%scene%friction%kinetic%at(self%x)

@@ -8,12 +8,15 @@ module mfv_motions
    implicit none
    private
    public :: motion_type, motions, motion_count, motion_approach, motion_shift, motion_rotation, motion_lower_bulk, &
-             motion_upper_bulk, control_keep, control_force, control_displacement, controlled_key, arm_unit
+             motion_upper_bulk, bulk_motions, control_keep, control_force, control_displacement, controlled_key, arm_unit
 
    !> Approach (down), shift (to the right) and rotation (counterclockwise) of the upper body; the bulk stress of either body; and
    !> the number of motions.
    integer, parameter :: motion_approach = 1, motion_shift = 2, motion_rotation = 3, motion_lower_bulk = 4, motion_upper_bulk = 5, &
                          motion_count = 5
+
+   !> The bulk stress of the lower and the upper body.
+   integer, parameter :: bulk_motions(2) = [motion_lower_bulk, motion_upper_bulk]
 
    !> Control of a motion by a step: unchanged load, prescribed force (moment), prescribed displacement (rotation).
    integer, parameter :: control_keep = 0, control_force = 1, control_displacement = 2

@@ -16,7 +16,7 @@ module mfv_augmented_system
    use mfv_contact_system
    use mfv_kinds, only: wp
    use mfv_lapack, only: dgesv
-   use mfv_motions, only: motion_count, motion_approach, motion_shift, motion_rotation, control_force, arm_unit
+   use mfv_motions, only: motion_count, motion_approach, motion_shift, motion_rotation, control_force
    use mfv_node_status
    implicit none
    private
@@ -100,7 +100,7 @@ contains
       assembly%length = model%length()
       assembly%shear_stress = assembly%stress
       if (assembly%tangential) assembly%shear_stress = assembly%stress*model%friction_scale
-      assembly%arm = [(arm_unit(i, assembly%length, assembly%stress), i=1, motion_count)]
+      assembly%arm = model%unit_of_arm([(i, i=1, motion_count)])
       assembly%motion_unit = assembly%length/assembly%arm
       assembly%force_unit = assembly%stress*(assembly%length*assembly%arm)
       assembly%force_unit(motion_shift) = assembly%shear_stress*assembly%length

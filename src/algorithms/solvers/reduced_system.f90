@@ -60,8 +60,9 @@ module mfv_reduced_system
       integer :: nodes = 0
       !> Prescribed values of the fields that are solved for.
       type(prescribed_type) :: prescribed
-      !> Unit of length: half the length of the initial mesh; it does not change when the mesh grows.
-      real(wp) :: length = 1.0_wp
+      !> Unit of length: half the length of the initial mesh; it does not change when the mesh grows. And the units of the arms of
+      !> the motions.
+      real(wp) :: length = 1.0_wp, arm(motion_count) = 1.0_wp
       !> Blocks and motions of the present inverses.
       logical :: block(4) = .false., moves(motion_count) = .false.
       type(augmented_system_type) :: augmented
@@ -171,6 +172,7 @@ contains
       self%block = model%compliance%has_block
       self%moves = model%moves
       self%length = model%length()
+      self%arm = arm_unit([(i, i=1, motion_count)], self%length, model%compliance%modulus)
       self%apart = .not. (self%block(block_wt) .or. model%motions_couple())
       self%nodes = n
       if (allocated(self%place)) deallocate (self%place, self%constraint_of)
@@ -331,7 +333,7 @@ contains
       end do
       allocate (borders(self%subsystem(p)%unknowns, size(new_sort)))
       do i = 1, size(new_sort)
-         call entries_of(model, self%length, self%subsystem(p), new_sort(i), new_of(i), borders(:, i))
+         call entries_of(model, self%length, self%arm, self%subsystem(p), new_sort(i), new_of(i), borders(:, i))
       end do
       call self%subsystem(p)%system%add_unknowns(borders, singular)
    end subroutine add_named
@@ -402,7 +404,7 @@ contains
          associate (subsystem => self%subsystem(p))
             allocate (matrix(subsystem%unknowns, subsystem%unknowns))
             do j = 1, subsystem%unknowns
-               call entries_of(model, self%length, subsystem, subsystem%sort(j), subsystem%of(j), matrix(:, j))
+               call entries_of(model, self%length, self%arm, subsystem, subsystem%sort(j), subsystem%of(j), matrix(:, j))
             end do
             call subsystem%system%refresh(matrix, singular)
             deallocate (matrix)
@@ -415,10 +417,10 @@ contains
    end subroutine rebuild
 
    !> Entries of the rows of a subsystem in the column of one unknown, in units of the modulus of the compliance and the length of
-   !> the mesh; shape (unknowns).
-   subroutine entries_of(model, length, subsystem, column_sort, column_of, entries)
+   !> the mesh; shape (unknowns). `arm`: units of the arms of the motions.
+   subroutine entries_of(model, length, arm, subsystem, column_sort, column_of, entries)
       type(contact_model_type), intent(in) :: model
-      real(wp), intent(in) :: length
+      real(wp), intent(in) :: length, arm(motion_count)
       type(subsystem_type), intent(in) :: subsystem
       integer, intent(in) :: column_sort, column_of
       real(wp), intent(out) :: entries(:)
@@ -431,8 +433,8 @@ contains
       associate (n => size(entries), sort => subsystem%sort, of => subsystem%of)
          if (column_sort == a_motion) then
             do i = 1, n
-   if (sort(i) == a_pressure) entries(i) = -model%normal_arm(of(i), column_of)/arm_unit(column_of, length, model%compliance%modulus)
-  if (sort(i) == a_shear) entries(i) = -model%tangential_arm(of(i), column_of)/arm_unit(column_of, length, model%compliance%modulus)
+               if (sort(i) == a_pressure) entries(i) = -model%normal_arm(of(i), column_of)/arm(column_of)
+               if (sort(i) == a_shear) entries(i) = -model%tangential_arm(of(i), column_of)/arm(column_of)
             end do
             return
          end if
@@ -450,8 +452,8 @@ contains
          end do
          do i = 1, n
             if (sort(i) /= a_motion) cycle
-   if (column_sort == a_pressure) entries(i) = -model%normal_arm(column_of, of(i))/arm_unit(of(i), length, model%compliance%modulus)
-  if (column_sort == a_shear) entries(i) = -model%tangential_arm(column_of, of(i))/arm_unit(of(i), length, model%compliance%modulus)
+            if (column_sort == a_pressure) entries(i) = -model%normal_arm(column_of, of(i))/arm(of(i))
+            if (column_sort == a_shear) entries(i) = -model%tangential_arm(column_of, of(i))/arm(of(i))
          end do
       end associate
    end subroutine entries_of
@@ -631,13 +633,12 @@ contains
                   gap_rest = max(gap_rest, abs(missing))
                   subsystem%right(i) = missing*by_length
                else if (subsystem%sort(i) == a_motion .and. self%constraint_of(node, a_motion) > 0) then
-                  missing = (prescribed%load(node) - fields%motion(node))*arm_unit(node, self%length, model%compliance%modulus)
+                  missing = (prescribed%load(node) - fields%motion(node))*self%arm(node)
                   largest = max(largest, relative(abs(missing), scales%normal))
                   subsystem%values(self%constraint_of(node, a_motion)) = missing*by_length
                   subsystem%right(i) = 0.0_wp
                else if (subsystem%sort(i) == a_motion) then
-                  missing = (model%resultant(node, fields%pressure, fields%shear) - prescribed%load(node)) &
-                            /arm_unit(node, self%length, model%compliance%modulus)
+                  missing = (model%resultant(node, fields%pressure, fields%shear) - prescribed%load(node))/self%arm(node)
                   largest = max(largest, relative(abs(missing), merge(scales%shear_force, scales%force, node == motion_shift)))
                   subsystem%right(i) = missing*by_stress
                else if (constraints%status(node) == node_stick) then
@@ -760,7 +761,7 @@ contains
          do i = 1, subsystem%unknowns
             associate (node => subsystem%of(i), change => subsystem%solution(i))
                if (subsystem%sort(i) == a_motion) then
-                fields%motion(node) = fields%motion(node) + change*self%length/arm_unit(node, self%length, model%compliance%modulus)
+                  fields%motion(node) = fields%motion(node) + change*self%length/self%arm(node)
                else if (subsystem%sort(i) == a_pressure) then
                   fields%pressure(node) = fields%pressure(node) + stress/model%width(node)*change
                else

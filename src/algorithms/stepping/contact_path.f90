@@ -14,7 +14,7 @@ module mfv_contact_path
    use mfv_kinds, only: wp
    use mfv_linear_solvers, only: chosen_stepping, new_contact_system
    use mfv_motions, only: motions, motion_count, motion_approach, motion_shift, motion_rotation, control_force, &
-                          control_displacement, arm_unit
+                          control_displacement
    use mfv_node_status
    use mfv_observer, only: observer_type
    use mfv_rolling, only: rolling_type
@@ -365,8 +365,8 @@ contains
       real(wp) :: scale
 
       if (self%state%contact_nodes() < 2) then
-         associate (load => constraints%load(motion), length => self%model%length())
-            scale = self%model%compliance%modulus*(length*arm_unit(motion, length, self%model%compliance%modulus))
+         associate (load => constraints%load(motion), model => self%model)
+            scale = model%compliance%modulus*(model%length()*model%unit_of_arm(motion))
             if (max(abs(load%value), abs(load%rate), abs(self%state%fields%force(motion) - load%value)) > no_moment*scale) &
                call no_continuation(self, 'fewer than two nodes are in contact; the '//trim(motions(motion)%force_name)// &
                                     ' tips the upper body over', error)
@@ -398,7 +398,7 @@ contains
       wanted = constraints%load(motion)%rate
       none = max(nothing, tolerance_factor*self%system%tolerance)
       constraints%load(motion) = load_type(control_displacement, self%state%fields%motion(motion), 0.0_wp)
-      arm = arm_unit(motion, self%model%length(), self%model%compliance%modulus)
+      arm = self%model%unit_of_arm(motion)
       negligible = none*self%certificate%force_scale()*arm
       pressed = self%state%fields%force(motion_approach) > none*self%certificate%force_scale()
       if (.not. any(slips(self%state%status))) then

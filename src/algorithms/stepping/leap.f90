@@ -241,7 +241,8 @@ contains
       work = reference_work(path, chain)
       by_tractions = 0.0_wp
       by_work = 0.0_wp
-   if (traction > 0.0_wp) by_tractions = ((chain%traction_error - chain%start_error)/safety + chain%start_error)/(accuracy*traction)
+      if (traction > 0.0_wp) &
+         by_tractions = ((chain%traction_error - chain%start_error)/safety + chain%start_error)/(accuracy*traction)
       if (chain%work_error > 0.0_wp) by_work = chain%work_error/max(accuracy*work, tiny(1.0_wp))
       accepted = max(by_tractions, by_work) <= 1.0_wp
       increments = 0
@@ -409,8 +410,10 @@ contains
       integer, intent(in) :: i
       real(wp) :: error
 
-    call node_wise_dissipation(path%model, chain%before(i), chain%after(i), path%system%tolerance, chain%friction_work(:, i), error)
-      chain%node_wise = chain%node_wise + path%model%force(chain%friction_work(:, i))
+      associate (work => chain%friction_work(:, i))
+         call node_wise_dissipation(path%model, chain%before(i), chain%after(i), path%system%tolerance, work, error)
+         chain%node_wise = chain%node_wise + path%model%force(work)
+      end associate
       chain%node_wise_error = chain%node_wise_error + error
    end subroutine add_node_wise
 
@@ -459,13 +462,13 @@ contains
       type(chain_type), intent(inout) :: finer
       !> If contact begins, the smooth sum is worse than the rates with fewer increments.
       integer, parameter :: smooth_from = 8
-      real(wp) :: smooth, corners, difference, by_rates, error
+      real(wp) :: smooth, corners, difference, change, by_rates, error
 
       call chain_dissipation(path%model, finer%before(1)%fields, finer%after, finer%begins, finer%changes, smooth, corners)
       difference = abs(smooth - finer%node_wise)
       finer%work = 0.5_wp*(max(smooth, 0.0_wp) + finer%node_wise)
-   finer%work_error = max(difference, abs(finer%node_wise - coarser%node_wise)*(real(coarser%increments, wp)/finer%increments)**2, &
-                             corners)
+      change = abs(finer%node_wise - coarser%node_wise)*(real(coarser%increments, wp)/finer%increments)**2
+      finer%work_error = max(difference, change, corners)
       if (finer%begins .and. finer%increments > 1) then
          call dissipation_by_rates(dissipation_rates(path, segment, finer), count(slips(finer%before(finer%increments)%status)), &
                                    by_rates, error)

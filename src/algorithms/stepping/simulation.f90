@@ -14,7 +14,7 @@ module mfv_simulation
    use mfv_kinds, only: wp
    use mfv_leap, only: apply_by_large_increments
    use mfv_load_way, only: load_summary_type
-   use mfv_motions, only: motions, motion_count, control_keep, control_force, arm_unit
+   use mfv_motions, only: motions, motion_count, control_keep, control_force
    use mfv_node_status, only: event_none, event_step_end, event_stopped
    use mfv_observer, only: observer_type
    use mfv_scene
@@ -533,9 +533,7 @@ contains
       integer :: i
       real(wp) :: force(motion_count)
 
-      associate (model => self%contact%model)
-         force = self%contact%certificate%force_scale()*arm_unit([(i, i=1, motion_count)], model%length(), model%compliance%modulus)
-      end associate
+      force = self%contact%certificate%force_scale()*self%contact%model%unit_of_arm([(i, i=1, motion_count)])
       associate (segment => self%leg%segment, fields => self%contact%state%fields)
          segment%load = load_towards(start_of(fields%force, fields%motion, targets), targets, force)
          segment%friction = step%friction

@@ -11,8 +11,7 @@ module mfv_result_fields
    use mfv_error_bar
    use mfv_cycle, only: cycle_type
    use mfv_kinds, only: wp
-   use mfv_motions, only: motions, motion_count, motion_approach, motion_shift, motion_rotation, motion_lower_bulk, &
-                          motion_upper_bulk
+   use mfv_motions, only: motions, motion_count, motion_approach, motion_shift, motion_rotation, bulk_motions
    use mfv_node_status, only: event_names, holds, in_contact, node_status_names
    use mfv_observables, only: observable_count, observables, observables_of
    use mfv_scene, only: stepping_leap
@@ -372,14 +371,13 @@ contains
       type(contact_state_type), intent(in) :: state
       real(wp), dimension(simulation%contact%model%nodes()) :: normal, tangential
       character(*), parameter :: prefix(2) = [character(6) :: '', 'upper_'], body(2) = [character(5) :: 'lower', 'upper']
-      integer, parameter :: bulk(2) = [motion_lower_bulk, motion_upper_bulk]
       integer :: side
 
       do side = lower_body, upper_body
-         associate (pair => simulation%contact%model%compliance, arm => simulation%contact%model%tangential_arm(:, bulk(side)))
+      associate (pair => simulation%contact%model%compliance, arm => simulation%contact%model%tangential_arm(:, bulk_motions(side)))
             if (.not. pair%deforms(side)) cycle
             call pair%body_displacements(side, state%fields%pressure, state%fields%shear, normal, tangential)
-            tangential = tangential + merge(-1.0_wp, 1.0_wp, side == lower_body)*arm*state%fields%motion(bulk(side))
+            tangential = tangential + merge(-1.0_wp, 1.0_wp, side == lower_body)*arm*state%fields%motion(bulk_motions(side))
          end associate
          call list%add(trim(prefix(side))//'normal_displacement', normal, along_nodes, 'length', 'displacement w of the '// &
                        body(side)//' surface into its body')

@@ -11,7 +11,7 @@ module mfv_stress_file
    use mfv_hdf5_writer
    use mfv_interior
    use mfv_kinds, only: wp
-   use mfv_motions, only: motions, motion_lower_bulk, motion_upper_bulk
+   use mfv_motions, only: motions, bulk_motions
    use mfv_result_fields, only: add_real, along_nodes, along_nothing, field_type, step_group
    use mfv_status, only: MFV_FILE_ERROR, MFV_INPUT_ERROR
    use mfv_stress_search, only: largest_tension, largest_type, largest_von_mises
@@ -152,7 +152,7 @@ contains
 
       path = 'summary/'
       if (request%step > 0) path = step_group(request%step)//'/'
-      path = path//trim(motions(merge(motion_upper_bulk, motion_lower_bulk, request%upper))%key)
+      path = path//trim(motions(bulk_motions(merge(2, 1, request%upper)))%key)
       if (has(file, path)) then
          call read_vector(file, path, 1, bulk, error)
       else

@@ -6,7 +6,7 @@ module mfv_summary
    use mfv_error_bar
    use mfv_interior, only: has_interior
    use mfv_kinds, only: wp
-   use mfv_motions, only: motions, motion_count, motion_rotation, motion_lower_bulk, motion_upper_bulk
+   use mfv_motions, only: motions, motion_count, motion_rotation, bulk_motions
    use mfv_result_fields, only: field_named, field_type, group_fields
    use mfv_simulation, only: simulation_type
    use mfv_status, only: status_outcome
@@ -120,7 +120,6 @@ contains
       type(contact_model_type), intent(in) :: model
       logical, intent(in) :: touches
       character(*), parameter :: bodies(2) = ['lower', 'upper']
-      integer, parameter :: bulk(2) = [motion_lower_bulk, motion_upper_bulk]
       character(:), allocatable :: words
       logical :: has_stresses(2)
       integer :: i
@@ -131,7 +130,7 @@ contains
          if (field_named(fields, bodies(i)//'_tension_x') > 0) then
             words = words//', '//bodies(i)//' body '//amount(fields, bodies(i)//'_tension')//' at x = '// &
                     amount(fields, bodies(i)//'_tension_x')
-         else if (model%moves(bulk(i)) .and. field_named(fields, bodies(i)//'_tension') > 0) then
+         else if (model%moves(bulk_motions(i)) .and. field_named(fields, bodies(i)//'_tension') > 0) then
             words = words//', '//bodies(i)//' body '//amount(fields, bodies(i)//'_tension')//' far from the contact'
          else if (touches .and. has_stresses(i) .and. field_named(fields, bodies(i)//'_tension') == 0) then
             words = words//', '//bodies(i)//' body singular at a sharp corner'
