@@ -25,7 +25,7 @@ from .codes import EventKind, NodeStatus
 from .errors import LibraryNotFound, MfvError, NotAResult
 from .loads import Loads, Progress
 from .result import Group, Result, read
-from .scene import Body, Friction, Mesh, Output, Scene, Solver, Step
+from .scene import Body, Friction, History, Mesh, Output, Scene, Solver, Step
 from .studies import Axis, Study, study
 
 __all__ = [
@@ -35,6 +35,7 @@ __all__ = [
     "EventKind",
     "Friction",
     "Group",
+    "History",
     "LibraryNotFound",
     "Loads",
     "Mesh",

@@ -47,15 +47,20 @@ def groups(text: str) -> list[tuple[str, dict[str, Any]]]:
 
 
 def case_of(result: Result, *, keeping_states: bool = False) -> Case:
-    """The case of a result, before its load history. `keeping_states`: save states even if the result has none.
+    """The case of a result, before its load history. `keeping_states`: save states even if the result has none, and those of all
+    turning points of a load history.
 
     Raises ValueError if the scene had arrays in memory and the result is from a file, which does not contain them; InputError.
     """
-    from .case import Case  # here, since it imports this module
+    from .case import Case  # here, since they import this module
+    from .scene import Output
 
     if result._source is not None:
         scene = copy.deepcopy(result._source)
-        if keeping_states and scene.output is not None and scene.output.states == "none":
+        if keeping_states and scene.history is not None:
+            scene.output = scene.output or Output()
+            scene.output.states = "reversals"
+        elif keeping_states and scene.output is not None and scene.output.states == "none":
             scene.output.states = "steps"
         return Case(scene)
     text = result.attributes["input"]
@@ -65,7 +70,16 @@ def case_of(result: Result, *, keeping_states: bool = False) -> Case:
             f"arrays of the scene ({', '.join(in_memory)}) were given in memory and are not in the file; "
             "use the result object of the run for stresses and intermediate states"
         )
-    if keeping_states:
+    if keeping_states and any(group == "history" for group, _ in groups(text)):
+        text = _with_all_states(text)
+    elif keeping_states:
         text = re.sub(r"(\bstates\s*=\s*)(['\"])none\2", r"\1\2steps\2", text, flags=re.IGNORECASE)
     name = os.path.join(result.attributes["working_directory"], result.attributes["input_file"])
     return Case.from_text(text, name)
+
+
+def _with_all_states(text: str) -> str:
+    """A namelist text whose run saves the states of all turning points."""
+    namelist = f90nml.reads(text)
+    namelist.setdefault("output", f90nml.Namelist())["states"] = "reversals"
+    return str(namelist)

@@ -102,6 +102,8 @@ def _solved_again(result: Result, states: int, progress: Progress) -> Result:
     """The result of a case solved again with intermediate states. Raises MfvError, ValueError."""
     if result.attributes["algorithm"] != "mfv":
         raise ValueError("the conventional algorithm depends on the load steps, which additional states would change")
+    if any(name == "history" for name, _ in groups(result.attributes["input"])):
+        return _with_turning_points(result, states)
     parts = list(_parts(result))
     if result.outcome != "complete" and parts:
         reached = {name: float(result.summary[name]) for name in parts[-1].targets}
@@ -122,6 +124,13 @@ def _solved_again(result: Result, states: int, progress: Progress) -> Result:
             if case.advance(friction=part.friction, **loads) != "complete":
                 break
         return kept_states(case.result())
+
+
+def _with_turning_points(result: Result, states: int) -> Result:
+    """The result of a case with a load history solved again, with at most `states` of the states at its turning points."""
+    with case_of(result, keeping_states=True) as case:
+        case.run()
+        return thinned(kept_states(case.result()), states)
 
 
 def _loads_at(share: float, part: Part, start: dict[str, float], ends: dict[str, float]) -> dict[str, float]:

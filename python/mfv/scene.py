@@ -309,6 +309,44 @@ class Step(KeyGroup):
     steady_tolerance: float | None = None
 
 
+#: Loads of turning points: one value for each, or one for all.
+LoadList = Union[float, Sequence[float], NDArray[np.float64]]
+
+
+@_keywords_only
+class History(KeyGroup):
+    """A load history after the steps: the keys of &history. Loads have one value per turning point, or one for all of them.
+
+    The last `period` turning points are passed through `cycles` times.
+    """
+
+    file: str | os.PathLike[str] | None = None
+    normal_force: LoadList | None = None
+    approach: LoadList | None = None
+    tangential_force: LoadList | None = None
+    shift: LoadList | None = None
+    force_ratio: LoadList | None = None
+    moment: LoadList | None = None
+    rotation: LoadList | None = None
+    lower_bulk_stress: LoadList | None = None
+    upper_bulk_stress: LoadList | None = None
+    period: int | None = None
+    cycles: int | None = None
+    steady_tolerance: float | None = None
+
+    @classmethod
+    def from_table(
+        cls, table: Any, *, period: int | None = None, cycles: int | None = None, steady_tolerance: float | None = None
+    ) -> History:
+        """The turning points in a pandas DataFrame, a dict of arrays or a structured array: columns named like the loads of a step.
+
+        A column `time` is ignored. Raises TypeError for a column with another name.
+        """
+        names = getattr(getattr(table, "dtype", None), "names", None) or list(table.keys())
+        loads = {name: _numbers(table[name], name) for name in names if name != "time"}
+        return cls(**loads, period=period, cycles=cycles, steady_tolerance=steady_tolerance)
+
+
 @_keywords_only
 class Solver(KeyGroup):
     """The solver: the keys of &solver."""
@@ -330,7 +368,7 @@ class Output(KeyGroup):
 
     file: str | os.PathLike[str] | None = None
     history: Literal["events", "steps", "none"] | None = None
-    states: Literal["reversals", "steps", "none"] | None = None
+    states: Literal["reversals", "steps", "none", "last_cycle"] | None = None
     error_estimate: bool | None = None
     sensitivity: bool | None = None
     checkpoint_minutes: float | None = None
@@ -344,6 +382,7 @@ class Scene(KeyGroup):
     friction: Friction | None
     mesh: Mesh | None
     steps: list[Step]
+    history: History | None
     solver: Solver | None
     output: Output | None
     name: str
@@ -353,7 +392,7 @@ class Scene(KeyGroup):
     length_unit: str | None
     force_unit: str | None
 
-    _not_keys: ClassVar[tuple[str, ...]] = ("lower", "upper", "friction", "mesh", "steps", "solver", "output", "name")
+    _not_keys: ClassVar[tuple[str, ...]] = ("lower", "upper", "friction", "mesh", "steps", "history", "solver", "output", "name")
 
     def __init__(
         self,
@@ -363,6 +402,7 @@ class Scene(KeyGroup):
         friction: Friction | None = None,
         mesh: Mesh | None = None,
         steps: Iterable[Step] = (),
+        history: History | None = None,
         solver: Solver | None = None,
         output: Output | None = None,
         title: str | None = None,
@@ -379,6 +419,7 @@ class Scene(KeyGroup):
         self.friction = friction
         self.mesh = mesh
         self.steps = list(steps)
+        self.history = history
         self.solver = solver
         self.output = output
         self.title = title
@@ -485,7 +526,7 @@ class Scene(KeyGroup):
 
 
 #: Groups that occur at most once, without &scene.
-_SINGLE: dict[str, type[KeyGroup]] = {"mesh": Mesh, "friction": Friction, "solver": Solver, "output": Output}
+_SINGLE: dict[str, type[KeyGroup]] = {"mesh": Mesh, "friction": Friction, "history": History, "solver": Solver, "output": Output}
 
 #: Default names of arrays.
 _USUAL: dict[type[KeyGroup], str] = {
@@ -493,6 +534,7 @@ _USUAL: dict[type[KeyGroup], str] = {
     Mesh: "Mesh(nodes=101, half_width=0.012)",
     Friction: "Friction.coulomb(0.7)",
     Step: "Step(normal_force=1.0e-3)",
+    History: "History(tangential_force=[2.0e-4, -2.0e-4], cycles=3)",
     Solver: "Solver(linear_solver='fft')",
     Output: "Output(history='none')",
 }

@@ -208,7 +208,7 @@ contains
       do i = 1, simulation%snapshot_count
          associate (snapshot => simulation%snapshots(i))
             if (.not. scene%steps(snapshot%step)%steady_tolerance > 0.0_wp) cycle
-            scene%steps(snapshot%step)%cycles = snapshot%reversal/2
+            scene%steps(snapshot%step)%cycles = snapshot%reversal/scene%steps(snapshot%step)%turns()
          end associate
       end do
       scene%steps%steady_tolerance = 0.0_wp

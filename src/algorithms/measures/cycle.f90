@@ -1,6 +1,6 @@
 !> A cycle of the load history: its three turning points, and what is measured between them.
 module mfv_cycle
-   use, intrinsic :: ieee_arithmetic, only: ieee_quiet_nan, ieee_value
+   use, intrinsic :: ieee_arithmetic, only: ieee_is_nan, ieee_quiet_nan, ieee_value
    use mfv_contact_model, only: contact_model_type
    use mfv_contact_state, only: contact_state_type
    use mfv_kinds, only: pi, wp
@@ -24,13 +24,21 @@ module mfv_cycle
       real(wp) :: stiffness_on_leaving = 0.0_wp
       !> See contact_model_type.
       real(wp) :: largest_stiffness = 0.0_wp
+      !> Work of the forces so far, see contact_path_type.
+      real(wp) :: work(motion_count) = 0.0_wp
+   contains
+      procedure :: distance
    end type turning_point_type
 
    type :: cycle_type
       !> Step of the load history, number of the cycle in this step, and number over all steps.
       integer :: step = 0, number = 0, overall = 0
-      !> Start, far end and return.
+      !> Start; the turning point with the forces that differ most from those at the start; return.
       type(turning_point_type) :: start, reversal, return
+      !> Extremes of forces, motions and the stick ratio at the turning points, without the start.
+      real(wp), dimension(motion_count) :: lowest_force = 0.0_wp, highest_force = 0.0_wp, lowest_motion = 0.0_wp, &
+                                           highest_motion = 0.0_wp
+      real(wp) :: lowest_stick_ratio = 0.0_wp, highest_stick_ratio = 0.0_wp
       !> Largest change of a traction from start to return, relative to the largest traction so far.
       real(wp) :: change = 0.0_wp
       !> Energy dissipated in the first cycle of this step, per unit thickness: force.
@@ -38,8 +46,10 @@ module mfv_cycle
       !> Record of the slip zones up to the first cycle of this step, and of the first cycle.
       type(slip_record_type) :: loading_slip, first_slip
    contains
+      procedure :: add_point
       procedure :: slip
       procedure :: dissipation
+      procedure :: loop_area
       procedure :: force_amplitude
       procedure :: shift_amplitude
       procedure, private :: is_sheared
@@ -50,12 +60,12 @@ module mfv_cycle
 
 contains
 
-   !> Turning point from a state. `slip`, `stiffness`: see turning_point_type.
-   type(turning_point_type) function new_turning_point(model, state, slip, stiffness) result(point)
+   !> Turning point from a state. `slip`, `work`, `stiffness`: see turning_point_type.
+   type(turning_point_type) function new_turning_point(model, state, slip, work, stiffness) result(point)
       type(contact_model_type), intent(in) :: model
       type(contact_state_type), intent(in) :: state
       type(slip_record_type), intent(in) :: slip
-      real(wp), intent(in) :: stiffness
+      real(wp), intent(in) :: work(motion_count), stiffness
 
       point%force = state%fields%force
       point%motion = state%fields%motion
@@ -63,8 +73,56 @@ contains
       point%dissipation = state%dissipation
       point%slip = slip
       point%stiffness_on_leaving = stiffness
+      point%work = work
       call find_zone_edges(model, state, point%edges)
    end function new_turning_point
+
+   !> Distance of normal and tangential force from those of another turning point, force/length.
+   elemental real(wp) function distance(self, other)
+      class(turning_point_type), intent(in) :: self
+      type(turning_point_type), intent(in) :: other
+
+      distance = hypot(self%force(motion_approach) - other%force(motion_approach), &
+                       self%force(motion_shift) - other%force(motion_shift))
+   end function distance
+
+   !> Update the extremes with a turning point; `is_first`: the first one of the cycle after its start.
+   subroutine add_point(self, point, is_first)
+      class(cycle_type), intent(inout) :: self
+      type(turning_point_type), intent(in) :: point
+      logical, intent(in) :: is_first
+      real(wp) :: stick_ratio
+
+      stick_ratio = point%edges%stick_ratio()
+      if (is_first) then
+         self%lowest_force = point%force
+         self%highest_force = point%force
+         self%lowest_motion = point%motion
+         self%highest_motion = point%motion
+         self%lowest_stick_ratio = stick_ratio
+         self%highest_stick_ratio = stick_ratio
+         return
+      end if
+      self%lowest_force = min(self%lowest_force, point%force)
+      self%highest_force = max(self%highest_force, point%force)
+      self%lowest_motion = min(self%lowest_motion, point%motion)
+      self%highest_motion = max(self%highest_motion, point%motion)
+      ! A ratio is NaN without contact.
+      if (stick_ratio < self%lowest_stick_ratio .or. ieee_is_nan(self%lowest_stick_ratio)) self%lowest_stick_ratio = stick_ratio
+      if (stick_ratio > self%highest_stick_ratio .or. ieee_is_nan(self%highest_stick_ratio)) self%highest_stick_ratio = stick_ratio
+   end subroutine add_point
+
+   !> Work of the force of a motion over the cycle, per unit thickness: force. It is the area of the loop of force and motion; a loop
+   !> that is not closed is closed by a straight line.
+   elemental real(wp) function loop_area(self, motion)
+      class(cycle_type), intent(in) :: self
+      integer, intent(in) :: motion
+
+      associate (from => self%return, to => self%start)
+         loop_area = (from%work(motion) - to%work(motion)) &
+                     + 0.5_wp*(from%force(motion) + to%force(motion))*(to%motion(motion) - from%motion(motion))
+      end associate
+   end function loop_area
 
    !> Dissipated energy per unit thickness: force.
    elemental real(wp) function dissipation(self)
@@ -84,14 +142,14 @@ contains
    elemental real(wp) function force_amplitude(self)
       class(cycle_type), intent(in) :: self
 
-      force_amplitude = 0.5_wp*abs(self%return%force(motion_shift) - self%reversal%force(motion_shift))
+      force_amplitude = 0.5_wp*(self%highest_force(motion_shift) - self%lowest_force(motion_shift))
    end function force_amplitude
 
    !> Half the range of the shift, length.
    elemental real(wp) function shift_amplitude(self)
       class(cycle_type), intent(in) :: self
 
-      shift_amplitude = 0.5_wp*abs(self%return%motion(motion_shift) - self%reversal%motion(motion_shift))
+      shift_amplitude = 0.5_wp*(self%highest_motion(motion_shift) - self%lowest_motion(motion_shift))
    end function shift_amplitude
 
    !> Whether tangential force and shift both change by more than a rounding error.
@@ -99,10 +157,9 @@ contains
       class(cycle_type), intent(in) :: self
       real(wp), parameter :: tolerance = 1.0e-10_wp
 
-      is_sheared = self%shift_amplitude() > tolerance*max(abs(self%return%motion(motion_shift)), &
-                                                          abs(self%reversal%motion(motion_shift))) .and. &
-                   self%force_amplitude() > tolerance*max(self%return%force(motion_approach), &
-                                                          self%reversal%force(motion_approach)) .and. &
+      is_sheared = self%shift_amplitude() > tolerance*max(abs(self%lowest_motion(motion_shift)), &
+                                                          abs(self%highest_motion(motion_shift))) .and. &
+                   self%force_amplitude() > tolerance*self%highest_force(motion_approach) .and. &
                    self%force_amplitude() < self%return%largest_stiffness*self%shift_amplitude()
    end function is_sheared
 
@@ -113,11 +170,11 @@ contains
       real(wp) :: force(3), motion(3)
       integer :: i
 
-      force = [self%start%force(motion_approach), self%reversal%force(motion_approach), self%return%force(motion_approach)]
+      force = [self%start%force(motion_approach), self%lowest_force(motion_approach), self%highest_force(motion_approach)]
       only_sheared = self%is_sheared() .and. maxval(force) - minval(force) <= tolerance*maxval(force)
       do i = 1, motion_count
          if (.not. motions(i)%optional) cycle
-         motion = [self%start%motion(i), self%reversal%motion(i), self%return%motion(i)]
+         motion = [self%start%motion(i), self%lowest_motion(i), self%highest_motion(i)]
          only_sheared = only_sheared .and. maxval(motion) - minval(motion) <= tolerance*maxval(abs(motion))
       end do
    end function only_sheared
@@ -130,14 +187,16 @@ contains
       if (self%is_sheared()) secant_stiffness = self%force_amplitude()/self%shift_amplitude()
    end function secant_stiffness
 
-   !> Loss factor: dissipation over 2 pi times the energy force_amplitude*shift_amplitude/2 of a spring of the secant
-   !> stiffness. NaN without a secant stiffness, and where normal force or rotation changes: the dissipation is then not the
-   !> area of the loop of force and shift.
+   !> Loss factor: area of the loop of tangential force and shift over 2 pi times the energy force_amplitude*shift_amplitude/2 of a
+   !> spring of the secant stiffness. The area is the dissipation unless another load changes. NaN without a secant stiffness.
    elemental real(wp) function loss_factor(self)
       class(cycle_type), intent(in) :: self
 
       loss_factor = ieee_value(1.0_wp, ieee_quiet_nan)
-      if (self%only_sheared()) loss_factor = self%dissipation()/(pi*self%force_amplitude()*self%shift_amplitude())
+      if (.not. self%is_sheared()) return
+      loss_factor = self%loop_area(motion_shift)
+      if (self%only_sheared()) loss_factor = self%dissipation()
+      loss_factor = loss_factor/(pi*self%force_amplitude()*self%shift_amplitude())
    end function loss_factor
 
    !> Append a cycle to the first `number` entries of a list, which doubles when full. `last_only`: it replaces them.

@@ -41,6 +41,16 @@ module mfv_scene
       integer :: cycles = 0
       !> Cycles end early when two consecutive ones are equal within this fraction of the largest traction; 0: never.
       real(wp) :: steady_tolerance = 0.0_wp
+      !> Targets of the turning points of each cycle in turn, shape (motions, at least 2), with the controls above; the last ones end
+      !> the cycle. Unallocated: a cycle goes to `target` and returns.
+      real(wp), allocatable :: path(:, :)
+      !> Row of the load history (its first one, with a path) that the step is; 0: none. And whether more rows follow.
+      integer :: row = 0
+      logical :: is_passed = .false.
+   contains
+      procedure :: turns => turns_of_step
+      procedure :: segments => segments_of_step
+      procedure :: extreme
    end type step_type
 
    !> Algorithm and solver of a scene.
@@ -108,6 +118,32 @@ module mfv_scene
    end type scene_type
 
 contains
+
+   !> Load segments of a cycle of the step, each of which ends at a turning point.
+   elemental integer function turns_of_step(self) result(turns)
+      class(step_type), intent(in) :: self
+
+      turns = 2
+      if (allocated(self%path)) turns = size(self%path, 2)
+   end function turns_of_step
+
+   !> Load segments of the step: one, or those of all its cycles.
+   elemental integer function segments_of_step(self) result(segments)
+      class(step_type), intent(in) :: self
+
+      segments = max(1, self%turns()*self%cycles)
+   end function segments_of_step
+
+   !> The largest target of a motion under a control, or `-huge` without one.
+   elemental real(wp) function extreme(self, motion, control)
+      class(step_type), intent(in) :: self
+      integer, intent(in) :: motion, control
+
+      extreme = -huge(1.0_wp)
+      if (self%control(motion) /= control) return
+      extreme = self%target(motion)
+      if (allocated(self%path)) extreme = maxval(self%path(motion, :))
+   end function extreme
 
    !> Whether an accuracy has an effect: large increments are possible.
    elemental logical function takes_accuracy(self)

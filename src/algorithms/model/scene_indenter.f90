@@ -63,7 +63,7 @@ contains
 
       largest = half_width_of_forces(scene)
       indenter = indenter_of(scene)
-      approach = maxval(scene%steps%target(motion_approach), mask=scene%steps%control(motion_approach) == control_displacement)
+      approach = maxval(scene%steps%extreme(motion_approach, control_displacement))
       if (approach > 0.0_wp .and. .not. indenter%is_flat() .and. scene%modulus() > 0.0_wp) &
          largest = max(largest, indenter%half_width_at_approach(approach, scene%datum(), most))
    end function largest_half_width
@@ -76,7 +76,7 @@ contains
 
       half_width = 0.0_wp
       indenter = indenter_of(scene)
-      force = maxval(scene%steps%target(motion_approach), mask=scene%steps%control(motion_approach) == control_force)
+      force = maxval(scene%steps%extreme(motion_approach, control_force))
       if (force > 0.0_wp .and. .not. indenter%is_flat() .and. scene%modulus() > 0.0_wp) &
          half_width = indenter%half_width(0.5_wp*force/scene%modulus())
    end function half_width_of_forces

@@ -52,6 +52,9 @@ module mfv_contact_path
       type(rolling_type) :: rolling
       !> Nodes of the widest slip zone that has dissipated in this segment, see mfv_slip_zones.
       integer :: slip_zone_nodes = 0
+      !> Work of the force of every motion so far, per unit thickness: force. Over a cycle it is the area of the loop of force and
+      !> motion.
+      real(wp) :: work(motion_count) = 0.0_wp
    end type path_position_type
 
    type, extends(path_position_type) :: contact_path_type
@@ -664,6 +667,9 @@ contains
       do i = 1, motion_count
          if (.not. self%model%moves(i)) self%state%fields%force(i) = self%model%resultant(i, after%pressure, after%shear)
       end do
+      associate (before => self%before%fields, now => self%state%fields)
+         self%work = self%work + 0.5_wp*(before%force + now%force)*(now%motion - before%motion)
+      end associate
       if (present(friction_work)) then
          self%state%dissipation = self%state%dissipation + self%model%force(friction_work)
          self%state%friction_work = self%state%friction_work + friction_work

@@ -6,7 +6,7 @@ module mfv_simulation
    use mfv_contact_model, only: new_contact_model
    use mfv_contact_state, only: contact_state_type
    use mfv_contact_system, only: initial_loads, load_type
-   use mfv_cycle, only: append_cycle, cycle_type, new_turning_point
+   use mfv_cycle, only: append_cycle, cycle_type, new_turning_point, turning_point_type
    use mfv_error, only: error_type
    use mfv_contact_path, only: contact_path_type, new_contact_path, path_position_type, segment_type
    use mfv_conventional, only: apply_conventionally
@@ -26,13 +26,14 @@ module mfv_simulation
    private
    public :: simulation_type, position_type, restart_type, new_simulation, snapshot_type, sensitivity_type, history_events, &
              history_steps, history_none
-   public :: states_reversals, states_steps, states_none
+   public :: states_reversals, states_steps, states_none, states_last_cycle
    public :: mark_loading, mark_reversal, mark_return, mark_cycle_start, mark_count
 
    !> Records of the load history: one for every event, one for every step end, none.
    integer, parameter :: history_events = 1, history_steps = 2, history_none = 3
-   !> Snapshots: at the ends of steps and of every reversal of a step with cycles, of steps alone, none.
-   integer, parameter :: states_reversals = 1, states_steps = 2, states_none = 3
+   !> Snapshots: at the ends of steps and at every turning point of a step with cycles; of steps alone; none; or at the ends of steps
+   !> and the turning points of the last cycle of a step.
+   integer, parameter :: states_reversals = 1, states_steps = 2, states_none = 3, states_last_cycle = 4
 
    !> States stored for the last step with cycles: the start of the step, the reversal of its last complete cycle, the end of that
    !> cycle (with `reversal` 0 before the first: the start of the step), and its start.
@@ -136,6 +137,7 @@ module mfv_simulation
       procedure, private :: advance_segment
       procedure, private :: apply_leg
       procedure, private :: begin_segment
+      procedure, private :: keeps_state
       procedure, private :: take_snapshot
       procedure, private :: begin_cycles
       procedure, private :: complete_leg
@@ -189,7 +191,7 @@ contains
 
       i = self%scene_steps_done + 1
       associate (steps => self%contact%model%scene%steps)
-         call self%advance_segment(steps(i), sum(reversals(steps(:i - 1))), sum(reversals(steps)), observer)
+         call self%advance_segment(steps(i), sum(steps(:i - 1)%segments()), sum(steps%segments()), observer)
       end associate
       if (self%outcome /= MFV_COMPLETE) then
          self%failed_scene_step = i
@@ -198,13 +200,6 @@ contains
       end if
    end subroutine run_segment
 
-   !> Load segments of a step: one, or two for every cycle.
-   elemental integer function reversals(step)
-      type(step_type), intent(in) :: step
-
-      reversals = max(1, 2*step%cycles)
-   end function reversals
-
    !> Apply the loads of another step, from the present state.
    subroutine advance(self, step, observer)
       class(simulation_type), intent(inout) :: self
@@ -212,7 +207,7 @@ contains
       class(observer_type), intent(inout), optional :: observer
 
       do while (self%outcome == MFV_COMPLETE)
-         call self%advance_segment(step, 0, reversals(step), observer)
+         call self%advance_segment(step, 0, step%segments(), observer)
          if (self%leg%number == 0) exit
       end do
    end subroutine advance
@@ -237,16 +232,33 @@ contains
          return
       end if
       associate (i => self%leg%number)
-         is_last = i == reversals(step)
-         if (step%cycles > 0) call self%complete_leg(i, self%leg%cycle)
-         if (mod(i, 2) == 0 .and. i > 2 .and. step%steady_tolerance > 0.0_wp) &
+         is_last = i == step%segments()
+         if (step%cycles > 0) call self%complete_leg(i, step%turns(), self%leg%cycle)
+         if (mod(i, step%turns()) == 0 .and. i > step%turns() .and. step%steady_tolerance > 0.0_wp) &
             is_last = is_last .or. self%leg%cycle%change <= step%steady_tolerance
-         if (is_last .and. self%keep_states /= states_none .or. self%keep_states == states_reversals) &
-            call self%take_snapshot(self%steps_done + 1, i)
+         if (self%keeps_state(step, is_last)) call self%take_snapshot(self%steps_done + 1, i)
          i = i + 1
       end associate
       if (is_last) call end_step(self, step)
    end subroutine advance_segment
+
+   !> Whether the state at the end of the present segment is saved. Without a cycle's reversals, only the last row of a load history is
+   !> the end of a step for the user. States of an earlier cycle are removed where only those of the last one are saved.
+   logical function keeps_state(self, step, is_last)
+      class(simulation_type), intent(inout) :: self
+      type(step_type), intent(in) :: step
+      logical, intent(in) :: is_last
+
+      keeps_state = self%keep_states == states_reversals .or. &
+                    (self%keep_states == states_steps .and. is_last .and. .not. step%is_passed)
+      if (self%keep_states /= states_last_cycle) return
+      keeps_state = .not. step%is_passed
+      if (step%cycles == 0 .or. mod(self%leg%number, step%turns()) /= 1) return
+      do while (self%snapshot_count > 0)
+         if (self%snapshots(self%snapshot_count)%step /= self%steps_done + 1) exit
+         self%snapshot_count = self%snapshot_count - 1
+      end do
+   end function keeps_state
 
    !> Complete a step.
    subroutine end_step(self, step)
@@ -254,7 +266,7 @@ contains
       type(step_type), intent(in) :: step
       integer :: cycles
 
-      cycles = (self%leg%number - 1)/2
+      cycles = (self%leg%number - 1)/step%turns()
       self%leg%number = 0
       self%steps_done = self%steps_done + 1
       self%message = 'step '//to_text(self%steps_done)//' was reached'
@@ -345,9 +357,11 @@ contains
       type(step_type), intent(in) :: step
       type(error_type), intent(in) :: error
 
-      self%leg%number = 0
       self%outcome = error%status
       self%message = error%message
+      if (allocated(step%path)) self%message = 'row '//to_text(step%row + mod(self%leg%number - 1, step%turns()))//', cycle '// &
+                                               to_text(1 + (self%leg%number - 1)/step%turns())//': '//error%message
+      self%leg%number = 0
       self%failed_step = self%steps_done + 1
       call self%note_history_checksum(step)
    end subroutine end_step_early
@@ -376,6 +390,7 @@ contains
          call add_to_checksum(transfer([step%target, step%steady_tolerance, f%force, f%motion, self%contact%state%dissipation], &
                                        mold), checksum)
       end associate
+      if (allocated(step%path)) call add_to_checksum(transfer(step%path, mold), checksum)
       self%history_checksums(self%load_summary%steps) = checksum
    end subroutine note_history_checksum
 
@@ -411,32 +426,41 @@ contains
          self%marks(i)%step = 0
       end do
       cycle%step = self%steps_done + 1
-      cycle%return = new_turning_point(self%contact%model, self%contact%state, self%slip, &
+      cycle%return = new_turning_point(self%contact%model, self%contact%state, self%slip, self%contact%work, &
                                        ieee_value(1.0_wp, ieee_quiet_nan))
       cycle%loading_slip = self%slip
       call self%set_mark(mark_loading, 0)
       call self%set_mark(mark_return, 0)
    end subroutine begin_cycles
 
-   !> Complete leg `leg` of the cycles: loading if odd, return if even. Store the states and, after a complete cycle, the cycle.
-   subroutine complete_leg(self, leg, cycle)
+   !> Complete leg `leg` of cycles of `turns` legs. Store its end if it is the farthest of its cycle so far and, after a complete
+   !> cycle, the cycle.
+   subroutine complete_leg(self, leg, turns, cycle)
       class(simulation_type), intent(inout) :: self
-      integer, intent(in) :: leg
+      integer, intent(in) :: leg, turns
       type(cycle_type), intent(inout) :: cycle
       type(contact_state_type) :: before
+      type(turning_point_type) :: point
+      logical :: is_farthest
 
-      if (mod(leg, 2) == 1) then
-         cycle%reversal = new_turning_point(self%contact%model, self%contact%state, self%slip, self%contact%first_stiffness)
+      point = new_turning_point(self%contact%model, self%contact%state, self%slip, self%contact%work, &
+                                self%contact%first_stiffness)
+      call cycle%add_point(point, is_first=mod(leg, turns) == 1)
+      if (mod(leg, turns) /= 0) then
+         is_farthest = mod(leg, turns) == 1
+         if (.not. is_farthest) is_farthest = point%distance(cycle%return) > cycle%reversal%distance(cycle%return)
+         if (.not. is_farthest) return
+         cycle%reversal = point
          call self%set_mark(mark_pending, leg)
          return
       end if
       self%cycles_done = self%cycles_done + 1
-      cycle%number = leg/2
+      cycle%number = leg/turns
       cycle%overall = self%cycles_done
       cycle%start = cycle%return
       self%marks(mark_cycle_start) = self%marks(mark_return)
       self%marks(mark_reversal) = self%marks(mark_pending)
-      cycle%return = new_turning_point(self%contact%model, self%contact%state, self%slip, self%contact%first_stiffness)
+      cycle%return = point
       before = self%padded(self%marks(mark_cycle_start))
       cycle%change = self%change_since(before)
       call self%set_mark(mark_return, leg)
@@ -498,6 +522,8 @@ contains
       type(load_type) :: targets(motion_count)
 
       targets = merge(self%leg%there, self%leg%back, mod(self%leg%number, 2) == 1)
+      if (allocated(step%path)) targets = target_of(self%leg%there, step%control, &
+                                                    step%path(:, 1 + mod(self%leg%number - 1, step%turns())))
       call self%begin_segment(targets, step, before, segments)
       associate (method => self%contact%model%scene%method)
          if (method%algorithm == algorithm_conventional) then

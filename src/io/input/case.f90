@@ -41,10 +41,12 @@ contains
 
       text = self%source//': '
       if (simulation%failed_scene_step > 0) then
-         text = text//'&step '//to_text(simulation%failed_scene_step)
          associate (step => self%scene%steps(simulation%failed_scene_step))
+            if (step%row == 0) text = text//'&step '//to_text(simulation%failed_scene_step)
+            if (step%row > 0) text = text//'&history'
+            if (step%row > 0 .and. .not. allocated(step%path)) text = text//' row '//to_text(step%row)
             do i = 1, motion_count
-               if (step%control(i) == control_keep) cycle
+               if (step%control(i) == control_keep .or. allocated(step%path)) cycle
                text = text//' '//trim(controlled_key(i, step%control(i)))//'='//to_text(step%target(i), 10)
             end do
          end associate

@@ -25,6 +25,10 @@ contains
       call add_to_checksum(transfer(model%initial_gap, mold), checksum)
       call add_to_checksum(transfer([model%compliance%modulus, model%width, model%static_friction, model%kinetic_friction], &
                                     mold), checksum)
+      do i = 1, size(case%scene%steps)
+         call add_to_checksum(transfer(case%scene%steps(i)%target, mold), checksum)
+         if (allocated(case%scene%steps(i)%path)) call add_to_checksum(transfer(case%scene%steps(i)%path, mold), checksum)
+      end do
       ! A product in place of the matrix; every entry contributes.
       if (.not. allocated(model%scene%lower%matrix)) return
       associate (matrix => model%scene%lower%matrix)

@@ -5,18 +5,18 @@ module mfv_case_keys
    use mfv_friction, only: friction_law_names
    use mfv_keys
    use mfv_kinds, only: wp
-   use mfv_motions, only: motions, motion_count, motion_shift
+   use mfv_motions, only: motions, motion_count, motion_shift, control_force, control_displacement, controlled_key
    use mfv_scene, only: most_cycles
    implicit none
    private
    public :: case_catalogue
 
    !> Groups in the order of the reference, and those that may be repeated.
-   character(*), parameter :: group_list = 'scene body mesh friction step solver output'
+   character(*), parameter :: group_list = 'scene body mesh friction step history solver output'
    character(*), parameter :: repeated_groups = 'body step'
 
    !> Terms of a Fourier series: 4 for each of the most intervals that a circle can have with it (mfv_mesh_reader).
-   real(wp), parameter :: most_nodes = 1.0e8_wp, most_harmonics = 2.0e8_wp
+   real(wp), parameter :: most_nodes = 1.0e8_wp, most_harmonics = 2.0e8_wp, most_rows = 1.0e6_wp
 
 contains
 
@@ -32,6 +32,7 @@ contains
       call add_mesh_keys(catalogue)
       call add_friction_keys(catalogue)
       call add_step_keys(catalogue)
+      call add_history_keys(catalogue)
       call add_solver_keys(catalogue)
       call add_output_keys(catalogue)
       catalogue%keys = catalogue%keys(:catalogue%size)
@@ -169,6 +170,42 @@ contains
                     'differ by less than this fraction of the largest traction; if omitted: never', above=0.0_wp)
    end subroutine add_step_keys
 
+   !> Those of a load history after the steps: the loads of a step, with a value for every turning point.
+   subroutine add_history_keys(keys)
+      type(catalogue_type), intent(inout) :: keys
+      character(len=17) :: name
+      integer :: i, control
+
+      call keys%add('history', 'file', kind_text, 'text file with the loads of the turning points instead of the lists below: '// &
+                    'columns with the names of these keys in the first line, and a row for every turning point; a column '// &
+                    'time is ignored; path relative to the case file')
+      do i = 1, motion_count
+         do control = merge(control_displacement, control_force, motions(i)%is_stress), control_displacement
+            name = controlled_key(i, control)
+            call add_history_key(trim(name), trim(merge(motions(i)%force_unit//'  ', motions(i)%unit, control == control_force)))
+            if (control == control_force .and. motions(i)%pushes) keys%keys(keys%size)%lower = 0.0_wp
+         end do
+         if (i == motion_shift) call add_history_key('force_ratio', '')
+      end do
+      call keys%add('history', 'period', kind_integer, 'number of the last turning points that are a cycle, repeated as often '// &
+                    'as cycles says; if omitted: all of them if there are cycles, else none', lower=2.0_wp, upper=most_rows)
+      call keys%add('history', 'cycles', kind_integer, 'how many times the last turning points are passed through', default='1', &
+                    lower=1.0_wp, upper=real(most_cycles, wp))
+      call keys%add('history', 'steady_tolerance', kind_real, 'as in &step', above=0.0_wp)
+
+   contains
+
+      !> A list of loads.
+      subroutine add_history_key(name, unit)
+         character(*), intent(in) :: name, unit
+
+         call keys%add('history', name, kind_real, 'as in &step, one value per turning point, or one for all', unit=unit)
+         if (name == 'force_ratio') keys%keys(keys%size)%lower = -1.0e6_wp
+         if (name == 'force_ratio') keys%keys(keys%size)%upper = 1.0e6_wp
+         keys%keys(keys%size)%is_list = .true.
+      end subroutine add_history_key
+   end subroutine add_history_keys
+
    subroutine add_solver_keys(keys)
       type(catalogue_type), intent(inout) :: keys
 
@@ -212,8 +249,9 @@ contains
       call keys%add('output', 'history', kind_choice, 'history record at every event, at every step end, or '// &
                     'none', default='events', &
                     choices='events steps none')
-      call keys%add('output', 'states', kind_choice, 'states saved at every reversal of a step with cycles, only at the end '// &
-                    'of every step, or only the last one', default='reversals', choices='reversals steps none')
+      call keys%add('output', 'states', kind_choice, 'states saved at the end of every step, and at every turning point '// &
+                    '(reversals) or those of the last cycle (last_cycle) of its cycles; or only the last one; steps if '// &
+                    'omitted in a case with &history', default='reversals', choices='reversals steps none last_cycle')
       call keys%add('output', 'error_estimate', kind_logical, 'whether the case is also solved on coarser meshes, to estimate '// &
                     'the discretisation error of half-width, stick ratio, peak tractions and dissipation', default='.false.')
       call keys%add('output', 'sensitivity', kind_logical, 'whether the case is run once more with all coefficients of '// &

@@ -9,6 +9,7 @@ module mfv_case_reader
    use mfv_error, only: error_type
    use mfv_friction, only: friction_type, new_friction_law
    use mfv_friction_reader
+   use mfv_history_reader, only: check_bulk_stress, read_history
    use mfv_key_reader
    use mfv_kinds, only: wp
    use mfv_material, only: plane_strain, plane_stress
@@ -17,7 +18,8 @@ module mfv_case_reader
                           control_force, control_displacement, controlled_key
    use mfv_namelist, only: group_type, parse_namelists
    use mfv_scene
-   use mfv_simulation, only: history_events, history_none, history_steps, states_none, states_reversals, states_steps
+   use mfv_simulation, only: history_events, history_none, history_steps, states_last_cycle, states_none, &
+                             states_reversals, states_steps
    use mfv_strings, only: to_text
    use mfv_text_file, only: directory_of, read_text
    implicit none
@@ -90,7 +92,8 @@ contains
       case%force_unit = reader%text_value('scene', 1, 'force_unit')
       case%result_path = reader%text_value('output', 1, 'file')
       case%keep_history = reader%constant('output', 1, 'history', [history_events, history_steps, history_none])
-      case%keep_states = reader%constant('output', 1, 'states', [states_reversals, states_steps, states_none])
+      case%keep_states = reader%constant('output', 1, 'states', [states_reversals, states_steps, states_none, states_last_cycle])
+      if (count_groups(reader, 'history') > 0 .and. .not. reader%has('output', 1, 'states')) case%keep_states = states_steps
       case%checkpoint_minutes = reader%real_value('output', 1, 'checkpoint_minutes')
       case%error_estimate = reader%logical_value('output', 1, 'error_estimate')
       case%sensitivity = reader%logical_value('output', 1, 'sensitivity')
@@ -119,6 +122,7 @@ contains
       if (allocated(error)) return
       call read_friction(reader, scene, error)
       if (.not. allocated(error)) call read_steps(reader, scene, error)
+      if (.not. allocated(error)) call read_history(reader, scene, error)
       if (.not. allocated(error)) call read_datums(reader, scene, error)
       if (.not. allocated(error)) call check_matrix(reader, scene, error)
       if (.not. allocated(error)) call read_mesh(reader, scene, error)
@@ -181,7 +185,7 @@ contains
       type(error_type), allocatable, intent(out) :: error
       integer :: i, j
 
-      if (count_groups(reader, 'step') == 0 .and. .not. reader%without_steps) then
+      if (count_groups(reader, 'step') + count_groups(reader, 'history') == 0 .and. .not. reader%without_steps) then
          call fail(reader, 0, '&step: at least one step is needed', error)
          return
       end if
@@ -191,7 +195,7 @@ contains
             do j = 1, motion_count
                call read_target(reader, i, j, step%control(j), step%target(j), error)
                if (motions(j)%is_stress .and. step%control(j) /= control_keep .and. .not. allocated(error)) &
-                  call check_bulk_stress(reader, i, j, scene, error)
+                  call check_bulk_stress(reader, 'step', i, j, scene, error)
                if (j == motion_shift .and. .not. allocated(error)) call read_force_ratio(reader, i, scene, error)
                if (allocated(error)) return
             end do
@@ -212,25 +216,6 @@ contains
          end associate
       end do
    end subroutine read_steps
-
-   !> Error for a bulk stress (`motion`) in step `number` of a body that does not deform like a half-plane.
-   subroutine check_bulk_stress(reader, number, motion, scene, error)
-      type(reader_type), intent(in) :: reader
-      integer, intent(in) :: number, motion
-      type(scene_type), intent(in) :: scene
-      type(error_type), allocatable, intent(out) :: error
-      character(:), allocatable :: kind
-      integer :: body
-      logical :: upper
-
-      upper = motion == motion_upper_bulk
-      if (scene%can_have_bulk_stress(upper)) return
-      body = merge(2, 1, upper)
-      kind = reader%text_value('body', body, 'shape')
-      if (reader%logical_value('body', body, 'rigid')) kind = 'rigid '//kind
-      call reader%complain('step', number, trim(motions(motion)%key), 'the '//merge('upper', 'lower', upper)//' body is a '// &
-                           kind//'; a bulk stress needs an elastic half_plane, wedge, power, rounded_punch or profile', error)
-   end subroutine check_bulk_stress
 
    !> The tangential target of step `number` as a fraction of the sliding limit mu P. The normal targets up to this step are known.
    subroutine read_force_ratio(reader, number, scene, error)

@@ -7,11 +7,11 @@ module mfv_profile_file
    use mfv_numbers, only: is_reasonable, read_real, reasonable_sizes
    use mfv_profile, only: profile_of_points, trace_type
    use mfv_status, only: MFV_INPUT_ERROR
-   use mfv_strings, only: lower_case, shortened, to_text
+   use mfv_strings, only: add_text, lower_case, shortened, string_type, to_text
    use mfv_text_file, only: byte_order_mark, read_text
    implicit none
    private
-   public :: read_profile, read_table
+   public :: read_profile, read_table, read_named_table
 
    character(*), parameter :: line_feed = achar(10), carriage_return = achar(13)
    character(*), parameter :: blanks = ' '//achar(9), separators = ',;'
@@ -79,6 +79,71 @@ contains
       if (n == 0) call move_alloc(fault_of_header, error)
    end subroutine read_table
 
+   !> Columns of numbers from a text file whose first line, but for comments, has their names. `table`: shape (columns, lines).
+   !> Error MFV_INPUT_ERROR with the line and what would be right.
+   subroutine read_named_table(path, names, table, error)
+      character(*), intent(in) :: path
+      type(string_type), allocatable, intent(out) :: names(:)
+      real(wp), allocatable, intent(out) :: table(:, :)
+      type(error_type), allocatable, intent(out) :: error
+      character(:), allocatable :: text, line
+      integer :: first, number
+
+      call read_text(path, text, error)
+      if (allocated(error)) return
+      if (index(text, byte_order_mark) == 1) text = text(len(byte_order_mark) + 1:)
+      first = 1
+      number = 0
+      line = ''
+      do while (first <= len(text) .and. is_comment(line))
+         call take_line(text, first, line)
+         number = number + 1
+      end do
+      if (is_header(line) .and. .not. is_comment(line)) then
+         call read_names(line, names)
+         call read_table(path, 'one for each name in line '//to_text(number), size(names), .false., table, error)
+      else
+         call set_error(error, MFV_INPUT_ERROR, path//':'//to_text(number)//': must have the names of the columns, such as '// &
+                        "normal_force,tangential_force, not '"//shortened(trim(line))//"'")
+      end if
+   end subroutine read_named_table
+
+   !> The names in a header, without quotation marks: between commas or semicolons if it has any, else between blanks.
+   subroutine read_names(line, names)
+      character(*), intent(in) :: line
+      type(string_type), allocatable, intent(out) :: names(:)
+      character(len=len(line)) :: words
+      character(:), allocatable :: ends
+      integer :: first, length
+
+      words = line
+      ends = separators
+      if (scan(line, separators) == 0) then
+         ends = blanks
+         words = adjustl(words)
+      end if
+      allocate (names(0))
+      first = 1
+      do while (first <= len_trim(words))
+         length = scan(words(first:)//ends(1:1), ends) - 1
+         call add_text(names, unquoted(words(first:first + length - 1)))
+         first = first + length + 1
+         if (scan(line, separators) == 0) first = first + max(verify(words(first:)//'x', blanks) - 1, 0)
+      end do
+   end subroutine read_names
+
+   !> A name without blanks and quotation marks around it.
+   pure function unquoted(name) result(bare)
+      character(*), intent(in) :: name
+      character(:), allocatable :: bare
+      character(*), parameter :: around = blanks//'"'''
+      integer :: first
+
+      bare = ''
+      first = verify(name, around)
+      if (first > 0) bare = name(first:verify(name, around, back=.true.))
+   end function unquoted
+
    !> Number of the lines of a text.
    pure integer function lines_of(text)
       character(*), intent(in) :: text
@@ -129,7 +194,8 @@ contains
       character(*), intent(in) :: line, names
       real(wp), intent(out) :: columns(:)
       type(error_type), allocatable, intent(out) :: error
-      character(len=5), parameter :: counts(3) = [character(5) :: 'one', 'two', 'three']
+      character(len=5), parameter :: words(3) = [character(5) :: 'one', 'two', 'three']
+      character(:), allocatable :: how_many
       integer :: at, length, i
       logical :: is_right
 
@@ -146,10 +212,13 @@ contains
          if (is_right) call read_real(line(at:at + length - 1), columns(i), is_right)
          at = at + length
       end do
-      if (.not. is_right .or. verify(line(at:), blanks) > 0) &
-         call set_error(error, MFV_INPUT_ERROR, 'must be '//trim(counts(size(columns)))//' numbers, '//names//', not '''// &
-                        shortened(trim(line))//'''')
-      if (allocated(error)) return
+      if (.not. is_right .or. verify(line(at:), blanks) > 0) then
+         how_many = to_text(size(columns))
+         if (size(columns) <= size(words)) how_many = trim(words(size(columns)))
+         call set_error(error, MFV_INPUT_ERROR, 'must be '//how_many//' number'//trim(merge('s', ' ', size(columns) > 1))//', '// &
+                        names//', not '''//shortened(trim(line))//'''')
+         return
+      end if
       if (.not. all(is_reasonable(columns))) call set_error(error, MFV_INPUT_ERROR, reasonable_sizes)
 
    contains

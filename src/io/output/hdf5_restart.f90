@@ -15,6 +15,7 @@ module mfv_hdf5_restart
    use mfv_motions, only: motions, motion_count, control_keep, control_displacement
    use mfv_node_status, only: node_creep_left, node_open
    use mfv_result_fields, only: add_real, add_whole, along_nothing, field_type, step_group
+   use mfv_scene, only: step_type
    use mfv_simulation, only: mark_count, simulation_type, snapshot_type
    use mfv_status, only: MFV_INPUT_ERROR
    use mfv_strings, only: to_text
@@ -124,6 +125,7 @@ contains
          call exchange_counter(self, 'iterations', r%iterations, 'iterations of the linear solver')
          call exchange_counter(self, 'products', r%products, 'products with the compliance')
          if (simulation%scene_steps_done == size(steps) .and. r%leg > 1) call self%complain('segment')
+         if (any(steps%row > 0)) call exchange_targets(self, steps)
          do i = 1, size(r%load)
             call self%exchange('control_'//to_text(i), r%load(i)%control, 'control of motion '//to_text(i), control_keep, &
                                control_displacement)
@@ -178,6 +180,24 @@ contains
       end associate
    end subroutine exchange_scene
 
+   !> Identify the load history by its targets, which may be in a file.
+   subroutine exchange_targets(self, steps)
+      type(exchange_type), intent(inout) :: self
+      type(step_type), intent(in) :: steps(:)
+      real(wp), allocatable :: ours(:), numbers(:)
+      integer :: i
+
+      ours = [(steps(i)%target, i=1, size(steps))]
+      do i = 1, size(steps)
+         if (allocated(steps(i)%path)) ours = [ours, steps(i)%path]
+      end do
+      numbers = ours
+      call self%exchange('targets', numbers, 'targets of all steps, to identify the load history')
+      if (.not. self%reading .or. allocated(self%error)) return
+      if (any(abs(numbers - ours) > same*abs(ours))) &
+         call set_error(self%error, MFV_INPUT_ERROR, 'the result of another case: the file of the load history has changed')
+   end subroutine exchange_targets
+
    !> Internal records: of the certificate, of rolling, of slip zones and of cycles.
    subroutine exchange_internals(self, simulation)
       type(exchange_type), intent(inout) :: self
@@ -188,6 +208,7 @@ contains
       associate (r => simulation%restart)
          call self%exchange('events', r%path%events, 'loads at which nodes changed their status', 0, huge(1))
          call self%exchange('trial', r%path%trial, 'length of the next increment, as a fraction of a segment')
+         call self%exchange('work', r%path%work, 'work of the force of every motion')
          list = transfer(r%path%certificate, [0])
          call self%exchange('certificate', list, internal)
          r%path%certificate = transfer(list, r%path%certificate)

@@ -584,6 +584,7 @@ contains
       integer, parameter :: along = along_cycles
       type(cycle_type), allocatable :: c(:)
       type(contact_state_type) :: before, after
+      integer :: i
 
       c = simulation%cycles(:simulation%cycle_count)
       call list%add('cycle', c%overall, along, 'number of the cycle, over all steps')
@@ -596,9 +597,17 @@ contains
                     'shift right after the reversal, where all nodes stick')
       call list%add('secant_stiffness', c%secant_stiffness(), along, 'force/length^2', 'tangential force over shift from end '// &
                     'to end')
-      call list%add('loss_factor', c%loss_factor(), along, '1', 'dissipation over 2 pi times the elastic energy of the secant '// &
-                    'stiffness, at constant normal force and rotation')
-      call list%add('stick_ratio_reversal', c%reversal%edges%stick_ratio(), along, '1', 'stick ratio at the reversal')
+      call list%add('loss_factor', c%loss_factor(), along, '1', 'area of the loop of tangential force and shift over 2 pi '// &
+                    'times the elastic energy of the secant stiffness')
+      do i = 1, motion_count
+         if (simulation%contact%model%moves(i)) call list%add(trim(motions(i)%force_key)//'_work', c%loop_area(i), along, 'force', &
+                                                              'work of the '//trim(motions(i)%force_name)//' over the cycle: '// &
+                                                              'area of its loop, closed by a straight line')
+      end do
+      call list%add('stick_ratio_lowest', c%lowest_stick_ratio, along, '1', 'lowest stick ratio at a turning point')
+      call list%add('stick_ratio_highest', c%highest_stick_ratio, along, '1', 'highest stick ratio at a turning point')
+      call list%add('stick_ratio_reversal', c%reversal%edges%stick_ratio(), along, '1', 'stick ratio at the turning point '// &
+                    'whose forces differ most from those at the start')
       call list%add('stick_ratio_return', c%return%edges%stick_ratio(), along, '1', 'stick ratio at the end of the cycle')
       call list%add('contact_centre_reversal', c%reversal%edges%centre(), along, 'length', 'middle of the contact at the '// &
                     'reversal, along the surface from the origin')

@@ -1,0 +1,207 @@
+"""Load histories: lists, tables and files of turning points, and what is measured over their cycles."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import mfv
+import numpy as np
+import pytest
+from scenes import HALF_PLANE, cylinder
+from scipy.optimize import brentq
+
+PRESS = mfv.Step(normal_force=1.0e-3)
+MESH = mfv.Mesh(nodes=61, half_width=0.016)
+NORMAL = np.array([1.2e-3, 0.9e-3, 1.1e-3, 0.8e-3])
+TANGENTIAL = np.array([2.0e-4, -1.0e-4, 3.0e-4, 0.0])
+
+
+def run(history: mfv.History, *steps: mfv.Step, **keys: Any) -> mfv.Result:
+    return cylinder(*(steps or (PRESS,)), history=history, **{"mesh": MESH, **keys}).run(check=True)
+
+
+def same(one: mfv.Result, other: mfv.Result) -> bool:
+    return all(np.array_equal(one.state[name], other.state[name], equal_nan=True) for name in one.state)
+
+
+def test_rows_are_steps() -> None:
+    steps = [mfv.Step(normal_force=float(p), tangential_force=float(q)) for p, q in zip(NORMAL, TANGENTIAL)]
+    history = run(mfv.History(normal_force=NORMAL, tangential_force=TANGENTIAL))
+    assert same(history, cylinder(PRESS, *steps, mesh=MESH).run(check=True))
+    assert len(history.steps) == 2  # the pressing, and the last row
+
+
+def test_two_turning_points_are_a_cycle_of_a_step() -> None:
+    shear = mfv.Step(tangential_force=1.0e-4)
+    step = cylinder(PRESS, shear, mfv.Step(tangential_force=-2.0e-4, cycles=3), mesh=MESH).run(check=True)
+    history = run(mfv.History(tangential_force=[-2.0e-4, 1.0e-4], cycles=3), PRESS, shear)
+    for name in ("dissipation", "loss_factor", "secant_stiffness", "stick_ratio_reversal", "cycle", "tangential_force_work"):
+        assert np.allclose(history.cycles[name], step.cycles[name], rtol=1e-9), name
+
+
+def test_a_list_a_table_and_a_file_are_the_same(tmp_path: Path) -> None:
+    pandas = pytest.importorskip("pandas")
+    table = pandas.DataFrame({"time": range(4), "normal_force": NORMAL, "tangential_force": TANGENTIAL})
+    lists = run(mfv.History(normal_force=NORMAL, tangential_force=TANGENTIAL, period=3, cycles=2))
+    assert same(lists, run(mfv.History.from_table(table, period=3, cycles=2)))
+    for separator in (",", ";", " "):
+        table.to_csv(tmp_path / "loads.csv", sep=separator, index=False)
+        assert same(lists, run(mfv.History(file=tmp_path / "loads.csv", period=3, cycles=2)))
+    with pytest.raises(TypeError, match="did you mean shift"):
+        mfv.History.from_table(table.rename(columns={"normal_force": "shft"}))
+    scene = cylinder(PRESS, history=mfv.History(tangential_force=TANGENTIAL))
+    assert mfv.Scene.from_text(scene.text()) == scene
+
+
+def test_a_ratio_follows_the_normal_force() -> None:
+    ratio = run(mfv.History(normal_force=NORMAL, force_ratio=TANGENTIAL / (0.7 * NORMAL)))
+    assert np.allclose(
+        ratio.state.shear, run(mfv.History(normal_force=NORMAL, tangential_force=TANGENTIAL)).state.shear, atol=1e-12
+    )
+
+
+@pytest.mark.parametrize(
+    ("states", "numbers"), [("steps", [1, 3]), ("reversals", [1, 2, 3, 4, 5, 6, 7, 8]), ("last_cycle", [1, 6, 7, 8]), ("none", [])]
+)
+def test_states_that_are_saved(states: Any, numbers: list[int]) -> None:
+    result = run(mfv.History(tangential_force=TANGENTIAL, period=3, cycles=2), output=mfv.Output(states=states))
+    everything = run(mfv.History(tangential_force=TANGENTIAL, period=3, cycles=2), output=mfv.Output(states="reversals"))
+    expected = (
+        [everything.steps[number - 1] for number in numbers] if len(numbers) != 2 else [everything.steps[0], everything.steps[7]]
+    )
+    assert len(result.steps) == len(expected)
+    assert all(np.array_equal(one.shear, other.shear) for one, other in zip(result.steps, expected))
+
+
+def test_many_rows_are_not_saved() -> None:
+    random = np.random.default_rng(7)
+    normal = random.uniform(0.5e-3, 1.5e-3, 400)
+    result = run(mfv.History(normal_force=normal, force_ratio=random.uniform(-0.9, 0.9, 400)), output=mfv.Output(history="steps"))
+    assert len(result.steps) == 2
+    assert np.allclose(result.history.normal_force[2:], normal)  # the first two records: before and after the pressing
+
+
+@pytest.mark.parametrize("keys", [{"coupling": "full"}, {"coupling": "none"}])
+def test_the_areas_of_the_loops_add_up_to_the_dissipation(keys: dict[str, Any]) -> None:
+    loads = {"rotation": [0.0, 1.0e-4, -1.0e-4, 0.0], "lower_bulk_stress": [0.0, 5.0e-3, 0.0, -5.0e-3]}
+    for others in ({}, loads):
+        cycles = run(mfv.History(normal_force=NORMAL, tangential_force=TANGENTIAL, cycles=3, **others), **keys).cycles
+        areas = sum(cycles[name][-1] for name in cycles if name.endswith("_work") and name != "friction_work")
+        assert areas == pytest.approx(cycles.dissipation[-1], rel=1e-9)
+        expected = cycles.tangential_force_work / (np.pi * cycles.force_amplitude * cycles.shift_amplitude)
+        assert np.allclose(cycles.loss_factor, expected)
+
+
+def test_the_turning_point_where_a_history_ends_early() -> None:
+    scene = cylinder(PRESS, history=mfv.History(tangential_force=[1.0e-4, -1.0e-3], cycles=2))
+    result = scene.run()
+    assert result.outcome == "gross sliding"
+    assert "&history not reached: row 2, cycle 1: gross sliding" in result.message
+    result = cylinder(PRESS, history=mfv.History(tangential_force=[1.0e-4, -1.0e-3])).run()
+    assert "&history row 2 tangential_force=-0.001 not reached" in result.message
+
+
+def test_invalid_histories(tmp_path: Path) -> None:
+    def refusal(history: mfv.History, **keys: Any) -> str:
+        with pytest.raises(mfv.errors.InputError) as raised:
+            run(history, **keys)
+        return str(raised.value)
+
+    assert "needs a file, or lists of loads" in refusal(mfv.History(period=2))
+    assert "has 2 values, another list has 4" in refusal(mfv.History(normal_force=NORMAL, tangential_force=[0.0, 1.0e-4]))
+    assert "must be at most 4" in refusal(mfv.History(normal_force=NORMAL, period=5))
+    assert "needs at least two turning points" in refusal(mfv.History(normal_force=NORMAL[:1], cycles=2))
+    assert "normal_force is also given" in refusal(mfv.History(normal_force=NORMAL, approach=1.0e-4))
+    assert "tangential_force must be 0 without friction" in refusal(mfv.History(tangential_force=[1.0e-4]), friction=None)
+    file = tmp_path / "loads.csv"
+    for text, message in (
+        ("1,2\n3,4\n", "loads.csv:1: must have the names of the columns"),
+        ("tangetial_force\n1e-4\n", "unknown column 'tangetial_force'; did you mean tangential_force?"),
+        (",shift\n1,2\n", "column 1 has no name"),
+        ("# loads\ntangential_force;time\n1e-4;0\n2e-4\n", "loads.csv:4: must be two numbers"),
+        ("time\n1\n", "its only column is time"),
+        ("normal_force\n1e-3\n-1e-3\n", "normal_force must be at least 0, not -0.001 in row 2"),
+    ):
+        file.write_text(text)
+        assert message in refusal(mfv.History(file=file))
+
+
+def elliptical_loads(phase: float, points: int = 16) -> tuple[np.ndarray, np.ndarray]:
+    """Turning points of P = P0 + P1 cos(t), Q = Q1 cos(t - phase)."""
+    angle = 2.0 * np.pi * np.arange(1, points + 1) / points
+    return 1.0e-3 + 3.0e-4 * np.cos(angle), 2.0e-4 * np.cos(angle - np.radians(phase))
+
+
+def dissipation_by_elements(normal: np.ndarray, tangential: np.ndarray, mu: float, modulus: float, substeps: int) -> float:
+    """Dissipation of the second cycle, by the extended solution of Ciavarella and Jaeger (Barber, Davies and Hills 2011).
+
+    Uncoupled contact of half-planes is a sum of incremental flat punches: independent springs, of stiffness dk(a), that touch at the
+    approach of the half-width a and slide at mu times their normal force. P = pi E* a^2/(4 R), k = dP/d(approach), R = 1.
+    """
+    half_width = np.linspace(0.0, 1.0, 1001)[1:] * np.sqrt(4.0 * normal.max() / (np.pi * modulus)) * (1.0 + 1.0e-9)
+    datum = 20.0 * half_width[-1]
+
+    def approach(a: Any) -> Any:
+        return 0.5 * a**2 * (np.log(2.0 * datum / a) + 0.5)
+
+    stiffness = np.diff(np.pi * modulus / (2.0 * np.log(2.0 * datum / half_width)), prepend=0.0)
+    touching = approach(half_width) - 0.5 * np.diff(approach(half_width), prepend=0.0)
+    force = np.zeros_like(touching)
+    loss, path = 0.0, [(normal[-1], 0.0), *zip(normal, tangential), *zip(normal, tangential)]
+    for number, ((p0, q0), (p1, q1)) in enumerate(zip(path[:-1], path[1:])):
+        for share in np.arange(1, substeps + 1) / substeps:
+            limit = mu * np.maximum(approach(np.sqrt(4.0 * (p0 + share * (p1 - p0)) / (np.pi * modulus))) - touching, 0.0)
+            target, reach = q0 + share * (q1 - q0), limit.max() + np.abs(force).max() + 1.0e-12
+            shift = brentq(lambda u, c=limit, q=target: stiffness @ np.clip(force + u, -c, c) - q, -reach, reach, xtol=1e-18)
+            after = np.clip(force + shift, -limit, limit)
+            if number >= len(normal):
+                loss += stiffness @ (0.5 * (force + after) * (force + shift - after))
+            force = after
+    return loss
+
+
+@pytest.mark.parametrize("phase", [0.0, 45.0, 90.0, 135.0])
+def test_dissipation_over_the_phase_of_normal_and_tangential_force(phase: float) -> None:
+    normal, tangential = elliptical_loads(phase)
+    modulus = 2.0 / 0.7  # 2 G/(1 - nu) over a rigid cylinder
+    coarse, fine = (dissipation_by_elements(normal, tangential, 0.5, modulus, substeps) for substeps in (8, 16))
+    scene = mfv.Scene(
+        HALF_PLANE,
+        mfv.Body.disk(1.0, rigid=True),
+        coupling="none",
+        mesh=mfv.Mesh(nodes=401, half_width=0.03),
+        friction=mfv.Friction.coulomb(0.5),
+        steps=[mfv.Step(normal_force=normal[-1])],
+        history=mfv.History(normal_force=normal, tangential_force=tangential, cycles=2),
+        output=mfv.Output(history="none"),
+    )
+    assert scene.run(check=True).cycles.dissipation[-1] == pytest.approx(2.0 * fine - coarse, rel=1e-3)
+
+
+def test_no_dissipation_where_the_tangential_force_changes_more_slowly_than_its_limit() -> None:
+    normal, _ = elliptical_loads(0.0)
+    tangential = 0.6 * (normal - 1.0e-3)  # mu = 0.7
+    cycles = run(mfv.History(normal_force=normal, tangential_force=tangential, cycles=3), coupling="none").cycles
+    assert abs(cycles.dissipation[-1]) < 1e-12 * cycles.force_amplitude[-1] * cycles.shift_amplitude[-1]
+
+
+def test_a_steady_cycle_forgets_its_initial_loads() -> None:
+    """The dissipation depends on the periodic loads only, and not on a mean tangential force (Barber, Davies and Hills 2011)."""
+    normal, tangential = elliptical_loads(60.0)
+    found = []
+    for before, mean in ((mfv.Step(tangential_force=0.0), 0.0), (mfv.Step(force_ratio=0.5), 0.0), (PRESS, 5.0e-5)):
+        history = mfv.History(normal_force=normal, tangential_force=tangential + mean, cycles=3)
+        cycles = run(history, mfv.Step(normal_force=1.4e-3), before, coupling="none").cycles
+        found.append(cycles.dissipation[-1])
+    assert np.allclose(found, found[0], rtol=1e-9)
+
+
+def test_states_between_the_turning_points_of_a_result() -> None:
+    from mfv.load_history import with_states_between
+
+    result = run(mfv.History(normal_force=NORMAL, tangential_force=TANGENTIAL, cycles=3))
+    shown = with_states_between(result, 6)
+    assert shown.note == ""
+    assert len(shown.result.steps) == 6
+    assert np.array_equal(shown.result.steps[-1].shear, result.state.shear)
