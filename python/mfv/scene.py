@@ -343,7 +343,7 @@ class History(KeyGroup):
         A column `time` is ignored. Raises TypeError for a column with another name.
         """
         names = getattr(getattr(table, "dtype", None), "names", None) or list(table.keys())
-        loads = {name: _numbers(table[name], name) for name in names if name != "time"}
+        loads: dict[str, Any] = {name: _numbers(table[name], name) for name in names if name != "time"}
         return cls(**loads, period=period, cycles=cycles, steady_tolerance=steady_tolerance)
 
 

@@ -68,6 +68,14 @@ SCENES: dict[str, Groups] = {
     "cycles": scene(
         ELASTIC, RIGID_DISK, MESH, COULOMB, PRESS, SHEAR, {"tangential_force": "-2e-4", "cycles": "2", "steady_tolerance": "1e-6"}
     ),
+    "history": scene(ELASTIC, RIGID_DISK, MESH, COULOMB, PRESS)
+    + [("history", {"tangential_force": "1e-4, -1e-4", "period": "2", "cycles": "2", "steady_tolerance": "1e-6"})],
+    "history of a file": scene(ELASTIC, RIGID_DISK, MESH, COULOMB, PRESS) + [("history", {"file": "'loads.csv'"})],
+    "history of elastic bodies": scene(
+        ELASTIC, ELASTIC | {"shape": "'power'", "coefficient": "2.0", "exponent": "2"}, MESH, COULOMB, PRESS
+    )
+    + [("history", {"tangential_force": "1e-4, -1e-4"})],
+    "history of others": scene(ELASTIC, RIGID_DISK, MESH, COULOMB, PRESS) + [("history", {"shift": "1e-5"})],
     "rolling": scene(ELASTIC_DISK, RIGID_PLANE, MESH, COULOMB, PRESS, {"moment": "1e-6"}),
 }
 
@@ -340,6 +348,27 @@ CASE: dict[tuple[str, str], Row] = {
     ("step", "friction"): logical("step(2)", "cylinder", ".true.", refused={".false.": NO_FRICTION, "f": NO_FRICTION}),
     ("step", "cycles"): whole("step(3)", "cycles", "2", 0, 1000000, refused={"0": "has no effect without cycles of 2 or more"}),
     ("step", "steady_tolerance"): positive("step(3)", "cycles", "1e-6"),
+    ("history", "file"): text(
+        "history",
+        "history of a file",
+        "'loads.csv'",
+        needed=": needs a file, or lists of loads such as tangential_force",
+        refused={"''": "the name of a file is empty"},
+    ),
+    ("history", "normal_force"): real("history", "history", "9e-4", "force/length", lower=0.0, is_list=True),
+    ("history", "approach"): real("history", "history", "1e-3", "length", is_list=True),
+    ("history", "tangential_force"): real("history", "history of others", "1e-4", "force/length", is_list=True, without=("shift",)),
+    ("history", "shift"): real("history", "history of others", "1e-5", "length", is_list=True, needed=": needs a file, or lists"),
+    ("history", "force_ratio"): real(
+        "history", "history of others", "0.4", lower=-1e6, upper=1e6, is_list=True, without=("shift",)
+    ),
+    ("history", "moment"): real("history", "history", "1e-6", "force", is_list=True),
+    ("history", "rotation"): real("history", "history", "1e-6", "radians", is_list=True),
+    ("history", "lower_bulk_stress"): real("history", "history", "1e-3", "force/length^2", is_list=True),
+    ("history", "upper_bulk_stress"): real("history", "history of elastic bodies", "1e-3", "force/length^2", is_list=True),
+    ("history", "period"): whole("history", "history", "2", 2, 1000000, refused={"1000000": "must be at most 2, the number of"}),
+    ("history", "cycles"): whole("history", "history", "2", 1, 1000000, refused={"1": "has no effect without cycles of 2 or more"}),
+    ("history", "steady_tolerance"): positive("history", "history", "1e-6"),
     ("solver", "algorithm"): choice("solver", "cylinder", "'mfv'", "mfv conventional"),
     ("solver", "stepping"): choice(
         "solver", "cylinder", "'event'", "auto event nominal leap", refused={"'leap'": "'leap' needs an accuracy above 0"}
@@ -353,7 +382,7 @@ CASE: dict[tuple[str, str], Row] = {
     ("solver", "linear_tolerance"): part("solver", "cylinder", "1e-12"),
     ("output", "file"): text("output", "cylinder", "'result.h5'"),
     ("output", "history"): choice("output", "cylinder", "'events'", "events steps none"),
-    ("output", "states"): choice("output", "cylinder", "'reversals'", "reversals steps none"),
+    ("output", "states"): choice("output", "cylinder", "'reversals'", "reversals steps none last_cycle"),
     ("output", "error_estimate"): logical("output", "cylinder", ".false."),
     ("output", "sensitivity"): logical("output", "cylinder", ".false."),
     ("output", "checkpoint_minutes"): real("output", "cylinder", "10", "minutes", lower=0.0, upper=1e6),

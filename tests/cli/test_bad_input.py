@@ -64,6 +64,7 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Path]:
     folder = tmp_path_factory.mktemp("bad_input")
     (folder / "profile.txt").write_text("-1 1\n0 0\n1 1\n")
     (folder / "mu.txt").write_text("-1 0.7\n1 0.7\n")
+    (folder / "loads.csv").write_text("time,tangential_force\n0,1e-4\n1,-1e-4\n")
     before = Path.cwd()
     os.chdir(folder)
     yield folder

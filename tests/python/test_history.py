@@ -5,11 +5,12 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any
 
-import mfv
 import numpy as np
 import pytest
 from scenes import HALF_PLANE, cylinder
 from scipy.optimize import brentq
+
+import mfv
 
 PRESS = mfv.Step(normal_force=1.0e-3)
 MESH = mfv.Mesh(nodes=61, half_width=0.016)
@@ -148,12 +149,16 @@ def dissipation_by_elements(normal: np.ndarray, tangential: np.ndarray, mu: floa
     stiffness = np.diff(np.pi * modulus / (2.0 * np.log(2.0 * datum / half_width)), prepend=0.0)
     touching = approach(half_width) - 0.5 * np.diff(approach(half_width), prepend=0.0)
     force = np.zeros_like(touching)
+
+    def unbalanced(shift: float, force: np.ndarray, limit: np.ndarray, target: float) -> float:
+        return float(stiffness @ np.clip(force + shift, -limit, limit)) - target
+
     loss, path = 0.0, [(normal[-1], 0.0), *zip(normal, tangential), *zip(normal, tangential)]
     for number, ((p0, q0), (p1, q1)) in enumerate(zip(path[:-1], path[1:])):
         for share in np.arange(1, substeps + 1) / substeps:
             limit = mu * np.maximum(approach(np.sqrt(4.0 * (p0 + share * (p1 - p0)) / (np.pi * modulus))) - touching, 0.0)
             target, reach = q0 + share * (q1 - q0), limit.max() + np.abs(force).max() + 1.0e-12
-            shift = brentq(lambda u, c=limit, q=target: stiffness @ np.clip(force + u, -c, c) - q, -reach, reach, xtol=1e-18)
+            shift = brentq(unbalanced, -reach, reach, (force, limit, target), xtol=1e-18)
             after = np.clip(force + shift, -limit, limit)
             if number >= len(normal):
                 loss += stiffness @ (0.5 * (force + after) * (force + shift - after))

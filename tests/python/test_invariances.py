@@ -151,10 +151,12 @@ def strained(seed: int) -> Contact:
     return case
 
 
-def scale_of(name: str, half_width: float) -> float:
+def scale_of(name: str, half_width: float, dissipation: float) -> float:
     """Scale of quantities that can be zero by symmetry."""
     if name in POSITIONS or other_side(name) != name:
         return half_width
+    if name.endswith("_work") and name != "friction_work":
+        return dissipation
     return 1.0 if name.startswith(("patch_shift", "stick_ratio", "edge_stick")) else 0.0
 
 
@@ -193,7 +195,7 @@ def differences(
             found[path] = np.inf
             continue
         ends = np.isfinite(changed)
-        size = np.max(np.abs(actual[ends]), initial=scale_of(name, half_width))
+        size = np.max(np.abs(actual[ends]), initial=scale_of(name, half_width, float(second.summary.dissipation)))
         error = np.max(np.abs(changed[ends] - actual[ends]), initial=0.0)
         if error > max(tolerance, TENSION if "tension" in name else 0.0) * size:
             found[path] = float(error / size)

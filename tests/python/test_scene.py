@@ -24,6 +24,7 @@ GROUPS = {
     "mesh": mfv.Mesh,
     "friction": mfv.Friction,
     "step": mfv.Step,
+    "history": mfv.History,
     "solver": mfv.Solver,
     "output": mfv.Output,
 }
@@ -60,7 +61,7 @@ def test_kinds_and_choices_are_those_of_the_library(group: str) -> None:
             assert re.findall(r"[\"'](\w+)[\"']", kinds[0]) == re.findall(r"'(\w+)'", values), key
         else:
             (expected,) = (kind for words, kind in KINDS.items() if values.startswith(words))
-            assert expected in kinds or (expected == "float" and kinds[0] in ("Coefficient", "Positions")), key
+            assert expected in kinds or (expected == "float" and kinds[0] in ("Coefficient", "LoadList", "Positions")), key
 
 
 @pytest.mark.parametrize("path", EXAMPLES, ids=lambda path: path.stem)

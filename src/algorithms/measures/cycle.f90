@@ -112,8 +112,8 @@ contains
       if (stick_ratio > self%highest_stick_ratio .or. ieee_is_nan(self%highest_stick_ratio)) self%highest_stick_ratio = stick_ratio
    end subroutine add_point
 
-   !> Work of the force of a motion over the cycle, per unit thickness: force. It is the area of the loop of force and motion; a loop
-   !> that is not closed is closed by a straight line.
+   !> Work of the force of a motion over the cycle, per unit thickness: force. It is the area of the loop of force and motion; an
+   !> open loop is closed by a straight line.
    elemental real(wp) function loop_area(self, motion)
       class(cycle_type), intent(in) :: self
       integer, intent(in) :: motion

@@ -41,8 +41,8 @@ module mfv_scene
       integer :: cycles = 0
       !> Cycles end early when two consecutive ones are equal within this fraction of the largest traction; 0: never.
       real(wp) :: steady_tolerance = 0.0_wp
-      !> Targets of the turning points of each cycle in turn, shape (motions, at least 2), with the controls above; the last ones end
-      !> the cycle. Unallocated: a cycle goes to `target` and returns.
+      !> Targets of the turning points of each cycle in turn, shape (motions, at least 2), with the controls above; the last ones
+      !> end the cycle. Unallocated: a cycle goes to `target` and returns.
       real(wp), allocatable :: path(:, :)
       !> Row of the load history (its first one, with a path) that the step is; 0: none. And whether more rows follow.
       integer :: row = 0

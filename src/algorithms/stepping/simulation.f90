@@ -31,8 +31,8 @@ module mfv_simulation
 
    !> Records of the load history: one for every event, one for every step end, none.
    integer, parameter :: history_events = 1, history_steps = 2, history_none = 3
-   !> Snapshots: at the ends of steps and at every turning point of a step with cycles; of steps alone; none; or at the ends of steps
-   !> and the turning points of the last cycle of a step.
+   !> Snapshots: at the ends of steps and at every turning point of a step with cycles; of steps alone; none; or at the ends of
+   !> steps and the turning points of the last cycle of a step.
    integer, parameter :: states_reversals = 1, states_steps = 2, states_none = 3, states_last_cycle = 4
 
    !> States stored for the last step with cycles: the start of the step, the reversal of its last complete cycle, the end of that
@@ -242,8 +242,8 @@ contains
       if (is_last) call end_step(self, step)
    end subroutine advance_segment
 
-   !> Whether the state at the end of the present segment is saved. Without a cycle's reversals, only the last row of a load history is
-   !> the end of a step for the user. States of an earlier cycle are removed where only those of the last one are saved.
+   !> Whether the state at the end of the present segment is saved. Only the last row of a load history counts as the end of a step.
+   !> States of an earlier cycle are removed where only those of the last one are saved.
    logical function keeps_state(self, step, is_last)
       class(simulation_type), intent(inout) :: self
       type(step_type), intent(in) :: step
