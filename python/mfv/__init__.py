@@ -25,7 +25,7 @@ from .codes import EventKind, NodeStatus
 from .errors import LibraryNotFound, MfvError, NotAResult
 from .loads import Loads, Progress
 from .result import Group, Result, read
-from .scene import Body, Friction, History, Mesh, Output, Scene, Solver, Step
+from .scene import Body, Friction, History, Mesh, Output, Scene, Solver, Step, Wear
 from .studies import Axis, Study, study
 
 __all__ = [
@@ -51,6 +51,7 @@ __all__ = [
     "Step",
     "Study",
     "Trial",
+    "Wear",
     "errors",
     "has_feature",
     "library_version",

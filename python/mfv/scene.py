@@ -292,6 +292,17 @@ class Friction(KeyGroup):
 
 
 @_keywords_only
+class Wear(KeyGroup):
+    """Wear of the surfaces in steps with cycles: the keys of &wear. `coefficient`: depth over pressure times slip (law='archard')
+    or over the work of friction per unit of surface (law='work') [length^2/force]."""
+
+    law: Literal["archard", "work"] | None = None
+    coefficient: float | None = None
+    tolerance: float | None = None
+    block: int | None = None
+
+
+@_keywords_only
 class Step(KeyGroup):
     """One step of the load history: the keys of &step. Targets are reached linearly; loads without a target are constant."""
 
@@ -381,6 +392,7 @@ class Scene(KeyGroup):
     upper: Body
     friction: Friction | None
     mesh: Mesh | None
+    wear: Wear | None
     steps: list[Step]
     history: History | None
     solver: Solver | None
@@ -392,7 +404,7 @@ class Scene(KeyGroup):
     length_unit: str | None
     force_unit: str | None
 
-    _not_keys: ClassVar[tuple[str, ...]] = ("lower", "upper", "friction", "mesh", "steps", "history", "solver", "output", "name")
+    _not_keys: ClassVar[tuple[str, ...]] = ("lower", "upper", "friction", "mesh", "wear", "steps", "history", "solver", "output", "name")
 
     def __init__(
         self,
@@ -401,6 +413,7 @@ class Scene(KeyGroup):
         *,
         friction: Friction | None = None,
         mesh: Mesh | None = None,
+        wear: Wear | None = None,
         steps: Iterable[Step] = (),
         history: History | None = None,
         solver: Solver | None = None,
@@ -418,6 +431,7 @@ class Scene(KeyGroup):
         self.upper = upper
         self.friction = friction
         self.mesh = mesh
+        self.wear = wear
         self.steps = list(steps)
         self.history = history
         self.solver = solver
@@ -526,13 +540,14 @@ class Scene(KeyGroup):
 
 
 #: Groups that occur at most once, without &scene.
-_SINGLE: dict[str, type[KeyGroup]] = {"mesh": Mesh, "friction": Friction, "history": History, "solver": Solver, "output": Output}
+_SINGLE: dict[str, type[KeyGroup]] = {"mesh": Mesh, "friction": Friction, "wear": Wear, "history": History, "solver": Solver, "output": Output}
 
 #: Default names of arrays.
 _USUAL: dict[type[KeyGroup], str] = {
     Body: "Body.disk(0.25, rigid=True)",
     Mesh: "Mesh(nodes=101, half_width=0.012)",
     Friction: "Friction.coulomb(0.7)",
+    Wear: "Wear(coefficient=1.0e-8)",
     Step: "Step(normal_force=1.0e-3)",
     History: "History(tangential_force=[2.0e-4, -2.0e-4], cycles=3)",
     Solver: "Solver(linear_solver='fft')",

@@ -9,7 +9,7 @@ module mfv_contact
    use mfv_contact_fields, only: contact_fields_type
    use mfv_contact_state, only: contact_state_type
    use mfv_discretisation_error, only: estimate_error, has_coarser_meshes
-   use mfv_motions, only: motions, motion_count, motion_approach, motion_shift, motion_rotation, motion_lower_bulk, &
+   use mfv_motions, only: motions, motion_count, user_motions, motion_approach, motion_shift, motion_rotation, motion_lower_bulk, &
                           motion_upper_bulk, control_keep, control_force, control_displacement
    use mfv_sensitivity, only: find_sensitivity
    use mfv_draft, only: draft_type
@@ -43,7 +43,7 @@ module mfv_contact
    !> forces [force/length], moment [force], areas [length^2]; lengths, radians, bulk stresses [force/length^2]; dissipation
    !> [force]; and counts.
    type :: loads_type
-      real(wp) :: force(motion_count) = 0.0_wp, motion(motion_count) = 0.0_wp, dissipation = 0.0_wp
+      real(wp) :: force(user_motions) = 0.0_wp, motion(user_motions) = 0.0_wp, dissipation = 0.0_wp
       integer :: contact_nodes = 0, stick_nodes = 0, slip_nodes = 0, events = 0, linear_solves = 0
    end type loads_type
 
@@ -475,8 +475,8 @@ contains
 
       if (.not. self%is_made) return
       associate (f => self%simulation%contact%state%fields, state => self%simulation%contact%state)
-         loads%force = f%force
-         loads%motion = f%motion
+         loads%force = f%force(:user_motions)
+         loads%motion = f%motion(:user_motions)
          loads%dissipation = state%dissipation
          call state%count_nodes(loads%contact_nodes, loads%stick_nodes, loads%slip_nodes)
       end associate
@@ -484,7 +484,7 @@ contains
       loads%linear_solves = self%simulation%contact%system%solves
    end function loads
 
-   !> The consistent tangent at the present state, see mfv_tangent. `tangent`: of the first 2 motions, or more, up to motion_count;
+   !> The consistent tangent at the present state, see mfv_tangent. `tangent`: of the first 2 motions, or more, up to user_motions;
    !> `direction` of further motion: of the same motions. Error MFV_BAD_ARGUMENT.
    subroutine get_tangent(self, tangent, error, direction)
       class(contact_type), intent(in) :: self
@@ -495,8 +495,8 @@ contains
       tangent = 0.0_wp
       call self%expect_made(error)
       if (allocated(error)) return
-      if (size(tangent, 1) /= size(tangent, 2) .or. size(tangent, 1) < 2 .or. size(tangent, 1) > motion_count) then
-         call set_error(error, MFV_BAD_ARGUMENT, 'the tangent must have from 2 to '//to_text(motion_count)//' motions')
+      if (size(tangent, 1) /= size(tangent, 2) .or. size(tangent, 1) < 2 .or. size(tangent, 1) > user_motions) then
+         call set_error(error, MFV_BAD_ARGUMENT, 'the tangent must have from 2 to '//to_text(user_motions)//' motions')
          return
       end if
       if (present(direction)) then

@@ -15,7 +15,7 @@ module mfv_c
    use mfv_kept_state, only: kept_state_type
    use mfv_keys, only: catalogue_type, kind_integer, read_key_name
    use mfv_kinds, only: wp
-   use mfv_motions, only: motions, motion_count
+   use mfv_motions, only: motions, motion_count => user_motions
    use mfv_observables, only: observable_count, observables
    use mfv_observer, only: observer_type
    use mfv_reference_c, only: evaluate_closed_form
@@ -524,7 +524,7 @@ contains
       stop_wanted = .false.
       if (.not. associated(self%observe)) return
       progress = c_progress(c_sizeof(progress), fraction, segment, segments, state%contact_nodes(), state%stick_nodes(), &
-                            state%fields%force, state%fields%motion)
+                            state%fields%force(:motion_count), state%fields%motion(:motion_count))
       stop_wanted = self%observe(progress, self%user) /= 0
    end subroutine notify
 
@@ -557,7 +557,9 @@ contains
          status = refused(self, 'mfv_advance: size is not sizeof(mfv_step)')
          return
       end if
-      wanted = step_type(given%control, given%target, given%friction /= 0, given%cycles, given%steady_tolerance)
+      wanted = step_type(friction=given%friction /= 0, cycles=given%cycles, steady_tolerance=given%steady_tolerance)
+      wanted%control(:motion_count) = given%control
+      wanted%target(:motion_count) = given%target
       if (associated(self%observer%observe)) then
          call self%contact%advance(wanted, error, given%relative /= 0, self%observer)
       else

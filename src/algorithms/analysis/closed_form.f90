@@ -47,6 +47,7 @@ contains
          if (.not. (force > 0.0_wp .and. scene%modulus() > 0.0_wp)) return
          if (model%compliance%elastic_block(block_wt) .and. model%tangential .and. .not. alike(scene)) return
          if (any(simulation%load_summary%controlled(motion_rotation + 1:))) return
+         if (any(abs(model%worn) > 0.0_wp)) return
          if (simulation%load_summary%controlled(motion_rotation) .and. .not. (is_hertz(scene) .and. model%rolls())) return
          form%indenter = indenter_of(scene)
          if (.not. form%indenter%is_flat() .and. .not. any([scene%lower%shape, scene%upper%shape] == shape_flat_punch)) then

@@ -7,7 +7,7 @@ module mfv_observables
    use mfv_cycle, only: cycle_type
    use mfv_interior, only: interior_type
    use mfv_kinds, only: pi, wp
-   use mfv_motions, only: motions, motion_count, motion_approach
+   use mfv_motions, only: motions, motion_count => user_motions, motion_approach
    use mfv_simulation, only: mark_loading, simulation_type
    use mfv_state_interior, only: state_interior
    use mfv_stress_search, only: largest_tension, largest_type
@@ -24,7 +24,7 @@ module mfv_observables
    end type row_type
 
    !> Number and list of the observables.
-   integer, parameter :: observable_count = 40
+   integer, parameter :: observable_count = 42
    type(row_type), parameter :: observables(observable_count) = [ &
                                 row_type('normal_force', 'force/length', 'normal force P per unit thickness at the end'), &
                                 row_type('tangential_force', 'force/length', 'tangential force Q per unit thickness at the end'), &
@@ -67,7 +67,9 @@ module mfv_observables
                     row_type('lower_tension', 'force/length^2', 'largest tension along the surface of the lower body at the end'), &
                                 row_type('lower_tension_x', 'length', 'where it is: x'), &
                     row_type('upper_tension', 'force/length^2', 'largest tension along the surface of the upper body at the end'), &
-                                row_type('upper_tension_x', 'length', 'where it is: x')]
+                                row_type('upper_tension_x', 'length', 'where it is: x'), &
+                                row_type('worn_area', 'length^2', 'area worn off both profiles: volume per unit thickness'), &
+                                row_type('wear_depth', 'length', 'largest depth worn off both surfaces together')]
 
 contains
 
@@ -126,6 +128,10 @@ contains
          call put(values, 'half_width_number', edges%half_width()*model%scene%curvature())
          call add_tension(simulation, .false., 'lower', values)
          call add_tension(simulation, .true., 'upper', values)
+         if (model%scene%wear%acts()) then
+            call put(values, 'worn_area', model%force(state%worn))
+            call put(values, 'wear_depth', maxval(state%worn))
+         end if
          if (.not. (state%fields%force(motion_approach) > 0.0_wp .and. edges%contact)) return
          mean_peak = 2.0_wp*state%fields%force(motion_approach)/(pi*edges%half_width())
          call put(values, 'pressure_number', maxval(state%fields%pressure)/mean_peak)

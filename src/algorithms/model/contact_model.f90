@@ -15,7 +15,7 @@ module mfv_contact_model
    use mfv_lapack, only: ddot
    use mfv_numerics, only: gauss_points
    use mfv_motions, only: motions, motion_count, motion_approach, motion_shift, motion_rotation, motion_lower_bulk, &
-                          motion_upper_bulk, arm_unit
+                          motion_upper_bulk, motion_wear, arm_unit
    use mfv_reference_indenter, only: indenter_type
    use mfv_clock, only: seconds_now
    use mfv_scene, only: scene_type
@@ -31,13 +31,15 @@ module mfv_contact_model
       real(wp), allocatable :: x(:), arc(:)
       !> Length of the surface that belongs to each node.
       real(wp), allocatable :: width(:)
-      !> Undeformed gaps g0, length; zero where a node faces no surface.
+      !> Undeformed gaps g0, with the wear so far, length; zero where a node faces no surface.
       real(wp), allocatable :: initial_gap(:)
+      !> Depth worn off both surfaces so far, and in the present block of cycles, length.
+      real(wp), allocatable :: worn(:), wear(:)
       !> Whether both bodies have a surface at the node, so that it can touch.
       logical, allocatable :: can_touch(:)
       !> Decrease of the gap, and displacement of the upper surface to the right along the lower one, for a unit of every motion of
-      !> the upper body (mfv_motions); shape (nodes, motion_count). Approach and shift: without unit; rotation: lengths; bulk
-      !> stresses: length^3/force.
+      !> the upper body (mfv_motions); shape (nodes, motion_count). Approach and shift: without unit; rotation, wear: lengths;
+      !> bulk stresses: length^3/force.
       real(wp), allocatable :: normal_arm(:, :), tangential_arm(:, :)
       !> Whether normals are vertical: approach only closes gaps, and shift only slides.
       logical :: upright = .true.
@@ -84,6 +86,8 @@ module mfv_contact_model
       procedure :: grow
       procedure :: add_tangential
       procedure :: add_motion
+      procedure :: set_worn
+      procedure :: begin_wear
       procedure, private :: build_compliance
       procedure, private :: place_nodes
    end type contact_model_type
@@ -106,6 +110,7 @@ contains
       model%moves = scene%moves()
       call choose_mesh(scene, nodes, interval, model%growing)
       call model%build_compliance(nodes, interval)
+      allocate (model%worn(nodes), model%wear(nodes), source=0.0_wp)
       call model%place_nodes()
    end function new_contact_model
 
@@ -223,6 +228,25 @@ contains
       self%moves(motion) = .true.
    end subroutine add_motion
 
+   !> Set the depth that is worn off, length, shape (nodes).
+   subroutine set_worn(self, worn)
+      class(contact_model_type), intent(inout) :: self
+      real(wp), intent(in) :: worn(:)
+
+      if (all(abs(worn - self%worn) <= 0.0_wp)) return
+      self%worn = worn
+      call self%place_nodes()
+   end subroutine set_worn
+
+   !> Let the motion motion_wear open the gaps by `wear` per unit, length, shape (nodes).
+   subroutine begin_wear(self, wear)
+      class(contact_model_type), intent(inout) :: self
+      real(wp), intent(in) :: wear(:)
+
+      self%wear = wear
+      self%normal_arm(:, motion_wear) = -wear
+   end subroutine begin_wear
+
    subroutine build_compliance(self, nodes, interval)
       class(contact_model_type), intent(inout) :: self
       integer, intent(in) :: nodes
@@ -317,12 +341,12 @@ contains
       has_rigid_parts = any(self%moves .and. motions%optional) .or. .not. self%upright
    end function has_rigid_parts
 
-   !> Whether motions couple the normal and the tangential problem: all but approach, shift and bulk stresses do, and all do with
-   !> inclined normals.
+   !> Whether motions couple the normal and the tangential problem: all but approach, shift, bulk stresses and wear do, and all do
+   !> with inclined normals.
    pure logical function motions_couple(self)
       class(contact_model_type), intent(in) :: self
 
-      motions_couple = any(self%moves .and. motions%optional .and. .not. motions%is_stress) .or. .not. self%upright
+      motions_couple = any(self%moves .and. motions%optional .and. .not. motions%is_known) .or. .not. self%upright
    end function motions_couple
 
    !> Whether a motion changes gaps; otherwise it only slides.
@@ -421,11 +445,14 @@ contains
       class(contact_model_type), intent(inout) :: self
       integer, intent(in) :: extra
       real(wp) :: started
+      integer :: i
 
       started = seconds_now()
       call self%compliance%resize(self%nodes() + 2*extra)
       self%assembly_seconds = self%assembly_seconds + seconds_now() - started
       self%added = self%added + extra
+      self%worn = [(0.0_wp, i=1, extra), self%worn, (0.0_wp, i=1, extra)]
+      self%wear = [(0.0_wp, i=1, extra), self%wear, (0.0_wp, i=1, extra)]
       call self%place_nodes()
    end subroutine grow
 
@@ -451,6 +478,7 @@ contains
       else
          self%initial_gap = gap_at(self%scene, self%arc)
       end if
+      self%initial_gap = self%initial_gap + self%worn
       self%can_touch = self%scene%touchable(self%arc)
       self%static_friction = self%scene%friction%static%at(self%x)
       self%kinetic_friction = self%scene%friction%kinetic%at(self%x)
@@ -503,6 +531,7 @@ contains
       allocate (self%normal_arm(n, motion_count), self%tangential_arm(n, motion_count), source=0.0_wp)
       self%normal_arm(:, motion_approach) = 1.0_wp
       self%tangential_arm(:, motion_shift) = 1.0_wp
+      self%normal_arm(:, motion_wear) = -self%wear
       self%upright = .not. self%scene%mesh%radial
       if (self%scene%mesh%radial) then
          call place_radial_arms(self)

@@ -23,6 +23,8 @@ module mfv_contact_state
       real(wp) :: dissipation = 0.0_wp
       !> The same per unit of surface, force/length, shape (nodes).
       real(wp), allocatable :: friction_work(:)
+      !> Depth worn off both surfaces together, length, shape (nodes).
+      real(wp), allocatable :: worn(:)
    contains
       procedure :: set_status
       procedure :: copy_from
@@ -45,7 +47,7 @@ contains
       allocate (state%status(nodes), source=node_open)
       allocate (state%slip_direction(nodes), source=0)
       allocate (state%memory(memory_size, nodes), source=0.0_wp)
-      allocate (state%stuck_slip(nodes), state%friction_work(nodes), source=0.0_wp)
+      allocate (state%stuck_slip(nodes), state%friction_work(nodes), state%worn(nodes), source=0.0_wp)
    end function new_contact_state
 
    !> Set the statuses of the nodes of `mask`. A node that sticks holds at its present slip; one that slips at first contact has
@@ -78,6 +80,7 @@ contains
       self%memory = other%memory
       self%dissipation = other%dissipation
       self%friction_work = other%friction_work
+      self%worn = other%worn
    end subroutine copy_from
 
    !> State of node `node` for a friction law, with the given fields and coefficients of friction.
@@ -105,6 +108,7 @@ contains
       self%memory = reshape([(0.0_wp, i=1, memory_size*extra), self%memory, (0.0_wp, i=1, memory_size*extra)], &
                             [memory_size, size(self%status)])
       self%friction_work = [(0.0_wp, i=1, extra), self%friction_work, (0.0_wp, i=1, extra)]
+      self%worn = [(0.0_wp, i=1, extra), self%worn, (0.0_wp, i=1, extra)]
    end subroutine widen
 
    pure integer function contact_nodes(self)

@@ -8,12 +8,15 @@ module mfv_motions
    implicit none
    private
    public :: motion_type, motions, motion_count, motion_approach, motion_shift, motion_rotation, motion_lower_bulk, &
-             motion_upper_bulk, bulk_motions, control_keep, control_force, control_displacement, controlled_key, arm_unit
+             motion_upper_bulk, motion_wear, user_motions, bulk_motions, control_keep, control_force, &
+             control_displacement, controlled_key, arm_unit
 
-   !> Approach (down), shift (to the right) and rotation (counterclockwise) of the upper body; the bulk stress of either body; and
-   !> the number of motions.
+   !> Approach (down), shift (to the right) and rotation (counterclockwise) of the upper body; the bulk stress of either body; the
+   !> growth of the gap by wear in a block of cycles, from 0 to 1; and the number of motions.
    integer, parameter :: motion_approach = 1, motion_shift = 2, motion_rotation = 3, motion_lower_bulk = 4, motion_upper_bulk = 5, &
-                         motion_count = 5
+                         motion_wear = 6, motion_count = 6
+   !> The first motions are those of the user, in steps, results and interfaces.
+   integer, parameter :: user_motions = 5
 
    !> The bulk stress of the lower and the upper body.
    integer, parameter :: bulk_motions(2) = [motion_lower_bulk, motion_upper_bulk]
@@ -41,12 +44,14 @@ module mfv_motions
       character(len=40) :: balance_meaning
       !> Whether the force cannot be negative.
       logical :: pushes = .false.
-      !> Whether its arms are lengths, so that its force is a moment.
+      !> Whether its arms are lengths, so that its force is a moment (wear: an energy).
       logical :: turns = .false.
       !> Whether it is fixed and not modelled until a step controls it; approach and shift are always modelled.
       logical :: optional = .false.
-      !> Whether it is a bulk stress: always prescribed, by its value.
+      !> Whether it is a bulk stress.
       logical :: is_stress = .false.
+      !> Whether it is always prescribed, by its value, and changes gaps only or slips only: a bulk stress, wear.
+      logical :: is_known = .false.
    end type motion_type
 
    type(motion_type), parameter :: motions(motion_count) = [ &
@@ -77,7 +82,7 @@ module mfv_motions
                            force_meaning='area by which the shear tractions shorten the lower body, conjugate to its bulk stress', &
                              target='target of the bulk stress of the lower body: a uniform stress sigma_xx, positive in tension', &
                                    force_target='', balance='lower_contraction_balance', &
-                                   balance_meaning='contraction - that by the tractions', optional=.true., is_stress=.true.), &
+                       balance_meaning='contraction - that by the tractions', optional=.true., is_stress=.true., is_known=.true.), &
                                    motion_type( &
                     key='upper_bulk_stress', force_key='upper_contraction', force_name='upper contraction', unit='force/length^2', &
                                    force_unit='length^2', &
@@ -85,7 +90,14 @@ module mfv_motions
                            force_meaning='area by which the shear tractions shorten the upper body, conjugate to its bulk stress', &
                                    target='target of the bulk stress of the upper body, likewise', &
                                    force_target='', balance='upper_contraction_balance', &
-                                   balance_meaning='contraction - that by the tractions', optional=.true., is_stress=.true.)]
+                       balance_meaning='contraction - that by the tractions', optional=.true., is_stress=.true., is_known=.true.), &
+                                   motion_type( &
+                                   key='wear', force_key='wear_energy', force_name='energy of wear', unit='1', &
+                                   force_unit='force', meaning='part of the wear of a block of cycles', &
+                                   force_meaning='elastic energy that all wear of the block releases, with its sign reversed', &
+                                   target='', force_target='', balance='wear_balance', &
+                                   balance_meaning='energy of wear - that of the pressure', turns=.true., optional=.true., &
+                                   is_known=.true.)]
 
 contains
 

@@ -9,6 +9,7 @@ module mfv_scene
    use mfv_material, only: plane_strain
    use mfv_motions, only: motions, motion_count, control_keep, control_force, control_displacement
    use mfv_surface_tractions, only: zone_list_type
+   use mfv_wear, only: wear_type
    implicit none
    private
    public :: scene_type, mesh_request_type, step_type, method_type, control_keep, control_force, control_displacement, &
@@ -101,6 +102,7 @@ module mfv_scene
       type(body_type) :: lower, upper
       type(mesh_request_type) :: mesh
       type(friction_type) :: friction
+      type(wear_type) :: wear
       type(method_type) :: method
       type(step_type), allocatable :: steps(:)
    contains

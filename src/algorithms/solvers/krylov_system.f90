@@ -24,7 +24,7 @@ module mfv_krylov_system
    use mfv_kinds, only: wp
    use mfv_lapack, only: dgesv
    use mfv_krylov_preconditioner, only: krylov_preconditioner_type
-   use mfv_motions, only: motion_count, motion_shift, control_force, arm_unit
+   use mfv_motions, only: motion_count, motion_shift, motion_wear, control_force, arm_unit
    use mfv_node_status
    implicit none
    private
@@ -142,7 +142,10 @@ contains
       end if
       call self%preconditioner%prepare(model%compliance, self%length/self%stress)
       if (allocated(self%pressure)) then
-         if (size(self%pressure) == n) return
+         if (size(self%pressure) == n) then
+            self%normal_arm(:, motion_wear) = model%normal_arm(:, motion_wear)/self%arm(motion_wear)
+            return
+         end if
          deallocate (self%pressure, self%shear, self%normal, self%tangential, self%found)
       end if
       allocate (self%pressure(n), self%shear(n), self%normal(n), self%tangential(n), self%found(n, 4), source=0.0_wp)

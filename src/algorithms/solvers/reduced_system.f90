@@ -215,7 +215,7 @@ contains
       wanted(motion_shift, a_motion) = any(wanted(:, a_shear))
       ! A motion that only slides (a rotation with radial normals) is determined by friction alone. Bulk stresses are known.
       do i = 1, motion_count
-         if (motions(i)%optional .and. model%moves(i) .and. .not. motions(i)%is_stress) &
+         if (motions(i)%optional .and. model%moves(i) .and. .not. motions(i)%is_known) &
             wanted(i, a_motion) = count(wanted(:, a_pressure)) > 1 .and. (wanted(motion_shift, a_motion) .or. model%lifts(i))
       end do
       call remove_constraints(self, constraints, wanted)

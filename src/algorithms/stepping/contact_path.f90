@@ -13,7 +13,7 @@ module mfv_contact_path
    use mfv_history, only: history_type
    use mfv_kinds, only: wp
    use mfv_linear_solvers, only: chosen_stepping, new_contact_system
-   use mfv_motions, only: motions, motion_count, motion_approach, motion_shift, motion_rotation, control_force, &
+   use mfv_motions, only: motions, motion_count, motion_approach, motion_shift, motion_rotation, motion_wear, control_force, &
                           control_displacement
    use mfv_node_status
    use mfv_observer, only: observer_type
@@ -79,6 +79,8 @@ module mfv_contact_path
       procedure, private :: model_as
       procedure :: reset_first_stiffness
       procedure :: begin_motion
+      procedure :: begin_wear
+      procedure :: end_wear
       procedure :: record
       procedure :: start_segment
       procedure :: find_constraints
@@ -182,6 +184,7 @@ contains
       call self%history%move_nodes(saved%added - self%model%added)
       call self%model_as(saved%added, saved%tangential, saved%moves)
       self%path_position_type = saved%position
+      call self%model%set_worn(self%state%worn)
       deallocate (self%system)
       allocate (self%system, source=saved%system)
       self%history%records = min(saved%records, self%history%records)
@@ -213,6 +216,7 @@ contains
 
       call self%model_as(added, self%model%tangential, self%model%moves)
       self%path_position_type = position
+      call self%model%set_worn(self%state%worn)
       call self%certificate%find_applicable(self%model)
    end subroutine resume
 
@@ -301,6 +305,32 @@ contains
          fields%force(motion) = self%model%resultant(motion, fields%pressure, fields%shear)
       end associate
    end subroutine begin_motion
+
+   !> Begin to wear the surfaces by `depth`, length, shape (nodes), while the motion motion_wear goes from 0 to 1.
+   subroutine begin_wear(self, depth)
+      class(contact_path_type), intent(inout) :: self
+      real(wp), intent(in) :: depth(:)
+
+      call self%model%begin_wear(depth)
+      call self%begin_motion(motion_wear)
+      associate (fields => self%state%fields)
+         fields%force(motion_wear) = self%model%resultant(motion_wear, fields%pressure, fields%shear)
+      end associate
+   end subroutine begin_wear
+
+   !> Make the present wear part of the gaps.
+   subroutine end_wear(self)
+      class(contact_path_type), intent(inout) :: self
+
+      associate (fields => self%state%fields, wear => self%model%wear)
+         fields%normal = fields%normal - fields%motion(motion_wear)*wear
+         self%state%worn = self%state%worn + fields%motion(motion_wear)*wear
+         fields%motion(motion_wear) = 0.0_wp
+         fields%force(motion_wear) = 0.0_wp
+         wear = 0.0_wp
+      end associate
+      call self%model%set_worn(self%state%worn)
+   end subroutine end_wear
 
    !> The prescribed loads at the fraction `done` of the segment.
    subroutine loads_at(self, segment, done, constraints)

@@ -14,13 +14,14 @@ module mfv_simulation
    use mfv_kinds, only: wp
    use mfv_leap, only: apply_by_large_increments
    use mfv_load_way, only: load_summary_type
-   use mfv_motions, only: motions, motion_count, control_keep, control_force
+   use mfv_motions, only: motions, motion_count, motion_approach, motion_wear, control_keep, control_force, control_displacement
    use mfv_node_status, only: event_none, event_step_end, event_stopped
    use mfv_observer, only: observer_type
    use mfv_scene
    use mfv_slip_zones, only: segment_start_type, slip_record_type
    use mfv_status, only: MFV_COMPLETE
    use mfv_straight, only: apply_directly
+   use mfv_wear_block, only: find_wear_block
    use mfv_strings, only: to_text
    implicit none
    private
@@ -138,6 +139,9 @@ module mfv_simulation
       procedure, private :: apply_leg
       procedure, private :: begin_segment
       procedure, private :: keeps_state
+      procedure, private :: wears
+      procedure, private :: apply_wear
+      procedure, private :: restart_cycle
       procedure, private :: take_snapshot
       procedure, private :: begin_cycles
       procedure, private :: complete_leg
@@ -232,8 +236,13 @@ contains
          return
       end if
       associate (i => self%leg%number)
-         is_last = i == step%segments()
          if (step%cycles > 0) call self%complete_leg(i, step%turns(), self%leg%cycle)
+         if (self%wears(step)) call self%apply_wear(step, before, segments, observer, error)
+         if (allocated(error)) then
+            call self%end_step_early(step, error)
+            return
+         end if
+         is_last = i == step%segments()
          if (mod(i, step%turns()) == 0 .and. i > step%turns() .and. step%steady_tolerance > 0.0_wp) &
             is_last = is_last .or. self%leg%cycle%change <= step%steady_tolerance
          if (self%keeps_state(step, is_last)) call self%take_snapshot(self%steps_done + 1, i)
@@ -241,6 +250,57 @@ contains
       end associate
       if (is_last) call end_step(self, step)
    end subroutine advance_segment
+
+   !> Whether the present segment ends a cycle whose wear changes the gaps.
+   pure logical function wears(self, step)
+      class(simulation_type), intent(in) :: self
+      type(step_type), intent(in) :: step
+
+      wears = step%cycles > 0 .and. mod(self%leg%number, step%turns()) == 0 .and. self%contact%model%scene%wear%acts() .and. &
+              self%contact%model%tangential
+   end function wears
+
+   !> Wear the surfaces by the block of cycles that the present one begins, under constant loads, and skip the others.
+   subroutine apply_wear(self, step, before, segments, observer, error)
+      class(simulation_type), intent(inout) :: self
+      type(step_type), intent(in) :: step
+      integer, intent(in) :: before, segments
+      class(observer_type), intent(inout), optional :: observer
+      type(error_type), allocatable, intent(out) :: error
+      type(contact_state_type) :: start
+      type(load_type) :: targets(motion_count)
+      real(wp), allocatable :: depth(:)
+      integer :: cycles, turns
+
+      turns = step%turns()
+      start = self%padded(self%marks(mark_cycle_start))
+      allocate (depth(self%contact%model%nodes()))
+      call find_wear_block(self%contact, self%contact%state%friction_work - start%friction_work, &
+                           step%cycles - self%leg%number/turns + 1, self%load(motion_approach)%control == control_force, &
+                           cycles, depth)
+      call self%contact%begin_wear(depth)
+      targets = self%load
+      targets(motion_wear) = load_type(control_displacement, 1.0_wp)
+      call self%begin_segment(targets, step, before, segments)
+      if (self%contact%model%scene%method%algorithm == algorithm_conventional) then
+         call apply_conventionally(self%contact, self%leg%segment, observer, error)
+      else
+         call apply_directly(self%contact, self%leg%segment, observer, error)
+      end if
+      call self%contact%end_wear()
+      self%cycles_done = self%cycles_done + cycles - 1
+      self%leg%number = self%leg%number + turns*(cycles - 1)
+      self%cycles(self%cycle_count)%block = cycles
+   end subroutine apply_wear
+
+   !> Begin the next cycle at the present state, after wear.
+   subroutine restart_cycle(self)
+      class(simulation_type), intent(inout) :: self
+
+      self%leg%cycle%return = new_turning_point(self%contact%model, self%contact%state, self%slip, self%contact%work, &
+                                                ieee_value(1.0_wp, ieee_quiet_nan))
+      call self%set_mark(mark_return, self%leg%number - 1)
+   end subroutine restart_cycle
 
    !> Whether the state at the end of the present segment is saved. Only the last row of a load history counts as the end of a step.
    !> States of an earlier cycle are removed where only those of the last one are saved.
@@ -456,6 +516,7 @@ contains
       end if
       self%cycles_done = self%cycles_done + 1
       cycle%number = leg/turns
+      cycle%worn_area = self%contact%model%force(self%contact%state%worn)
       cycle%overall = self%cycles_done
       cycle%start = cycle%return
       self%marks(mark_cycle_start) = self%marks(mark_return)
@@ -521,6 +582,8 @@ contains
       type(error_type), allocatable, intent(out) :: error
       type(load_type) :: targets(motion_count)
 
+      if (step%cycles > 0 .and. self%leg%number > 1 .and. mod(self%leg%number, step%turns()) == 1 .and. &
+          self%contact%model%scene%wear%acts()) call self%restart_cycle()
       targets = merge(self%leg%there, self%leg%back, mod(self%leg%number, 2) == 1)
       if (allocated(step%path)) targets = target_of(self%leg%there, step%control, &
                                                     step%path(:, 1 + mod(self%leg%number - 1, step%turns())))
@@ -542,12 +605,12 @@ contains
          call self%contact%record(merge(event_stopped, event_step_end, allocated(error)), 0, 0, self%leg%segment%step)
    end subroutine apply_leg
 
-   !> Whether a bulk stress changes in a segment. It moves the stick zone while the shear narrows it, so that an edge may turn
-   !> within the segment, which large increments do not resolve.
+   !> Whether a bulk stress or the wear changes in a segment. They move the stick zone while the shear narrows it, so that an edge
+   !> may turn within the segment, which large increments do not resolve.
    pure logical function strains(segment)
       type(segment_type), intent(in) :: segment
 
-      strains = any(motions%is_stress .and. abs(segment%load%rate) > 0.0_wp)
+      strains = any(motions%is_known .and. abs(segment%load%rate) > 0.0_wp)
    end function strains
 
    !> The load segment from the present state to `targets`.

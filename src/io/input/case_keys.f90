@@ -5,14 +5,14 @@ module mfv_case_keys
    use mfv_friction, only: friction_law_names
    use mfv_keys
    use mfv_kinds, only: wp
-   use mfv_motions, only: motions, motion_count, motion_shift, control_force, control_displacement, controlled_key
+   use mfv_motions, only: motions, motion_count => user_motions, motion_shift, control_force, control_displacement, controlled_key
    use mfv_scene, only: most_cycles
    implicit none
    private
    public :: case_catalogue
 
    !> Groups in the order of the reference, and those that may be repeated.
-   character(*), parameter :: group_list = 'scene body mesh friction step history solver output'
+   character(*), parameter :: group_list = 'scene body mesh friction wear step history solver output'
    character(*), parameter :: repeated_groups = 'body step'
 
    !> Terms of a Fourier series: 4 for each of the most intervals that a circle can have with it (mfv_mesh_reader).
@@ -31,6 +31,7 @@ contains
       call add_body_keys(catalogue)
       call add_mesh_keys(catalogue)
       call add_friction_keys(catalogue)
+      call add_wear_keys(catalogue)
       call add_step_keys(catalogue)
       call add_history_keys(catalogue)
       call add_solver_keys(catalogue)
@@ -137,6 +138,20 @@ contains
                     unit='force/length^3', above=0.0_wp)
       call keys%add('friction', 'exponent', kind_real, 'dahl: exponent gamma; if omitted: 1', lower=0.0_wp, upper=100.0_wp)
    end subroutine add_friction_keys
+
+   subroutine add_wear_keys(keys)
+      type(catalogue_type), intent(inout) :: keys
+
+      call keys%add('wear', 'law', kind_choice, 'archard: the depth of wear of both surfaces together is the coefficient times '// &
+                    'pressure times slip (friction: coulomb, static_kinetic); work: times the work of friction per unit of '// &
+                    'surface', default='archard', choices='archard work')
+      call keys%add('wear', 'coefficient', kind_real, 'needed; the gaps grow after every cycle of steps with cycles', &
+                    unit='length^2/force', above=0.0_wp)
+    call keys%add('wear', 'tolerance', kind_real, 'one cycle is computed for a block of cycles in which no pressure changes by '// &
+                    'more than this fraction of the largest pressure', default='0.02', lower=1.0e-6_wp, upper=1.0_wp)
+      call keys%add('wear', 'block', kind_integer, 'cycles in a block; if omitted: as many as the tolerance allows', lower=1.0_wp, &
+                    upper=real(most_cycles, wp))
+   end subroutine add_wear_keys
 
    !> A coefficient of friction: one value, or one per node.
    subroutine add_coefficient_key(keys, name, meaning)

@@ -123,6 +123,7 @@ contains
       call read_friction(reader, scene, error)
       if (.not. allocated(error)) call read_steps(reader, scene, error)
       if (.not. allocated(error)) call read_history(reader, scene, error)
+      if (.not. allocated(error)) call read_wear(reader, scene, error)
       if (.not. allocated(error)) call read_datums(reader, scene, error)
       if (.not. allocated(error)) call check_matrix(reader, scene, error)
       if (.not. allocated(error)) call read_mesh(reader, scene, error)

@@ -10,7 +10,7 @@ module mfv_draft
    use mfv_keys, only: catalogue_type, read_key_name
    use mfv_kinds, only: wp
    use mfv_material, only: flexibilities
-   use mfv_motions, only: motions, motion_count
+   use mfv_motions, only: motions, motion_count => user_motions
    use mfv_namelist, only: entry_type, group_type, parse_namelists, resize_entries, resize_groups, write_namelists
    use mfv_numbers, only: write_real
    use mfv_status, only: MFV_INPUT_ERROR
@@ -26,7 +26,7 @@ module mfv_draft
    character(*), parameter :: line_ends = achar(10)//achar(13)
    !> Keys of one group that exclude each other; the last row with a key applies.
    character(*), parameter :: alternatives_of(motion_count + 3) = &
-                              [character(40) :: motions%force_key//' '//motions%key, 'tangential_force force_ratio shift', &
+        [character(40) :: motions(:motion_count)%force_key//' '//motions(:motion_count)%key, 'tangential_force force_ratio shift', &
                                                  'shear_modulus youngs_modulus', 'half_width half_angle']
 
    !> An error of a call, and the key that was named: setting that key again clears it.

@@ -8,10 +8,11 @@ module mfv_friction_reader
    use mfv_kinds, only: wp
    use mfv_profile_file, only: read_table
    use mfv_scene, only: scene_type
+   use mfv_wear, only: wear_archard, wear_work
    use mfv_strings, only: has_word, list_of_words, string_type, to_text
    implicit none
    private
-   public :: read_friction, check_friction_keys, check_coefficients_a_node, check_friction_of_steps
+   public :: read_friction, read_wear, check_friction_keys, check_coefficients_a_node, check_friction_of_steps
 
 contains
 
@@ -159,6 +160,31 @@ contains
       friction%kinetic%value = table(size(table, 1), :)
       friction%kinetic%position = table(1, :)
    end subroutine read_mu_file
+
+   !> The wear; the friction and the steps are known.
+   subroutine read_wear(reader, scene, error)
+      type(reader_type), intent(in) :: reader
+      type(scene_type), intent(inout) :: scene
+      type(error_type), allocatable, intent(out) :: error
+
+      if (count_groups(reader, 'wear') == 0) return
+      call reader%need('wear', 1, 'coefficient', error)
+      if (allocated(error)) return
+      scene%wear%law = reader%constant('wear', 1, 'law', [wear_archard, wear_work])
+      scene%wear%coefficient = reader%real_value('wear', 1, 'coefficient')
+      scene%wear%tolerance = reader%real_value('wear', 1, 'tolerance')
+      scene%wear%block = reader%integer_value('wear', 1, 'block')
+      if (.not. scene%friction%acts()) then
+         call reader%complain('wear', 1, 'coefficient', 'needs a &friction law with a coefficient above 0', error)
+      else if (scene%wear%law == wear_archard .and. has_word('weakening dahl', reader%text_value('friction', 1, 'law'))) then
+         call reader%complain('wear', 1, 'law', "'archard' needs friction with law='coulomb' or 'static_kinetic', whose work "// &
+                              "gives the product of pressure and slip; use law='work'", error)
+      else if (size(scene%steps) > 0 .and. .not. any(scene%steps%cycles > 0)) then
+         call reader%complain('wear', 1, 'coefficient', 'has no effect without a step with cycles; remove it or add cycles', error)
+      else if (reader%has('wear', 1, 'block') .and. reader%has('wear', 1, 'tolerance')) then
+         call reader%complain('wear', 1, 'tolerance', 'has no effect with block; remove one of them', error)
+      end if
+   end subroutine read_wear
 
    !> Error unless coefficients per node have a fixed mesh with that number of nodes.
    subroutine check_coefficients_a_node(reader, scene, error)

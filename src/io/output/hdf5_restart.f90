@@ -12,7 +12,7 @@ module mfv_hdf5_restart
    use mfv_hdf5_reader, only: read_vector
    use mfv_history, only: history_record_type, history_type
    use mfv_kinds, only: wp
-   use mfv_motions, only: motions, motion_count, control_keep, control_displacement
+   use mfv_motions, only: motions, motion_count => user_motions, control_keep, control_displacement
    use mfv_node_status, only: node_creep_left, node_open
    use mfv_result_fields, only: add_real, add_whole, along_nothing, field_type, step_group
    use mfv_scene, only: step_type
@@ -266,8 +266,9 @@ contains
       if (self%reading) state = new_contact_state(nodes)
       self%prefix = prefix
       call exchange_visible(self, state)
-      call exchange_motions(self, state, motions%optional)
+      call exchange_motions(self, state, motions(:motion_count)%optional)
       call self%exchange('friction_work', state%friction_work, 'energy dissipated per unit of surface')
+      call self%exchange('worn', state%worn, 'depth worn off both surfaces')
       call self%exchange('normal', state%fields%normal, 'separation of the surfaces by deformation and rotation')
       call self%exchange('tangential', state%fields%tangential, 'displacement of the lower surface to the right relative to '// &
                          'the upper one')
@@ -288,7 +289,7 @@ contains
       if (any(state%status < node_open .or. state%status > node_creep_left)) call self%complain('status')
       call self%exchange('pressure', state%fields%pressure, 'pressure')
       call self%exchange('shear', state%fields%shear, 'shear traction')
-      call exchange_motions(self, state,.not. motions%optional)
+      call exchange_motions(self, state,.not. motions(:motion_count)%optional)
       call self%exchange('dissipation', state%dissipation, 'energy dissipated so far')
    end subroutine exchange_visible
 
@@ -322,7 +323,7 @@ contains
             self%group = step_group(i)
             snapshot%state = new_contact_state(nodes)
             call exchange_visible(self, snapshot%state)
-            call exchange_motions(self, snapshot%state, motions%optional .and. model%moves)
+            call exchange_motions(self, snapshot%state, motions(:motion_count)%optional .and. model%moves(:motion_count))
             if (model%tangential) call self%exchange('friction_work', snapshot%state%friction_work, '')
             call self%exchange('step', snapshot%step, '', 1, size(model%scene%steps))
             call self%exchange('reversal', snapshot%reversal, '', 1, huge(1))

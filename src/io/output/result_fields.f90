@@ -11,7 +11,7 @@ module mfv_result_fields
    use mfv_error_bar
    use mfv_cycle, only: cycle_type
    use mfv_kinds, only: wp
-   use mfv_motions, only: motions, motion_count, motion_approach, motion_shift, motion_rotation, bulk_motions
+   use mfv_motions, only: motions, motion_count => user_motions, motion_approach, motion_shift, motion_rotation, bulk_motions
    use mfv_node_status, only: event_names, holds, in_contact, node_status_names
    use mfv_observables, only: observable_count, observables, observables_of
    use mfv_scene, only: stepping_leap
@@ -323,7 +323,7 @@ contains
 
       associate (model => simulation%contact%model)
          call list%add('x', model%x, along_nodes, 'length', 'position of the nodes')
-         call list%add('initial_gap', visible_gap(simulation, model%initial_gap), along_nodes, 'length', 'gap of the '// &
+      call list%add('initial_gap', visible_gap(simulation, model%initial_gap - model%worn), along_nodes, 'length', 'gap of the '// &
                        'undeformed bodies, infinite where one of them has no surface')
          if (model%scene%arc_radius() > 0.0_wp) call list%add('arc', model%arc, along_nodes, 'length', 'distance of the nodes '// &
                                                               'from the origin along the surface')
@@ -350,7 +350,8 @@ contains
       associate (model => simulation%contact%model)
          call list%add('pressure', state%fields%pressure, along_nodes, 'force/length^2', pressure_meaning)
          call list%add('shear', state%fields%shear, along_nodes, 'force/length^2', shear_meaning)
-         call list%add('gap', visible_gap(simulation, model%gap(state%fields)), along_nodes, 'length', 'gap between the '// &
+         call list%add('gap', visible_gap(simulation, model%gap(state%fields) + state%worn - model%worn), along_nodes, 'length', &
+                       'gap between the '// &
                        'bodies, infinite where one of them has no surface')
          call list%add('slip', modelled(simulation, state%fields%slip()), along_nodes, 'length', 'slip s = u - U of the lower '// &
                        'surface relative to the upper one (not modelled without friction)')
@@ -358,6 +359,8 @@ contains
          if (model%tangential) call list%add('friction_work', state%friction_work, along_nodes, 'force/length', 'energy '// &
                                              'dissipated so far per unit of surface')
       end associate
+    if (simulation%contact%model%scene%wear%acts()) call list%add('wear_depth', state%worn, along_nodes, 'length', 'depth worn '// &
+                                                                    'off both surfaces together')
       call find_edges_at_nodes(simulation%contact%model, state, contact_edge, stick_edge)
       call list%add('contact_edge', contact_edge, along_nodes, 'length', 'edges of contact'//where_from)
       if (simulation%contact%model%tangential) call list%add('stick_edge', stick_edge, along_nodes, 'length', 'edges of stick'// &
@@ -441,15 +444,15 @@ contains
       type(list_type), intent(inout) :: list
       type(simulation_type), intent(in) :: simulation
       type(contact_state_type), intent(in) :: state
+      logical, parameter :: usual(motion_count) = .not. motions(:motion_count)%optional
       type(zone_edges_type) :: edges
       real(wp) :: half_width
 
       call find_zone_edges(simulation%contact%model, state, edges)
       associate (f => state%fields)
-         call add_motions(list,.not. motions%optional, reshape(f%force, [1, motion_count]), reshape(f%motion, [1, motion_count]), &
-                          along_nothing)
-         call add_motions(list, motions%optional .and. simulation%contact%model%moves, reshape(f%force, [1, motion_count]), &
-                          reshape(f%motion, [1, motion_count]), along_nothing)
+         call add_motions(list, usual, reshape(f%force, [1, motion_count]), reshape(f%motion, [1, motion_count]), along_nothing)
+         call add_motions(list,.not. usual .and. simulation%contact%model%moves(:motion_count), &
+                          reshape(f%force, [1, motion_count]), reshape(f%motion, [1, motion_count]), along_nothing)
          call list%add('dissipation', state%dissipation, 'force', dissipation_meaning)
          call list%add('contact_nodes', state%contact_nodes(), contact_nodes_meaning)
          call list%add('stick_nodes', state%stick_nodes(), stick_nodes_meaning)
@@ -599,6 +602,10 @@ contains
                     'to end')
       call list%add('loss_factor', c%loss_factor(), along, '1', 'area of the loop of tangential force and shift over 2 pi '// &
                     'times the elastic energy of the secant stiffness')
+      if (simulation%contact%model%scene%wear%acts()) then
+         call list%add('block', c%block, along, 'number of cycles of the block of wear that begins with this one')
+         call list%add('worn_area', c%worn_area, along, 'length^2', 'area worn off the profiles before the cycle')
+      end if
       do i = 1, motion_count
          if (simulation%contact%model%moves(i)) call list%add(trim(motions(i)%force_key)//'_work', c%loop_area(i), along, 'force', &
                                                               'work of the '//trim(motions(i)%force_name)//' over the cycle: '// &
@@ -769,9 +776,9 @@ contains
             motion(:, i) = r%motion(i)
          end do
          associate (moves => simulation%contact%model%moves)
-            call add_motions(list,.not. motions%optional, force, motion, along)
+            call add_motions(list,.not. motions(:motion_count)%optional, force, motion, along)
             call add_nonlinear_shift(list, simulation)
-            call add_motions(list, motions%optional .and. moves, force, motion, along)
+            call add_motions(list, motions(:motion_count)%optional .and. moves(:motion_count), force, motion, along)
             if (moves(motion_rotation)) call add_rolling(list, simulation)
          end associate
          call list%add('dissipation', r%dissipation, along, 'force', dissipation_meaning)

@@ -6,7 +6,7 @@ module mfv_summary
    use mfv_error_bar
    use mfv_interior, only: has_interior
    use mfv_kinds, only: wp
-   use mfv_motions, only: motions, motion_count, motion_rotation, bulk_motions
+   use mfv_motions, only: motions, motion_count => user_motions, motion_rotation, bulk_motions
    use mfv_result_fields, only: field_named, field_type, group_fields
    use mfv_simulation, only: simulation_type
    use mfv_status, only: status_outcome
