@@ -273,11 +273,15 @@ contains
       integer :: cycles, turns
 
       turns = step%turns()
-      start = self%padded(self%marks(mark_cycle_start))
-      allocate (depth(self%contact%model%nodes()))
-      call find_wear_block(self%contact, self%contact%state%friction_work - start%friction_work, &
-                           step%cycles - self%leg%number/turns + 1, self%load(motion_approach)%control == control_force, &
-                           cycles, depth)
+      do
+         start = self%padded(self%marks(mark_cycle_start))
+         allocate (depth(self%contact%model%nodes()))
+         call find_wear_block(self%contact, self%contact%state%friction_work - start%friction_work, &
+                              step%cycles - self%leg%number/turns + 1, self%load(motion_approach)%control == control_force, &
+                              cycles, depth)
+         if (.not. self%contact%lengthens_for(depth > 0.0_wp)) exit
+         deallocate (depth)
+      end do
       call self%contact%begin_wear(depth)
       targets = self%load
       targets(motion_wear) = load_type(control_displacement, 1.0_wp)
