@@ -296,8 +296,8 @@ class Wear(KeyGroup):
     """Wear of the surfaces in steps with cycles: the keys of &wear. `coefficient`: depth over pressure times slip (law='archard')
     or over the work of friction per unit of surface (law='work') [length^2/force]."""
 
+    coefficient: float
     law: Literal["archard", "work"] | None = None
-    coefficient: float | None = None
     tolerance: float | None = None
     block: int | None = None
 

@@ -97,7 +97,7 @@ contains
             if (known(i)) softness(i) = rate(i)/pressure(i)
          end do
          do i = 1, size(problem%node)
-            if (.not. known(problem%node(i))) softness(problem%node(i)) = softness(nearest(known, problem%node(i)))
+            if (.not. known(problem%node(i))) softness(problem%node(i)) = softness(nearest_true(known, problem%node(i)))
          end do
          gap = model%gap(path%state%fields)
          associate (length => model%length(), stress => model%compliance%modulus, node => problem%node)
@@ -115,19 +115,19 @@ contains
    end subroutine gather
 
    !> The nearest true entry of `mask` to entry `i`; there is one.
-   pure integer function nearest(mask, i)
+   pure integer function nearest_true(mask, i)
       logical, intent(in) :: mask(:)
       integer, intent(in) :: i
       integer :: j
 
-      nearest = i
+      nearest_true = i
       do j = 1, size(mask)
-         nearest = max(1, i - j)
-         if (mask(nearest)) return
-         nearest = min(size(mask), i + j)
-         if (mask(nearest)) return
+         nearest_true = max(1, i - j)
+         if (mask(nearest_true)) return
+         nearest_true = min(size(mask), i + j)
+         if (mask(nearest_true)) return
       end do
-   end function nearest
+   end function nearest_true
 
    !> The pressures after `cycles` cycles of wear, by an active set.
    subroutine solve(problem, cycles, pressure)
