@@ -8,9 +8,10 @@ from __future__ import annotations
 import sys
 
 import matplotlib.pyplot as plt
-import mfv
 import numpy as np
 from matplotlib.animation import FuncAnimation, PillowWriter
+
+import mfv
 
 FORCE, MU, RADIUS = 1.0e-3, 0.5, 1.0
 PLANE = mfv.Body.half_plane(shear_modulus=1.0, poisson_ratio=0.3)

@@ -404,7 +404,18 @@ class Scene(KeyGroup):
     length_unit: str | None
     force_unit: str | None
 
-    _not_keys: ClassVar[tuple[str, ...]] = ("lower", "upper", "friction", "mesh", "wear", "steps", "history", "solver", "output", "name")
+    _not_keys: ClassVar[tuple[str, ...]] = (
+        "lower",
+        "upper",
+        "friction",
+        "mesh",
+        "wear",
+        "steps",
+        "history",
+        "solver",
+        "output",
+        "name",
+    )
 
     def __init__(
         self,
@@ -540,7 +551,14 @@ class Scene(KeyGroup):
 
 
 #: Groups that occur at most once, without &scene.
-_SINGLE: dict[str, type[KeyGroup]] = {"mesh": Mesh, "friction": Friction, "wear": Wear, "history": History, "solver": Solver, "output": Output}
+_SINGLE: dict[str, type[KeyGroup]] = {
+    "mesh": Mesh,
+    "friction": Friction,
+    "wear": Wear,
+    "history": History,
+    "solver": Solver,
+    "output": Output,
+}
 
 #: Default names of arrays.
 _USUAL: dict[type[KeyGroup], str] = {

@@ -4,10 +4,11 @@ from __future__ import annotations
 
 from typing import Any
 
-import mfv
 import numpy as np
 import pytest
 from scenes import HALF_PLANE
+
+import mfv
 
 FORCE, MU, RADIUS, COEFFICIENT = 1.0e-3, 0.5, 1.0, 1.0e-2
 MODULUS = 2.0 / 0.7  # 2 G/(1 - nu), under a rigid cylinder

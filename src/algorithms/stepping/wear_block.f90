@@ -1,7 +1,7 @@
 !> The wear of a block of cycles, from the friction work of one of them.
 !>
-!> The depth of wear per cycle is k p s at every node, with the pressure p and the slip path s of the cycle. Over a block of N cycles
-!> the pressure moves from where material is removed to where it is not, and the contact may grow. With the slip path of the first
+!> The depth of wear per cycle is k p s at every node, with the pressure p and the slip path s of the cycle. Over a block of N
+!> cycles the pressure moves from where material is removed to where it is not, and the contact may grow. With the slip path of the first
 !> cycle and the pressure P at the end of the block (implicit Euler, stable for any N) the depth is h = N k s P, where P solves the
 !> normal contact problem with an additional compliance N k s at every node (Johansson 1994, Int. J. Numer. Meth. Engng 37, 1393):
 !>
@@ -32,7 +32,7 @@ module mfv_wear_block
 contains
 
    !> The number of cycles of a block, at most `remaining`, and the depth of their wear (length, shape (nodes)), from the friction
-   !> work per unit of surface of its first cycle, whose end is the present state. `presses`: whether the normal force is prescribed.
+   !> work per unit of surface of its first cycle, whose end is the present state. `presses`: whether the normal force is given.
    !> The contact may reach the end of the mesh: wear beyond it is missing.
    subroutine find_wear_block(path, work, remaining, presses, cycles, depth)
       type(contact_path_type), intent(in) :: path
@@ -152,7 +152,8 @@ contains
       pressure = max(pressure, 0.0_wp)
    end subroutine solve
 
-   !> The pressures of active nodes, zero elsewhere, and the further approach of the upper body; unchanged if the equations are singular.
+   !> The pressures of active nodes, zero elsewhere, and the further approach of the upper body; pressures are unchanged if the
+   !> equations are singular.
    subroutine solve_active(problem, cycles, active, pressure, approach)
       type(problem_type), intent(in) :: problem
       real(wp), intent(in) :: cycles
