@@ -1,9 +1,10 @@
 !> The wear of a block of cycles, from the friction work of one of them.
 !>
 !> The depth of wear per cycle is k p s at every node, with the pressure p and the slip path s of the cycle. Over a block of N
-!> cycles the pressure moves from where material is removed to where it is not, and the contact may grow. With the slip path of the first
-!> cycle and the pressure P at the end of the block (implicit Euler, stable for any N) the depth is h = N k s P, where P solves the
-!> normal contact problem with an additional compliance N k s at every node (Johansson 1994, Int. J. Numer. Meth. Engng 37, 1393):
+!> cycles the pressure moves from where material is removed to where it is not, and the contact may grow. With the slip path of the
+!> first cycle and the pressure P at the end of the block (implicit Euler, stable for any N) the depth is h = N k s P, where P
+!> solves the normal contact problem with an additional compliance N k s at every node (Johansson 1994, Int. J. Numer. Meth. Engng
+!> 37, 1393):
 !>
 !>     gap + C (P - p) - d + N k s P >= 0,   P >= 0,   one of them zero;   force of P = force of p, or d = 0,
 !>
