@@ -1,0 +1,74 @@
+"""Models against MFV, cycle by cycle."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .measurement import Cycle, Measurement
+from .models import Model
+
+Array = NDArray[np.float64]
+
+#: Displacements of each half of a cycle at which a model is evaluated: its dissipation is that of the trapezoidal rule, in error by
+#: about 1/POINTS^2 of it.
+POINTS = 200
+
+
+class Assessment(NamedTuple):
+    """Columns with a row for every cycle; errors are model over MFV minus 1, NaN of a cycle without slip."""
+
+    amplitude: Array  #: of displacement [length]
+    force_amplitude: Array  #: of MFV [force/length]
+    dissipation: Array  #: of MFV [force]
+    stiffness: Array  #: of MFV, secant [force/length^2]
+    dissipation_error: Array
+    stiffness_error: Array
+    force_error: Array  #: largest difference of force at MFV's events, over the force amplitude
+
+    def __str__(self) -> str:
+        head = "   amplitude  dissipation     error    stiffness     error   force error"
+        rows = zip(self.amplitude, self.dissipation, self.dissipation_error, self.stiffness, self.stiffness_error, self.force_error)
+        lines = [
+            f"{u:12.4e} {d:12.4e} {100 * de:8.2f}% {k:12.4e} {100 * ke:8.2f}% {100 * fe:12.2f}%" for u, d, de, k, ke, fe in rows
+        ]
+        return "\n".join([head, *lines])
+
+
+def assess(model: Model, measured: Measurement) -> Assessment:
+    """Drive a model by the displacements of all cycles, one after the other, and compare with MFV.
+
+    The measurement may be another one than that of the fit: other amplitudes, another beginning, another normal force.
+    """
+    state = model.start()
+    rows = []
+    for cycle in measured.cycles:
+        path, expected = _path(cycle)
+        forces = np.empty(path.size)
+        for i, displacement in enumerate(path.tolist()):
+            forces[i], _, state = model.update(state, displacement)
+        amplitude = cycle.force_amplitude
+        dissipation = 0.5 * (forces[1:] + forces[:-1]) @ np.diff(path)
+        errors = (
+            dissipation / cycle.dissipation - 1.0 if cycle.slips else np.nan,
+            0.5 * np.ptp(forces) / amplitude - 1.0,
+            np.max(np.abs(forces - expected)) / amplitude,
+        )
+        rows.append((cycle.amplitude, amplitude, cycle.dissipation, cycle.stiffness, *errors))
+    return Assessment(*np.array(rows).T)
+
+
+def _path(cycle: Cycle) -> tuple[Array, Array]:
+    """Displacements of a cycle, at least POINTS for each half, among them those of MFV's events, and MFV's forces."""
+    low = int(np.argmin(cycle.force))
+    displacements, forces = [], []
+    for half in (slice(0, low + 1), slice(low, None)):
+        u, q = cycle.displacement[half], cycle.force[half]
+        order = np.argsort(u, kind="stable")
+        at = np.union1d(u, np.linspace(u[0], u[-1], POINTS))
+        at = at if u[-1] > u[0] else at[::-1]
+        displacements.append(at)
+        forces.append(np.interp(at, u[order], q[order]))
+    return np.concatenate(displacements), np.concatenate(forces)
