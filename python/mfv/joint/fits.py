@@ -99,11 +99,9 @@ def bouc_wen(measured: Measurement) -> BoucWen:
         return BoucWen(stiffness, sliding_force, exponent, float(unknowns[4]), elastic)
 
     def misfit(unknowns: Array) -> Array:
-        at, reached, lost = model(unknowns).cycles()
-        return np.append(
-            np.log(np.interp(amplitude, at, lost) / energy),
-            np.log(np.interp(amplitude, at, reached) / force),
-        )
+        at, reached, lost = np.log(np.array(model(unknowns).cycles())[:, 1:])
+        u = np.log(amplitude)
+        return np.append(np.interp(u, at, lost) - np.log(energy), np.interp(u, at, reached) - np.log(force))
 
     k, f = np.log(measured.backbone.stiffness[0]), np.log(measured.sliding_force)
     bounds = [k - 5.0, f - 5.0, np.log(0.1), k - 20.0, 0.5], [k + 5.0, f + 5.0, np.log(20.0), k + 1.0, 10.0]

@@ -22,6 +22,9 @@ RATIOS = (0.05, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9, 0.95)
 #: The backbone goes on, displacement controlled, to this multiple of the largest shift under force control: beyond sliding.
 BEYOND = 3.0
 
+#: A mesh refined for the cycles is continued on either side by this part of its length.
+MARGIN = 0.25
+
 #: Dissipation over force times displacement, of the amplitudes, up to which it is round-off: nothing slips.
 ROUND_OFF = 1.0e-10
 
@@ -115,9 +118,8 @@ def _backbone(scene: Scene, result: Result, force: float) -> Curve:
     pressed = copy.deepcopy(scene)
     pressed.output = None
     if pressed.mesh is not None and pressed.mesh.refine == "edges":
-        ends = np.append(result.mesh.x[0] - 0.5 * result.mesh.width[0], result.mesh.x + 0.5 * result.mesh.width)
         others = {"refine": None, "nodes": None, "half_width": None, "half_angle": None}
-        pressed.mesh = dataclasses.replace(pressed.mesh, ends=ends, **others)
+        pressed.mesh = dataclasses.replace(pressed.mesh, ends=_wider(result.mesh), **others)
     with pressed.contact() as contact:
         contact.run(check=True)
         origin = contact.loads
@@ -126,6 +128,13 @@ def _backbone(scene: Scene, result: Result, force: float) -> Curve:
         history = contact.result().history
     sheared = np.append(np.flatnonzero(history.step <= len(scene.steps))[-1], np.flatnonzero(history.step > len(scene.steps)))
     return _curve(history.shift[sheared] - origin.shift, history.tangential_force[sheared])
+
+
+def _wider(mesh: Group) -> Array:
+    """The ends of the intervals of a mesh, and of more intervals on either side: with coupling the contact moves until all slides."""
+    ends = np.append(mesh.x[0] - 0.5 * mesh.width[0], mesh.x + 0.5 * mesh.width)
+    more = np.linspace(0.0, MARGIN * np.ptp(ends), 17)[1:]
+    return np.concatenate((ends[0] - more[::-1], ends, ends[-1] + more))
 
 
 def _curve(displacement: Array, force: Array) -> Curve:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import math
 from dataclasses import asdict, dataclass, fields
 from functools import cached_property
 from pathlib import Path
@@ -189,18 +190,16 @@ class Segalman(_Saved):
     def iwan(self, cells: int = 20, smallest: float = 1.0e-3) -> Iwan:
         """The element: two sliders for each of the `cells`, whose edges grow geometrically from `smallest` times phi_max.
 
-        At the edges force, stiffness and dissipation are exact (Gauss quadrature of the density over each cell).
+        At the edges force, stiffness and dissipation are exact (see `gauss_pair`).
         """
         top = self.largest_slip
         edges = np.append(0.0, top * np.geomspace(smallest, 1.0, cells))
-        power, weight = np.polynomial.legendre.leggauss(12)
         pieces = []
         for low, high in zip(edges[:-1], edges[1:]):
-            # phi = high t^(1/(chi + 1)) makes the density uniform in t, also where it is singular at 0
-            t0, t1 = ((end / high) ** (self.chi + 1.0) for end in (low, high))
-            t = 0.5 * (t0 + t1) + 0.5 * (t1 - t0) * power
-            scale = self.coefficient * high ** (self.chi + 1.0) / (self.chi + 1.0) * 0.5 * (t1 - t0)
-            pieces.append(gauss_pair(high * t ** (1.0 / (self.chi + 1.0)), scale * weight))
+            powers = self.chi + 1.0 + np.arange(4)
+            total, first, second, third = self.coefficient * (high**powers - low**powers) / powers
+            mean, square, cube = first / total, second / total, third / total
+            pieces.append(_pair(total, mean, square - mean**2, cube - 3.0 * mean * square + 2.0 * mean**3))
         slip, stiffness = (np.concatenate(values) for values in zip(*pieces))
         if self.beta > 0.0:
             slip, stiffness = np.append(slip, top), np.append(stiffness, self.concentrated)
@@ -225,14 +224,18 @@ def gauss_pair(slip: Array, stiffness: Array) -> tuple[Array, Array]:
     Gauss quadrature of the measure (Golub and Welsch 1969): slips lie between those of the many, stiffnesses are positive. Where
     all of the many slide, force (moment 1), stiffness (0) and dissipation (1 and 2) are theirs.
     """
-    total = stiffness.sum()
-    mean = stiffness @ slip / total
+    total = float(stiffness.sum())
+    mean = float(stiffness @ slip) / total
     off = slip - mean
-    variance = stiffness @ off**2 / total
-    if slip.size < 2 or variance <= (1.0e-7 * mean) ** 2:
+    return _pair(total, mean, float(stiffness @ off**2) / total, float(stiffness @ off**3) / total)
+
+
+def _pair(total: float, mean: float, variance: float, third: float) -> tuple[Array, Array]:
+    """Two sliders with the stiffness `total` and these central moments of the slip; one if they are as good as equal."""
+    if variance <= (1.0e-7 * mean) ** 2:
         return np.array([mean]), np.array([total])
-    second = mean + stiffness @ off**3 / (total * variance)
-    slips, vectors = np.linalg.eigh([[mean, np.sqrt(variance)], [np.sqrt(variance), second]])
+    spread = np.sqrt(variance)
+    slips, vectors = np.linalg.eigh([[mean, spread], [spread, mean + third / variance]])
     return slips, total * vectors[0] ** 2
 
 
@@ -329,15 +332,16 @@ class BoucWen(_Saved):
     def update(self, state: Array, displacement: float) -> Update:
         """Integrate over the displacement."""
         u, z = map(float, state)
-        way = (displacement - u) * self.stiffness / self.sliding_force
-        direction = np.sign(way)
-        for _ in range(steps := int(np.ceil(abs(way) / FINEST))):
-            h = way / steps
+        left = (displacement - u) * self.stiffness / self.sliding_force
+        direction = math.copysign(1.0, left)
+        while left != 0.0:
+            h = direction * min(abs(left), FINEST)  # steps of one size but for the last: the force is continuous
             k1 = self._rate(z, direction)
             k2 = self._rate(z + 0.5 * h * k1, direction)
             k3 = self._rate(z + 0.5 * h * k2, direction)
             z += h / 6.0 * (k1 + 2.0 * k2 + 2.0 * k3 + self._rate(z + h * k3, direction))
-        tangent = self.elastic + self.stiffness * self._rate(z, direction or 1.0)
+            left = left - h if abs(left) > FINEST else 0.0
+        tangent = self.elastic + self.stiffness * self._rate(z, direction)
         return Update(self.elastic * displacement + self.sliding_force * z, tangent, np.array([displacement, z]))
 
     def _rate(self, z: float, direction: float) -> float:
@@ -350,9 +354,9 @@ class BoucWen(_Saved):
 
         A half of a cycle unloads from z_a to 0 and loads to -z_a, so that u is half the sum of the integrals over z from 0 to z_a
         of 1/(1 + (2 shape - 1) z^n) and of 1/(1 - z^n); the energy is twice the difference of the first moments of the latter and
-        the former. Integrated by the trapezoidal rule, with z closer to 1 the nearer it is.
+        the former. Integrated by the trapezoidal rule, points equally spaced in ln(z/(1 - z)).
         """
-        z = -np.expm1(-np.linspace(0.0, 20.0, points))
+        z = np.append(0.0, 1.0 / (1.0 + np.exp(-np.linspace(-16.0, 20.0, points - 1))))
         unloads, loads = 1.0 / (1.0 + (2.0 * self.shape - 1.0) * z**self.exponent), 1.0 / (1.0 - z**self.exponent)
         length = self.sliding_force / self.stiffness
         amplitude = 0.5 * length * _integrals(unloads + loads, z)
