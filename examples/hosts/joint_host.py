@@ -218,6 +218,8 @@ def choices_of(count: int) -> tuple[dict[str, Sequence[Any]], list[float]]:
     models = [models_of(each) for each in measured]
     choices: dict[str, Sequence[Any]] = {"MFV": [Contact(scene(force)) for force in FORCES[:count]]}
     choices |= {name: [each[name] for each in models] for name in models[0]}
+    finer = [joint.measure(scene(force, 3 * NODES)).backbone for force in FORCES[:count]]
+    choices[f"table, {3 * NODES} nodes"] = [joint.table(curve) for curve in finer]
     return choices, [float(each.backbone.stiffness[0]) for each in measured]
 
 
@@ -243,9 +245,9 @@ def described(title: str, rows: list[Comparison]) -> str:
     first, last = rows[0].frequencies[0], rows[0].frequencies[-1]
     lines = [f"{title}: {rows[0].frequencies.size} cycles, from {first:.1f} to {last:.1f} Hz, amplitude down to "]
     lines[0] += f"{rows[0].amplitudes[-1] / rows[0].amplitudes[0]:.2f} of the first"
-    lines += ["joint           amplitude  frequency   time"]
+    lines += ["joint              amplitude  frequency   time"]
     for row in rows:
-        lines.append(f"{row.name:15} {100 * row.amplitude_error:8.3f}% {100 * row.frequency_error:8.3f}%  {row.seconds:5.2f} s")
+        lines.append(f"{row.name:18} {100 * row.amplitude_error:8.3f}% {100 * row.frequency_error:8.3f}%  {row.seconds:5.2f} s")
     return "\n".join(lines)
 
 

@@ -3,14 +3,19 @@
 from __future__ import annotations
 
 import ctypes
+import importlib.util
 import json
 import shutil
 import subprocess
+import sys
 from pathlib import Path
+from types import ModuleType
 
 import numpy as np
 import pytest
+from scenes import PROJECT
 from scipy.integrate import quad, solve_ivp
+from scipy.optimize import brentq
 from scipy.special import lambertw
 
 import mfv
@@ -501,3 +506,65 @@ def scene_of_equal_intervals() -> Scene:
     wide = scene()
     wide.mesh = Mesh(nodes=301, half_width=1.2, gap="parabolic")
     return wide
+
+
+def test_below_the_threshold_of_full_coupling_masings_rules_produce_energy() -> None:
+    """nu = 0 on a rigid body: small cycles do not slip, the curve of a large one is not concave."""
+    measured = joint.measure(scene("full", 0.0), (0.02, 0.1, 0.9), repeats=2)
+    curve = measured.cycles[-1].curve()
+    assert not measured.cycles[0].slips and measured.cycles[1].slips
+    with pytest.raises(ValueError, match="no springs and sliders in parallel have this backbone"):
+        joint.table(curve)
+    found = joint.assess(joint.Masing.of(curve), measured)
+    assert np.isnan(found.dissipation_error[0]) and found.dissipation_error[1] < -1.0
+
+
+# The host
+
+
+@pytest.fixture(scope="module")
+def host() -> ModuleType:
+    """examples/hosts/joint_host.py, imported, with a coarser mesh."""
+    spec = importlib.util.spec_from_file_location("joint_host", PROJECT / "examples" / "hosts" / "joint_host.py")
+    module = importlib.util.module_from_spec(spec)
+    sys.modules["joint_host"] = module
+    spec.loader.exec_module(module)
+    module.NODES = 61
+    return module
+
+
+def test_a_mass_on_an_element_decays_as_on_mfv_and_as_the_closed_form(host: ModuleType) -> None:
+    rows = {row.name: row for row in host.compare_oscillator(periods=3, steps=40)}
+    assert rows["table"].amplitude_error < 1e-6 and rows["table"].frequency_error < 1e-6
+    assert 1e-5 < rows["Iwan, 40 cells"].amplitude_error < 2e-3
+    assert 1e-3 < rows["Segalman"].amplitude_error < 0.05
+    # Between turning points the force does no net work; by Masing's rules y, half the range, follows from the work.
+    modulus = host.YOUNGS_MODULUS / (4.0 * (1.0 - host.POISSON_RATIO**2))
+    closed = host.FORCES[0], host.half_width(host.FORCES[0]), host.RADIUS, modulus, host.MU
+
+    def shift(force: float) -> float:
+        return float(joint.mindlin_shift(force, *closed))
+
+    def work(y: float, force: float) -> float:
+        area, _ = quad(shift, 0.0, y, epsrel=1e-10)
+        return float((force - y) * shift(y) - (y * shift(y) - 2.0 * area))
+
+    force = 0.8 * host.MU * host.FORCES[0]
+    turns = [shift(force)]
+    for _ in range(5):
+        y = brentq(work, 0.5 * force, force, args=(force,), xtol=1e-10)
+        turns.append(2.0 * shift(y) - turns[-1])
+        force = 2.0 * y - force
+    np.testing.assert_allclose(rows["table"].amplitudes / rows["table"].amplitudes[0], np.array(turns[1:]) / turns[1], rtol=2e-3)
+
+
+def test_a_beam_on_elements_decays_as_on_mfv(host: ModuleType) -> None:
+    structure = host.beam()
+    wave = np.sqrt(host.YOUNGS_MODULUS * host.HEIGHT**2 / (12.0 * host.DENSITY)) / host.SPAN**2
+    assert host.first_mode(structure, [0.0, 0.0])[0] == pytest.approx(np.pi**2 * wave, rel=1e-4)  # hinged ends
+    assert host.first_mode(structure, [1e12, 1e12])[0] == pytest.approx(4.730041**2 * wave, rel=1e-4)  # clamped
+    rows = {row.name: row for row in host.compare_beam(periods=2, steps=30)}
+    assert rows["table"].amplitude_error < 1e-6 and rows["table"].frequency_error < 1e-6
+    assert rows["Iwan, 40 cells"].amplitude_error < 1e-3 and rows["Segalman"].amplitude_error < 0.02
+    assert np.all(np.diff(rows["MFV"].amplitudes[::2]) < 0.0)
+    assert "A beam" in host.described("A beam", list(rows.values()))

@@ -29,12 +29,11 @@ class Assessment(NamedTuple):
     force_error: Array  #: largest difference of force at MFV's events, over the force amplitude
 
     def __str__(self) -> str:
-        head = "   amplitude  dissipation     error    stiffness     error   force error"
-        rows = zip(self.amplitude, self.dissipation, self.dissipation_error, self.stiffness, self.stiffness_error, self.force_error)
-        lines = [
-            f"{u:12.4e} {d:12.4e} {100 * de:8.2f}% {k:12.4e} {100 * ke:8.2f}% {100 * fe:12.2f}%" for u, d, de, k, ke, fe in rows
-        ]
-        return "\n".join([head, *lines])
+        lines = ["   amplitude  dissipation     error    stiffness     error   force error"]
+        for u, _, d, k, *errors in zip(*self):
+            de, ke, fe = (f"{round(100.0 * error, 2) + 0.0:.2f}%" for error in errors)  # 0.0: no negative zeros
+            lines.append(f"{u:12.4e} {d:12.4e} {de:>9} {k:12.4e} {ke:>9} {fe:>13}")
+        return "\n".join(lines)
 
 
 def assess(model: Model, measured: Measurement) -> Assessment:

@@ -26,7 +26,7 @@ BEYOND = 3.0
 MARGIN = 0.25
 
 #: Dissipation over force times displacement, of the amplitudes, up to which it is round-off: nothing slips.
-ROUND_OFF = 1.0e-10
+ROUND_OFF = 1.0e-8
 
 
 class Cycle(NamedTuple):
