@@ -80,7 +80,7 @@ def histories() -> dict[str, tuple[joint.Measurement, dict[str, joint.Assessment
     found = {}
     for name, friction in (("pressed without friction", False), ("pressed with friction", True)):
         measured = joint.measure(coupled(friction), COUPLED_RATIOS, repeats=3)
-        curves = {"first loading": measured.backbone, "largest cycle": measured.cycles[-1].curve()}
+        curves = {"first loading": measured.backbone, "largest cycle": measured.cycles[-1].backbone()}
         found[name] = measured, {key: joint.assess(joint.Masing.of(curve), measured) for key, curve in curves.items()}
     return found
 
@@ -137,7 +137,7 @@ def draw(measured: joint.Measurement, assessed: dict[str, joint.Assessment], cas
     figure.savefig(path, dpi=110)
 
 
-def _distribution(ax: Any, backbone: joint.Curve) -> None:
+def _distribution(ax: Any, backbone: joint.Backbone) -> None:
     """Slider density of MFV's backbone, the change of its slope over 15 cells, and of Cattaneo and Mindlin."""
     shifts, density, _ = joint.mindlin_distribution(np.linspace(0.0, 0.985, 300) * MU * FORCE, *CLOSED)
     edges = np.linspace(0.0, shifts[-1], 16)

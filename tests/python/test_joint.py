@@ -19,7 +19,7 @@ from scipy.optimize import brentq
 from scipy.special import lambertw
 
 import mfv
-from mfv import Body, Friction, Mesh, Scene, Step, joint
+from mfv import Body, Friction, Mesh, Scene, Solver, Step, joint
 
 #: A rigid cylinder on a half-plane: normal force, radius and datum, coefficient, Young's modulus 1.
 P, R, MU = np.pi / 4, 1.0, 0.5
@@ -111,6 +111,12 @@ def test_the_distribution_of_a_measured_backbone_tends_to_the_closed_form() -> N
     assert np.all(np.array(errors[1]) < (3e-3, 1e-2))
     orders = np.log(np.divide(*errors)) / np.log(4.0)
     assert np.all(orders > 1.5)
+
+
+def test_the_backbone_of_small_cycles_goes_on_until_all_slides() -> None:
+    measured = joint.measure(scene(nodes=80), [0.02])
+    assert measured.sliding_force == pytest.approx(MU * P, rel=1e-12)
+    assert measured.backbone.displacement[-2] == pytest.approx(float(joint.mindlin_shift(MU * P, *CLOSED)), rel=2e-2)
 
 
 def test_all_sliders_carry_stiffness_and_force(mindlin: joint.Measurement) -> None:
@@ -209,7 +215,7 @@ def test_a_series_spring_is_another_datum(mindlin: joint.Measurement) -> None:
         (other.backbone.in_series(-compliance), same.backbone),
     ):
         np.testing.assert_allclose(first.displacement[:-1], second.displacement[:-1], rtol=0.0, atol=1e-10)
-    with pytest.raises(ValueError, match="displacements of a curve must increase"):
+    with pytest.raises(ValueError, match="displacements of a backbone must increase"):
         same.backbone.in_series(-100.0)
 
 
@@ -218,7 +224,7 @@ def test_table_and_masing_are_one_model_where_the_stiffness_falls() -> None:
     random = np.random.default_rng(5)
     displacement = np.append(0.0, np.cumsum(random.uniform(0.1, 1.0, 12)))
     force = np.append(0.0, np.cumsum(np.diff(displacement) * np.sort(random.uniform(0.1, 5.0, 12))[::-1]))
-    table, masing = joint.table(joint.Curve.of(displacement, force)), joint.Masing(displacement, force)
+    table, masing = joint.table(joint.Backbone.of(displacement, force)), joint.Masing(displacement, force)
     np.testing.assert_allclose(table.force(displacement), force, rtol=1e-12)
     sliders, turns = table.start(), masing.start()
     for shift in random.normal(0.0, 3.0, 2000).tolist():
@@ -229,8 +235,8 @@ def test_table_and_masing_are_one_model_where_the_stiffness_falls() -> None:
     assert len(turns) < 40  # closed loops are forgotten
 
 
-def test_masing_does_without_a_concave_curve_and_sliders_do_not() -> None:
-    curve = joint.Curve.of([0.0, 1.0, 2.0, 3.0], [0.0, 1.0, 3.0, 3.5])
+def test_masing_does_without_a_concave_backbone_and_sliders_do_not() -> None:
+    curve = joint.Backbone.of([0.0, 1.0, 2.0, 3.0], [0.0, 1.0, 3.0, 3.5])
     with pytest.raises(ValueError, match="the stiffness increases at the displacement 1, from 1 to 2"):
         joint.table(curve)
     hull = curve.concave()
@@ -271,7 +277,9 @@ def test_fits_recover_their_own_models() -> None:
     """Cycles of a known model instead of MFV's: the fit finds its parameters."""
     amplitudes = np.geomspace(0.01, 0.6, 8)
     known = joint.Segalman(2.0, 3.0, -0.3, 0.8)
-    curve = joint.Curve.of(np.append(0.0, np.geomspace(1e-4, 3.0, 200)), np.append(0.0, known.force(np.geomspace(1e-4, 3.0, 200))))
+    curve = joint.Backbone.of(
+        np.append(0.0, np.geomspace(1e-4, 3.0, 200)), np.append(0.0, known.force(np.geomspace(1e-4, 3.0, 200)))
+    )
     fitted = joint.segalman(joint.Measurement(curve, cycles_of(amplitudes, known.force(amplitudes), known.dissipation(amplitudes))))
     assert (fitted.sliding_force, fitted.chi, fitted.beta) == pytest.approx((2.0, -0.3, 0.8), rel=2e-2)
     bouc = joint.BoucWen(3.0, 2.0, 1.4, 0.7, 0.1)
@@ -384,6 +392,16 @@ def test_wrong_arguments_are_refused(mindlin: joint.Measurement) -> None:
         joint.measure(scene(), [0.5, 0.2])
     with pytest.raises(ValueError, match="force_ratios must increase, between 0 and 1"):
         joint.measure(scene(), [0.5, 1.0])
+    exact = scene()
+    exact.solver = Solver(accuracy=1e-3)
+    with pytest.raises(ValueError, match="measure needs every event"):
+        joint.measure(exact, [0.5])
+    falling = scene_of_equal_intervals(31)
+    falling.friction = Friction.weakening(0.5, 0.4, 5.0)
+    with pytest.raises(ValueError, match="the tangential force falls while the displacement grows"):
+        joint.measure(falling, [0.2])
+    with pytest.raises(ValueError, match="one for each slider, at least one"):
+        joint.iwan(joint.Backbone.of([0.0, 1.0], [0.0, 1.0]))
     with pytest.raises(ValueError, match="cells=0: must be at least 1"):
         joint.iwan(mindlin.backbone, 0)
     with pytest.raises(ValueError, match="two or more cycles that dissipate"):
@@ -395,7 +413,7 @@ def test_wrong_arguments_are_refused(mindlin: joint.Measurement) -> None:
     with pytest.raises(ValueError, match="is not a name in C"):
         joint.Iwan([1.0], [1.0]).c_source("a joint")
     with pytest.raises(ValueError, match="must begin at displacement 0"):
-        joint.Curve.of([1.0, 2.0], [0.0, 1.0])
+        joint.Backbone.of([1.0, 2.0], [0.0, 1.0])
 
 
 @pytest.fixture(scope="module")
@@ -466,7 +484,7 @@ void update(int which, double *sliders, double displacement, double *force, doub
 def test_full_coupling_remembers_how_the_bodies_were_brought_together(pressed_with_friction: joint.Measurement) -> None:
     """First loading after pressing with friction does not predict the cycles by Masing's rules; the largest cycle does better."""
     first = joint.assess(joint.Masing.of(pressed_with_friction.backbone), pressed_with_friction)
-    steady = joint.assess(joint.Masing.of(pressed_with_friction.cycles[-1].curve()), pressed_with_friction)
+    steady = joint.assess(joint.Masing.of(pressed_with_friction.cycles[-1].backbone()), pressed_with_friction)
     assert first.dissipation_error[0] > 1.0 and first.dissipation_error[-1] == pytest.approx(-0.31, abs=0.01)
     assert first.stiffness_error[-1] == pytest.approx(-0.164, abs=0.005)
     assert np.all(np.abs(steady.dissipation_error[1:]) < 0.05) and abs(steady.dissipation_error[-1]) < 1e-3
@@ -501,17 +519,17 @@ def test_a_varying_normal_force_is_beyond_these_models(
     assert np.max(np.abs(modelled[-161:] - forces)) / (0.5 * MU * P) == pytest.approx(force, abs=0.01)
 
 
-def scene_of_equal_intervals() -> Scene:
+def scene_of_equal_intervals(nodes: int = 301) -> Scene:
     """Wide enough for a larger normal force."""
     wide = scene()
-    wide.mesh = Mesh(nodes=301, half_width=1.2, gap="parabolic")
+    wide.mesh = Mesh(nodes=nodes, half_width=1.2, gap="parabolic")
     return wide
 
 
 def test_below_the_threshold_of_full_coupling_masings_rules_produce_energy() -> None:
     """nu = 0 on a rigid body: small cycles do not slip, the curve of a large one is not concave."""
     measured = joint.measure(scene("full", 0.0), (0.02, 0.1, 0.9), repeats=2)
-    curve = measured.cycles[-1].curve()
+    curve = measured.cycles[-1].backbone()
     assert not measured.cycles[0].slips and measured.cycles[1].slips
     with pytest.raises(ValueError, match="no springs and sliders in parallel have this backbone"):
         joint.table(curve)

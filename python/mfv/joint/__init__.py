@@ -10,15 +10,15 @@ consistent units. See docs/joints.md.
 from __future__ import annotations
 
 from .assessment import Assessment, assess
-from .curves import Curve, mindlin_distribution, mindlin_shift
+from .backbone import Backbone, mindlin_distribution, mindlin_shift
 from .fits import bouc_wen, iwan, segalman, table
 from .measurement import Cycle, Measurement, measure
 from .models import BoucWen, Iwan, Masing, Model, Segalman, Update, from_json
 
 __all__ = [
     "Assessment",
+    "Backbone",
     "BoucWen",
-    "Curve",
     "Cycle",
     "Iwan",
     "Masing",

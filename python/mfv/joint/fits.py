@@ -9,41 +9,41 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from .._packages import how_to_install
-from .curves import Curve
+from .backbone import Backbone
 from .measurement import Measurement
 from .models import BoucWen, Iwan, Segalman, gauss_pair
 
 Array = NDArray[np.float64]
 
 
-def table(curve: Curve) -> Iwan:
-    """The element that has the curve exactly, linear between its points and beyond the last: a slider at every bend.
+def table(backbone: Backbone) -> Iwan:
+    """The element that has the backbone exactly, linear between its points and beyond the last: a slider at every bend.
 
     With the points u_i and the slopes k_i up to them, the slider at u_i has the stiffness k_i - k_(i+1). Raises ValueError if the
-    stiffness increases somewhere: use `Curve.concave`, or `Masing`.
+    stiffness increases somewhere: use `Backbone.concave`, or `Masing`.
     """
-    slopes = curve.stiffness
+    slopes = backbone.stiffness
     drops = -np.diff(slopes)
     bends = np.abs(drops) > 1.0e-9 * slopes[0]
     if np.any(drops[bends] < 0.0):
         where = int(np.flatnonzero(bends & (drops < 0.0))[0]) + 1
         raise ValueError(
-            f"the stiffness increases at the displacement {curve.displacement[where]:.6g}, from {slopes[where - 1]:.6g} to "
-            f"{slopes[where]:.6g}: no springs and sliders in parallel have this backbone; use curve.concave(), or Masing"
+            f"the stiffness increases at the displacement {backbone.displacement[where]:.6g}, from {slopes[where - 1]:.6g} to "
+            f"{slopes[where]:.6g}: no springs and sliders in parallel have this backbone; use backbone.concave(), or Masing"
         )
     last = float(slopes[-1])
-    return Iwan(drops[bends], curve.displacement[1:-1][bends], last if last > 1.0e-9 * slopes[0] else 0.0)
+    return Iwan(drops[bends], backbone.displacement[1:-1][bends], last if last > 1.0e-9 * slopes[0] else 0.0)
 
 
-def iwan(curve: Curve, cells: int | ArrayLike = 10) -> Iwan:
-    """A parallel-series Iwan model with few sliders: two for each cell of the slider distribution of the concave curve.
+def iwan(backbone: Backbone, cells: int | ArrayLike = 10) -> Iwan:
+    """A parallel-series Iwan model with few sliders: two for each cell of the slider distribution of the concave backbone.
 
-    The distribution is minus the second derivative of the curve (Iwan 1966), at a measured one a slider at every bend. The two of a
+    The distribution is minus the second derivative of the backbone (Iwan 1966), at a measured one a slider at every bend. The two of a
     cell are the Gauss quadrature of it, so that force, stiffness and dissipation are those of the table at the edges of the cells,
     and no stiffness is negative. `cells`: their number, or their edges [length], increasing, such as the amplitudes that matter.
     Raises ValueError.
     """
-    hull = curve.concave()
+    hull = backbone.concave()
     fine = table(hull)
     if np.ndim(cells) == 0:
         edges = _edges(hull, fine, int(np.asarray(cells)))
@@ -59,15 +59,15 @@ def iwan(curve: Curve, cells: int | ArrayLike = 10) -> Iwan:
     return Iwan(stiffness, slip, fine.elastic)
 
 
-def _edges(curve: Curve, fine: Iwan, cells: int) -> Array:
-    """Displacements that divide a curve into cells, equally spaced in ln(Q/(F - Q)), where F is the force at the end: small cells
+def _edges(backbone: Backbone, fine: Iwan, cells: int) -> Array:
+    """Displacements that divide a backbone into cells, equally spaced in ln(Q/(F - Q)), where F is the force at the end: small cells
     both at small forces and near sliding."""
     if cells < 1:
         raise ValueError(f"cells={cells}: must be at least 1")
-    first = float(fine.force(fine.slip[0]) / curve.force[-1])
+    first = float(fine.force(fine.slip[0]) / backbone.force[-1])
     end = abs(np.log(first / (1.0 - first)))
-    forces = curve.force[-1] / (1.0 + np.exp(np.linspace(end, -end, cells + 1)[1:-1]))
-    return np.asarray(np.interp(forces, curve.force, curve.displacement))
+    forces = backbone.force[-1] / (1.0 + np.exp(np.linspace(end, -end, cells + 1)[1:-1]))
+    return np.asarray(np.interp(forces, backbone.force, backbone.displacement))
 
 
 def segalman(measured: Measurement) -> Segalman:

@@ -12,15 +12,15 @@ from numpy.typing import NDArray
 
 from ..result import Group, Result
 from ..scene import Scene, Step
-from .curves import Curve
+from .backbone import Backbone
 
 Array = NDArray[np.float64]
 
 #: Amplitudes over the sliding limit by default.
 RATIOS = (0.05, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9, 0.95)
 
-#: The backbone goes on, displacement controlled, to this multiple of the largest shift under force control: beyond sliding.
-BEYOND = 3.0
+#: The backbone goes on, displacement controlled, to twice the shift until no node sticks, at most this number of times.
+DOUBLINGS = 12
 
 #: A mesh refined for the cycles is continued on either side by this part of its length.
 MARGIN = 0.25
@@ -56,19 +56,19 @@ class Cycle(NamedTuple):
         """Whether the dissipation is more than round-off."""
         return self.dissipation > ROUND_OFF * self.amplitude * self.force_amplitude
 
-    def curve(self) -> Curve:
+    def backbone(self) -> Backbone:
         """The branch after the turning point +Q at half its size: the backbone of a Masing model with this cycle.
 
         It has no sliding limit unless the cycle slides.
         """
         end = int(np.argmin(self.force))
-        return _curve(0.5 * (self.displacement[0] - self.displacement[: end + 1]), 0.5 * (self.force[0] - self.force[: end + 1]))
+        return _points(0.5 * (self.displacement[0] - self.displacement[: end + 1]), 0.5 * (self.force[0] - self.force[: end + 1]))
 
 
 class Measurement(NamedTuple):
     """What models are fitted to and compared with."""
 
-    backbone: Curve  #: first loading after pressing, until all slides
+    backbone: Backbone  #: first loading after pressing, until all slides
     cycles: list[Cycle]  #: of growing amplitude, one after the other on the same contact
 
     @property
@@ -83,13 +83,16 @@ def measure(scene: Scene, force_ratios: Sequence[float] = RATIOS, *, repeats: in
     `scene`: its steps bring the bodies together; the last of them with a normal quantity must prescribe `normal_force`, which is
     then constant. `force_ratios`: Q/(mu P), increasing, between 0 and 1. `repeats`: cycles of every amplitude, of which the last is
     returned; with full coupling the first one differs. With refine='edges' in the mesh the intervals are small where slip zones end
-    at these amplitudes; the backbone has the same mesh. Raises ValueError, InputError, and the exception of a run that ends early.
+    at these amplitudes; the backbone has the same mesh. Every event is a point, so `accuracy` of the solver must be 0.
+    Raises ValueError, InputError, and the exception of a run that ends early.
     """
     ratios = [float(ratio) for ratio in force_ratios]
     if not ratios or not all(0.0 < low < high < 1.0 for low, high in zip(ratios, [*ratios[1:], np.nextafter(1.0, 0.0)])):
         raise ValueError("force_ratios must increase, between 0 and 1")
     if repeats < 1:
         raise ValueError(f"repeats={repeats}: must be at least 1")
+    if scene.solver is not None and (scene.solver.accuracy or scene.solver.stepping == "leap"):
+        raise ValueError("measure needs every event: remove accuracy and stepping='leap' from the solver")
     sheared = copy.deepcopy(scene)
     sheared.output = None
     for ratio in ratios:
@@ -113,7 +116,7 @@ def _last_cycle(history: Group, origin: int, step: int) -> Cycle:
     return Cycle(shift, force[begin:], float(lost[-1] - lost[0]))
 
 
-def _backbone(scene: Scene, result: Result, force: float) -> Curve:
+def _backbone(scene: Scene, result: Result, force: float) -> Backbone:
     """First loading of a scene on the mesh of a result, to a force, and on until all slides."""
     pressed = copy.deepcopy(scene)
     pressed.output = None
@@ -124,10 +127,13 @@ def _backbone(scene: Scene, result: Result, force: float) -> Curve:
         contact.run(check=True)
         origin = contact.loads
         contact.advance(tangential_force=force, check=True)
-        contact.advance(shift=BEYOND * (contact.loads.shift - origin.shift), relative=True, check=True)
+        for _ in range(DOUBLINGS):
+            contact.advance(shift=contact.loads.shift - origin.shift, relative=True, check=True)
+            if contact.loads.stick_nodes == 0:
+                break
         history = contact.result().history
     sheared = np.append(np.flatnonzero(history.step <= len(scene.steps))[-1], np.flatnonzero(history.step > len(scene.steps)))
-    return _curve(history.shift[sheared] - origin.shift, history.tangential_force[sheared])
+    return _points(history.shift[sheared] - origin.shift, history.tangential_force[sheared])
 
 
 def _wider(mesh: Group) -> Array:
@@ -137,11 +143,16 @@ def _wider(mesh: Group) -> Array:
     return np.concatenate((ends[0] - more[::-1], ends, ends[-1] + more))
 
 
-def _curve(displacement: Array, force: Array) -> Curve:
-    """The curve through points whose displacements increase, apart from repeated ones and round-off."""
+def _points(displacement: Array, force: Array) -> Backbone:
+    """The backbone through points whose displacements increase, apart from repeated ones and round-off."""
     least = 1.0e-12 * displacement[-1]
     kept = [0]
     for point in range(1, displacement.size):
         if displacement[point] > displacement[kept[-1]] + least:
             kept.append(point)
-    return Curve.of(displacement[kept], np.maximum.accumulate(force[kept]))
+    rising = np.maximum.accumulate(force[kept])
+    if np.max(rising - force[kept]) > 1.0e-9 * rising[-1]:
+        raise ValueError(
+            "the tangential force falls while the displacement grows (weakening, stress drops): no joint model has such a backbone"
+        )
+    return Backbone.of(displacement[kept], rising)

@@ -12,7 +12,7 @@ from typing import Any, ClassVar, NamedTuple, Protocol, TypeVar
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from .curves import Curve
+from .backbone import Backbone
 
 Array = NDArray[np.float64]
 
@@ -88,8 +88,8 @@ class Iwan(_Saved):
     def __post_init__(self) -> None:
         for name in ("stiffness", "slip"):
             values = np.array(getattr(self, name), dtype=np.float64)
-            if values.ndim != 1 or not np.all(np.isfinite(values)) or np.any(values <= 0.0):
-                raise ValueError(f"{name} of a joint must be positive numbers, one for each slider")
+            if values.ndim != 1 or values.size == 0 or not np.all(np.isfinite(values)) or np.any(values <= 0.0):
+                raise ValueError(f"{name} of a joint must be positive numbers, one for each slider, at least one")
             values.flags.writeable = False
             object.__setattr__(self, name, values)
         if self.stiffness.shape != self.slip.shape or np.any(np.diff(self.slip) <= 0.0):
@@ -109,7 +109,7 @@ class Iwan(_Saved):
         return Update(float(force), float(self.stiffness @ stuck + self.elastic), sliders)
 
     def force(self, displacement: ArrayLike) -> Array:
-        """Force of first loading (backbone) at displacements of any shape."""
+        """Force of first loading, the backbone, at displacements of any shape."""
         u = np.asarray(displacement, dtype=np.float64)
         return np.asarray(np.clip(u[..., None], -self.slip, self.slip) @ self.stiffness + self.elastic * u)
 
@@ -241,11 +241,11 @@ def _pair(total: float, mean: float, variance: float, third: float) -> tuple[Arr
 
 @dataclass(frozen=True, eq=False)
 class Masing(_Saved):
-    """Masing's rules with memory of turning points, on a curve of first loading, linear between its points and beyond the last.
+    """Masing's rules with memory of turning points, on a backbone, linear between its points and beyond the last.
 
-    A branch after a turning point is the curve scaled by two, and a closed inner loop is forgotten (Masing 1926, Jayakumar and
-    Beck 1988). The curve need not be concave. The state has the present point and then the turning points, a row for each with
-    displacement and force. Raises ValueError as `Curve.of`.
+    A branch after a turning point is the backbone scaled by two, and a closed inner loop is forgotten (Masing
+    1926). The backbone need not be concave. The state has the present point and then the turning points, a row for each with
+    displacement and force. Raises ValueError as `Backbone.of`.
     """
 
     displacement: Array
@@ -254,18 +254,18 @@ class Masing(_Saved):
     NAME: ClassVar[str] = "masing"
 
     def __post_init__(self) -> None:
-        curve = Curve.of(self.displacement, self.force)
-        for name, values in curve._asdict().items():
+        backbone = Backbone.of(self.displacement, self.force)
+        for name, values in backbone._asdict().items():
             object.__setattr__(self, name, values)
 
     @cached_property
     def _slopes(self) -> Array:
-        return Curve(self.displacement, self.force).stiffness
+        return Backbone(self.displacement, self.force).stiffness
 
     @classmethod
-    def of(cls, curve: Curve) -> Masing:
+    def of(cls, backbone: Backbone) -> Masing:
         """The model with a backbone."""
-        return cls(curve.displacement, curve.force)
+        return cls(backbone.displacement, backbone.force)
 
     def start(self) -> Array:
         """The unloaded point, no turning points."""

@@ -1,4 +1,4 @@
-"""Backbones: monotonic curves of force over displacement, and that of Cattaneo and Mindlin."""
+"""Backbones: curves of force over displacement under growing loads, and that of Cattaneo and Mindlin."""
 
 from __future__ import annotations
 
@@ -10,50 +10,50 @@ from numpy.typing import ArrayLike, NDArray
 Array = NDArray[np.float64]
 
 
-class Curve(NamedTuple):
-    """Points of a curve of first loading, from (0, 0), displacements increasing."""
+class Backbone(NamedTuple):
+    """A curve of first loading by its points, from (0, 0), displacements increasing."""
 
     displacement: Array  #: [length]
     force: Array  #: [force/length]
 
     @classmethod
-    def of(cls, displacement: ArrayLike, force: ArrayLike) -> Curve:
-        """The curve through points, (0, 0) the first. Raises ValueError if displacements do not increase or forces fall."""
-        curve = cls(np.asarray(displacement, dtype=np.float64), np.asarray(force, dtype=np.float64))
-        if curve.displacement.ndim != 1 or curve.displacement.shape != curve.force.shape or curve.force.size < 2:
-            raise ValueError("a curve needs two or more displacements and as many forces")
-        if not (np.all(np.isfinite(curve.displacement)) and np.all(np.isfinite(curve.force))):
-            raise ValueError("displacements and forces of a curve must be finite numbers")
-        if curve.displacement[0] != 0.0 or curve.force[0] != 0.0:
-            raise ValueError("a curve must begin at displacement 0 and force 0")
-        if np.any(np.diff(curve.displacement) <= 0.0) or np.any(np.diff(curve.force) < 0.0):
-            raise ValueError("displacements of a curve must increase, and forces must not decrease")
-        return curve
+    def of(cls, displacement: ArrayLike, force: ArrayLike) -> Backbone:
+        """The backbone through points, (0, 0) the first. Raises ValueError if displacements do not increase or forces fall."""
+        backbone = cls(np.asarray(displacement, dtype=np.float64), np.asarray(force, dtype=np.float64))
+        if backbone.displacement.ndim != 1 or backbone.displacement.shape != backbone.force.shape or backbone.force.size < 2:
+            raise ValueError("a backbone needs two or more displacements and as many forces")
+        if not (np.all(np.isfinite(backbone.displacement)) and np.all(np.isfinite(backbone.force))):
+            raise ValueError("displacements and forces of a backbone must be finite numbers")
+        if backbone.displacement[0] != 0.0 or backbone.force[0] != 0.0:
+            raise ValueError("a backbone must begin at displacement 0 and force 0")
+        if np.any(np.diff(backbone.displacement) <= 0.0) or np.any(np.diff(backbone.force) < 0.0):
+            raise ValueError("displacements of a backbone must increase, and forces must not decrease")
+        return backbone
 
     @property
     def stiffness(self) -> Array:
         """Slopes between the points, one fewer than points [force/length^2]."""
         return np.diff(self.force) / np.diff(self.displacement)
 
-    def in_series(self, compliance: float) -> Curve:
-        """The curve with a linear spring of a `compliance` [length^2/force] in series; a negative one is removed.
+    def in_series(self, compliance: float) -> Backbone:
+        """The backbone with a linear spring of a `compliance` [length^2/force] in series; a negative one is removed.
 
         Another datum changes the shift by such a compliance and nothing else, ln(D2/D1)/(pi m) (docs/theory.md).
         Raises ValueError if a negative compliance leaves none.
         """
-        return Curve.of(self.displacement + compliance * self.force, self.force)
+        return Backbone.of(self.displacement + compliance * self.force, self.force)
 
-    def concave(self) -> Curve:
-        """The least concave curve that is nowhere below: its points are some of this one's (upper convex hull).
+    def concave(self) -> Backbone:
+        """The least concave backbone that is nowhere below: its points are some of this one's (upper convex hull).
 
-        It is the same if the stiffness never increases. Only then a model of springs and sliders in parallel has the curve.
+        It is the same if the stiffness never increases. Only then a model of springs and sliders in parallel has the backbone.
         """
         kept = [0]
         for point in range(1, self.force.size):
             while len(kept) > 1 and self._slope(kept[-2], kept[-1]) <= self._slope(kept[-1], point):
                 kept.pop()
             kept.append(point)
-        return Curve(self.displacement[kept], self.force[kept])
+        return Backbone(self.displacement[kept], self.force[kept])
 
     def _slope(self, first: int, last: int) -> float:
         return float((self.force[last] - self.force[first]) / (self.displacement[last] - self.displacement[first]))
