@@ -15,6 +15,9 @@ from .models import BoucWen, Iwan, Segalman, gauss_pair
 
 Array = NDArray[np.float64]
 
+#: Cells of `iwan` begin at this part of the force at the end of the backbone.
+LEAST = 0.01
+
 
 def table(backbone: Backbone) -> Iwan:
     """The element that has the backbone exactly, linear between its points and beyond the last: a slider at every bend.
@@ -46,7 +49,7 @@ def iwan(backbone: Backbone, cells: int | ArrayLike = 10) -> Iwan:
     hull = backbone.concave()
     fine = table(hull)
     if np.ndim(cells) == 0:
-        edges = _edges(hull, fine, int(np.asarray(cells)))
+        edges = _edges(hull, int(np.asarray(cells)))
     else:
         edges = np.asarray(cells, dtype=np.float64)
         if edges.ndim != 1 or np.any(edges <= 0.0) or np.any(np.diff(edges) <= 0.0):
@@ -59,13 +62,12 @@ def iwan(backbone: Backbone, cells: int | ArrayLike = 10) -> Iwan:
     return Iwan(stiffness, slip, fine.elastic)
 
 
-def _edges(backbone: Backbone, fine: Iwan, cells: int) -> Array:
-    """Displacements that divide a backbone into cells, equally spaced in ln(Q/(F - Q)), where F is the force at the end: small cells
-    both at small forces and near sliding."""
+def _edges(backbone: Backbone, cells: int) -> Array:
+    """Displacements that divide a backbone into cells, equally spaced in ln(Q/(F - Q)) between LEAST and 1 - LEAST of the force F at
+    the end: small cells both at small forces and near sliding."""
     if cells < 1:
         raise ValueError(f"cells={cells}: must be at least 1")
-    first = float(fine.force(fine.slip[0]) / backbone.force[-1])
-    end = abs(np.log(first / (1.0 - first)))
+    end = np.log(1.0 / LEAST - 1.0)
     forces = backbone.force[-1] / (1.0 + np.exp(np.linspace(end, -end, cells + 1)[1:-1]))
     return np.asarray(np.interp(forces, backbone.force, backbone.displacement))
 
