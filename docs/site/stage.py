@@ -41,6 +41,7 @@ CONTENTS = {
         "gallery/index",
         "Notebooks <examples/notebooks/README>",
         "docs/choosing",
+        "docs/joints",
     ],
     "Reference": ["docs/namelist", "docs/studies", "docs/clusters", "docs/file-format", "programs"],
     "Interfaces": ["docs/python-api", "python/index", "docs/c-api", "c", "docs/fortran-api", "fortran/index"],
