@@ -15,6 +15,7 @@ TOGETHER = (
     ("plotly", "jinja2"),
     ("xarray", "h5netcdf", "threadpoolctl"),
     ("dask", "distributed"),
+    ("scipy", "emcee"),
 )
 
 
