@@ -10,7 +10,7 @@ import copy
 import dataclasses
 import math
 import os
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any, Literal
 
@@ -18,7 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ._packages import how_to_install
-from .errors import MfvError, input_error
+from .errors import input_error
 from .scene import Output, Scene, Step
 from .studies.axes import Axis
 
@@ -107,12 +107,14 @@ class Loop:
         cycles_before: int = 1,
         **others: Any,
     ) -> Loop:
-        """A test to be made: one cycle of the driven column between +`amplitude` and -`amplitude` in `rows` equal increments, after
-        the first loading if `cycles_before` is 0. The other column is empty until `simulate` or `plan` computes it."""
-        turns = [0.0, amplitude, -amplitude, amplitude] if cycles_before == 0 else [amplitude, -amplitude, amplitude]
-        length = np.concatenate([[0.0], np.cumsum(np.abs(np.diff(turns)))])
-        driven = np.interp(np.linspace(0.0, length[-1], rows), length, turns)
-        force, shift = (driven, np.zeros(rows)) if drive == "tangential_force" else (np.zeros(rows), driven)
+        """A test to be made: one cycle of the driven column between +`amplitude` and -`amplitude` in about `rows` equal increments,
+        after the first loading if `cycles_before` is 0. The other column is empty until `simulate` or `plan` computes it."""
+        quarters = np.array([0.0, 1.0, 0.0, -1.0, 0.0, 1.0] if cycles_before == 0 else [1.0, 0.0, -1.0, 0.0, 1.0])
+        count = quarters.size - 1
+        driven = amplitude * np.interp(
+            np.linspace(0.0, count, count * max(round(rows / count), 1) + 1), np.arange(count + 1), quarters
+        )
+        force, shift = (driven, np.zeros(driven.size)) if drive == "tangential_force" else (np.zeros(driven.size), driven)
         return cls(force, shift, normal_force, drive, force_noise, shift_noise, cycles_before, **others)
 
     @property
@@ -135,8 +137,10 @@ def read(path: str | os.PathLike[str], **options: Any) -> list[Loop]:
 
     Raises OSError, InputError.
     """
+    with open(path, encoding="utf-8") as file:
+        lines = [line for line in file if line.strip() and not line.lstrip().startswith("#")]
     try:
-        rows = np.genfromtxt(path, delimiter=",", names=True, dtype=None, encoding="utf-8", comments="#")
+        rows = np.genfromtxt(lines, delimiter=",", names=True, dtype=None, encoding="utf-8")
     except ValueError as error:
         raise input_error(f"{os.fspath(path)}: not a table of comma-separated columns: {error}") from None
     names = rows.dtype.names or ()
@@ -188,10 +192,10 @@ class Estimate:
 
     def interval(self, name: str, level: float = 0.95) -> tuple[float, float]:
         """The confidence interval of a parameter, symmetric in its logarithm (Student's t)."""
-        student = _package("scipy.stats").t
+        quantile = _package("scipy.special").stdtrit(self.degrees_of_freedom, 0.5 + 0.5 * level)
         relative = self.standard_errors[name] / self.values[name]
         with np.errstate(over="ignore"):
-            factor = float(np.exp(student.ppf(0.5 + 0.5 * level, self.degrees_of_freedom) * relative))
+            factor = float(np.exp(quantile * relative))
         return self.values[name] / factor, self.values[name] * factor
 
     def __str__(self) -> str:
@@ -255,7 +259,8 @@ class Fit(Estimate):
         )
         for (above, middle, below), loop, residuals, branches in zip(axes.T, self.loops, self.residuals, self.curves):
             force, shift = np.concatenate(branches, axis=1)
-            slope = np.ptp(shift) / np.ptp(force)
+            steps = np.diff(branches[-1], axis=1)
+            slope = next(step[1] / step[0] for step in steps.T if abs(step[0]) > 1e-6 * np.ptp(force))  # sticks after the reversal
             for ax, line in ((above, 0.0), (middle, slope)):
                 ax.plot(loop.shift - line * loop.tangential_force, loop.tangential_force, ".", ms=3, label="measured")
                 ax.plot(shift - line * force, force, "-", lw=1, label="model")
@@ -265,6 +270,9 @@ class Fit(Estimate):
             middle.set(xlabel=f"U - {slope:.3g} Q", ylabel="tangential force Q")
             below.set(xlabel="row", ylabel="residual over standard deviation")
             above.legend(frameon=False)
+            for ax in (above, middle):
+                ax.locator_params(nbins=5)
+                ax.ticklabel_format(axis="x", scilimits=(-2, 3))
         figure.suptitle("   ".join(f"{name} = {self.values[name]:.4g} ± {self.standard_errors[name]:.2g}" for name in self.names))
         return figure
 
@@ -289,7 +297,7 @@ def fit(
     problem.noise_is_given = all(None not in (loop.force_noise, loop.shift_noise) for loop in _listed(loops))
     start = problem.start()
     if not problem.reaches(start):
-        raise input_error(_sliding(problem.loops))
+        raise input_error(_ended_early(problem))
     found = optimize.least_squares(problem.residuals, start, jac=problem.jacobian, x_scale="jac", xtol=1e-6, ftol=1e-9, max_nfev=60)
     residuals = problem.residuals(found.x)
     freedom = residuals.size - found.x.size
@@ -342,7 +350,7 @@ def simulate(
     for number, loop in enumerate(_listed(loops)):
         response = problem.response(problem.start(), number)
         if response is None:
-            raise input_error(_sliding([loop]))
+            raise input_error(_ended_early(problem))
         force, shift = (loop.tangential_force, response) if loop.drive == "tangential_force" else (response, loop.shift)
         if random is not None:
             force = force + (loop.force_noise or 0.0) * random.standard_normal(force.size)
@@ -471,6 +479,8 @@ class _Problem:
         self.paths = [_path_of(loop) for loop in loops]
         self.ranges = [max(float(np.ptp(loop.shift)), 1e-300) for loop in loops]
         self.noise_is_given = False
+        #: How the model ended before the last row at the last values with which it did.
+        self.early_end = ""
         self._known: dict[tuple[Any, ...], list[Array] | None] = {}
         place = len(self.names)
         #: Places of the origin of the shift and of the levels of every loop among the unknowns.
@@ -490,16 +500,24 @@ class _Problem:
             if loop.drive == "tangential_force" and (branches := self.curves(x, number)):
                 x[self.places[number][0]] = np.mean(loop.shift - self._interpolated(loop, branches, number)) / self.ranges[number]
             elif loop.drive == "shift":
-                path = self.paths[number]
-                x[self.places[number][0]] = (
-                    0.5 * (path.levels.max() + path.levels.min()) / self.ranges[number] if path.before else 0.0
-                )
+                x[self.places[number][0]] = self._middle(number)
         return x
 
+    def _middle(self, number: int) -> float:
+        """About the origin of a prescribed shift, over its range: the middle of cycles, or where the first loading begins."""
+        path, loop = self.paths[number], self.loops[number]
+        middle = 0.5 * (path.levels.max() + path.levels.min()) if path.before else loop.shift[0]
+        return float(middle) / self.ranges[number]
+
     def residuals(self, x: Array) -> Array:
-        """All residuals: of the rows, and of the levels."""
+        """All residuals: of the rows, of the levels, and of the origin of a prescribed shift.
+
+        After sliding to both sides the contact does not depend on that origin; it is known to a range of the shift.
+        """
         parts = [self.distances(x, number) for number in range(len(self.loops))]
-        return np.concatenate([*parts, *(x[levels] for _, levels in self.places)])
+        parts += [x[levels] for _, levels in self.places]
+        prescribed = [number for number, loop in enumerate(self.loops) if loop.drive == "shift"]
+        return np.concatenate([*parts, [x[self.places[number][0]] - self._middle(number) for number in prescribed]])
 
     def jacobian(self, x: Array) -> Array:
         """Central differences; one-sided where the other side slides."""
@@ -514,18 +532,18 @@ class _Problem:
         return np.stack(columns, axis=1)
 
     def reaches(self, x: Array) -> bool:
-        """Whether the model reaches all rows without gross sliding under a prescribed force."""
+        """Whether the model reaches all rows; it does not with gross sliding under a prescribed force."""
         return all(self.curves(x, number) is not None for number in range(len(self.loops)))
 
     def distances(self, x: Array, number: int) -> Array:
         """Residuals of the rows of a loop: signed distances from the branch of the model in the plane of the columns, each over its
         standard deviation; vertical ones if the driven column is exact."""
         loop, path = self.loops[number], self.paths[number]
+        force_noise, shift_noise = loop.force_noise or 0.0, loop.shift_noise or 0.0
         branches = self.curves(x, number)
         if branches is None:
-            noise = loop.shift_noise or math.inf
-            return np.full(loop.shift.size, _UNREACHED * self.ranges[number] / noise)
-        force_noise, shift_noise = loop.force_noise or 0.0, loop.shift_noise or 0.0
+            column, noise = (loop.shift, shift_noise) if loop.drive == "tangential_force" else (loop.tangential_force, force_noise)
+            return np.full(column.size, _UNREACHED * np.ptp(column) / noise)
         result = np.empty(loop.shift.size)
         for branch, points in enumerate(branches):
             rows = path.branch == branch
@@ -540,7 +558,7 @@ class _Problem:
         return result
 
     def response(self, x: Array, number: int) -> Array | None:
-        """The column of a loop that is not driven, by the model; None if the model slides before."""
+        """The column of a loop that is not driven, by the model; None if it ends early."""
         branches = self.curves(x, number)
         return None if branches is None else self._interpolated(self.loops[number], branches, number)
 
@@ -553,7 +571,7 @@ class _Problem:
         return result
 
     def curves(self, x: Array, number: int) -> list[Array] | None:
-        """The branches of a loop by the model, arrays (2, n) of tangential force and measured shift; None if the model slides."""
+        """The branches of a loop by the model, arrays (2, n) of tangential force and measured shift; None if the model ends early."""
         loop, path = self.loops[number], self.paths[number]
         place, span = self.places[number]
         origin = x[place] * self.ranges[number]
@@ -598,7 +616,7 @@ class _Problem:
         return scene
 
     def _solved(self, values: Array, loop: Loop, targets: list[float], rig: float, count: int) -> list[Array] | None:
-        """Tangential force and shift of the contact along the last `count` branches to the targets; None if it slides before."""
+        """Tangential force and shift of the contact along the last `count` branches to the targets; None if it ends early."""
         with self._scene_for(values, loop).contact() as contact:
             contact.run(check=True)
             for target in targets:
@@ -606,10 +624,9 @@ class _Problem:
                     outcome = contact.advance(tangential_force=target)
                 else:
                     outcome = _advance_with_rig(contact, target, rig)
-                if outcome == "gross sliding":
-                    return None
                 if outcome != "complete":
-                    raise MfvError(None, f"{loop.name}: the model ended with '{outcome}': {contact.message}")
+                    self.early_end = f"{loop.name}: {contact.message}"
+                    return None
             step = contact["history/step"]
             rows = np.stack([contact["history/tangential_force"], contact["history/shift"]])
         last = int(step[-1])
@@ -718,7 +735,7 @@ def _signed_distance(rows: Array, points: Array) -> Array:
     nearest = np.argmin(np.einsum("irk,irk->rk", gap, gap), axis=1)
     row = np.arange(rows.shape[1])
     chosen = gap[:, row, nearest]
-    direction = along[:, nearest] * np.where(along[0, nearest] < 0.0, -1.0, 1.0)
+    direction = along[:, nearest] * np.where(along[0, nearest] + along[1, nearest] < 0.0, -1.0, 1.0)
     side = direction[0] * chosen[1] - direction[1] * chosen[0]
     return np.asarray(np.sign(side) * np.hypot(chosen[0], chosen[1]))
 
@@ -738,13 +755,13 @@ def _inverse_information(jacobian: Array) -> tuple[Array, NDArray[np.bool_]]:
 
 def _doubts(found: Any, rows: int, freedom: int, reduced: float, residuals: list[Array], problem: _Problem) -> list[str]:
     """Sentences about the quality of a fit."""
-    tail = _package("scipy.stats").chi2.sf
+    tail = _package("scipy.special").chdtrc
     sentences = []
     if found.status <= 0:
         sentences.append("the least squares have not converged; choose other start values")
     if freedom <= 0:
         sentences.append(f"{rows} residuals do not determine {found.x.size} unknowns")
-    elif tail(reduced * freedom, freedom) < 1e-3:
+    elif tail(freedom, reduced * freedom) < 1e-3:
         sentences.append(
             f"the model does not fit to within the noise (reduced chi-squared {reduced:.2f}); look at the residuals: "
             "standard errors do not include errors of the model"
@@ -766,10 +783,10 @@ def _start(name: str, axis: Axis) -> float:
     return float(values[0])
 
 
-def _sliding(loops: Iterable[Loop]) -> str:
-    names = ", ".join(loop.name for loop in loops)
+def _ended_early(problem: _Problem) -> str:
+    """The message about values of the parameters with which the model does not reach all rows."""
     return (
-        f"{names}: with these values of the parameters the contact slides before the largest measured force is reached; "
+        f"with these values of the parameters the model ends before the last row ({problem.early_end}); "
         "start with a larger coefficient of friction, or use drive='shift' for tests with gross sliding"
     )
 

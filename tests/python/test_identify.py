@@ -65,7 +65,7 @@ def test_standard_errors_are_those_of_the_closed_form() -> None:
         top, force = ratio * MU * P, loop.tangential_force
         down, up = nonlinear((top - force) / 2.0, mu), nonlinear((top + force) / 2.0, mu)
         end = nonlinear(np.array(top), mu)
-        return np.where(np.arange(force.size) < force.size / 2, end - 2.0 * down, 2.0 * up - end)
+        return np.where(np.arange(force.size) <= force.size // 2, end - 2.0 * down, 2.0 * up - end)
 
     step = 1.0e-4
     by_mu = (loop_of(MU + step) - loop_of(MU - step)) / (2.0 * step)
@@ -79,11 +79,11 @@ def test_standard_errors_are_those_of_the_closed_form() -> None:
 
 def test_intervals_contain_the_truth_as_often_as_they_promise() -> None:
     inside = np.zeros(2)
-    for seed in range(40):
+    for seed in range(30):
         fitted = identify.fit(cylinders(41), measured(0.7, 0.015, seed=seed, nodes=41), START)
         inside += [low <= TRUTH[name] <= high for name in fitted.names for low, high in [fitted.interval(name)]]
-    # 95 % of 40 is 38; fewer than 34 have a probability of 1 %.
-    assert np.all(inside >= 34)
+    # 95 % of 30 is 28.5; fewer than 26 have a probability of 2 %. examples/identification.py takes 100 seeds.
+    assert np.all(inside >= 26)
 
 
 def test_the_uncertainty_is_predicted_and_a_further_test_reduces_it() -> None:
@@ -111,17 +111,15 @@ def test_keys_that_only_act_together_are_reported() -> None:
     assert unused.standard_errors["friction%mu"] < 0.01
 
 
-def test_the_largest_of_noisy_forces_is_no_amplitude() -> None:
-    # The loop opens as Q^2/(mu P): an amplitude that is too large by 2 % makes mu too large by about 4 %.
-    ratios = []
-    for seed in range(8):
-        loop = measured(0.6, 0.015, 0.015, seed=seed, nodes=41)
-        heeded = identify.fit(cylinders(41), loop, START).values["friction%mu"]
-        force = loop.tangential_force
-        force[[0, -1]], force[np.argmin(force)] = force.max(), -force.max()
-        loop.force_noise = 0.0
-        ratios.append(identify.fit(cylinders(41), loop, START).values["friction%mu"] / heeded)
-    assert 0.02 < np.mean(np.log(ratios)) < 0.1
+def test_an_amplitude_that_is_too_large_makes_friction_too_large() -> None:
+    # A loop opens by COMPLIANCE (Qm^2 - Q^2)/(4 mu P). Least squares over Q with Qm' = 1.02 Qm, in place of Qm, multiply mu by
+    # <(Qm'^2 - Q^2)^2>/<(Qm'^2 - Q^2)(Qm^2 - Q^2)> = 1.051.
+    loop = measured(0.2, 1.0e-4, nodes=201)
+    exact = identify.fit(cylinders(201), loop, START).values["friction%mu"]
+    loop.tangential_force[[0, 100, 200]] *= 1.02
+    loop.shift[[0, 100, 200]] *= 1.02
+    ratio = identify.fit(cylinders(201), loop, START).values["friction%mu"] / exact
+    assert ratio == pytest.approx(1.051, abs=0.01)
 
 
 @pytest.mark.parametrize("shape", ["triangle", "sine"])
@@ -176,8 +174,8 @@ def test_weakening_friction() -> None:
 def test_posterior_samples_agree_with_the_covariance() -> None:
     loop = measured(0.8, 0.015, seed=5, nodes=41)
     fitted = identify.fit(cylinders(41), loop, START)
-    samples = fitted.sample(80, walkers=12)
-    assert samples.shape == (64 * 12, 2)
+    samples = fitted.sample(60, walkers=12)
+    assert samples.shape == (48 * 12, 2)
     for values, name in zip(samples.T, fitted.names):
         assert np.mean(values) == pytest.approx(fitted.values[name], abs=0.5 * fitted.standard_errors[name])
         assert np.std(values) == pytest.approx(fitted.standard_errors[name], rel=0.35)
@@ -197,7 +195,7 @@ def test_tables_and_files(tmp_path: Path) -> None:
         }
     )
     path = tmp_path / "loops.csv"
-    table.to_csv(path, index=False)
+    path.write_text("# a comment\n" + table.to_csv(index=False))
     for loops in (identify.read(path), identify.loops_of(table, name=str(path))):
         assert [loop.name for loop in loops] == [f"{path}: low", f"{path}: high"]
         np.testing.assert_allclose(loops[1].shift, second.shift, rtol=1e-12)
@@ -216,12 +214,12 @@ def test_errors_name_the_remedy() -> None:
         ({"step(1)%shift": 0.3}, "no such parameter"),
         ({"friction%mu": -1.0}, "one positive start value"),
         ({}, "at least one loop and one free parameter"),
-        ({"friction%mu": 0.2}, "slides before the largest measured force"),
+        ({"friction%mu": 0.2}, "ends before the last row (loop: "),
     ):
         with pytest.raises(errors.InputError, match=message.replace("(", r"\(").replace(")", r"\)")):
             identify.fit(cylinders(), loop, free)
     with pytest.raises(errors.InputError, match="constant to 5 %"):
-        Loop(loop.tangential_force, loop.shift, np.linspace(50.0, 100.0, 200))
+        Loop(loop.tangential_force, loop.shift, np.linspace(50.0, 100.0, loop.shift.size))
     with pytest.raises(errors.InputError, match="give shift_noise"):
         identify.plan(cylinders(), Loop.planned(P, 20.0), TRUTH)
     with pytest.raises(errors.InputError, match="at least 5 rows"):
