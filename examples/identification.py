@@ -1,6 +1,6 @@
 """Coefficient of friction and stiffness of the rig from synthetic loops with noise: how often the intervals are right, and what is biased.
 
-    python examples/identification.py [--seeds 100] [-o PICTURE.png]
+    python examples/identification.py [--seeds 100 | --differences | -o PICTURE.png]
 
 A cylinder on a half-plane of the same material (no coupling, Cattaneo and Mindlin's problem), mu = 0.45, in series with a spring.
 """
@@ -109,11 +109,44 @@ def further_tests() -> None:
         )
 
 
+def closed_form(force: np.ndarray, largest: float, mu: float) -> np.ndarray:
+    """The shift along the branch from the largest force, without its linear part (docs/identify.md)."""
+    compliance = 2.0 * (1.0 - 0.3**2) / (np.pi * 70000.0)
+
+    def first(tangential: np.ndarray) -> np.ndarray:
+        part = tangential / (mu * FORCE)
+        return compliance * mu * FORCE * ((1.0 - part) * np.log1p(-part) + part)
+
+    return first(np.array(largest)) - 2.0 * first((largest - force) / 2.0)
+
+
+def differences() -> None:
+    """Errors of the derivative of the shift with respect to ln mu, by central differences of several steps, against the closed form."""
+    steps = (1e-6, 1e-3, 0.01, 0.05, 0.1)
+    print("relative error of dU/d(ln mu) with half the step", *(f"{step:8g}" for step in steps))
+    for ratio in (0.2, 0.4, 0.8):
+        loop = Loop.planned(FORCE, ratio * MU * FORCE, rows=100, shift_noise=1.0)
+        force, largest = loop.tangential_force[:51], loop.tangential_force[0]
+        exact = (closed_form(force, largest, MU * 1.0001) - closed_form(force, largest, MU / 1.0001)) / 2e-4
+        exact -= exact.mean()
+        for nodes in (101, 201, 401):
+            errors = []
+            for step in steps:
+                ends = [identify.simulate(scene(nodes), loop, {"friction%mu": MU * np.exp(sign * step)})[0] for sign in (1, -1)]
+                slope = (ends[0].shift - ends[1].shift)[:51] / (2.0 * step)
+                errors.append(np.linalg.norm(slope - slope.mean() - exact) / np.linalg.norm(exact))
+            print(f"Q = {ratio:g} mu P, {nodes} nodes".ljust(48), *(f"{error:8.3f}" for error in errors), flush=True)
+
+
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--seeds", type=int, default=100, help="number of sets of noise")
     parser.add_argument("-o", "--output", help="draw the fit of two loops and do nothing else")
+    parser.add_argument("--differences", action="store_true", help="errors of derivatives by differences, and nothing else")
     options = parser.parse_args()
+    if options.differences:
+        differences()
+        return
     if options.output:
         loops = identify.simulate(scene(), [partial(0.4, force_noise=NOISE), gross(rows=200)], TRUTH, seed=1)
         identify.fit(scene(), loops, START).figure().savefig(options.output, dpi=100)
