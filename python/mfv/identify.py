@@ -141,8 +141,8 @@ def read(path: str | os.PathLike[str], **options: Any) -> list[Loop]:
         lines = [line for line in file if line.strip() and not line.lstrip().startswith("#")]
     try:
         rows = np.genfromtxt(lines, delimiter=",", names=True, dtype=None, encoding="utf-8")
-    except ValueError as error:
-        raise input_error(f"{os.fspath(path)}: not a table of comma-separated columns: {error}") from None
+    except ValueError:
+        raise input_error(f"{os.fspath(path)}: not a table: its rows have different numbers of comma-separated columns") from None
     names = rows.dtype.names or ()
     return loops_of({name: np.atleast_1d(rows[name]) for name in names}, **{"name": os.fspath(path), **options})
 

@@ -3,13 +3,16 @@
 from __future__ import annotations
 
 import math
+import re
 from pathlib import Path
 
 import numpy as np
 import pytest
+from scenes import PROJECT
 
 import mfv
 from mfv import Axis, Body, Friction, Mesh, Scene, errors, identify
+from mfv.commands import main
 from mfv.identify import Loop
 
 P, MU, E, NU, RADIUS = 100.0, 0.45, 70000.0, 0.3, 10.0
@@ -205,6 +208,22 @@ def test_tables_and_files(tmp_path: Path) -> None:
     assert len(figure.axes) == 6 and len(fitted.residuals) == 2
     with pytest.raises(errors.InputError, match="no column P; there are test, Q, U"):
         identify.loops_of(table.drop(columns="P"))
+
+
+def test_the_command(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    case, loops, picture = tmp_path / "rig.nml", PROJECT / "examples" / "loops.csv", tmp_path / "rig.png"
+    case.write_text(cylinders(61).text())
+    start = ["--free", "friction%mu=0.5", "--free", "rig_stiffness=8e4", "--shift", "large", "-o", str(picture)]
+    assert main(["identify", str(case), str(loops), *start]) == 0
+    printed = capsys.readouterr().out
+    value = float(re.search(r"^friction%mu +(\S+)", printed, re.MULTILINE)[1])
+    assert value == pytest.approx(MU, rel=0.02) and picture.read_bytes()[1:4] == b"PNG"
+    for arguments, complaint in (
+        ([str(case), str(loops), *start[:2], "--shift", "big"], "no test 'big'; there are small, large"),
+        ([str(case), str(case), *start[:2]], f"{case}: not a table"),
+    ):
+        assert main(["identify", *arguments]) == 2
+        assert complaint in capsys.readouterr().err
 
 
 def test_errors_name_the_remedy() -> None:
