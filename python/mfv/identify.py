@@ -165,7 +165,7 @@ def loops_of(table: Any, **options: Any) -> list[Loop]:
     ]
 
 
-@dataclass
+@dataclass(repr=False)
 class Estimate:
     """Parameters with the covariance that measured or planned loops leave.
 
@@ -198,7 +198,7 @@ class Estimate:
             factor = float(np.exp(quantile * relative))
         return self.values[name] / factor, self.values[name] * factor
 
-    def __str__(self) -> str:
+    def __repr__(self) -> str:
         lines = [f"{'parameter':32} {'value':>11} {'std. error':>11}   95 % interval"]
         for name in self.names:
             low, high = self.interval(name)
@@ -208,7 +208,7 @@ class Estimate:
         return "\n".join([*lines, *(f"warning: {warning}" for warning in self.warnings)])
 
 
-@dataclass
+@dataclass(repr=False)
 class Fit(Estimate):
     """The estimate from measured loops. `loops`: with their noise; `residuals`: of every loop, distances from the model in standard
     deviations, positive where the shift is larger; `curves`: the model, an array (2, n) of tangential force and shift for every
@@ -435,8 +435,8 @@ def _path_of(loop: Loop) -> _Path:
 def _level(driven: Array, ends: list[int], number: int, noise: float) -> tuple[float, float]:
     """The value of the driven column at an end of a branch, and its standard error.
 
-    The maximum of noisy rows is biased outwards. Instead, a corner with curved sides, value + slope |row - end| + curvature
-    (row - end)^2, is fitted to a third of the branches on either side.
+    The maximum of noisy rows is biased outwards. Instead, a corner, value + c1 |row - end| + c2 (row - end)^2, and a smooth maximum,
+    value + c2 (row - end)^2 + c4 (row - end)^4, are fitted to a third of the branches on either side; the better one counts.
     """
     row = ends[number]
     if noise == 0.0:
@@ -449,12 +449,13 @@ def _level(driven: Array, ends: list[int], number: int, noise: float) -> tuple[f
     best = (math.inf, 0.0, 0.0)
     shifts = (0.0,) if 0 in reach else np.linspace(-0.25, 0.25, 21) * max(min(reach), 4)
     for shift in shifts:
-        distance = np.abs(window - row - shift)
-        basis = np.stack([np.ones(window.size), distance, distance**2], axis=1)
-        coefficients = np.linalg.lstsq(basis, driven[window], rcond=None)[0]
-        error = noise * math.sqrt(np.linalg.inv(basis.T @ basis)[0, 0])
-        misfit = float(np.sum((driven[window] - basis @ coefficients) ** 2))
-        best = min(best, (misfit, float(coefficients[0]), error))
+        distance = np.abs(window - row - shift) / window.size
+        for powers in ((1, 2), (2, 4)):
+            basis = np.stack([np.ones(window.size), *(distance**power for power in powers)], axis=1)
+            coefficients = np.linalg.lstsq(basis, driven[window], rcond=None)[0]
+            error = noise * math.sqrt(np.linalg.inv(basis.T @ basis)[0, 0])
+            misfit = float(np.sum((driven[window] - basis @ coefficients) ** 2))
+            best = min(best, (misfit, float(coefficients[0]), error))
     return best[1], best[2]
 
 

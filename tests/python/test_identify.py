@@ -136,8 +136,8 @@ def test_levels_of_a_noisy_driven_column_are_unbiased(shape: str) -> None:
         assert path.levels.size == 2 and np.bincount(path.branch).tolist() == pytest.approx([100, 101], abs=12)
         errors_found.append(np.abs(path.levels) - 1.0)
         claimed.append(path.errors)
-    assert abs(np.mean(errors_found)) < 0.4 * 0.015  # that of the largest row is 1.5 to 2.5 standard deviations
-    assert np.std(errors_found) == pytest.approx(np.mean(claimed), rel=0.6)
+    assert abs(np.mean(errors_found)) < 0.2 * 0.015
+    assert np.std(errors_found) == pytest.approx(np.mean(claimed), rel=0.3)
 
 
 def test_noise_is_estimated_from_the_columns() -> None:
