@@ -288,8 +288,9 @@ def fit(
 
     `free`: start values by key, such as {'friction%mu': 0.5, 'rig_stiffness': 1e4}; for keys that change together, a name with an
     Axis of the keys and one start value. All must be positive. `rig_stiffness` [force/length^2]: of what deforms in series with the
-    contact, unless it is free. The steps of the scene are not used: every loop presses with its normal force and follows its driven
-    column. Unknown besides are the origin of the shift of every loop and, if the driven column is noisy, its extremes.
+    contact, unless it is free. The steps of the scene are not used, nor `accuracy` and `stepping` of its solver: every loop presses
+    with its normal force and follows the events of its driven column. Unknown besides are the origin of the shift of every loop and,
+    if the driven column is noisy, its extremes.
     Needs scipy. Raises InputError for invalid keys or start values, and for start values with which the contact slides too early.
     """
     optimize = _package("scipy.optimize")
@@ -435,8 +436,8 @@ def _path_of(loop: Loop) -> _Path:
 def _level(driven: Array, ends: list[int], number: int, noise: float) -> tuple[float, float]:
     """The value of the driven column at an end of a branch, and its standard error.
 
-    The maximum of noisy rows is biased outwards. Instead, a corner, value + c1 |row - end| + c2 (row - end)^2, and a smooth maximum,
-    value + c2 (row - end)^2 + c4 (row - end)^4, are fitted to a third of the branches on either side; the better one counts.
+    The maximum of noisy rows is biased outwards. Instead, a corner, value + c1 |row - end| + c2 (row - end)^2, and a smooth
+    maximum, value + c2 (row - end)^2 + c4 (row - end)^4, are fitted to a third of the branches on either side; the better one counts.
     """
     row = ends[number]
     if noise == 0.0:
@@ -572,7 +573,7 @@ class _Problem:
         return result
 
     def curves(self, x: Array, number: int) -> list[Array] | None:
-        """The branches of a loop by the model, arrays (2, n) of tangential force and measured shift; None if the model ends early."""
+        """The branches of a loop by the model, arrays (2, n) of tangential force and measured shift; None if it ends early."""
         loop, path = self.loops[number], self.paths[number]
         place, span = self.places[number]
         origin = x[place] * self.ranges[number]
@@ -595,8 +596,10 @@ class _Problem:
     def _scene_for(self, values: Array, loop: Loop) -> Scene:
         """The scene with values of the parameters, pressed with the force of a loop. Raises InputError."""
         scene = copy.copy(self.scene)
-        for part in ("lower", "upper", "friction", "mesh"):
+        for part in ("lower", "upper", "friction", "mesh", "solver"):
             setattr(scene, part, copy.copy(getattr(scene, part)))
+        if scene.solver is not None:
+            scene.solver.accuracy = scene.solver.stepping = None  # rows are interpolated between events
         scene.steps = [Step(normal_force=loop.normal_force, friction=loop.pressed_with_friction)]
         scene.output = Output(history="events", states="none")
         parts: dict[str, Any] = dict(scene._parts())
