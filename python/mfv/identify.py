@@ -18,12 +18,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ._packages import how_to_install
-from .errors import input_error
+from .errors import MfvError, input_error
 from .scene import Output, Scene, Step
 from .studies.axes import Axis
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
+
+    from .case import Case
 
 Array = NDArray[np.float64]
 
@@ -46,6 +48,9 @@ _UNDETERMINED = 0.25
 
 #: Two parameters with a larger correlation than this are reported as not separated.
 _CORRELATED = 0.98
+
+#: Largest factor between a parameter and its start value.
+_FARTHEST = 1.0e4
 
 #: Residual of rows that the model cannot reach since it slides, in ranges of the column.
 _UNREACHED = 10.0
@@ -577,6 +582,10 @@ class _Problem:
         loop, path = self.loops[number], self.paths[number]
         place, span = self.places[number]
         origin = x[place] * self.ranges[number]
+        steps = x[: len(self.names)] - np.log(self.start_values)
+        if np.max(np.abs(steps)) > math.log(_FARTHEST):
+            self.early_end = f"{self.names[int(np.argmax(np.abs(steps)))]} is far from its start value"
+            return None
         values = np.exp(x[: len(self.names)])
         levels = path.levels + path.errors * x[span] if span.stop > span.start else path.levels
         rig = values[self.names.index(RIG_STIFFNESS)] if RIG_STIFFNESS in self.names else self.rig_stiffness
@@ -621,16 +630,21 @@ class _Problem:
 
     def _solved(self, values: Array, loop: Loop, targets: list[float], rig: float, count: int) -> list[Array] | None:
         """Tangential force and shift of the contact along the last `count` branches to the targets; None if it ends early."""
-        with self._scene_for(values, loop).contact() as contact:
-            contact.run(check=True)
+        try:
+            contact = self._scene_for(values, loop).contact()
+        except MfvError as error:  # the least squares may try a value that is not permitted
+            self.early_end = f"{loop.name}: {error}"
+            return None
+        with contact:
+            contact.run()
             for target in targets:
                 if loop.drive == "tangential_force":
-                    outcome = contact.advance(tangential_force=target)
+                    contact.advance(tangential_force=target)
                 else:
-                    outcome = _advance_with_rig(contact, target, rig)
-                if outcome != "complete":
-                    self.early_end = f"{loop.name}: {contact.message}"
-                    return None
+                    _advance_with_rig(contact, target, rig)
+            if contact.outcome != "complete":  # it stays after an early end
+                self.early_end = f"{loop.name}: {contact.message}"
+                return None
             step = contact["history/step"]
             rows = np.stack([contact["history/tangential_force"], contact["history/shift"]])
         last = int(step[-1])
@@ -686,24 +700,24 @@ class _Problem:
         )
 
 
-def _advance_with_rig(contact: Any, target: float, rig: float) -> str:
+def _advance_with_rig(contact: Case, target: float, rig: float) -> None:
     """Prescribe the sum of the shift and of the deformation of the rig."""
     if math.isinf(rig):
-        return str(contact.advance(shift=target))
+        contact.advance(shift=target)
+        return
     before = contact.save()
     first = len(contact["history/step"]) - 1
     loads = contact.loads
     reached = loads.shift + loads.tangential_force / rig
     # The rig takes a part of the motion, so this goes beyond the target; between events the response is linear.
-    outcome = contact.advance(shift=loads.shift + target - reached)
+    if contact.advance(shift=loads.shift + target - reached) != "complete":
+        return
     shift, force = contact["history/shift"][first:], contact["history/tangential_force"][first:]
-    if outcome != "complete":
-        return str(outcome)
     total = shift + force / rig
     order = 1.0 if target > reached else -1.0
     wanted = float(np.interp(order * target, order * total, shift))
     contact.restore(before)
-    return str(contact.advance(shift=wanted))
+    contact.advance(shift=wanted)
 
 
 # --- numbers ---

@@ -22,7 +22,7 @@ START = {"friction%mu": 0.6, "rig_stiffness": 7.0e4}
 COMPLIANCE = 2.0 * (1.0 - NU**2) / (math.pi * E)
 
 
-def cylinders(nodes: int = 101) -> Scene:
+def cylinders(nodes: int = 61) -> Scene:
     """A cylinder on a half-plane of the same material: no coupling, Cattaneo and Mindlin's problem."""
     lower, upper = (
         Body.half_plane(youngs_modulus=E, poisson_ratio=NU),
@@ -31,7 +31,7 @@ def cylinders(nodes: int = 101) -> Scene:
     return Scene(lower, upper, friction=Friction.coulomb(1.0), mesh=Mesh(nodes=nodes, gap="parabolic"), coupling="none")
 
 
-def measured(ratio: float, noise: float, force_noise: float = 0.0, seed: int | None = None, nodes: int = 101) -> Loop:
+def measured(ratio: float, noise: float, force_noise: float = 0.0, seed: int | None = None, nodes: int = 61) -> Loop:
     """A synthetic loop up to `ratio` of the sliding limit; noise as a part of the amplitudes of shift and force."""
     planned = Loop.planned(P, ratio * MU * P, shift_noise=1.0, force_noise=force_noise * ratio * MU * P)
     (exact,) = identify.simulate(cylinders(nodes), planned, TRUTH)
