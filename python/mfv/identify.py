@@ -43,8 +43,9 @@ _COLUMNS = {
 #: Half the step of the central differences, in the logarithm of a parameter (docs/identify.md has the measurements).
 _DIFFERENCE = 0.05
 
-#: A parameter whose logarithm has a larger standard error than this is reported as not determined.
-_UNDETERMINED = 0.25
+#: A parameter whose logarithm has a larger standard error than this is reported as not determined; from about here on intervals are
+#: too narrow (docs/verification.md).
+_UNDETERMINED = 0.15
 
 #: Two parameters with a larger correlation than this are reported as not separated.
 _CORRELATED = 0.98
