@@ -40,6 +40,7 @@ for example in joint_models hosts/joint_host; do
   PYTHONPATH=$root/python MPLBACKEND=Agg MFV_LIBRARY=$library/libmfv.so OPENBLAS_NUM_THREADS=1 \
     "$venv/bin/python" "$root/examples/$example.py" -o "$pictures/${example#hosts/}.png"
 done
+PYTHONPATH=$root/python MPLBACKEND=Agg MFV_LIBRARY=$library/libmfv.so "$venv/bin/python" "$root/examples/identification.py" -o "$pictures/identify.png"
 # Figures of the dissertation, into examples/dissertation/pictures.
 PYTHONPATH=$root/python MPLBACKEND=Agg MFV_LIBRARY=$root/build/release/lib/libmfv.so "$venv/bin/python" "$root/examples/dissertation/draw.py"
 

@@ -16,6 +16,7 @@ TOGETHER = (
     ("xarray", "h5netcdf", "threadpoolctl"),
     ("dask", "distributed"),
     ("scipy",),
+    ("scipy", "emcee"),
 )
 
 
