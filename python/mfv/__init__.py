@@ -3,8 +3,8 @@
 `Scene` with `Body`, `Mesh`, `Friction`, `Step`, `Solver` and `Output` defines bodies and loads; `run` solves it, `Case` advances it
 step by step; `study` solves many cases; `read` reads a result file, `stress` computes stresses inside the bodies, `plot` draws
 results, `animate` and `report` make animations and web pages, `compare` and `comparison_figure` compare two results,
-`load_history` has intermediate states, `template` commented cases, `reference` closed forms. Reading and drawing do not need the
-shared library.
+`load_history` has intermediate states, `fatigue` parameters and lives, `template` commented cases, `reference` closed forms. Reading and
+drawing do not need the shared library.
 """
 
 from __future__ import annotations
@@ -66,7 +66,7 @@ __version__ = _version_file.read_text().strip() if _version_file.is_file() else 
 
 
 #: Modules that are loaded on first use, so that matplotlib is loaded for drawing only.
-_ON_FIRST_USE = ("animate", "compare", "comparison_figure", "load_history", "plot", "report", "template")
+_ON_FIRST_USE = ("animate", "compare", "comparison_figure", "fatigue", "load_history", "plot", "report", "template")
 
 
 def __getattr__(name: str) -> ModuleType:
