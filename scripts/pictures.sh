@@ -36,6 +36,8 @@ cc -O2 -I"$root/include" "$root/examples/hosts/newmark.c" -o newmark -L"$library
 PYTHONPATH=$root/python MPLBACKEND=Agg MFV_LIBRARY=$library/libmfv.so OPENBLAS_NUM_THREADS=1 \
   "$venv/bin/python" "$root/examples/hosts/draw_newmark.py" newmark -o "$pictures/newmark_decay.png"
 PYTHONPATH=$root/python MPLBACKEND=Agg MFV_LIBRARY=$library/libmfv.so "$venv/bin/python" "$root/examples/microslip.py" -o "$pictures/microslip.png"
+PYTHONPATH=$root/python MPLBACKEND=Agg MFV_LIBRARY=$library/libmfv.so "$venv/bin/python" "$root/examples/fretting_lives.py" \
+  -o "$pictures/fretting_lives.png" >/dev/null
 # Figures of the dissertation, into examples/dissertation/pictures.
 PYTHONPATH=$root/python MPLBACKEND=Agg MFV_LIBRARY=$root/build/release/lib/libmfv.so "$venv/bin/python" "$root/examples/dissertation/draw.py"
 

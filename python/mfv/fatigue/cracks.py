@@ -56,10 +56,15 @@ class EdgeCrack:
         """Range of the stress intensity over the cycle, with closed cracks as negative values."""
         return np.asarray(np.ptp(self.intensity, axis=0))
 
-    def arrest_length(self, threshold: ArrayLike) -> float:
+    @property
+    def opening_range(self) -> Array:
+        """Range of the stress intensity while the crack is open: compression counts as 0."""
+        return np.asarray(np.ptp(np.maximum(self.intensity, 0.0), axis=0))
+
+    def arrest_length(self, threshold: ArrayLike, *, opening: bool = False) -> float:
         """The smallest length at which the range is below the threshold (of `short_crack_threshold`), interpolated between lengths; NaN
-        if a crack passes all of them."""
-        excess = self.range - np.broadcast_to(threshold, self.length.shape)
+        if a crack passes all of them. `opening`: the `opening_range`, for thresholds that are defined so (ASTM E647 below R = 0)."""
+        excess = (self.opening_range if opening else self.range) - np.broadcast_to(threshold, self.length.shape)
         below = np.flatnonzero(excess < 0.0)
         if not below.size:
             return float("nan")

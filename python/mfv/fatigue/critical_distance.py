@@ -24,7 +24,7 @@ def critical_length(threshold_range: float, fatigue_limit_range: float, *, geome
     """(threshold_range/(geometry_factor fatigue_limit_range))^2/pi [length], both at the same load ratio.
 
     With a factor of 1 the critical distance of Taylor (1999); El Haddad's a0 with that of the crack, 1.1215 for an edge crack (El Haddad,
-    Smith, Topper 1979, J. Eng. Mater. Technol. 101, 42). `threshold_range`: of the stress intensity of long cracks
+    Smith, Topper 1979, ASME J. Engineering Materials 101, 42). `threshold_range`: of the stress intensity of long cracks
     [force/length^(3/2)]; `fatigue_limit_range`: twice the amplitude [force/length^2].
     """
     return float((threshold_range / (geometry_factor * fatigue_limit_range)) ** 2 / np.pi)

@@ -64,7 +64,7 @@ class ParameterMap:
 def smith_watson_topper(cycle: StressCycle) -> ParameterMap:
     """sigma_n,max * (normal strain amplitude) on the plane where the product is largest [force/length^2]; 0 where no plane is in tension.
 
-    Smith, Watson, Topper (1970), J. Materials 5, 767; on planes: Socie (1987), J. Eng. Mater. Technol. 109, 293. Elastic strains.
+    Smith, Watson, Topper (1970), J. Materials 5, 767; on planes: Socie (1987), ASME J. Engineering Materials 109, 293. Elastic strains.
     """
     poisson = cycle.poisson_ratio
 
@@ -80,7 +80,7 @@ def smith_watson_topper(cycle: StressCycle) -> ParameterMap:
 def fatemi_socie(cycle: StressCycle, *, yield_strength: float, k: float = 1.0) -> ParameterMap:
     """(Shear strain amplitude) * (1 + k sigma_n,max/yield_strength) on the plane where it is largest; compression counts as 0.
 
-    The amplitude is half the range of the engineering shear strain. Fatemi and Socie (1988), Fatigue Fract. Eng. Mater. Struct. 11, 149.
+    The amplitude is half the range of the engineering shear strain. Fatemi and Socie (1988), Fatigue Fract. Engng Materials Struct. 11, 149.
     """
 
     def value(angle: Array) -> Array:
