@@ -5,6 +5,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from matplotlib import pyplot
 from scipy.optimize import minimize, minimize_scalar
 
 import mfv
@@ -348,3 +349,16 @@ def test_size_effect_needs_a_critical_distance() -> None:
     for parameter in ("SWT", "FS"):
         assert small[f"{parameter} hot spot"] == pytest.approx(large[f"{parameter} hot spot"], rel=1e-3)
         assert small[f"{parameter} at L/2"] > 10.0 * large[f"{parameter} at L/2"] > 50.0 * large[f"{parameter} hot spot"]
+
+
+@pytest.mark.parametrize("side", [-1.0, 1.0])
+def test_picture_of_a_map(side: float) -> None:
+    """The title has the maximum; the line along the critical plane goes into the body, at the angle of the plane."""
+    x, y = np.meshgrid(np.linspace(-1.0, 1.0, 5), side * np.linspace(0.0, 1.0, 4))
+    angle = np.full(x.shape, np.radians(30.0))
+    values = np.where((x == 0.0) & (y == 0.0), 2.5, 1.0)
+    ax = mfv.plot.parameter_contours(fatigue.ParameterMap("Findley", x, y, values, angle), pyplot.figure().subplots())
+    line = np.diff(ax.lines[0].get_xydata(), axis=0)[0]
+    assert line[1] * side > 0.0 and line[0] / line[1] == pytest.approx(-np.tan(np.radians(30.0)))
+    assert ax.get_title() == "Findley: 2.5 at (0, 0), 30\N{DEGREE SIGN}"
+    pyplot.close("all")
