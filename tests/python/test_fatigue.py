@@ -269,6 +269,12 @@ def pad() -> mfv.Result:
 
 def test_states_of_the_last_cycle(pad: mfv.Result) -> None:
     assert fatigue.last_cycle(pad) == (5, 6)
+    turning = pad_scene()
+    turning.mesh = mfv.Mesh(nodes=31)
+    angles = 0.25 * np.pi * np.arange(17)
+    loads = [mfv.Step(tangential_force=100.0 * np.sin(angle), lower_bulk_stress=60.0 * np.cos(angle)) for angle in angles]
+    turning.steps = [mfv.Step(normal_force=500.0, friction=False), *loads]
+    assert fatigue.last_cycle(turning.run()) == tuple(range(11, 19))
     once = pad_scene()
     once.steps = once.steps[:2]
     with pytest.raises(ValueError, match="repeat the cycle"):
