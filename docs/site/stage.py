@@ -43,7 +43,7 @@ CONTENTS = {
         "docs/choosing",
         "docs/joints",
     ],
-    "Reference": ["docs/namelist", "docs/studies", "docs/identify", "docs/clusters", "docs/file-format", "programs"],
+    "Reference": ["docs/namelist", "docs/studies", "docs/identify", "docs/fatigue", "docs/clusters", "docs/file-format", "programs"],
     "Interfaces": ["docs/python-api", "python/index", "docs/c-api", "c", "docs/fortran-api", "fortran/index"],
     "Background": [
         "docs/theory",

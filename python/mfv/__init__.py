@@ -4,7 +4,7 @@
 it step by step; `study` solves many cases; `read` reads a result file, `stress` computes stresses inside the bodies, `plot` draws
 results, `animate` and `report` make animations and web pages, `compare` and `comparison_figure` compare two results,
 `load_history` has intermediate states, `identify` estimates parameters from measured loops, `joint` makes elements for structures,
-`template` commented cases, `reference` has closed forms. Reading and drawing do not need the shared library.
+`fatigue` predicts lives, `template` commented cases, `reference` has closed forms. Reading and drawing do not need the shared library.
 """
 
 from __future__ import annotations
@@ -68,7 +68,7 @@ __version__ = _version_file.read_text().strip() if _version_file.is_file() else 
 
 
 #: Modules that are loaded on first use, so that matplotlib is loaded for drawing only.
-_ON_FIRST_USE = ("animate", "compare", "comparison_figure", "identify", "joint", "load_history", "plot", "report", "template")
+_ON_FIRST_USE = ("animate", "compare", "comparison_figure", "fatigue", "identify", "joint", "load_history", "plot", "report", "template")
 
 
 def __getattr__(name: str) -> ModuleType:

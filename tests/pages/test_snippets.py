@@ -18,9 +18,9 @@ import pytest
 
 PROJECT = Path(__file__).resolve().parents[2]
 PROGRAMS = Path(os.environ.get("MFV_RUN", PROJECT / "build/release/bin/mfv_run")).parent
-PAGES = ("README.md", "docs/tutorial.md", "docs/guide.md", "docs/identify.md", "docs/joints.md", "docs/namelist.md")
+PAGES = ("README.md", "docs/tutorial.md", "docs/fatigue.md", "docs/guide.md", "docs/identify.md", "docs/joints.md", "docs/namelist.md")
 #: Pages whose Python blocks print what is shown below them; those of other pages are run by tests/python/test_docs.py.
-PYTHON_PAGES = ("docs/tutorial.md", "docs/identify.md", "docs/joints.md")
+PYTHON_PAGES = ("docs/tutorial.md", "docs/fatigue.md", "docs/identify.md", "docs/joints.md")
 COMPLETE, ENDED_EARLY = 0, 3
 #: Commands that the scripts of CI run themselves, that install, or that take minutes.
 NOT_RUN = re.compile(r"git clone|sh scripts/|cmake |pip |.*pip install|export |man |.*examples/dissertation/draw.py")
