@@ -130,23 +130,27 @@ contains
    end subroutine differentiate
 
    !> Add what the displacement of the event at the end of an increment changes: the fields of the increment are continued to where
-   !> the inequality is violated now. Nodes that close together are followed to the load at which each closes.
+   !> the inequality is violated now. Nodes whose inequalities are violated together may be displaced by different steps: the mean
+   !> is taken, and for the slip of each closing node its own step.
    subroutine displace_event(path, increment, explicit, change)
       type(contact_path_type), intent(in) :: path
       type(increment_type), intent(in) :: increment
       type(explicit_type), intent(in) :: explicit
       type(contact_fields_type), intent(inout) :: change
-      real(wp) :: step, own
+      real(wp) :: step(size(increment%violations%step)), mean
       integer :: i
 
       associate (rate => increment%response%rate, violations => increment%violations)
-         step = displacement(path, increment, explicit, change, minloc(violations%step, dim=1))
-         do i = 1, size(violations%step)
-            if (violations%kind(i) /= event_close .or. violations%step(i) > increment%reach) cycle
-            own = displacement(path, increment, explicit, change, i)
-            change%tangential(i) = change%tangential(i) + (own - step)*(rate%tangential(i) - rate%motion(motion_shift))
+         step = 0.0_wp
+         do i = 1, size(step)
+            if (violations%step(i) <= increment%reach) step(i) = displacement(path, increment, explicit, change, i)
          end do
-         call change%move(step, rate)
+         mean = sum(step)/count(violations%step <= increment%reach)
+         do i = 1, size(step)
+            if (violations%kind(i) == event_close .and. violations%step(i) <= increment%reach) &
+               change%tangential(i) = change%tangential(i) + (step(i) - mean)*(rate%tangential(i) - rate%motion(motion_shift))
+         end do
+         call change%move(mean, rate)
       end associate
    end subroutine displace_event
 

@@ -8,7 +8,7 @@
 !> into the memory.
 !>
 !> The mesh is held. Keys enter through gaps, compliances, arms and coefficients of friction, which are explicit: their derivatives
-!> at given tractions and motions are central differences between two models with a smaller and a larger value of the key.
+!> at given tractions and motions are differences of fourth order between models with other values of the key.
 module mfv_derivatives
    use mfv_contact_fields, only: contact_fields_type, new_contact_fields
    use mfv_contact_model, only: contact_model_type, new_contact_model
@@ -25,10 +25,10 @@ module mfv_derivatives
       character(:), allocatable :: name
       !> Number of the step, the motion, and its control; 0 for a key.
       integer :: step = 0, motion = 0, control = 0
-      !> Models with a smaller and a larger value of the key, shape (2), and the difference of these values; not allocated for a
-      !> target.
+      !> Models with other values of the key; the derivative of what they determine is its sum times `weight`; shape (models). Not
+      !> allocated for a target.
       type(contact_model_type), allocatable :: model(:)
-      real(wp) :: difference = 1.0_wp
+      real(wp), allocatable :: weight(:)
    contains
       procedure :: follow
    end type parameter_type
@@ -93,26 +93,25 @@ contains
       type(contact_model_type), intent(in) :: model
       type(contact_fields_type), intent(in) :: fields
       type(explicit_type), intent(out) :: derivatives
-      real(wp), dimension(model%nodes(), 2) :: normal, tangential
-      integer :: i, n
+      real(wp), dimension(model%nodes()) :: normal, tangential
+      integer :: i, j, n
 
       n = model%nodes()
       allocate (derivatives%gap(n), derivatives%slip(n), derivatives%friction(n), derivatives%width(n), source=0.0_wp)
       if (.not. allocated(parameter%model)) return
       call parameter%follow(model)
-      do i = 1, 2
-         call parameter%model(i)%relative_displacements(fields, normal(:, i), tangential(:, i))
+      do j = 1, size(parameter%model)
+         associate (varied => parameter%model(j), weight => parameter%weight(j))
+            call varied%relative_displacements(fields, normal, tangential)
+            derivatives%gap = derivatives%gap + weight*(varied%initial_gap + normal)
+            derivatives%slip = derivatives%slip + weight*tangential
+            derivatives%friction = derivatives%friction + weight*varied%static_friction
+            derivatives%width = derivatives%width + weight*varied%width
+            do i = 1, motion_count
+               derivatives%resultant(i) = derivatives%resultant(i) + weight*varied%resultant(i, fields%pressure, fields%shear)
+            end do
+         end associate
       end do
-      associate (smaller => parameter%model(1), larger => parameter%model(2), difference => parameter%difference)
-         derivatives%gap = ((larger%initial_gap - smaller%initial_gap) + (normal(:, 2) - normal(:, 1)))/difference
-         derivatives%slip = (tangential(:, 2) - tangential(:, 1))/difference
-         derivatives%friction = (larger%static_friction - smaller%static_friction)/difference
-         derivatives%width = (larger%width - smaller%width)/difference
-         do i = 1, motion_count
-            derivatives%resultant(i) = (larger%resultant(i, fields%pressure, fields%shear) - &
-                                        smaller%resultant(i, fields%pressure, fields%shear))/difference
-         end do
-      end associate
    end subroutine explicit_derivatives
 
    !> Begin at a state that does not depend on the parameters; only on keys if nothing has been applied yet, when the upper body
@@ -122,7 +121,7 @@ contains
       type(parameter_type), intent(inout) :: parameters(:)
       type(contact_model_type), intent(in) :: model
       type(contact_fields_type), intent(in) :: fields
-      integer :: k, n
+      integer :: j, k, n
 
       n = size(parameters)
       self%fault = ''
@@ -131,10 +130,8 @@ contains
          self%name(k)%text = parameters(k)%name
          self%fields(k) = new_contact_fields(model%nodes())
          if (.not. allocated(parameters(k)%model)) cycle
-         associate (smaller => parameters(k)%model(1), larger => parameters(k)%model(2))
-            self%fields(k)%motion(motion_approach) = (larger%nearest_approach(larger%initial_gap) - &
-                                                      smaller%nearest_approach(smaller%initial_gap))/parameters(k)%difference
-         end associate
+         self%fields(k)%motion(motion_approach) = sum([(parameters(k)%weight(j)*parameters(k)%model(j)%nearest_approach( &
+                                                        parameters(k)%model(j)%initial_gap), j=1, size(parameters(k)%model))])
       end do
       allocate (self%stuck_slip(model%nodes(), n), self%dissipation(n), source=0.0_wp)
       allocate (self%start(motion_count, n), self%goal(motion_count, n), self%there(motion_count, n), &

@@ -22,8 +22,11 @@ module mfv_case_parameters
    private
    public :: read_parameters
 
-   !> Keys are varied by this fraction of their value, those that are zero by this value.
+   !> Keys are varied by once and twice this fraction of their value, those that are zero by once and twice this value. The
+   !> derivative is the sum of the four values times the weights, over the variation.
    real(wp), parameter :: variation = 1.0e-5_wp
+   integer, parameter :: variations(4) = [-2, -1, 1, 2]
+   real(wp), parameter :: weights(4) = [1.0_wp, -8.0_wp, 8.0_wp, -1.0_wp]/12.0_wp
 
 contains
 
@@ -120,7 +123,7 @@ contains
       if (i > motion_count) why = 'is not the target of a motion'
    end subroutine read_target
 
-   !> Models with a smaller and a larger value of a key, on the mesh of `model`.
+   !> Models with other values of a key, on the mesh of `model`.
    subroutine vary_key(case, model, parameter, group, number, key, why)
       type(case_type), intent(in) :: case
       type(contact_model_type), intent(in) :: model
@@ -135,13 +138,13 @@ contains
       if (why /= '') return
       step = variation*abs(value)
       if (.not. step > 0.0_wp) step = variation
-      allocate (parameter%model(2))
-      do i = 1, 2
-         call build(case, model, parameter%name, value + (2*i - 3)*step, parameter%model(i), why)
+      parameter%weight = weights/step
+      allocate (parameter%model(size(variations)))
+      do i = 1, size(variations)
+         call build(case, model, parameter%name, value + variations(i)*step, parameter%model(i), why)
          if (why /= '') return
       end do
-      parameter%difference = (value + step) - (value - step)
-      if (.not. differ(parameter%model(1), parameter%model(2))) why = 'has no effect on a contact with this mesh'
+      if (.not. differ(parameter%model(1), parameter%model(size(variations)))) why = 'has no effect on a contact with this mesh'
    end subroutine vary_key
 
    !> The value of a key in the text of a case.
