@@ -630,7 +630,7 @@ contains
       type(error_type), allocatable :: error
 
       call c_f_pointer(handle, self)
-      call self%contact%get_derivative(int(min(index, most)) + 1, derivative, error)
+      call self%contact%get_derivative(int(min(index, most - 1)) + 1, derivative, error)
       status = failed(self, error)
       if (status /= MFV_COMPLETE) return
       if (present(pressure) .or. present(shear)) &

@@ -144,7 +144,11 @@ contains
          call build(case, model, parameter%name, value + variations(i)*step, parameter%model(i), why)
          if (why /= '') return
       end do
-      if (.not. differ(parameter%model(1), parameter%model(size(variations)))) why = 'has no effect on a contact with this mesh'
+      associate (least => parameter%model(1), largest => parameter%model(size(variations)))
+         if (.not. differ(least, largest)) why = 'has no effect on the contact'
+         if (abs(edge(least) - edge(largest)) > 0.0_wp .and. min(edge(least), edge(largest)) <= model%length()) &
+            why = 'moves an edge of a body between the nodes, which has no derivative'
+      end associate
    end subroutine vary_key
 
    !> The value of a key in the text of a case.
@@ -217,6 +221,13 @@ contains
       scene%mesh%half_width = model%length()
       if (needs_equal_intervals(scene)) scene%mesh%half_width = model%length()*scene%arc_radius()/model%scene%arc_radius()
    end subroutine hold_mesh
+
+   !> Distance of the nearest edge of a body from the origin, length; huge if there is none.
+   pure real(wp) function edge(model)
+      type(contact_model_type), intent(in) :: model
+
+      edge = min(model%scene%lower%half_extent(), model%scene%upper%half_extent())
+   end function edge
 
    !> Whether two models on the same nodes differ in gaps, arms, friction or compliance.
    logical function differ(one, other)
