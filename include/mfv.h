@@ -188,10 +188,12 @@ int mfv_tangent(mfv_case *handle, int motions, const double *direction, double *
  * other than Coulomb's. Since 0.10.0. */
 int mfv_differentiate(mfv_case *handle, const char *parameters);
 
-/* Derivatives of the present state with respect to parameter `index` (from 0): force, motion and dissipation of `loads`
- * (linear_solves: those for derivatives so far; the other counts are 0), and pressure and shear traction of the nodes, whose number
- * is `count`. loads, pressure and shear may be NULL. Units: of these over that of the parameter. MFV_BAD_ARGUMENT if there are none,
- * as after a step that ended early. Since 0.10.0. */
+/* Derivatives of the present state with respect to parameter `index` (from 0): force, motion and dissipation of `loads`, and
+ * pressure and shear traction of the nodes, whose number is `count`. linear_solves of `loads` are those for derivatives so far, events
+ * the number of loads at which several nodes changed their status together but would not at another value of the parameter, such as a
+ * moment in a symmetric contact: if it is not 0 the derivative is approximate. The other counts are 0. loads, pressure and shear may be
+ * NULL. Units: of these over that of the parameter. MFV_BAD_ARGUMENT if there are none, as after a step that ended early. Since
+ * 0.10.0. */
 int mfv_derivative(const mfv_case *handle, size_t index, mfv_loads *loads, size_t count, double *pressure, double *shear);
 
 /* Save the present state in *state (created if it is NULL, else overwritten), and restore it: the case then continues bit-identically

@@ -69,7 +69,10 @@ class Loads(NamedTuple):
 class Derivative(NamedTuple):
     """Derivatives of a state with respect to a parameter; units: of these over that of the parameter."""
 
-    loads: Loads  #: of forces, motions and dissipation; linear_solves: those for derivatives so far; the other counts are 0
+    #: Of forces, motions and dissipation; `linear_solves`: those for derivatives so far; `events`: number of loads at which several
+    #: nodes changed their status together, but would not at another value of the parameter, such as a moment in a symmetric
+    #: contact: if it is not 0 the derivative is approximate. The other counts are 0.
+    loads: Loads
     pressure: NDArray[np.float64]  #: of the nodes [force/length^2 over the parameter], an array (nodes,)
     shear: NDArray[np.float64]  #: the same of the shear traction
 

@@ -55,8 +55,10 @@ module mfv_contact
    type :: derivative_type
       real(wp) :: force(motion_count) = 0.0_wp, motion(motion_count) = 0.0_wp, dissipation = 0.0_wp
       real(wp), allocatable :: pressure(:), shear(:)
-      !> Linear solves so far for derivatives; those of loads_type are without them.
-      integer :: linear_solves = 0
+      !> Number of loads so far at which several nodes changed their status together, but would not at another value of the
+      !> parameter: if it is not 0 the derivative is approximate. Linear solves so far for derivatives, which those of loads_type do
+      !> not contain.
+      integer :: separated_events = 0, linear_solves = 0
    end type derivative_type
 
    type :: contact_type
@@ -567,6 +569,7 @@ contains
                derivative%dissipation = derivatives%dissipation(number)
                derivative%pressure = fields%pressure
                derivative%shear = fields%shear
+               derivative%separated_events = derivatives%separated(number)
                derivative%linear_solves = derivatives%solves
             end associate
          end if

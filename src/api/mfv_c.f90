@@ -639,8 +639,8 @@ contains
       if (status /= MFV_COMPLETE) return
       if (present(loads)) status = expected(self, loads%size == c_sizeof(loads), 'mfv_derivative: size is not sizeof(mfv_loads)')
       if (status /= MFV_COMPLETE) return
-      if (present(loads)) loads = c_loads(loads%size, derivative%force, derivative%motion, derivative%dissipation, 0, 0, 0, 0, &
-                                          derivative%linear_solves, 0)
+      if (present(loads)) loads = c_loads(loads%size, derivative%force, derivative%motion, derivative%dissipation, 0, 0, 0, &
+                                          derivative%separated_events, derivative%linear_solves, 0)
       if (present(pressure)) pressure = derivative%pressure
       if (present(shear)) shear = derivative%shear
    end function mfv_derivative_unguarded

@@ -66,6 +66,16 @@ def test_newton_on_two_motions_converges_quadratically() -> None:
     assert counts[0] <= 5 < 9 <= counts[1]
 
 
+def test_parameters_that_separate_simultaneous_events_are_named() -> None:
+    with new_case() as case:
+        case.differentiate("step(1)%normal_force", "step(1)%tangential_force", "friction%mu")
+        case.advance(normal_force=8.0e-4, tangential_force=0.0)
+        closed = case.loads.contact_nodes // 2  # in pairs, the first one or two at first contact
+        events = {name: derivative.loads.events for name, derivative in case.derivatives.items()}
+    assert events.pop("step(1)%tangential_force") == closed
+    assert not any(events.values())
+
+
 def test_states_and_copies_have_their_derivatives() -> None:
     with new_case() as case:
         case.differentiate("friction%mu", "step(2)%tangential_force")

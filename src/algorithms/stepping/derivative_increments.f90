@@ -35,7 +35,7 @@ contains
       type(setting_type) :: setting
       type(contact_fields_type) :: change
       type(explicit_type) :: explicit
-      logical :: singular
+      logical :: singular, separates
       integer :: k
 
       if (path%derivatives%fault /= '') return
@@ -49,7 +49,9 @@ contains
             call path%derivatives%fail('the linear system of an increment is singular')
             return
          end if
-         if (increment%ends_in_event .and. .not. at_end) call displace_event(path, increment, explicit, change)
+         separates = .false.
+         if (increment%ends_in_event .and. .not. at_end) call displace_event(path, increment, explicit, change, separates)
+         if (separates) path%derivatives%separated(k) = path%derivatives%separated(k) + 1
          call find_forces(path, explicit, change)
          associate (dissipation => path%derivatives%dissipation(k))
             dissipation = dissipation + dissipated(path, explicit, path%derivatives%fields(k), change)
@@ -131,25 +133,28 @@ contains
 
    !> Add what the displacement of the event at the end of an increment changes: the fields of the increment are continued to where
    !> the inequality is violated now. Nodes whose inequalities are violated together may be displaced by different steps: the mean
-   !> is taken, and for the slip of each closing node its own step.
-   subroutine displace_event(path, increment, explicit, change)
+   !> is taken, and for the slip of each closing node its own step. `separates`: whether the steps differ.
+   subroutine displace_event(path, increment, explicit, change, separates)
       type(contact_path_type), intent(in) :: path
       type(increment_type), intent(in) :: increment
       type(explicit_type), intent(in) :: explicit
       type(contact_fields_type), intent(inout) :: change
+      logical, intent(out) :: separates
+      real(wp), parameter :: same = 1.0e-6_wp
       real(wp) :: step(size(increment%violations%step)), mean
+      logical :: ends(size(increment%violations%step))
       integer :: i
 
       associate (rate => increment%response%rate, violations => increment%violations)
+         ends = violations%step <= increment%reach
          step = 0.0_wp
          do i = 1, size(step)
-            if (violations%step(i) <= increment%reach) step(i) = displacement(path, increment, explicit, change, i)
+            if (ends(i)) step(i) = displacement(path, increment, explicit, change, i)
          end do
-         mean = sum(step)/count(violations%step <= increment%reach)
-         do i = 1, size(step)
-            if (violations%kind(i) == event_close .and. violations%step(i) <= increment%reach) &
-               change%tangential(i) = change%tangential(i) + (step(i) - mean)*(rate%tangential(i) - rate%motion(motion_shift))
-         end do
+         mean = sum(step)/count(ends)
+         separates = any(ends .and. abs(step - mean) > same*maxval(abs(step)))
+         where (ends .and. violations%kind == event_close) &
+            change%tangential = change%tangential + (step - mean)*(rate%tangential - rate%motion(motion_shift))
          call change%move(mean, rate)
       end associate
    end subroutine displace_event

@@ -25,9 +25,9 @@ module mfv_derivatives
       character(:), allocatable :: name
       !> Number of the step, the motion, and its control; 0 for a key.
       integer :: step = 0, motion = 0, control = 0
-      !> Models with other values of the key; the derivative of what they determine is its sum times `weight`; shape (models). Not
-      !> allocated for a target.
-      type(contact_model_type), allocatable :: model(:)
+      !> Models with smaller and with larger values of the key, shape (2, pairs). The derivative of what they determine is the sum of
+      !> the differences of the pairs times `weight`, shape (pairs). Not allocated for a target.
+      type(contact_model_type), allocatable :: model(:, :)
       real(wp), allocatable :: weight(:)
    contains
       procedure :: follow
@@ -46,6 +46,9 @@ module mfv_derivatives
       !> Derivatives of the loads at the start and the end of the segment, at both ends of the step, and of the present loads; shape
       !> (motion_count, parameters).
       real(wp), allocatable :: start(:, :), goal(:, :), there(:, :), back(:, :), load(:, :)
+      !> Number of loads so far at which several nodes change their status together and a change of the parameter separates them, so
+      !> that the derivative is approximate; shape (parameters).
+      integer, allocatable :: separated(:)
       !> Linear solves so far for derivatives.
       integer :: solves = 0
    contains
@@ -73,17 +76,21 @@ contains
    subroutine follow(self, model)
       class(parameter_type), intent(inout) :: self
       type(contact_model_type), intent(in) :: model
-      integer :: i, j
+      integer :: i, j, pair
 
       if (.not. allocated(self%model)) return
-      do i = 1, size(self%model)
-         if (self%model(i)%added > model%added .or. (self%model(i)%tangential .and. .not. model%tangential)) &
-            self%model(i) = new_contact_model(self%model(i)%scene)
-         if (model%tangential .and. .not. self%model(i)%tangential) call self%model(i)%add_tangential()
-         do j = 1, motion_count
-            if (model%moves(j)) call self%model(i)%add_motion(j)
+      do pair = 1, size(self%weight)
+         do i = 1, 2
+            associate (varied => self%model(i, pair))
+               if (varied%added > model%added .or. (varied%tangential .and. .not. model%tangential)) &
+                  varied = new_contact_model(varied%scene)
+               if (model%tangential .and. .not. varied%tangential) call varied%add_tangential()
+               do j = 1, motion_count
+                  if (model%moves(j)) call varied%add_motion(j)
+               end do
+               if (varied%added < model%added) call varied%grow(model%added - varied%added)
+            end associate
          end do
-         if (self%model(i)%added < model%added) call self%model(i)%grow(model%added - self%model(i)%added)
       end do
    end subroutine follow
 
@@ -93,22 +100,24 @@ contains
       type(contact_model_type), intent(in) :: model
       type(contact_fields_type), intent(in) :: fields
       type(explicit_type), intent(out) :: derivatives
-      real(wp), dimension(model%nodes()) :: normal, tangential
-      integer :: i, j, n
+      real(wp), dimension(model%nodes(), 2) :: normal, tangential
+      integer :: i, n, pair
 
       n = model%nodes()
       allocate (derivatives%gap(n), derivatives%slip(n), derivatives%friction(n), derivatives%width(n), source=0.0_wp)
       if (.not. allocated(parameter%model)) return
       call parameter%follow(model)
-      do j = 1, size(parameter%model)
-         associate (varied => parameter%model(j), weight => parameter%weight(j))
-            call varied%relative_displacements(fields, normal, tangential)
-            derivatives%gap = derivatives%gap + weight*(varied%initial_gap + normal)
-            derivatives%slip = derivatives%slip + weight*tangential
-            derivatives%friction = derivatives%friction + weight*varied%static_friction
-            derivatives%width = derivatives%width + weight*varied%width
+      do pair = 1, size(parameter%weight)
+         associate (less => parameter%model(1, pair), more => parameter%model(2, pair), weight => parameter%weight(pair))
+            call less%relative_displacements(fields, normal(:, 1), tangential(:, 1))
+            call more%relative_displacements(fields, normal(:, 2), tangential(:, 2))
+            derivatives%gap = derivatives%gap + weight*((more%initial_gap - less%initial_gap) + (normal(:, 2) - normal(:, 1)))
+            derivatives%slip = derivatives%slip + weight*(tangential(:, 2) - tangential(:, 1))
+            derivatives%friction = derivatives%friction + weight*(more%static_friction - less%static_friction)
+            derivatives%width = derivatives%width + weight*(more%width - less%width)
             do i = 1, motion_count
-               derivatives%resultant(i) = derivatives%resultant(i) + weight*varied%resultant(i, fields%pressure, fields%shear)
+               derivatives%resultant(i) = derivatives%resultant(i) + weight*(more%resultant(i, fields%pressure, fields%shear) &
+                                                                             - less%resultant(i, fields%pressure, fields%shear))
             end do
          end associate
       end do
@@ -121,7 +130,7 @@ contains
       type(parameter_type), intent(inout) :: parameters(:)
       type(contact_model_type), intent(in) :: model
       type(contact_fields_type), intent(in) :: fields
-      integer :: j, k, n
+      integer :: k, n, pair
 
       n = size(parameters)
       self%fault = ''
@@ -130,10 +139,16 @@ contains
          self%name(k)%text = parameters(k)%name
          self%fields(k) = new_contact_fields(model%nodes())
          if (.not. allocated(parameters(k)%model)) cycle
-         self%fields(k)%motion(motion_approach) = sum([(parameters(k)%weight(j)*parameters(k)%model(j)%nearest_approach( &
-                                                        parameters(k)%model(j)%initial_gap), j=1, size(parameters(k)%model))])
+         do pair = 1, size(parameters(k)%weight)
+            associate (less => parameters(k)%model(1, pair), more => parameters(k)%model(2, pair), &
+                       approach => self%fields(k)%motion(motion_approach))
+               approach = approach + parameters(k)%weight(pair)*(more%nearest_approach(more%initial_gap) &
+                                                                 - less%nearest_approach(less%initial_gap))
+            end associate
+         end do
       end do
       allocate (self%stuck_slip(model%nodes(), n), self%dissipation(n), source=0.0_wp)
+      allocate (self%separated(n), source=0)
       allocate (self%start(motion_count, n), self%goal(motion_count, n), self%there(motion_count, n), &
                 self%back(motion_count, n), self%load(motion_count, n), source=0.0_wp)
       if (any([(allocated(parameters(k)%model), k=1, n)])) call self%refresh(parameters, model, fields)

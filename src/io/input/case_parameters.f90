@@ -23,10 +23,8 @@ module mfv_case_parameters
    public :: read_parameters
 
    !> Keys are varied by once and twice this fraction of their value, those that are zero by once and twice this value. The
-   !> derivative is the sum of the four values times the weights, over the variation.
-   real(wp), parameter :: variation = 1.0e-5_wp
-   integer, parameter :: variations(4) = [-2, -1, 1, 2]
-   real(wp), parameter :: weights(4) = [1.0_wp, -8.0_wp, 8.0_wp, -1.0_wp]/12.0_wp
+   !> derivative is the sum of both differences times these weights, over the variation.
+   real(wp), parameter :: variation = 1.0e-5_wp, weights(2) = [8.0_wp, -1.0_wp]/12.0_wp
 
 contains
 
@@ -132,19 +130,21 @@ contains
       integer, intent(in) :: number
       character(:), allocatable, intent(inout) :: why
       real(wp) :: value, step
-      integer :: i
+      integer :: i, pair
 
       call find_value(case, group, number, key, value, why)
       if (why /= '') return
       step = variation*abs(value)
       if (.not. step > 0.0_wp) step = variation
       parameter%weight = weights/step
-      allocate (parameter%model(size(variations)))
-      do i = 1, size(variations)
-         call build(case, model, parameter%name, value + variations(i)*step, parameter%model(i), why)
-         if (why /= '') return
+      allocate (parameter%model(2, size(weights)))
+      do pair = 1, size(weights)
+         do i = 1, 2
+            call build(case, model, parameter%name, value + (2*i - 3)*pair*step, parameter%model(i, pair), why)
+            if (why /= '') return
+         end do
       end do
-      associate (least => parameter%model(1), largest => parameter%model(size(variations)))
+      associate (least => parameter%model(1, size(weights)), largest => parameter%model(2, size(weights)))
          if (.not. differ(least, largest)) why = 'has no effect on the contact'
          if (abs(edge(least) - edge(largest)) > 0.0_wp .and. min(edge(least), edge(largest)) <= model%length()) &
             why = 'moves an edge of a body between the nodes, which has no derivative'
