@@ -25,8 +25,8 @@ module mfv_derivatives
       character(:), allocatable :: name
       !> Number of the step, the motion, and its control; 0 for a key.
       integer :: step = 0, motion = 0, control = 0
-      !> Models with smaller and with larger values of the key, shape (2, pairs). The derivative of what they determine is the sum of
-      !> the differences of the pairs times `weight`, shape (pairs). Not allocated for a target.
+      !> Models with smaller and with larger values of the key, shape (2, pairs). The derivative of what they determine is the sum
+      !> of the differences of the pairs times `weight`, shape (pairs). Not allocated for a target.
       type(contact_model_type), allocatable :: model(:, :)
       real(wp), allocatable :: weight(:)
    contains
