@@ -23,7 +23,7 @@ from ._library import has_feature, library_version
 from .case import Case, State, Trial, run
 from .codes import EventKind, NodeStatus
 from .errors import LibraryNotFound, MfvError, NotAResult
-from .loads import Loads, Progress
+from .loads import Derivative, Loads, Progress
 from .result import Group, Result, read
 from .scene import Body, Friction, History, Mesh, Output, Scene, Solver, Step, Wear
 from .studies import Axis, Study, study
@@ -32,6 +32,7 @@ __all__ = [
     "Axis",
     "Body",
     "Case",
+    "Derivative",
     "EventKind",
     "Friction",
     "Group",
