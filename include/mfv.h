@@ -185,7 +185,7 @@ int mfv_tangent(mfv_case *handle, int motions, const double *direction, double *
  * the next step. They replace those of an earlier call ("": none); the state so far is taken to be independent of them. The
  * derivatives are propagated through all events, at one linear solve for each event and parameter (not counted in mfv_loads). The
  * mesh and all other targets, also relative ones, are held. MFV_BAD_ARGUMENT for an unknown or passed parameter, with large
- * increments, the conventional algorithm, and laws other than Coulomb's. Since 0.10.0. */
+ * increments, the conventional algorithm, wear, and laws other than Coulomb's. Since 0.10.0. */
 int mfv_differentiate(mfv_case *handle, const char *parameters);
 
 /* Derivatives of the present state with respect to parameter `index` (from 0): force, motion and dissipation of `loads`, and

@@ -41,9 +41,9 @@ CONTENTS = {
         "gallery/index",
         "Notebooks <examples/notebooks/README>",
         "docs/choosing",
-        "docs/joints",
     ],
-    "Reference": ["docs/namelist", "docs/studies", "docs/identify", "docs/fatigue", "docs/clusters", "docs/file-format", "programs"],
+    "Reference": ["docs/namelist", "docs/studies", "docs/clusters", "docs/file-format", "programs"],
+    "Applications": ["docs/joints", "docs/identify", "docs/fatigue"],
     "Interfaces": ["docs/python-api", "python/index", "docs/c-api", "c", "docs/fortran-api", "fortran/index"],
     "Background": [
         "docs/theory",

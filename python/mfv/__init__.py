@@ -69,7 +69,18 @@ __version__ = _version_file.read_text().strip() if _version_file.is_file() else 
 
 
 #: Modules that are loaded on first use, so that matplotlib is loaded for drawing only.
-_ON_FIRST_USE = ("animate", "compare", "comparison_figure", "fatigue", "identify", "joint", "load_history", "plot", "report", "template")
+_ON_FIRST_USE = (
+    "animate",
+    "compare",
+    "comparison_figure",
+    "fatigue",
+    "identify",
+    "joint",
+    "load_history",
+    "plot",
+    "report",
+    "template",
+)
 
 
 def __getattr__(name: str) -> ModuleType:

@@ -30,7 +30,7 @@ def how_to_install(package: str) -> str:
 
 
 def needed(module: str) -> ModuleType:
-    """A module of an optional package. Raises ModuleNotFoundError with the command that installs it."""
+    """A module of an optional package, imported on first use. Raises ModuleNotFoundError with the command that installs it."""
     package = module.split(".")[0]
     if find_spec(package) is None:
         raise ModuleNotFoundError(f"the Python package {package} is not installed: {how_to_install(package)}", name=package)

@@ -338,7 +338,7 @@ class Case:
         to come, such as 'step(2)%shift', or 'shift' for that of the next step. The state so far is taken to be independent of
         them. The derivatives are propagated through all events, at one linear solve for each event and parameter. The mesh and
         all other targets, also relative ones, are held. Raises BadArgument for an unknown or passed parameter, with large
-        increments (accuracy), the conventional algorithm, and friction laws other than Coulomb's.
+        increments (accuracy), the conventional algorithm, wear, and friction laws other than Coulomb's.
         """
         self._call("mfv_differentiate", text_for(" ".join(parameters)))
         self._parameters = parameters

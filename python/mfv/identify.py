@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING, Any, Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from ._packages import how_to_install
+from ._packages import needed
 from .errors import MfvError, input_error
 from .scene import Output, Scene, Step
 from .studies.axes import Axis
@@ -198,7 +198,7 @@ class Estimate:
 
     def interval(self, name: str, level: float = 0.95) -> tuple[float, float]:
         """The confidence interval of a parameter, symmetric in its logarithm (Student's t)."""
-        quantile = _package("scipy.special").stdtrit(self.degrees_of_freedom, 0.5 + 0.5 * level)
+        quantile = needed("scipy.special").stdtrit(self.degrees_of_freedom, 0.5 + 0.5 * level)
         relative = self.standard_errors[name] / self.values[name]
         with np.errstate(over="ignore"):
             factor = float(np.exp(quantile * relative))
@@ -234,7 +234,7 @@ class Fit(Estimate):
         fifth of the `steps` of every walker is discarded. A step costs a simulation of all loops for every walker (by default two
         more than twice the unknowns). Raises ModuleNotFoundError.
         """
-        emcee = _package("emcee")
+        emcee = needed("emcee")
         problem, centre = self._problem, self._x
         count = len(self.names)
         limit = math.log(spread)
@@ -299,7 +299,7 @@ def fit(
     if the driven column is noisy, its extremes.
     Needs scipy. Raises InputError for invalid keys or start values, and for start values with which the contact slides too early.
     """
-    optimize = _package("scipy.optimize")
+    optimize = needed("scipy.optimize")
     problem = _Problem(scene, [loop._with_noise() for loop in _listed(loops)], free, rig_stiffness)
     problem.noise_is_given = all(None not in (loop.force_noise, loop.shift_noise) for loop in _listed(loops))
     start = problem.start()
@@ -774,7 +774,7 @@ def _inverse_information(jacobian: Array) -> tuple[Array, NDArray[np.bool_]]:
 
 def _doubts(found: Any, rows: int, freedom: int, reduced: float, residuals: list[Array], problem: _Problem) -> list[str]:
     """Sentences about the quality of a fit."""
-    tail = _package("scipy.special").chdtrc
+    tail = needed("scipy.special").chdtrc
     sentences = []
     if found.status <= 0:
         sentences.append("the least squares have not converged; choose other start values")
@@ -812,14 +812,3 @@ def _ended_early(problem: _Problem) -> str:
 
 def _listed(loops: Loop | Sequence[Loop]) -> list[Loop]:
     return [loops] if isinstance(loops, Loop) else list(loops)
-
-
-def _package(name: str) -> Any:
-    """An optional package. Raises ModuleNotFoundError with the command that installs it."""
-    import importlib
-
-    package = name.partition(".")[0]
-    try:
-        return importlib.import_module(name)
-    except ModuleNotFoundError as error:
-        raise ModuleNotFoundError(f"mfv.identify needs {package}: {how_to_install(package)}", name=package) from error

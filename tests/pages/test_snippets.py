@@ -18,7 +18,15 @@ import pytest
 
 PROJECT = Path(__file__).resolve().parents[2]
 PROGRAMS = Path(os.environ.get("MFV_RUN", PROJECT / "build/release/bin/mfv_run")).parent
-PAGES = ("README.md", "docs/tutorial.md", "docs/fatigue.md", "docs/guide.md", "docs/identify.md", "docs/joints.md", "docs/namelist.md")
+PAGES = (
+    "README.md",
+    "docs/tutorial.md",
+    "docs/fatigue.md",
+    "docs/guide.md",
+    "docs/identify.md",
+    "docs/joints.md",
+    "docs/namelist.md",
+)
 #: Pages whose Python blocks print what is shown below them; those of other pages are run by tests/python/test_docs.py.
 PYTHON_PAGES = ("docs/tutorial.md", "docs/fatigue.md", "docs/identify.md", "docs/joints.md")
 COMPLETE, ENDED_EARLY = 0, 3

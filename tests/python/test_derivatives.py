@@ -143,12 +143,41 @@ def test_data_in_memory_are_kept_for_other_values_of_a_key() -> None:
     assert found == pytest.approx((shift[2] - shift[1]) / 0.5e-6, rel=1e-5)
 
 
+def test_cycles_of_a_history_hold_their_targets() -> None:
+    """Against differences; the normal force is kept, and the cycle begins at a row whose target is a parameter."""
+    at = {"step(1)%normal_force": 8.0e-4, "step(2)%tangential_force": 1.5e-4, "friction%mu": 0.5}
+    names = ("shift", "approach", "normal_force", "tangential_force", "dissipation")
+
+    def loads(given: dict[str, float], *parameters: str) -> tuple[mfv.Loads, dict[str, mfv.loads.Derivative]]:
+        press, first, mu = given.values()
+        history = mfv.History(tangential_force=[first, -1.0e-4, 2.5e-4, 0.5e-4], period=3, cycles=2)
+        scene = cylinder(
+            mfv.Step(normal_force=press), friction=mfv.Friction.coulomb(mu), history=history, mesh=WIDE, coupling="full"
+        )
+        with scene.contact() as case:
+            case.differentiate(*parameters)
+            case.run(check=True)
+            return case.loads, case.derivatives
+
+    base, found = loads(at, *at)
+    assert found["step(1)%normal_force"].loads.normal_force == pytest.approx(1.0, rel=1e-12)
+    for key, value in at.items():
+        less, more = (loads({**at, key: value * factor})[0] for factor in (1.0 - 1e-6, 1.0 + 1e-6))
+        for name in names:
+            difference = (getattr(more, name) - getattr(less, name)) / (2e-6 * value)
+            scale = abs(getattr(base, name)) / value
+            assert getattr(found[key].loads, name) == pytest.approx(difference, rel=1e-5, abs=1e-6 * scale), (key, name)
+    with pytest.raises(errors.BadArgument, match="cycle of &history"):
+        loads(at, "step(3)%tangential_force")
+
+
 @pytest.mark.parametrize(
     ("keys", "parameter", "why"),
     [
         ({"friction": mfv.Friction.static_kinetic(0.7, 0.5)}, "shift", "static_kinetic"),
         ({"solver": mfv.Solver(algorithm="conventional")}, "shift", "algorithm='mfv'"),
         ({"solver": mfv.Solver(stepping="leap", accuracy=1e-3)}, "shift", "accuracy=0"),
+        ({"wear": mfv.Wear(coefficient=1e-3)}, "shift", "&wear"),
         ({}, "body(2)%redius", "did you mean radius"),
         ({}, "body(1)%radius", "not set in the case"),
         ({}, "mesh%half_width", "&body or &friction"),

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from .._packages import how_to_install
+from .._packages import needed
 from .backbone import Backbone
 from .measurement import Measurement
 from .models import BoucWen, Iwan, Segalman, gauss_pair
@@ -122,11 +122,7 @@ def _cycles(measured: Measurement) -> tuple[Array, Array, Array]:
 
 def _least_squares(misfit: Callable[[Array], Array], start: Any, low: Any, high: Any) -> Array:
     """The unknowns of least squares. Raises ModuleNotFoundError without scipy, ValueError if they are not found."""
-    try:
-        from scipy.optimize import least_squares
-    except ModuleNotFoundError:
-        raise ModuleNotFoundError(f"fits of joints need scipy: {how_to_install('scipy')}", name="scipy") from None
-    found = least_squares(misfit, start, bounds=(low, high))
+    found = needed("scipy.optimize").least_squares(misfit, start, bounds=(low, high))
     if not found.success:
         raise ValueError(f"the fit did not converge: {found.message}")
     return np.asarray(found.x)
