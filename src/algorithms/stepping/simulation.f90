@@ -595,7 +595,7 @@ contains
                                                     step%path(:, 1 + mod(self%leg%number - 1, step%turns())))
       if (allocated(self%contact%derivatives)) &
          call self%contact%derivatives%begin_segment(mod(self%leg%number, 2) == 0 .and. .not. allocated(step%path), &
-                                                         targets%control)
+                                                     targets%control)
       call self%begin_segment(targets, step, before, segments)
       associate (method => self%contact%model%scene%method)
          if (method%algorithm == algorithm_conventional) then
