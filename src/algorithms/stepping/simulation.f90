@@ -192,12 +192,16 @@ contains
    subroutine run_segment(self, observer)
       class(simulation_type), intent(inout) :: self
       class(observer_type), intent(inout), optional :: observer
-      integer :: i
+      type(step_type) :: step
+      integer :: before, i, segments
 
       i = self%scene_steps_done + 1
       associate (steps => self%contact%model%scene%steps)
-         call self%advance_segment(steps(i), sum(steps(:i - 1)%segments()), sum(steps%segments()), observer)
+         step = steps(i)  ! a copy, since the model may be replaced
+         before = sum(steps(:i - 1)%segments())
+         segments = sum(steps%segments())
       end associate
+      call self%advance_segment(step, before, segments, observer)
       if (self%outcome /= MFV_COMPLETE) then
          self%failed_scene_step = i
       else if (self%leg%number == 0) then
@@ -359,8 +363,8 @@ contains
       class(simulation_type), intent(inout) :: self
       integer :: i
 
+      call self%contact%resume(self%restart%path, self%restart%added)  ! before `steps` below: it may replace the model
       associate (r => self%restart, steps => self%contact%model%scene%steps)
-         call self%contact%resume(r%path, r%added)
          self%contact%system%solves = r%solves
          self%contact%system%iterations = r%iterations
          self%contact%system%products = r%products
