@@ -59,6 +59,7 @@ for parameter, ax in zip((fatigue.smith_watson_topper(cycle), fatigue.fatemi_soc
     mfv.plot.parameter_contours(parameter, ax, colour_bar=True).set_xlim(-2.6, -0.2)
 figure.savefig(f"{sys.argv[2]}/fatigue_maps.png", dpi=120)
 END
+PYTHONPATH=$root/python MPLBACKEND=Agg MFV_LIBRARY=$library/libmfv.so "$venv/bin/python" "$root/examples/wear.py" "$pictures/wear.png" "$pictures/wear.gif"
 # Figures of the dissertation, into examples/dissertation/pictures.
 PYTHONPATH=$root/python MPLBACKEND=Agg MFV_LIBRARY=$root/build/release/lib/libmfv.so "$venv/bin/python" "$root/examples/dissertation/draw.py"
 

@@ -296,8 +296,8 @@ class Wear(KeyGroup):
     """Wear of the surfaces in steps with cycles: the keys of &wear. `coefficient`: depth over pressure times slip (law='archard')
     or over the work of friction per unit of surface (law='work') [length^2/force]."""
 
+    coefficient: float
     law: Literal["archard", "work"] | None = None
-    coefficient: float | None = None
     tolerance: float | None = None
     block: int | None = None
 
@@ -404,7 +404,18 @@ class Scene(KeyGroup):
     length_unit: str | None
     force_unit: str | None
 
-    _not_keys: ClassVar[tuple[str, ...]] = ("lower", "upper", "friction", "mesh", "wear", "steps", "history", "solver", "output", "name")
+    _not_keys: ClassVar[tuple[str, ...]] = (
+        "lower",
+        "upper",
+        "friction",
+        "mesh",
+        "wear",
+        "steps",
+        "history",
+        "solver",
+        "output",
+        "name",
+    )
 
     def __init__(
         self,
@@ -540,7 +551,14 @@ class Scene(KeyGroup):
 
 
 #: Groups that occur at most once, without &scene.
-_SINGLE: dict[str, type[KeyGroup]] = {"mesh": Mesh, "friction": Friction, "wear": Wear, "history": History, "solver": Solver, "output": Output}
+_SINGLE: dict[str, type[KeyGroup]] = {
+    "mesh": Mesh,
+    "friction": Friction,
+    "wear": Wear,
+    "history": History,
+    "solver": Solver,
+    "output": Output,
+}
 
 #: Default names of arrays.
 _USUAL: dict[type[KeyGroup], str] = {

@@ -76,6 +76,8 @@ SCENES: dict[str, Groups] = {
     )
     + [("history", {"tangential_force": "1e-4, -1e-4"})],
     "history of others": scene(ELASTIC, RIGID_DISK, MESH, COULOMB, PRESS) + [("history", {"shift": "1e-5"})],
+    "wear": scene(ELASTIC, RIGID_DISK, MESH, COULOMB, PRESS, {"tangential_force": "2e-4", "cycles": "2"})
+    + [("wear", {"coefficient": "1e-3", "tolerance": "0.1"})],
     "rolling": scene(ELASTIC_DISK, RIGID_PLANE, MESH, COULOMB, PRESS, {"moment": "1e-6"}),
 }
 
@@ -334,6 +336,12 @@ CASE: dict[tuple[str, str], Row] = {
         "friction", "dahl", "1e3", "force/length^3", needed=": stiffness is missing; it must be a number above 0"
     ),
     ("friction", "exponent"): real("friction", "dahl", "1", lower=0.0, upper=100.0, dear=("100.0",)),
+    ("wear", "law"): choice("wear", "wear", "'work'", "archard work"),
+    ("wear", "coefficient"): positive(
+        "wear", "wear", "1e-3", "length^2/force", needed=": coefficient is missing; it must be a number above 0"
+    ),
+    ("wear", "tolerance"): real("wear", "wear", "0.05", lower=1e-6, upper=1.0),
+    ("wear", "block"): whole("wear", "wear", "5", 1, 1000000, without=("tolerance",)),
     ("step", "normal_force"): real(
         "step(1)", "cylinder", "1e-3", "force/length", lower=0.0, needed=": needs a target: normal_force or approach"
     ),

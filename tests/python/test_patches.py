@@ -97,7 +97,9 @@ def mirrored(numbers: Numbers, nodes: int) -> Numbers:
     for (group, name), (values, unit) in numbers.items():
         if group == "patches" or name == "friction_work":
             values = values[::-1]
-        if (name.startswith(ODD_FORCES) and unit != "1" and not name.endswith(("amplitude", "_work"))) or any(part in name for part in ODD_PLACES):
+        if (name.startswith(ODD_FORCES) and unit != "1" and not name.endswith(("amplitude", "_work"))) or any(
+            part in name for part in ODD_PLACES
+        ):
             values = -values
         if group == "patches" and name.endswith("_node"):
             values = nodes + 1 - values

@@ -24,6 +24,7 @@ GROUPS = {
     "mesh": mfv.Mesh,
     "friction": mfv.Friction,
     "step": mfv.Step,
+    "wear": mfv.Wear,
     "history": mfv.History,
     "solver": mfv.Solver,
     "output": mfv.Output,

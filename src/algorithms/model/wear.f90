@@ -12,7 +12,7 @@ module mfv_wear
       integer :: law = wear_archard
       !> Depth of both surfaces together over pressure times slip, or over work per unit of surface: length^2/force; 0: no wear.
       real(wp) :: coefficient = 0.0_wp
-      !> Largest change of a pressure in a block of cycles, relative to the largest pressure.
+      !> Largest change of the pressure in a block of cycles: the integral of its magnitude over the normal force.
       real(wp) :: tolerance = 0.0_wp
       !> Cycles in a block; 0: as many as the tolerance allows.
       integer :: block = 0

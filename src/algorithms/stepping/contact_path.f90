@@ -107,6 +107,7 @@ module mfv_contact_path
       procedure :: record_changes
       procedure :: extend_mesh_if_reached
       procedure :: widen
+      procedure :: lengthens_for
       procedure :: no_continuation
       procedure :: end_here
       procedure, private :: begin_tangential
@@ -815,6 +816,20 @@ contains
                             to_text(self%model%length())//' from the origin of x', error)
       end if
    end subroutine extend_mesh_if_reached
+
+   !> Whether the mesh has been lengthened for a contact (`contact`, shape (nodes)) that would reach its end.
+   logical function lengthens_for(self, contact)
+      class(contact_path_type), intent(inout) :: self
+      logical, intent(in) :: contact(:)
+      type(iteration_type) :: iteration
+      integer :: nodes
+
+      lengthens_for = self%model%reaches_end(contact) .and. self%model%growing
+      if (.not. lengthens_for) return
+      nodes = self%model%nodes()
+      call self%widen(iteration)
+      lengthens_for = self%model%nodes() > nodes
+   end function lengthens_for
 
    !> Lengthen the mesh by a quarter on either side.
    subroutine widen(self, iteration)

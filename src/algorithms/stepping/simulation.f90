@@ -242,7 +242,7 @@ contains
       end if
       associate (i => self%leg%number)
          if (step%cycles > 0) call self%complete_leg(i, step%turns(), self%leg%cycle)
-         if (self%wears(step)) call self%apply_wear(step, before, segments, observer, error)
+         if (self%wears(step)) call self%apply_wear(step, before, segments, error)
          if (allocated(error)) then
             call self%end_step_early(step, error)
             return
@@ -265,12 +265,12 @@ contains
               self%contact%model%tangential
    end function wears
 
-   !> Wear the surfaces by the block of cycles that the present one begins, under constant loads, and skip the others.
-   subroutine apply_wear(self, step, before, segments, observer, error)
+   !> Wear the surfaces by the block of cycles that the present one begins, under constant loads, and skip the others. It is not
+   !> interrupted: a restart begins at the start of a load segment.
+   subroutine apply_wear(self, step, before, segments, error)
       class(simulation_type), intent(inout) :: self
       type(step_type), intent(in) :: step
       integer, intent(in) :: before, segments
-      class(observer_type), intent(inout), optional :: observer
       type(error_type), allocatable, intent(out) :: error
       type(contact_state_type) :: start
       type(load_type) :: targets(motion_count)
@@ -278,19 +278,23 @@ contains
       integer :: cycles, turns
 
       turns = step%turns()
-      start = self%padded(self%marks(mark_cycle_start))
-      allocate (depth(self%contact%model%nodes()))
-      call find_wear_block(self%contact, self%contact%state%friction_work - start%friction_work, &
-                           step%cycles - self%leg%number/turns + 1, self%load(motion_approach)%control == control_force, &
-                           cycles, depth)
+      do
+         start = self%padded(self%marks(mark_cycle_start))
+         allocate (depth(self%contact%model%nodes()))
+         call find_wear_block(self%contact, self%contact%state%friction_work - start%friction_work, &
+                              step%cycles - self%leg%number/turns + 1, self%load(motion_approach)%control == control_force, &
+                              cycles, depth)
+         if (.not. self%contact%lengthens_for(depth > 0.0_wp)) exit
+         deallocate (depth)
+      end do
       call self%contact%begin_wear(depth)
       targets = self%load
       targets(motion_wear) = load_type(control_displacement, 1.0_wp)
       call self%begin_segment(targets, step, before, segments)
       if (self%contact%model%scene%method%algorithm == algorithm_conventional) then
-         call apply_conventionally(self%contact, self%leg%segment, observer, error)
+         call apply_conventionally(self%contact, self%leg%segment, error=error)
       else
-         call apply_directly(self%contact, self%leg%segment, observer, error)
+         call apply_directly(self%contact, self%leg%segment, error=error)
       end if
       call self%contact%end_wear()
       self%cycles_done = self%cycles_done + cycles - 1
@@ -363,7 +367,8 @@ contains
       class(simulation_type), intent(inout) :: self
       integer :: i
 
-      call self%contact%resume(self%restart%path, self%restart%added)  ! before `steps` below: it may replace the model
+      ! This may rebuild the model, with its scene.
+      call self%contact%resume(self%restart%path, self%restart%added)
       associate (r => self%restart, steps => self%contact%model%scene%steps)
          self%contact%system%solves = r%solves
          self%contact%system%iterations = r%iterations

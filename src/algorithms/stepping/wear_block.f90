@@ -1,29 +1,40 @@
 !> The wear of a block of cycles, from the friction work of one of them.
 !>
-!> The depth of wear per cycle is k p s at every node, with the pressure p and the slip path s of the cycle. Over a block of N cycles
-!> the pressure falls where material is removed. With the slip path of the first cycle and the pressure at the end of the block
-!> (implicit Euler, stable for any N), depth h and change of pressure dp satisfy
+!> The depth of wear per cycle is k p s at every node, with the pressure p and the slip path s of the cycle. Over a block of N
+!> cycles the pressure moves from where material is removed to where it is not, and the contact may grow. With the slip path of the
+!> first cycle and the pressure P at the end of the block (implicit Euler, stable for any N) the depth is h = N k s P, where P
+!> solves the normal contact problem with an additional compliance N k s at every node (Johansson 1994, Int. J. Numer. Meth. Engng
+!> 37, 1393):
 !>
-!>     h = N k s (p + dp),   h - d + C dp = 0,   force of dp = 0 or d = 0,
+!>     gap + C (P - p) - d + N k s P >= 0,   P >= 0,   one of them zero;   force of P = force of p, or d = 0,
 !>
-!> where C is the compliance between the nodes in contact and d the change of the approach. The friction work per unit of surface
-!> gives s (p + dp) as work (1 + dp/p). Johansson (1994, Int. J. Numer. Meth. Engng 37, 1393) integrates wear of elastic contacts in
-!> this way.
+!> where gap is the present one, C the compliance and d the change of the approach. Coupling is neglected here, in the prediction
+!> only. The friction work per unit of surface gives s p. Nodes out of contact have the slip path of the nearest one in contact.
 module mfv_wear_block
    use mfv_compliance, only: block_wp
    use mfv_contact_path, only: contact_path_type
    use mfv_kinds, only: wp
    use mfv_lapack, only: dgesv
+   use mfv_motions, only: motion_approach
    use mfv_node_status, only: in_contact
    use mfv_wear, only: wear_archard
    implicit none
    private
    public :: find_wear_block
 
+   !> The problem of a block: nodes near the contact, their softness k s per cycle, pressure, gap, arm and width, and the compliance
+   !> between them; in terms of the modulus and the length of the mesh.
+   type :: problem_type
+      integer, allocatable :: node(:)
+      real(wp), allocatable :: softness(:), pressure(:), gap(:), arm(:), width(:), compliance(:, :)
+      logical :: presses = .true.
+   end type problem_type
+
 contains
 
    !> The number of cycles of a block, at most `remaining`, and the depth of their wear (length, shape (nodes)), from the friction
-   !> work per unit of surface of its first cycle, whose end is the present state. `presses`: whether the normal force is prescribed.
+   !> work per unit of surface of its first cycle, whose end is the present state. `presses`: whether the normal force is given.
+   !> The contact may reach the end of the mesh: wear beyond it is missing.
    subroutine find_wear_block(path, work, remaining, presses, cycles, depth)
       type(contact_path_type), intent(in) :: path
       real(wp), intent(in) :: work(:)
@@ -32,74 +43,147 @@ contains
       integer, intent(out) :: cycles
       real(wp), intent(out) :: depth(:)
       integer, parameter :: most_trials = 20
-      real(wp), parameter :: safety = 0.9_wp
-      real(wp) :: rate(size(work)), change, fraction
-      integer :: trial
+      real(wp), parameter :: safety = 0.9_wp, smallest = 0.1_wp
+      type(problem_type) :: problem
+      real(wp), allocatable :: pressure(:)
+      real(wp) :: change
+      integer :: trial, margin, n
 
-      associate (wear => path%model%scene%wear, limit => path%model%kinetic_friction)
-         rate = wear%coefficient*max(work, 0.0_wp)
-         if (wear%law == wear_archard) rate = rate/max(limit, tiny(1.0_wp))
-         if (wear%block > 0) then
-            cycles = min(wear%block, remaining)
-            call find_depth(path, rate, real(cycles, wp), presses, depth, change)
-            return
-         end if
-         cycles = remaining
+      depth = 0.0_wp
+      cycles = remaining
+      margin = size(work)/8
+      problem%presses = presses
+      call gather(path, work, margin, problem)
+      if (size(problem%node) == 0) return
+      associate (wear => path%model%scene%wear)
+         if (wear%block > 0) cycles = min(wear%block, remaining)
          do trial = 1, most_trials
-            call find_depth(path, rate, real(cycles, wp), presses, depth, change)
-            if (change <= wear%tolerance .or. cycles == 1) exit
-            fraction = max(0.1_wp, safety*wear%tolerance/change)
-            cycles = max(1, int(fraction*cycles))
+            do
+               call solve(problem, real(cycles, wp), pressure)
+               n = size(pressure)
+               if (max(pressure(1), pressure(n)) <= 0.0_wp .or. margin >= size(work)) exit
+               margin = 2*margin + 1
+               call gather(path, work, margin, problem)
+            end do
+            change = sum(problem%width*abs(pressure - problem%pressure))/sum(problem%width*problem%pressure)
+            if (wear%block > 0 .or. cycles == 1 .or. change <= wear%tolerance) exit
+            cycles = max(1, int(max(smallest, safety*wear%tolerance/change)*cycles))
          end do
       end associate
+      depth(problem%node) = cycles*problem%softness*pressure*path%model%length()
    end subroutine find_wear_block
 
-   !> The depth of wear of `cycles` cycles at the initial rates `rate` (length per cycle), and the largest change of a pressure over
-   !> the largest pressure.
-   subroutine find_depth(path, rate, cycles, presses, depth, change)
+   !> Gather the problem of a block, for the nodes up to `margin` nodes beyond the contact; without nodes if nothing is in contact.
+   subroutine gather(path, work, margin, problem)
       type(contact_path_type), intent(in) :: path
-      real(wp), intent(in) :: rate(:), cycles
-      logical, intent(in) :: presses
-      real(wp), intent(out) :: depth(:), change
-      real(wp), parameter :: touching = 1.0e-6_wp
-      real(wp), allocatable :: matrix(:, :), right(:)
-      real(wp) :: length, stress, softness
-      integer, allocatable :: node(:), pivot(:)
+      real(wp), intent(in) :: work(:)
+      integer, intent(in) :: margin
+      type(problem_type), intent(inout) :: problem
+      real(wp), parameter :: loaded = 1.0e-6_wp
+      logical :: contact(size(work)), known(size(work))
+      real(wp) :: rate(size(work)), softness(size(work)), gap(size(work))
+      integer :: i, first, last
+
+      contact = in_contact(path%state%status)
+      associate (model => path%model, wear => path%model%scene%wear, pressure => path%state%fields%pressure)
+         rate = wear%coefficient*max(work, 0.0_wp)
+         if (wear%law == wear_archard) rate = rate/max(model%kinetic_friction, tiny(1.0_wp))
+         known = contact .and. pressure > loaded*maxval(pressure)
+         first = findloc(known, .true., dim=1)
+         last = findloc(known, .true., dim=1, back=.true.)
+         problem%node = pack([(i, i=max(1, first - margin), min(size(work), last + margin))], &
+                             model%can_touch(max(1, first - margin):min(size(work), last + margin)))
+         if (first == 0) problem%node = [integer ::]
+         do i = 1, size(work)
+            if (known(i)) softness(i) = rate(i)/pressure(i)
+         end do
+         do i = 1, size(problem%node)
+            if (.not. known(problem%node(i))) softness(problem%node(i)) = softness(nearest_true(known, problem%node(i)))
+         end do
+         gap = model%gap(path%state%fields)
+         associate (length => model%length(), stress => model%compliance%modulus, node => problem%node)
+            problem%softness = softness(node)*stress/length
+            problem%pressure = merge(pressure(node), 0.0_wp, contact(node))/stress
+            problem%gap = merge(0.0_wp, gap(node), contact(node))/length
+            problem%arm = model%normal_arm(node, motion_approach)
+            problem%width = model%width(node)/length
+            if (allocated(problem%compliance)) deallocate (problem%compliance)
+            allocate (problem%compliance(size(node), size(node)))
+            call model%compliance%entries(block_wp, node, node, problem%compliance)
+            problem%compliance = problem%compliance*(stress/length)
+         end associate
+      end associate
+   end subroutine gather
+
+   !> The nearest true entry of `mask` to entry `i`; there is one.
+   pure integer function nearest_true(mask, i)
+      logical, intent(in) :: mask(:)
+      integer, intent(in) :: i
+      integer :: j
+
+      nearest_true = i
+      do j = 1, size(mask)
+         nearest_true = max(1, i - j)
+         if (mask(nearest_true)) return
+         nearest_true = min(size(mask), i + j)
+         if (mask(nearest_true)) return
+      end do
+   end function nearest_true
+
+   !> The pressures after `cycles` cycles of wear, by an active set.
+   subroutine solve(problem, cycles, pressure)
+      type(problem_type), intent(in) :: problem
+      real(wp), intent(in) :: cycles
+      real(wp), allocatable, intent(out) :: pressure(:)
+      integer, parameter :: most_passes = 100
+      logical :: active(size(problem%node)), wanted(size(problem%node))
+      real(wp) :: gap(size(problem%node)), approach
+      integer :: pass
+
+      pressure = problem%pressure
+      active = pressure > 0.0_wp
+      do pass = 1, most_passes
+         call solve_active(problem, cycles, active, pressure, approach)
+         gap = problem%gap - approach*problem%arm + matmul(problem%compliance, pressure - problem%pressure) &
+               + cycles*problem%softness*pressure
+         wanted = merge(pressure >= 0.0_wp, gap < 0.0_wp, active)
+         if (all(wanted .eqv. active)) exit
+         active = wanted
+      end do
+      pressure = max(pressure, 0.0_wp)
+   end subroutine solve
+
+   !> The pressures of active nodes, zero elsewhere, and the further approach of the upper body; pressures are unchanged if the
+   !> equations are singular.
+   subroutine solve_active(problem, cycles, active, pressure, approach)
+      type(problem_type), intent(in) :: problem
+      real(wp), intent(in) :: cycles
+      logical, intent(in) :: active(:)
+      real(wp), intent(inout) :: pressure(:)
+      real(wp), intent(out) :: approach
+      real(wp), allocatable :: matrix(:, :), right(:), known(:)
+      integer, allocatable :: at(:), pivot(:)
       integer :: i, m, code
 
-      depth = cycles*rate
-      change = 0.0_wp
-      associate (model => path%model, pressure => path%state%fields%pressure)
-         node = pack([(i, i=1, size(rate))], in_contact(path%state%status))
-         m = size(node)
-         if (m == 0) return
-         length = model%length()
-         stress = model%compliance%modulus
-         allocate (matrix(m + 1, m + 1), right(m + 1), pivot(m + 1))
-         call model%compliance%entries(block_wp, node, node, matrix(:m, :m))
-         matrix(:m, :m) = matrix(:m, :m)*(stress/length)
-         matrix(:m, m + 1) = -model%normal_arm(node, 1)
-         matrix(m + 1, :m) = model%width(node)*model%normal_arm(node, 1)/length
-         matrix(m + 1, m + 1) = 0.0_wp
-         if (.not. presses) then
-            matrix(m + 1, :m) = 0.0_wp
-            matrix(m + 1, m + 1) = 1.0_wp
-         end if
-         do i = 1, m
-            right(i) = -depth(node(i))/length
-            softness = 0.0_wp
-            if (pressure(node(i)) > touching*maxval(pressure)) softness = depth(node(i))/pressure(node(i))
-            matrix(i, i) = matrix(i, i) + softness*(stress/length)
-         end do
-         right(m + 1) = 0.0_wp
-         call dgesv(m + 1, 1, matrix, m + 1, pivot, right, m + 1, code)
-         if (code /= 0) return
-         do i = 1, m
-            if (pressure(node(i)) > touching*maxval(pressure)) &
-               depth(node(i)) = depth(node(i))*max(0.0_wp, 1.0_wp + stress*right(i)/pressure(node(i)))
-         end do
-         change = stress*maxval(abs(right(:m)))/maxval(pressure)
-      end associate
-   end subroutine find_depth
+      at = pack([(i, i=1, size(active))], active)
+      m = size(at)
+      approach = 0.0_wp
+      allocate (matrix(m + 1, m + 1), right(m + 1), pivot(m + 1))
+      known = matmul(problem%compliance, problem%pressure)
+      matrix(:m, :m) = problem%compliance(at, at)
+      do i = 1, m
+         matrix(i, i) = matrix(i, i) + cycles*problem%softness(at(i))
+      end do
+      matrix(:m, m + 1) = -problem%arm(at)
+      right(:m) = known(at) - problem%gap(at)
+      matrix(m + 1, :m) = merge(problem%width(at)*problem%arm(at), 0.0_wp, problem%presses)
+      matrix(m + 1, m + 1) = merge(0.0_wp, 1.0_wp, problem%presses)
+      right(m + 1) = merge(sum(problem%width*problem%arm*problem%pressure), 0.0_wp, problem%presses)
+      call dgesv(m + 1, 1, matrix, m + 1, pivot, right, m + 1, code)
+      if (code /= 0) return
+      pressure = 0.0_wp
+      pressure(at) = right(:m)
+      approach = right(m + 1)
+   end subroutine solve_active
 
 end module mfv_wear_block

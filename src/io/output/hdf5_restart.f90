@@ -165,8 +165,9 @@ contains
       traction = 0.0_wp
       traction(first:last) = [(1.0_wp + sqrt(real(i, wp)), i=1, last - first + 1)]
       call model%compliance%displacements(traction, traction, normal, tangential)
-      ours = reshape([model%x(first:last), model%initial_gap(first:last), model%static_friction(first:last), &
-                      model%kinetic_friction(first:last), normal(first:last), tangential(first:last)], [last - first + 1, 6])
+      ours = reshape([model%x(first:last), model%initial_gap(first:last) - model%worn(first:last), &
+                      model%static_friction(first:last), model%kinetic_friction(first:last), normal(first:last), &
+                      tangential(first:last)], [last - first + 1, 6])
       numbers = reshape(ours, [size(ours)])
       call self%exchange('scene', numbers, 'positions, gaps, coefficients of friction and displacements, to identify the scene')
       if (.not. self%reading .or. allocated(self%error)) return
@@ -325,6 +326,7 @@ contains
             call exchange_visible(self, snapshot%state)
             call exchange_motions(self, snapshot%state, motions(:motion_count)%optional .and. model%moves(:motion_count))
             if (model%tangential) call self%exchange('friction_work', snapshot%state%friction_work, '')
+            if (model%scene%wear%acts()) call self%exchange('wear_depth', snapshot%state%worn, '')
             call self%exchange('step', snapshot%step, '', 1, size(model%scene%steps))
             call self%exchange('reversal', snapshot%reversal, '', 1, huge(1))
             if (allocated(self%error)) return

@@ -1,0 +1,157 @@
+"""Wear: volume, worn profiles, blocks of cycles, and the limits that it tends to."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pytest
+from scenes import HALF_PLANE
+
+import mfv
+
+FORCE, MU, RADIUS, COEFFICIENT = 1.0e-3, 0.5, 1.0, 1.0e-2
+MODULUS = 2.0 / 0.7  # 2 G/(1 - nu), under a rigid cylinder
+HALF_WIDTH = np.sqrt(4.0 * FORCE * RADIUS / (np.pi * MODULUS))
+
+
+def worn(cycles: int, *, steps: list[mfv.Step] | None = None, wear: dict[str, Any] | None = None, **keys: Any) -> mfv.Result:
+    """A cylinder sheared between half the limit of sliding to both sides."""
+    given: dict[str, Any] = {"mesh": mfv.Mesh(nodes=101), "coupling": "none", "friction": mfv.Friction.coulomb(MU), **keys}
+    return mfv.Scene(
+        HALF_PLANE,
+        mfv.Body.disk(RADIUS, rigid=True),
+        wear=mfv.Wear(**{"coefficient": COEFFICIENT, **(wear or {})}),
+        steps=steps or [mfv.Step(normal_force=FORCE), mfv.Step(force_ratio=0.5), mfv.Step(force_ratio=-0.5, cycles=cycles)],
+        output=mfv.Output(states="steps", history="steps"),
+        **given,
+    ).run(check=True)
+
+
+def sliding(cycles: int, **keys: Any) -> mfv.Result:
+    """The cylinder slides to and fro over four times its elastic shift."""
+    steps = [mfv.Step(normal_force=FORCE), mfv.Step(shift=2.0e-3), mfv.Step(shift=-2.0e-3, cycles=cycles)]
+    return worn(cycles, steps=steps, **keys)
+
+
+def test_partial_slip_wears_until_the_stick_zone_carries_the_load() -> None:
+    """Ciavarella and Hills 1999, J. Strain Anal. 34, 131; Hills, Ramesh, Barber and Moore 2018: the slip zones lose their pressure,
+    the stick zone and its profile stay. The parabola then touches over the half-width c of the stick zone, whose ends are sharp:
+    p = 2 P_c sqrt(c^2 - x^2)/(pi c^2) + (P - P_c)/(pi sqrt(c^2 - x^2)), with Hertz's force P_c of the half-width c."""
+    edge = HALF_WIDTH * np.sqrt(0.5)
+    hertz = np.pi * MODULUS * edge**2 / (4.0 * RADIUS)
+    errors = []
+    for nodes in (101, 201):
+        press, shear = mfv.Step(normal_force=FORCE), mfv.Step(force_ratio=0.5)
+        steps = [press, shear, *(mfv.Step(force_ratio=-0.5, cycles=cycles) for cycles in (1000000, 2))]
+        result = worn(0, steps=steps, wear={"coefficient": 1.0}, mesh=mfv.Mesh(nodes=nodes))
+        x, pressure = result.mesh.x, result.state.pressure
+        inner = np.abs(x) < 0.8 * edge
+        root = np.sqrt(edge**2 - x[inner] ** 2)
+        expected = 2.0 * hertz * root / (np.pi * edge**2) + (FORCE - hertz) / (np.pi * root)
+        errors.append(np.max(np.abs(pressure[inner] / expected - 1.0)))
+        assert result.cycles.dissipation[-1] < 1e-3 * result.cycles.dissipation[0]
+        stuck = np.abs(x[(result.state.status == mfv.NodeStatus.STICK) & (pressure > 0.01 * pressure.max())])
+        assert stuck.max() == pytest.approx(edge, abs=result.mesh.interval)
+        assert result.state.wear_depth[np.abs(x) < edge - result.mesh.interval].max() < 1e-6 * result.state.wear_depth.max()
+        assert result.summary.largest_residual < 1e-9
+    assert errors[1] < 3e-3 and errors[0] > 1.5 * errors[1]
+
+
+@pytest.mark.parametrize("run", [worn, sliding])
+def test_the_worn_surfaces_pressed_anew_have_the_same_pressure(run: Any) -> None:
+    result = run(300)
+    x = result.mesh.x
+    profile = RADIUS - np.sqrt(RADIUS**2 - x**2) + result.state.wear_depth
+    assert result.state.wear_depth.max() > 1e-3 * HALF_WIDTH**2
+    again = mfv.Scene(
+        HALF_PLANE,
+        mfv.Body.profile(np.r_[x[0] - 1e-3, x, x[-1] + 1e-3], np.r_[profile[0], profile, profile[-1]], rigid=True),
+        mesh=mfv.Mesh(nodes=len(x), half_width=0.5 * len(x) * result.mesh.interval),
+        steps=[mfv.Step(normal_force=FORCE)],
+    ).run(check=True)
+    assert np.allclose(again.state.pressure, result.state.pressure, atol=2e-4 * result.state.pressure.max())
+
+
+def test_the_worn_volume_is_that_of_the_friction_work() -> None:
+    for run in (worn, sliding):
+        result = run(64, wear={"block": 1})
+        assert len(result.cycles.cycle) == 64
+        width, depth = result.mesh.width, result.state.wear_depth
+        assert result.observables.worn_area == pytest.approx(np.sum(width * depth), rel=1e-12)
+        assert result.observables.wear_depth == depth.max()
+        assert result.observables.worn_area == pytest.approx(COEFFICIENT / MU * result.cycles.dissipation.sum(), rel=2e-3)
+        assert np.allclose(np.diff(result.cycles.worn_area), COEFFICIENT / MU * result.cycles.dissipation[:-1], rtol=1e-2)
+
+
+def test_the_size_of_the_blocks_has_an_error_of_first_order() -> None:
+    areas = [sliding(256, wear={"block": block}).observables.worn_area for block in (32, 16, 8, 4)]
+    first, second, third = np.diff(areas)
+    assert 1.6 < first / second < 2.6 and 1.6 < second / third < 2.6
+    limit = 2.0 * areas[-1] - areas[-2]
+    chosen = [abs(sliding(256, wear={"tolerance": tolerance}).observables.worn_area / limit - 1.0) for tolerance in (0.1, 0.025)]
+    assert chosen[1] < 0.5 * chosen[0] < 1e-3
+
+
+def test_a_scar_grows_to_the_width_of_its_volume() -> None:
+    """Worn far beyond Hertz's contact, the flat is a chord of the cylinder: area 2 a^3/(3 R), under a uniform pressure. Every point
+    slides over 4 (U - U_e) in a cycle, U_e the elastic shift at the limit of sliding."""
+    result = sliding(100000, wear={"coefficient": 1.0e-3})
+    half_width = 0.5 * result.observables.contact_length
+    assert half_width > 3.0 * HALF_WIDTH
+    assert half_width == pytest.approx((1.5 * RADIUS * result.observables.worn_area) ** (1.0 / 3.0), rel=0.02)
+    inside = np.abs(result.mesh.x) < 0.8 * half_width
+    assert np.allclose(result.state.pressure[inside], FORCE / (2.0 * half_width), rtol=0.1)
+    path = 4.0 * (2.0e-3 - result.cycles.force_amplitude / result.cycles.tangential_stiffness)
+    cycles = result.cycles.block
+    assert result.observables.worn_area == pytest.approx(1.0e-3 * FORCE * np.sum(cycles * path), rel=0.03)
+
+
+@pytest.mark.parametrize("coupling", ["full", "goodman"])
+def test_solvers_and_laws_of_wear_agree(coupling: Any) -> None:
+    usual = worn(200, coupling=coupling)
+    assert usual.summary.largest_residual < 1e-9
+    for solver in ("dgesv", "fft"):
+        other = worn(200, coupling=coupling, solver=mfv.Solver(linear_solver=solver))
+        assert np.allclose(other.state.wear_depth, usual.state.wear_depth, atol=1e-8 * usual.state.wear_depth.max())
+        assert np.array_equal(other.cycles.block, usual.cycles.block)
+    work = worn(200, coupling=coupling, wear={"law": "work", "coefficient": COEFFICIENT / MU})
+    assert np.allclose(work.state.wear_depth, usual.state.wear_depth, rtol=1e-9)
+
+
+def test_a_saved_state_brings_back_the_surfaces() -> None:
+    scene = mfv.Scene(
+        HALF_PLANE,
+        mfv.Body.disk(RADIUS, rigid=True),
+        coupling="none",
+        friction=mfv.Friction.coulomb(MU),
+        mesh=mfv.Mesh(nodes=61, half_width=0.04),
+        wear=mfv.Wear(coefficient=COEFFICIENT),
+        output=mfv.Output(states="none", history="none"),
+    )
+    with scene.contact() as case:
+        case.advance(normal_force=FORCE)
+        case.advance(tangential_force=2.0e-4)
+        case.advance(tangential_force=-2.0e-4, cycles=50)
+        saved, depth = case.save(), np.array(case["state/wear_depth"])
+        case.advance(tangential_force=-2.0e-4, cycles=500)
+        first = np.array(case["state/pressure"])
+        assert np.max(case["state/wear_depth"]) > 1.5 * depth.max()
+        case.restore(saved)
+        assert np.array_equal(case["state/wear_depth"], depth)
+        case.advance(tangential_force=-2.0e-4, cycles=500)
+        assert np.allclose(case["state/pressure"], first, rtol=0.0, atol=1e-10 * first.max())
+
+
+def test_invalid_wear() -> None:
+    def refusal(**keys: Any) -> str:
+        with pytest.raises(mfv.errors.InputError) as raised:
+            worn(2, **keys)
+        return str(raised.value)
+
+    assert "needs a &friction law" in refusal(friction=None, steps=[mfv.Step(normal_force=FORCE, cycles=2)])
+    assert "has no effect without a step with cycles" in refusal(steps=[mfv.Step(normal_force=FORCE)])
+    assert "use law='work'" in refusal(friction=mfv.Friction.dahl(MU, 1.0e3))
+    assert "has no effect with block" in refusal(wear={"block": 2, "tolerance": 0.1})
+    with pytest.raises(mfv.errors.InputError, match="&wear: coefficient is missing"):
+        mfv.run(text=worn(2).attributes["input"].replace("coefficient=0.01", "block=2"))
