@@ -180,6 +180,22 @@ int mfv_get_loads(const mfv_case *handle, mfv_loads *loads);
  * MFV_NO_CONTINUATION. Since 0.1.0. */
 int mfv_tangent(mfv_case *handle, int motions, const double *direction, double *tangent);
 
+/* Derive all further states with respect to parameters, by their names separated by blanks: real keys of &body and &friction, such
+ * as "body(2)%radius friction%mu", before the first step; targets of steps to come, such as "step(2)%shift", or "shift" for that of
+ * the next step. They replace those of an earlier call ("": none); the state so far is taken to be independent of them. The
+ * derivatives are propagated through all events, at one linear solve for each event and parameter (not counted in mfv_loads). The
+ * mesh and all other targets, also relative ones, are held. MFV_BAD_ARGUMENT for an unknown or passed parameter, with large
+ * increments, the conventional algorithm, wear, and laws other than Coulomb's. Since 0.10.0. */
+int mfv_differentiate(mfv_case *handle, const char *parameters);
+
+/* Derivatives of the present state with respect to parameter `index` (from 0): force, motion and dissipation of `loads`, and
+ * pressure and shear traction of the nodes, whose number is `count`. linear_solves of `loads` are those for derivatives so far, events
+ * the number of loads at which several nodes changed their status together but would not at another value of the parameter, such as a
+ * moment in a symmetric contact: if it is not 0 the derivative is approximate. The other counts are 0. loads, pressure and shear may be
+ * NULL. Units: of these over that of the parameter. MFV_BAD_ARGUMENT if there are none, as after a step that ended early. Since
+ * 0.10.0. */
+int mfv_derivative(const mfv_case *handle, size_t index, mfv_loads *loads, size_t count, double *pressure, double *shear);
+
 /* Save the present state in *state (created if it is NULL, else overwritten), and restore it: the case then continues bit-identically
  * from it, also after an early end. History, steps and cycles are restored as well; error bars are discarded. With history='none'
  * and states='none' in &output, saved states can be restored in any order, in this case and its copies; otherwise only a state that

@@ -36,6 +36,29 @@ cc -O2 -I"$root/include" "$root/examples/hosts/newmark.c" -o newmark -L"$library
 PYTHONPATH=$root/python MPLBACKEND=Agg MFV_LIBRARY=$library/libmfv.so OPENBLAS_NUM_THREADS=1 \
   "$venv/bin/python" "$root/examples/hosts/draw_newmark.py" newmark -o "$pictures/newmark_decay.png"
 PYTHONPATH=$root/python MPLBACKEND=Agg MFV_LIBRARY=$library/libmfv.so "$venv/bin/python" "$root/examples/microslip.py" -o "$pictures/microslip.png"
+for example in joint_models hosts/joint_host; do
+  PYTHONPATH=$root/python MPLBACKEND=Agg MFV_LIBRARY=$library/libmfv.so OPENBLAS_NUM_THREADS=1 \
+    "$venv/bin/python" "$root/examples/$example.py" -o "$pictures/${example#hosts/}.png"
+done
+PYTHONPATH=$root/python MPLBACKEND=Agg MFV_LIBRARY=$library/libmfv.so "$venv/bin/python" "$root/examples/identification.py" -o "$pictures/identify.png"
+PYTHONPATH=$root/python MPLBACKEND=Agg MFV_LIBRARY=$library/libmfv.so "$venv/bin/python" "$root/examples/fretting_lives.py" \
+  -o "$pictures/fretting_lives.png" >/dev/null
+# Fatigue parameters below a pad.
+PYTHONPATH=$root/python MPLBACKEND=Agg MFV_LIBRARY=$library/libmfv.so "$venv/bin/python" - "$root/examples/fretting_fatigue.nml" "$pictures" <<'END'
+import sys
+
+import matplotlib.pyplot as plt
+
+import mfv
+from mfv import fatigue
+
+result = mfv.run(sys.argv[1])
+cycle = fatigue.stress_cycle(result, *fatigue.graded_points(result, depth=0.6))
+figure, axes = plt.subplots(1, 2, figsize=(9.5, 2.2), layout="constrained")
+for parameter, ax in zip((fatigue.smith_watson_topper(cycle), fatigue.fatemi_socie(cycle, yield_strength=325)), axes):
+    mfv.plot.parameter_contours(parameter, ax, colour_bar=True).set_xlim(-2.6, -0.2)
+figure.savefig(f"{sys.argv[2]}/fatigue_maps.png", dpi=120)
+END
 PYTHONPATH=$root/python MPLBACKEND=Agg MFV_LIBRARY=$library/libmfv.so "$venv/bin/python" "$root/examples/wear.py" "$pictures/wear.png" "$pictures/wear.gif"
 # Figures of the dissertation, into examples/dissertation/pictures.
 PYTHONPATH=$root/python MPLBACKEND=Agg MFV_LIBRARY=$root/build/release/lib/libmfv.so "$venv/bin/python" "$root/examples/dissertation/draw.py"

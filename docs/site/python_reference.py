@@ -10,7 +10,12 @@ def write_python_reference(package: Path, folder: Path) -> None:
     """Write python/index.md and a page for every public module below `folder`, the source of the site."""
     pages = folder / "python"
     pages.mkdir()
-    paths = [path for pattern in ("*.py", "studies/*.py") for path in package.glob(pattern) if not path.stem.startswith("_")]
+    paths = [
+        path
+        for pattern in ("*.py", "fatigue/*.py", "joint/*.py", "studies/*.py")
+        for path in package.glob(pattern)
+        if not path.stem.startswith("_")
+    ]
     modules = sorted(".".join(path.relative_to(package.parent).with_suffix("").parts) for path in paths)
     lines = ["# Python modules", "", *_module(package.name, ":no-members:"), "", "| module | what it is |", "| --- | --- |"]
     for name in modules:

@@ -1,10 +1,10 @@
 """MFV: two-dimensional frictional elastic contact by the Method of First Violation.
 
-`Scene` with `Body`, `Mesh`, `Friction`, `Step`, `Solver` and `Output` defines bodies and loads; `run` solves it, `Case` advances it
-step by step; `study` solves many cases; `read` reads a result file, `stress` computes stresses inside the bodies, `plot` draws
+`Scene` with `Body`, `Mesh`, `Friction`, `Step`, `Solver` and `Output` defines bodies and loads; `run` solves it, `Case` advances
+it step by step; `study` solves many cases; `read` reads a result file, `stress` computes stresses inside the bodies, `plot` draws
 results, `animate` and `report` make animations and web pages, `compare` and `comparison_figure` compare two results,
-`load_history` has intermediate states, `template` commented cases, `reference` closed forms. Reading and drawing do not need the
-shared library.
+`load_history` has intermediate states, `identify` estimates parameters from measured loops, `joint` makes elements for structures,
+`fatigue` predicts lives, `template` commented cases, `reference` has closed forms. Reading and drawing do not need the shared library.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ from ._library import has_feature, library_version
 from .case import Case, State, Trial, run
 from .codes import EventKind, NodeStatus
 from .errors import LibraryNotFound, MfvError, NotAResult
-from .loads import Loads, Progress
+from .loads import Derivative, Loads, Progress
 from .result import Group, Result, read
 from .scene import Body, Friction, History, Mesh, Output, Scene, Solver, Step, Wear
 from .studies import Axis, Study, study
@@ -32,6 +32,7 @@ __all__ = [
     "Axis",
     "Body",
     "Case",
+    "Derivative",
     "EventKind",
     "Friction",
     "Group",
@@ -68,7 +69,18 @@ __version__ = _version_file.read_text().strip() if _version_file.is_file() else 
 
 
 #: Modules that are loaded on first use, so that matplotlib is loaded for drawing only.
-_ON_FIRST_USE = ("animate", "compare", "comparison_figure", "load_history", "plot", "report", "template")
+_ON_FIRST_USE = (
+    "animate",
+    "compare",
+    "comparison_figure",
+    "fatigue",
+    "identify",
+    "joint",
+    "load_history",
+    "plot",
+    "report",
+    "template",
+)
 
 
 def __getattr__(name: str) -> ModuleType:

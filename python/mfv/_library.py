@@ -139,6 +139,8 @@ SIGNATURES: dict[str, tuple[type, ...]] = {
     "mfv_message": (c_int, _handle, _text, c_size_t),
     "mfv_get_loads": (c_int, _handle, POINTER(LoadsStructure)),
     "mfv_tangent": (c_int, _handle, c_int, _array, _array),
+    "mfv_differentiate": (c_int, _handle, _text),
+    "mfv_derivative": (c_int, _handle, c_size_t, POINTER(LoadsStructure), c_size_t, _array, _array),
     "mfv_save": (c_int, _handle, _handle_slot),
     "mfv_restore": (c_int, _handle, _state),
     "mfv_state_free": (c_int, _handle_slot),

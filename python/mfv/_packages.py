@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import sys
+from importlib import import_module
 from importlib.util import find_spec
 from pathlib import Path
+from types import ModuleType
 
 #: Packages without which this one cannot be imported.
 REQUIRED = ("numpy", "h5py", "f90nml")
@@ -15,6 +17,9 @@ TOGETHER = (
     ("plotly", "jinja2"),
     ("xarray", "h5netcdf", "threadpoolctl"),
     ("dask", "distributed"),
+    ("scipy",),
+    ("scipy", "emcee"),
+    ("scipy", "pylife"),
 )
 
 
@@ -22,6 +27,14 @@ def how_to_install(package: str) -> str:
     """The command that installs a package and related ones for this Python."""
     packages = next((group for group in TOGETHER if package in group), (package,))
     return f'"{sys.executable}" -m pip install {" ".join(repr(name) for name in packages)}'
+
+
+def needed(module: str) -> ModuleType:
+    """A module of an optional package, imported on first use. Raises ModuleNotFoundError with the command that installs it."""
+    package = module.split(".")[0]
+    if find_spec(package) is None:
+        raise ModuleNotFoundError(f"the Python package {package} is not installed: {how_to_install(package)}", name=package)
+    return import_module(module)
 
 
 def check_required() -> None:

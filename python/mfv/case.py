@@ -34,7 +34,7 @@ from ._library import (
     whole_text,
 )
 from ._observer import Observer
-from .loads import MOTIONS, Loads, Progress, Targets
+from .loads import MOTIONS, Derivative, Loads, Progress, Targets
 from .result import Field, Result, Values
 from .scene import Scene, created
 
@@ -180,6 +180,7 @@ class Case:
         self._loads = LoadsStructure(size=ctypes.sizeof(LoadsStructure))
         self._loads_reference = byref(self._loads)
         self._spare_states: list[State] = []
+        self._parameters: tuple[str, ...] = ()
         self._x = np.empty(0)
         self._is_long = self._count("mesh/x") >= MANY_NODES or self._attribute("friction_law") in LONG_LAWS
 
@@ -214,7 +215,7 @@ class Case:
         with self._lock:
             self._call("mfv_copy", byref(handle))
             copied = Case._of_handle(handle)
-            copied._scene, copied._status = self._scene, self._status
+            copied._scene, copied._status, copied._parameters = self._scene, self._status, self._parameters
         return copied
 
     def close(self) -> None:
@@ -329,6 +330,33 @@ class Case:
         tangent = np.empty((motions, motions))
         self._call("mfv_tangent", motions, towards, real_pointer(tangent))
         return tangent
+
+    def differentiate(self, *parameters: str) -> None:
+        """Derive all further states with respect to parameters, in place of those of an earlier call (none: stop).
+
+        Real keys of &body and &friction, such as 'body(2)%radius' or 'friction%mu', before the first step; and targets of steps
+        to come, such as 'step(2)%shift', or 'shift' for that of the next step. The state so far is taken to be independent of
+        them. The derivatives are propagated through all events, at one linear solve for each event and parameter. The mesh and
+        all other targets, also relative ones, are held. Raises BadArgument for an unknown or passed parameter, with large
+        increments (accuracy), the conventional algorithm, wear, and friction laws other than Coulomb's.
+        """
+        self._call("mfv_differentiate", text_for(" ".join(parameters)))
+        self._parameters = parameters
+
+    @property
+    def derivatives(self) -> dict[str, Derivative]:
+        """Derivatives of the present state with respect to the parameters of `differentiate`, by their names there.
+
+        Raises BadArgument if there are none, as after a step that ended early.
+        """
+        found: dict[str, Derivative] = {}
+        with self._lock:
+            for number, name in enumerate(self._parameters):
+                loads = LoadsStructure(size=ctypes.sizeof(LoadsStructure))
+                pressure, shear = np.empty((2, self._count("mesh/x")))
+                self._call("mfv_derivative", number, byref(loads), pressure.size, real_pointer(pressure), real_pointer(shear))
+                found[name] = Derivative(Loads._make(LoadsStructure.unpack(loads)[1:-1]), pressure, shear)
+        return found
 
     def save(self, state: State | None = None) -> State:
         """Save the present state for `restore`. `state`: overwrite this one, which avoids an allocation."""

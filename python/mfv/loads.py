@@ -4,6 +4,9 @@ from __future__ import annotations
 
 from typing import NamedTuple, TypedDict
 
+import numpy as np
+from numpy.typing import NDArray
+
 
 class Motion(NamedTuple):
     """A motion of the upper body, or a bulk stress, and its conjugate force: the names of keys, fields and attributes."""
@@ -61,6 +64,17 @@ class Loads(NamedTuple):
     slip_nodes: int
     events: int  #: number of loads so far at which nodes changed their status
     linear_solves: int  #: so far
+
+
+class Derivative(NamedTuple):
+    """Derivatives of a state with respect to a parameter; units: of these over that of the parameter."""
+
+    #: Of forces, motions and dissipation; `linear_solves`: those for derivatives so far; `events`: number of loads at which several
+    #: nodes changed their status together, but would not at another value of the parameter, such as a moment in a symmetric
+    #: contact: if it is not 0 the derivative is approximate. The other counts are 0.
+    loads: Loads
+    pressure: NDArray[np.float64]  #: of the nodes [force/length^2 over the parameter], an array (nodes,)
+    shear: NDArray[np.float64]  #: the same of the shear traction
 
 
 class Progress(NamedTuple):

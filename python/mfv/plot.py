@@ -1,7 +1,7 @@
 """Pictures of results: numbers as points, closed forms as lines.
 
-`pressure`, `shear`, `surfaces`, `loop`, `nonlinear_loop`, `friction_work`, `turning`, `rolling` and `stress_contours` draw into axes of yours, or
-new ones, and return them; `figure` makes a picture of what a result has, `cycles_figure` one of its cycles, `stress_figure` one of the
+`pressure`, `shear`, `surfaces`, `loop`, `nonlinear_loop`, `friction_work`, `turning`, `rolling`, `stress_contours` and `parameter_contours` draw into axes
+of yours, or new ones, and return them; `figure` makes a picture of what a result has, `cycles_figure` one of its cycles, `stress_figure` one of the
 stresses inside a body.
 """
 
@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import textwrap
 from collections.abc import Iterator, Sequence
-from typing import Any, Callable
+from typing import TYPE_CHECKING, Any, Callable
 
 import matplotlib
 import numpy as np
@@ -24,6 +24,9 @@ from .codes import EventKind, NodeStatus
 from .result import Group, Result, counts, is_last
 from .stress import NAMES, StressField, grid, stored
 from .views import contact, friction_limits, has_friction, has_last_normal_force, heights, is_named, limit_of_friction
+
+if TYPE_CHECKING:
+    from .fatigue import ParameterMap
 
 #: Colours from Okabe and Ito, distinguishable with colour blindness.
 NUMBERS, CLOSED_FORM, SURFACE, MARKS = "#0072B2", "#D55E00", "#009E73", "#000000"
@@ -286,6 +289,29 @@ def stress_contours(
             label = f"{STRESS_LABELS[name]}{f' [{_unit(units[1]).strip()}]' if _unit(units[1]) else ''}"
         beside = ax.inset_axes((1.02, 0.0, 0.025, 1.0))  # as high as the axes, which keep their aspect
         ax.figure.colorbar(contours, cax=beside, label=label)
+    return ax
+
+
+def parameter_contours(field: ParameterMap, ax: Axes | None = None, *, colour_bar: bool = False) -> Axes:
+    """Contours of a fatigue parameter on a grid, in the units of the case, with its maximum marked and there a line along the critical
+    plane. `colour_bar`: with a scale beside them."""
+    ax = _axes(ax)
+    values = np.ma.masked_invalid(field.values)
+    levels = MaxNLocator(15).tick_values(0.0, float(values.max()))
+    contours = ax.contourf(field.x, field.y, values, levels=levels, cmap="viridis")
+    peak = field.maximum
+    if np.isfinite(peak.angle):  # the plane is normal to (cos, sin) of the angle
+        ends = 0.1 * np.ptp(field.x) * np.array([-np.sin(peak.angle), np.cos(peak.angle)]) * np.array([[0.0], [1.0]])
+        into_body = -1.0 if ends[1, 1] > 0.0 and np.mean(field.y) < peak.y else 1.0
+        ax.plot(peak.x + into_body * ends[:, 0], peak.y + into_body * ends[:, 1], color="white", linewidth=1.5)
+    angle = f", {np.degrees(peak.angle) + 0.0:.0f}\N{DEGREE SIGN}" if np.isfinite(peak.angle) else ""
+    ax.plot(peak.x, peak.y, "x", color="white", markersize=7, clip_on=False, zorder=5)
+    ax.set_title(f"{field.name}: {peak.value:.4g} at ({_signed(peak.x)}, {_signed(peak.y)}){angle}", fontsize=10)
+    ax.set_aspect("equal")
+    ax.set_xlabel("$x$")
+    ax.set_ylabel("$y$")
+    if colour_bar:
+        ax.figure.colorbar(contours, cax=ax.inset_axes((1.02, 0.0, 0.025, 1.0)), ticks=levels[::4])
     return ax
 
 

@@ -4,6 +4,7 @@ module mfv_contact
    use, intrinsic :: iso_fortran_env, only: int64
    use mfv_case, only: case_type
    use mfv_case_checksum, only: find_case_checksum
+   use mfv_case_parameters, only: read_parameters
    use mfv_case_reader, only: read_case_file, read_case_text
    use mfv_clock, only: seconds_now
    use mfv_contact_fields, only: contact_fields_type
@@ -11,6 +12,7 @@ module mfv_contact
    use mfv_discretisation_error, only: estimate_error, has_coarser_meshes
    use mfv_motions, only: motions, motion_count, user_motions, motion_approach, motion_shift, motion_rotation, motion_lower_bulk, &
                           motion_upper_bulk, control_keep, control_force, control_displacement
+   use mfv_derivatives, only: parameter_type
    use mfv_sensitivity, only: find_sensitivity
    use mfv_draft, only: draft_type
    use mfv_error, only: error_type, set_error
@@ -33,7 +35,8 @@ module mfv_contact
    use mfv_validity, only: validity_warnings
    implicit none
    private
-   public :: contact_type, loads_type, read_contact, read_contact_text, new_contact, step_to, body_lower, body_upper
+   public :: contact_type, loads_type, derivative_type, read_contact, read_contact_text, new_contact, step_to, body_lower, &
+             body_upper
 
    integer, parameter :: body_lower = 0, body_upper = 1
    !> Invalid control: a force and a displacement for one direction.
@@ -46,6 +49,17 @@ module mfv_contact
       real(wp) :: force(user_motions) = 0.0_wp, motion(user_motions) = 0.0_wp, dissipation = 0.0_wp
       integer :: contact_nodes = 0, stick_nodes = 0, slip_nodes = 0, events = 0, linear_solves = 0
    end type loads_type
+
+   !> Derivatives of a state with respect to a parameter: of the loads and motions, as in loads_type, of the dissipation, and of the
+   !> pressure and shear traction of every node, shape (nodes); units: of these over that of the parameter.
+   type :: derivative_type
+      real(wp) :: force(user_motions) = 0.0_wp, motion(user_motions) = 0.0_wp, dissipation = 0.0_wp
+      real(wp), allocatable :: pressure(:), shear(:)
+      !> Number of loads so far at which several nodes changed their status together, but would not at another value of the
+      !> parameter: if it is not 0 the derivative is approximate. Linear solves so far for derivatives, which those of loads_type do
+      !> not contain.
+      integer :: separated_events = 0, linear_solves = 0
+   end type derivative_type
 
    type :: contact_type
       type(case_type) :: case
@@ -74,6 +88,8 @@ module mfv_contact
       procedure :: get_message
       procedure :: loads
       procedure :: get_tangent
+      procedure :: differentiate
+      procedure :: get_derivative
       procedure :: keep
       procedure :: come_back
       procedure :: field_paths
@@ -509,6 +525,56 @@ contains
       end if
       call find_tangent(self%simulation%contact, tangent, error, direction)
    end subroutine get_tangent
+
+   !> Derive all further states with respect to parameters, in place of those of an earlier call: keys of &body and &friction, such
+   !> as body(2)%radius, before the first step; targets of steps to come, such as step(2)%shift, or shift for the next step. None:
+   !> no derivatives. Until then the state is taken to be independent of them. Error MFV_BAD_ARGUMENT.
+   subroutine differentiate(self, names, error)
+      class(contact_type), intent(inout) :: self
+      type(string_type), intent(in) :: names(:)
+      type(error_type), allocatable, intent(out) :: error
+      type(parameter_type), allocatable :: parameters(:)
+
+      call self%expect_made(error)
+      if (allocated(error)) return
+      call self%refine()
+      call read_parameters(self%case, self%simulation, names, parameters, error)
+      if (.not. allocated(error)) call self%simulation%contact%differentiate(parameters)
+   end subroutine differentiate
+
+   !> The derivatives of the present state with respect to parameter `number` of differentiate. Error MFV_BAD_ARGUMENT: there are
+   !> none.
+   subroutine get_derivative(self, number, derivative, error)
+      class(contact_type), intent(in) :: self
+      integer, intent(in) :: number
+      type(derivative_type), intent(out) :: derivative
+      type(error_type), allocatable, intent(out) :: error
+
+      call self%expect_made(error)
+      if (allocated(error)) return
+      if (.not. allocated(self%simulation%contact%derivatives)) then
+         call set_error(error, MFV_BAD_ARGUMENT, 'there are no derivatives; name their parameters first')
+         return
+      end if
+      associate (derivatives => self%simulation%contact%derivatives)
+         if (derivatives%fault /= '') then
+            call set_error(error, MFV_BAD_ARGUMENT, 'the derivatives are not known: '//derivatives%fault)
+         else if (number < 1 .or. number > size(derivatives%fields)) then
+            call set_error(error, MFV_BAD_ARGUMENT, 'there is no parameter '//to_text(number)//'; there are '// &
+                           to_text(size(derivatives%fields)))
+         else
+            associate (fields => derivatives%fields(number))
+               derivative%force = fields%force(:user_motions)
+               derivative%motion = fields%motion(:user_motions)
+               derivative%dissipation = derivatives%dissipation(number)
+               derivative%pressure = fields%pressure
+               derivative%shear = fields%shear
+               derivative%separated_events = derivatives%separated(number)
+               derivative%linear_solves = derivatives%solves
+            end associate
+         end if
+      end associate
+   end subroutine get_derivative
 
    !> Save the present state.
    subroutine keep(self, kept)

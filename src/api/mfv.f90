@@ -3,7 +3,8 @@
 !> - draft_type: scene builder, `call draft%set('body(2)%radius', 0.25_wp)`; read_draft: from a text
 !> - contact_type: a case with its state, from new_contact (scene builder), read_contact (file) or read_contact_text
 !> - contact%run, contact%advance with step_to(...); contact%loads(), contact%get('state/pressure', values, error)
-!> - contact%get_tangent; contact%keep and contact%come_back with a kept_state_type
+!> - contact%get_tangent; contact%differentiate and contact%get_derivative
+!> - contact%keep and contact%come_back with a kept_state_type
 !> - contact%find_interior: interior%all_stresses, largest_von_mises, largest_tension; contact%write
 !> - observer_type: extend it to follow every increment
 !> - error_type: what went wrong; the MFV_... statuses with status_outcome and status_explanation
@@ -11,7 +12,8 @@
 !> Units: any consistent set; forces and energies per unit thickness. Objects are independent of each other: one thread an object at
 !> a time.
 module mfv
-   use mfv_contact, only: contact_type, loads_type, new_contact, read_contact, read_contact_text, step_to, body_lower, body_upper
+   use mfv_contact, only: contact_type, derivative_type, loads_type, new_contact, read_contact, read_contact_text, step_to, &
+                          body_lower, body_upper
    use mfv_contact_state, only: contact_state_type
    use mfv_draft, only: draft_type, read_draft
    use mfv_error, only: error_type

@@ -5,7 +5,7 @@ module mfv_c
    use, intrinsic :: ieee_arithmetic, only: ieee_is_finite, ieee_quiet_nan, ieee_value
    use, intrinsic :: iso_c_binding
    use mfv_case_keys, only: case_catalogue
-   use mfv_contact, only: contact_type, loads_type, new_contact, read_contact, read_contact_text
+   use mfv_contact, only: contact_type, derivative_type, loads_type, new_contact, read_contact, read_contact_text
    use mfv_contact_state, only: contact_state_type
    use mfv_draft, only: draft_type, read_draft
    use mfv_error, only: error_type, set_error
@@ -23,7 +23,7 @@ module mfv_c
    use mfv_scene, only: step_type
    use mfv_status
    use mfv_stress_search, only: largest_tension, largest_type, largest_von_mises
-   use mfv_strings, only: copy_to_c, string_type, to_text
+   use mfv_strings, only: copy_to_c, list_of_words, string_type, to_text
    use mfv_version, only: library_version
    implicit none
    private
@@ -609,6 +609,43 @@ contains
       status = failed(self, error)
       if (status == MFV_COMPLETE) tangent = transpose(found(:motions, :motions))
    end function mfv_tangent_unguarded
+
+   integer(c_int) function mfv_differentiate_unguarded(handle, parameters) result(status) bind(C)
+      type(c_ptr), value :: handle, parameters
+      type(handle_type), pointer :: self
+      type(error_type), allocatable :: error
+
+      call c_f_pointer(handle, self)
+      status = expected(self, c_associated(parameters), 'mfv_differentiate: parameters is null')
+      if (status /= MFV_COMPLETE) return
+      call self%contact%differentiate(list_of_words(text_in(parameters)), error)
+      status = failed(self, error)
+   end function mfv_differentiate_unguarded
+
+   integer(c_int) function mfv_derivative_unguarded(handle, index, loads, count, pressure, shear) result(status) bind(C)
+      type(c_ptr), value :: handle
+      integer(c_size_t), value :: index, count
+      type(c_loads), intent(inout), optional :: loads
+      real(c_double), intent(inout), optional :: pressure(count), shear(count)
+      type(handle_type), pointer :: self
+      type(derivative_type) :: derivative
+      type(error_type), allocatable :: error
+
+      call c_f_pointer(handle, self)
+      call self%contact%get_derivative(int(min(index, most - 1)) + 1, derivative, error)
+      status = failed(self, error)
+      if (status /= MFV_COMPLETE) return
+      if (present(pressure) .or. present(shear)) &
+         status = expected(self, count == size(derivative%pressure), 'mfv_derivative: count must be the number of nodes, '// &
+                           to_text(size(derivative%pressure)))
+      if (status /= MFV_COMPLETE) return
+      if (present(loads)) status = expected(self, loads%size == c_sizeof(loads), 'mfv_derivative: size is not sizeof(mfv_loads)')
+      if (status /= MFV_COMPLETE) return
+      if (present(loads)) loads = c_loads(loads%size, derivative%force, derivative%motion, derivative%dissipation, 0, 0, 0, &
+                                          derivative%separated_events, derivative%linear_solves, 0)
+      if (present(pressure)) pressure = derivative%pressure
+      if (present(shear)) shear = derivative%shear
+   end function mfv_derivative_unguarded
 
    integer(c_int) function mfv_save_unguarded(handle, state) result(status) bind(C)
       type(c_ptr), value :: handle

@@ -159,6 +159,14 @@ ROW(mfv_advance) { return mfv_advance(OR_NULL(0, b->handle), OR_NULL(1, &b->step
 ROW(mfv_message) { return mfv_message(OR_NULL(0, b->handle), OR_NULL(1, b->buffer), ROOM); }
 ROW(mfv_get_loads) { return mfv_get_loads(OR_NULL(0, b->handle), OR_NULL(1, &b->loads)); }
 ROW(mfv_tangent) { return mfv_tangent(OR_NULL(0, b->handle), 2, OR_NULL(1, b->direction), OR_NULL(2, b->numbers)); }
+ROW(mfv_differentiate) { return mfv_differentiate(OR_NULL(0, b->handle), OR_NULL(1, "shift")); }
+ROW(mfv_derivative) {
+  mfv_step step = MFV_STEP_INIT;
+  step.control[MFV_SHIFT] = MFV_DISPLACEMENT;
+  (void)mfv_differentiate(b->handle, "shift");
+  (void)mfv_advance(b->handle, &step);
+  return mfv_derivative(OR_NULL(0, b->handle), 0, OR_NULL(1, &b->loads), NODES, OR_NULL(2, b->numbers), OR_NULL(3, &b->numbers[NODES]));
+}
 ROW(mfv_save) {
   mfv_state *new = NULL;
   int status = mfv_save(OR_NULL(0, b->handle), OR_NULL(1, &new));
@@ -245,6 +253,8 @@ static const row rows[] = {
     {"mfv_message", row_mfv_message, CASE, 0, OK, 2, {H, A}},
     {"mfv_get_loads", row_mfv_get_loads, CASE, 0, OK, 2, {H, A}},
     {"mfv_tangent", row_mfv_tangent, CASE, 0, OK, 3, {H, OK, A}},
+    {"mfv_differentiate", row_mfv_differentiate, CASE, 0, OK, 2, {H, A}},
+    {"mfv_derivative", row_mfv_derivative, CASE, 0, OK, 4, {H, OK, OK, OK}},
     {"mfv_save", row_mfv_save, CASE, 0, OK, 2, {H, A}},
     {"mfv_restore", row_mfv_restore, CASE, 0, OK, 2, {H, H}},
     {"mfv_state_free", row_mfv_state_free, STATE, 1, OK, 2, {OK, OK}},
@@ -411,6 +421,7 @@ static void wrong_sizes(void) {
     refused(&b, mfv_copy_integer(b.handle, "state/status", b.whole, sizes[i]), "15 values");
     step.size = loads.size = sizes[i];
     refused(&b, mfv_advance(b.handle, &step), "sizeof(mfv_step)");
+    refused(&b, mfv_derivative(b.handle, 0, NULL, NODES, b.numbers, NULL), "no derivatives");
     refused(&b, mfv_get_loads(b.handle, &loads), "sizeof(mfv_loads)");
   }
   for (size_t i = 4; i < sizeof sizes / sizeof sizes[0]; ++i) {
@@ -440,6 +451,39 @@ static void wrong_sizes(void) {
   refused(&b, mfv_attribute_name(b.handle, 0, tiny, 0), "buffer");
   refused(&b, mfv_attribute(b.handle, "outcome", tiny, 0, NULL), "buffer");
   still_works(&b, "wrong sizes");
+  free_bench(&b);
+}
+
+/* Derivatives: parameters that are none or passed, numbers and sizes that are wrong, and after them those that are right. */
+static void wrong_parameters(void) {
+  bench b = new_bench();
+  mfv_step step = MFV_STEP_INIT;
+  mfv_loads loads = b.loads;
+  refused(&b, mfv_differentiate(b.handle, "friction%mu"), "before the first step");
+  refused(&b, mfv_differentiate(b.handle, "step(2)%shift"), "already begun");
+  refused(&b, mfv_differentiate(b.handle, "shift step(3)%cycles"), "not the target of a motion");
+  refused(&b, mfv_differentiate(b.handle, "mesh%half_width"), "&body or &friction");
+  refused(&b, mfv_differentiate(b.handle, "slide"), "unknown key of &step");
+  refused(&b, mfv_derivative(b.handle, 0, &loads, 0, NULL, NULL), "no derivatives");
+  CHECK(mfv_differentiate(b.handle, "shift step(3)%normal_force") == MFV_COMPLETE);
+  step.control[MFV_SHIFT] = MFV_DISPLACEMENT;
+  step.target[MFV_SHIFT] = 1e-5;
+  step.relative = 1;
+  CHECK(mfv_advance(b.handle, &step) == MFV_COMPLETE);
+  refused(&b, mfv_derivative(b.handle, 0, &loads, 0, NULL, NULL), "not a target");
+  CHECK(mfv_restore(b.handle, b.state) == MFV_COMPLETE && mfv_differentiate(b.handle, "shift") == MFV_COMPLETE);
+  CHECK(mfv_advance(b.handle, &step) == MFV_COMPLETE);
+  refused(&b, mfv_derivative(b.handle, 1, &loads, 0, NULL, NULL), "there are 1");
+  refused(&b, mfv_derivative(b.handle, SIZE_MAX, &loads, 0, NULL, NULL), "there are 1");
+  refused(&b, mfv_derivative(b.handle, 0, NULL, NODES + 1, b.numbers, NULL), "number of nodes");
+  loads.size = 1;
+  refused(&b, mfv_derivative(b.handle, 0, &loads, 0, NULL, NULL), "sizeof(mfv_loads)");
+  loads.size = sizeof loads;
+  CHECK(mfv_derivative(b.handle, 0, &loads, NODES, b.numbers, &b.numbers[NODES]) == MFV_COMPLETE);
+  CHECK(fabs(loads.motion[MFV_SHIFT] - 1) < 1e-12 && loads.force[MFV_SHIFT] > 0 && loads.linear_solves > 0);
+  CHECK(mfv_differentiate(b.handle, "") == MFV_COMPLETE);
+  refused(&b, mfv_derivative(b.handle, 0, &loads, 0, NULL, NULL), "no derivatives");
+  still_works(&b, "wrong parameters");
   free_bench(&b);
 }
 
@@ -875,6 +919,7 @@ int main(int argc, char **argv) {
   bad_handles();
   handles_do_not_come_again();
   wrong_sizes();
+  wrong_parameters();
   wrong_numbers();
   wrong_names();
   closed_forms();

@@ -18,9 +18,17 @@ import pytest
 
 PROJECT = Path(__file__).resolve().parents[2]
 PROGRAMS = Path(os.environ.get("MFV_RUN", PROJECT / "build/release/bin/mfv_run")).parent
-PAGES = ("README.md", "docs/tutorial.md", "docs/guide.md", "docs/namelist.md")
+PAGES = (
+    "README.md",
+    "docs/tutorial.md",
+    "docs/fatigue.md",
+    "docs/guide.md",
+    "docs/identify.md",
+    "docs/joints.md",
+    "docs/namelist.md",
+)
 #: Pages whose Python blocks print what is shown below them; those of other pages are run by tests/python/test_docs.py.
-PYTHON_PAGES = ("docs/tutorial.md",)
+PYTHON_PAGES = ("docs/tutorial.md", "docs/fatigue.md", "docs/identify.md", "docs/joints.md")
 COMPLETE, ENDED_EARLY = 0, 3
 #: Commands that the scripts of CI run themselves, that install, or that take minutes.
 NOT_RUN = re.compile(r"git clone|sh scripts/|cmake |pip |.*pip install|export |man |.*examples/dissertation/draw.py")
@@ -127,7 +135,7 @@ def test_cases_commands_and_output_of_a_page(page: str, tmp_path: Path, monkeypa
     monkeypatch.setenv("MPLBACKEND", "Agg")
     reader = Reader(page, tmp_path)
     reader.read()
-    assert reader.case
+    assert reader.case or (page in PYTHON_PAGES and reader.printed)
 
 
 def test_output_that_differs_is_found() -> None:

@@ -7,6 +7,7 @@ module mfv_contact_path
    use mfv_contact_model, only: contact_model_type, new_contact_model
    use mfv_contact_state, only: contact_state_type, new_contact_state
    use mfv_contact_system
+   use mfv_derivatives, only: derivatives_type, parameter_type
    use mfv_error, only: error_type, set_error
    use mfv_event_search, only: status_after
    use mfv_friction_law, only: friction_event_type, friction_point_type, most_events
@@ -55,13 +56,16 @@ module mfv_contact_path
       !> Work of the force of every motion so far, per unit thickness: force. Over a cycle it is the area of the loop of force and
       !> motion.
       real(wp) :: work(motion_count) = 0.0_wp
+      !> Derivatives with respect to the parameters of the path; not allocated if there are none.
+      type(derivatives_type), allocatable :: derivatives
    end type path_position_type
 
    type, extends(path_position_type) :: contact_path_type
       type(contact_model_type) :: model
       class(contact_system_type), allocatable :: system
       !> The state before the last increment.
-      type(contact_state_type), private :: before
+      type(contact_state_type) :: before
+      type(parameter_type), allocatable :: parameters(:)
       type(history_type) :: history
       !> Whether every event is recorded, or only what the caller records.
       logical :: record_events = .true.
@@ -72,6 +76,8 @@ module mfv_contact_path
       logical, private :: first_stiffness_pending = .false.
    contains
       procedure :: copy_without_history
+      procedure :: differentiate
+      procedure, private :: refresh_derivatives
       procedure :: save_to
       procedure :: restore
       procedure :: resume
@@ -150,13 +156,34 @@ contains
       self%record_events = record_events
    end subroutine new_contact_path
 
-   !> A copy for trial increments, without history records.
+   !> Derive with respect to `parameters` from now on. Keys: only before the first step.
+   subroutine differentiate(self, parameters)
+      class(contact_path_type), intent(inout) :: self
+      type(parameter_type), intent(in) :: parameters(:)
+
+      if (allocated(self%parameters)) deallocate (self%parameters)
+      if (allocated(self%derivatives)) deallocate (self%derivatives)
+      if (size(parameters) == 0) return
+      allocate (self%parameters, source=parameters)
+      allocate (self%derivatives)
+      call self%derivatives%begin(self%parameters, self%model, self%state%fields)
+   end subroutine differentiate
+
+   !> Derivatives of the displacements after the mesh or the problem has changed.
+   subroutine refresh_derivatives(self)
+      class(contact_path_type), intent(inout) :: self
+
+      if (allocated(self%derivatives)) call self%derivatives%refresh(self%parameters, self%model, self%state%fields)
+   end subroutine refresh_derivatives
+
+   !> A copy for trial increments, without history records and derivatives.
    subroutine copy_without_history(self, copy)
       class(contact_path_type), intent(in) :: self
       type(contact_path_type), intent(out) :: copy
 
       copy%model = self%model
       copy%path_position_type = self%path_position_type
+      if (allocated(copy%derivatives)) deallocate (copy%derivatives)
       allocate (copy%system, source=self%system)
       copy%record_events = .false.
    end subroutine copy_without_history
@@ -186,6 +213,9 @@ contains
       call self%model_as(saved%added, saved%tangential, saved%moves)
       self%path_position_type = saved%position
       call self%model%set_worn(self%state%worn)
+      if (allocated(self%derivatives)) then
+         if (.not. self%derivatives%are_of(self%parameters)) deallocate (self%derivatives)
+      end if
       deallocate (self%system)
       allocate (self%system, source=saved%system)
       self%history%records = min(saved%records, self%history%records)
@@ -292,6 +322,7 @@ contains
       if (.not. self%model%tangential) call self%model%add_tangential()
       call self%certificate%find_applicable(self%model)
       call self%model%relative_displacements(self%state%fields, normal, self%state%fields%tangential)
+      call self%refresh_derivatives()
    end subroutine begin_tangential
 
    !> Model a motion from now on; its force is the resultant of the present tractions.
@@ -486,6 +517,8 @@ contains
       self%state%fields%normal = normal
       if (self%model%tangential) self%state%fields%tangential = tangential
       gap = self%model%gap(self%state%fields)
+      if (allocated(self%derivatives)) call self%derivatives%touch(self%model, minloc(gap, mask=self%model%can_touch, dim=1))
+      call self%refresh_derivatives()
       smallest = minval(gap, mask=self%model%can_touch)
       round_off = 8*epsilon(1.0_wp)*max(maxval(abs(self%model%initial_gap)), abs(self%state%fields%motion(motion_approach)))
       touching = self%model%can_touch .and. gap - smallest <= round_off
@@ -649,6 +682,11 @@ contains
                                                                           self%point(i, self%state%fields), self%state%memory(:, i))
          end do
       end if
+      if (allocated(self%derivatives)) then
+         do i = 1, size(mask)
+            if (mask(i) .and. status(i) == node_stick .and. self%state%status(i) /= node_stick) call self%derivatives%note_stuck(i)
+         end do
+      end if
       call self%state%set_status(mask, status)
    end subroutine set_status
 
@@ -809,6 +847,8 @@ contains
       if (iteration%node > 0) iteration%node = iteration%node + extra
       iteration%tries = 0
       call fill_ends(self%model, self%state%fields, extra)
+      if (allocated(self%derivatives)) call self%derivatives%widen(extra)
+      call self%refresh_derivatives()
    end subroutine widen
 
    !> Displacements of the `extra` new nodes at either end.

@@ -17,6 +17,7 @@ module mfv_first_violation
    use mfv_accumulation, only: pass_accumulation
    use mfv_contact_path
    use mfv_contact_system
+   use mfv_derivative_increments, only: differentiate_increment
    use mfv_error, only: error_type
    use mfv_event_search, only: status_after, violations_type
    use mfv_increment
@@ -149,6 +150,8 @@ contains
             call path%record(event_dropped, first_true(relaxing_nodes), count(relaxing_nodes), segment%step)
          progress%moved = .true.
          if (.not. relaxing) progress%done = progress%done + step
+         if (allocated(path%derivatives) .and. path%model%scene%friction%acts() .and. segment%friction) &
+            call differentiate_increment(path, segment, constraints, progress%increment, progress%done, progress%at_end)
          if (progress%at_end) return
          call renew(progress%iteration)
          progress%standing = 0

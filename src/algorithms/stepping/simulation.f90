@@ -7,6 +7,7 @@ module mfv_simulation
    use mfv_contact_state, only: contact_state_type
    use mfv_contact_system, only: initial_loads, load_type
    use mfv_cycle, only: append_cycle, cycle_type, new_turning_point, turning_point_type
+   use mfv_derivative_increments, only: differentiate_end
    use mfv_error, only: error_type
    use mfv_contact_path, only: contact_path_type, new_contact_path, path_position_type, segment_type
    use mfv_conventional, only: apply_conventionally
@@ -191,12 +192,16 @@ contains
    subroutine run_segment(self, observer)
       class(simulation_type), intent(inout) :: self
       class(observer_type), intent(inout), optional :: observer
-      integer :: i
+      type(step_type) :: step
+      integer :: before, i, segments
 
       i = self%scene_steps_done + 1
       associate (steps => self%contact%model%scene%steps)
-         call self%advance_segment(steps(i), sum(steps(:i - 1)%segments()), sum(steps%segments()), observer)
+         step = steps(i)  ! a copy, since the model may be replaced
+         before = sum(steps(:i - 1)%segments())
+         segments = sum(steps%segments())
       end associate
+      call self%advance_segment(step, before, segments, observer)
       if (self%outcome /= MFV_COMPLETE) then
          self%failed_scene_step = i
       else if (self%leg%number == 0) then
@@ -414,6 +419,11 @@ contains
 
       self%leg%there = target_of(self%load, step%control, step%target)
       self%leg%back = start_of(start%fields%force, start%fields%motion, self%leg%there)
+      associate (contact => self%contact)
+         if (allocated(contact%derivatives)) &
+            call contact%derivatives%begin_step(contact%parameters, self%steps_done + 1, step%control, allocated(step%path), &
+                                                self%leg%there%control)
+      end associate
    end subroutine set_ends
 
    !> End a step early with an error.
@@ -592,6 +602,9 @@ contains
       targets = merge(self%leg%there, self%leg%back, mod(self%leg%number, 2) == 1)
       if (allocated(step%path)) targets = target_of(self%leg%there, step%control, &
                                                     step%path(:, 1 + mod(self%leg%number - 1, step%turns())))
+      if (allocated(self%contact%derivatives)) &
+         call self%contact%derivatives%begin_segment(mod(self%leg%number, 2) == 0 .and. .not. allocated(step%path), &
+                                                     targets%control)
       call self%begin_segment(targets, step, before, segments)
       associate (method => self%contact%model%scene%method)
          if (method%algorithm == algorithm_conventional) then
@@ -602,6 +615,13 @@ contains
             call apply_directly(self%contact, self%leg%segment, observer, error)
          end if
       end associate
+      if (allocated(self%contact%derivatives)) then
+         if (allocated(error)) then
+            call self%contact%derivatives%fail('the last step ended early')
+         else if (.not. (step%friction .and. self%contact%model%scene%friction%acts())) then
+            call differentiate_end(self%contact, self%leg%segment)
+         end if
+      end if
       call self%slip%add_segment(self%contact%model, self%leg%start, self%contact%state, self%contact%slip_zone_nodes, &
                                  self%contact%system%tolerance)
       self%load%control = targets%control

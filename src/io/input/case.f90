@@ -1,5 +1,6 @@
 !> A case: a scene with the requested output, and its text.
 module mfv_case
+   use mfv_case_data, only: case_data_type
    use mfv_kinds, only: wp
    use mfv_motions, only: motion_count, control_keep, controlled_key
    use mfv_scene, only: scene_type
@@ -13,6 +14,8 @@ module mfv_case
       type(scene_type) :: scene
       !> The input, verbatim, and the name of its file for messages.
       character(:), allocatable :: text, source
+      !> Data in memory instead of files that the text names.
+      type(case_data_type) :: data
       !> Path of the result file; empty: none.
       character(:), allocatable :: result_path
       !> See mfv_simulation.

@@ -62,17 +62,19 @@ module mfv_draft
 
 contains
 
-   !> A scene builder from a namelist text. `source`: its name for messages, and the path to which file names are relative.
-   !> Error MFV_INPUT_ERROR.
-   subroutine read_draft(text, source, draft, error)
+   !> A scene builder from a namelist text. `source`: its name for messages, and the path to which file names are relative. `data`:
+   !> instead of files that the text names. Error MFV_INPUT_ERROR.
+   subroutine read_draft(text, source, draft, error, data)
       character(*), intent(in) :: text, source
       type(draft_type), intent(out) :: draft
       type(error_type), allocatable, intent(out) :: error
+      type(case_data_type), intent(in), optional :: data
 
       draft%source = source
       draft%directory = directory_of(source)
       call parse_namelists(text, source, draft%groups, error)
       if (allocated(error)) deallocate (draft%groups)
+      if (present(data)) draft%data = data
    end subroutine read_draft
 
    !> Index of the group in the name of a key, created if needed, and the key. Error MFV_INPUT_ERROR.
@@ -417,6 +419,7 @@ contains
       if (allocated(error)) return
       call self%write_text(text)
       case%text = text
+      case%data = self%data
    end subroutine make_case
 
    !> Error MFV_INPUT_ERROR for data that no key refers to.

@@ -1,0 +1,279 @@
+"""Multiaxial fatigue parameters of a stress cycle: Smith-Watson-Topper, Fatemi-Socie, Findley, Crossland, Dang Van; Ruiz's of a result.
+
+Critical planes are searched among those perpendicular to the plane of the model, on which shear acts in one direction.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from itertools import combinations
+from typing import Callable, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..load_history import kept_states
+from ..result import Result
+from .stress_cycle import StressCycle, inside, last_cycle, stress_cycle
+
+Array = NDArray[np.float64]
+
+#: Planes of the first search, over half a turn.
+PLANES = 60
+
+#: Searches that follow, each in one fifth of the interval of the search before: the angle is found to 2e-5 radians.
+REFINEMENTS = 5
+
+#: Points may be outside the smallest sphere by this fraction of its radius.
+SPHERE_TOLERANCE = 1.0e-10
+
+
+class Peak(NamedTuple):
+    """The largest value of a parameter, where it is, and the angle of its plane (NaN for a parameter without)."""
+
+    value: float
+    x: float
+    y: float
+    angle: float
+
+
+@dataclass(frozen=True)
+class ParameterMap:
+    """A fatigue parameter at points: `values` and `angle` have the shape of `x` and `y`.
+
+    `angle`: of the normal of the critical plane from the x axis, in radians, above -pi/2 and at most pi/2; the angle of a crack on
+    this plane from the normal of a flat surface, counterclockwise. NaN for parameters that are invariants.
+    """
+
+    name: str
+    x: Array
+    y: Array
+    values: Array
+    angle: Array
+
+    @property
+    def maximum(self) -> Peak:
+        """The largest value with its place and plane; points outside the body do not count. Raises ValueError without a number."""
+        if not np.isfinite(self.values).any():
+            raise ValueError(f"{self.name} has no value at any point: are the points inside the body?")
+        place = np.unravel_index(np.nanargmax(self.values), self.values.shape)
+        return Peak(float(self.values[place]), float(self.x[place]), float(self.y[place]), float(self.angle[place]))
+
+
+def smith_watson_topper(cycle: StressCycle) -> ParameterMap:
+    """sigma_n,max * (normal strain amplitude) on the plane where the product is largest [force/length^2]; 0 where no plane is in tension.
+
+    Smith, Watson, Topper (1970), J. Materials 5, 767; on planes: Socie (1987), ASME J. Engineering Materials 109, 293. Elastic strains.
+    """
+    poisson = cycle.poisson_ratio
+
+    def value(angle: Array) -> Array:
+        normal = _normal_stress(cycle, angle)
+        lateral = 3.0 * cycle.hydrostatic - normal
+        strain = (normal - poisson * lateral) / cycle.youngs_modulus
+        return np.asarray(np.maximum(np.max(normal, axis=0), 0.0) * _amplitude(strain))
+
+    return _critical_plane("Smith-Watson-Topper", cycle, value)
+
+
+def fatemi_socie(cycle: StressCycle, *, yield_strength: float, k: float = 1.0) -> ParameterMap:
+    """(Shear strain amplitude) * (1 + k sigma_n,max/yield_strength) on the plane where it is largest; compression counts as 0.
+
+    The amplitude is half the range of the engineering shear strain. Fatemi and Socie (1988), Fatigue Fract. Engng Materials Struct. 11, 149.
+    """
+
+    def value(angle: Array) -> Array:
+        tension = np.maximum(np.max(_normal_stress(cycle, angle), axis=0), 0.0)
+        return np.asarray(_amplitude(_shear_stress(cycle, angle)) / cycle.shear_modulus * (1.0 + k * tension / yield_strength))
+
+    return _critical_plane("Fatemi-Socie", cycle, value)
+
+
+def findley(cycle: StressCycle, *, k: float) -> ParameterMap:
+    """(Shear stress amplitude) + k sigma_n,max on the plane where the sum is largest [force/length^2]. Findley (1959), J. Eng. Ind. 81, 301."""
+
+    def value(angle: Array) -> Array:
+        return np.asarray(_amplitude(_shear_stress(cycle, angle)) + k * np.max(_normal_stress(cycle, angle), axis=0))
+
+    return _critical_plane("Findley", cycle, value)
+
+
+def crossland(cycle: StressCycle, *, k: float) -> ParameterMap:
+    """sqrt(J2) of the amplitude + k (largest hydrostatic stress) [force/length^2].
+
+    The amplitude is the radius of the smallest sphere around the path of the deviator. Crossland (1956), Int. Conf. Fatigue of Metals,
+    138; of paths: Papadopoulos et al. (1997), Int. J. Fatigue 19, 219.
+    """
+    path = _deviator(cycle)
+    centre = _sphere_centre(path)
+    amplitude = np.sqrt(0.5 * np.max(np.sum((path - centre) ** 2, axis=-1), axis=0))
+    return _invariant("Crossland", cycle, amplitude + k * np.max(cycle.hydrostatic, axis=0))
+
+
+def dang_van(cycle: StressCycle, *, k: float) -> ParameterMap:
+    """Largest of (mesoscopic Tresca shear) + k (hydrostatic stress) over the cycle [force/length^2].
+
+    The mesoscopic stress deviates from the centre of the smallest sphere around the path of the deviator (elastic shakedown). Dang Van
+    (1993), ASTM STP 1191, 120.
+    """
+    path = _deviator(cycle)
+    shear = _tresca_shear(path - _sphere_centre(path))
+    return _invariant("Dang Van", cycle, np.max(shear + k * cycle.hydrostatic, axis=0))
+
+
+@dataclass(frozen=True)
+class Ruiz:
+    """Ruiz's parameters at the nodes over a cycle. `shear`: the largest absolute shear traction; `slip`: the range of the relative slip;
+    `tension`: the largest tension along the surface (0 in compression)."""
+
+    x: Array
+    shear: Array
+    slip: Array
+    tension: Array
+
+    @property
+    def first(self) -> Array:
+        """tau delta [force/length]: wear damage."""
+        return self.shear * self.slip
+
+    @property
+    def second(self) -> Array:
+        """sigma tau delta [force^2/length^3]: cracks."""
+        return self.tension * self.first
+
+
+def ruiz(result: Result, *, body: str = "lower", states: Sequence[int] | None = None) -> Ruiz:
+    """Ruiz's parameters of a result over its last cycle, at the nodes; arguments and errors as of `stress_cycle`.
+
+    Ruiz, Boddington, Chen (1984), Exp. Mech. 24, 208; Nowell and Hills (1990), Wear 136, 329.
+    """
+    numbers = last_cycle(result) if states is None else tuple(states)
+    history = [kept_states(result).at(number) for number in numbers]
+    x = np.asarray(result.mesh.x)
+    along = stress_cycle(result, x, inside(result, body, x, np.zeros_like(x)), body=body, states=numbers).stress[..., 0]
+    slips = np.array([state.slip for state in history])
+    shears = np.array([state.shear for state in history])
+    return Ruiz(x, np.max(np.abs(shears), axis=0), np.ptp(slips, axis=0), np.maximum(np.max(along, axis=0), 0.0))
+
+
+def crossland_constant(bending_limit: float, torsion_limit: float) -> float:
+    """k of Crossland from the fatigue limits (amplitudes) in fully reversed bending or tension and in torsion."""
+    return float(3.0 * (torsion_limit / bending_limit - 1.0 / np.sqrt(3.0)))
+
+
+def dang_van_constant(bending_limit: float, torsion_limit: float) -> float:
+    """k of Dang Van from the fatigue limits (amplitudes) in fully reversed bending or tension and in torsion."""
+    return 3.0 * (torsion_limit / bending_limit - 0.5)
+
+
+def findley_constant(bending_limit: float, torsion_limit: float) -> float:
+    """k of Findley from the fatigue limits (amplitudes) in fully reversed bending or tension and in torsion.
+
+    It solves torsion_limit * sqrt(1 + k^2) = bending_limit/2 * (k + sqrt(1 + k^2)). Raises ValueError unless their ratio, torsion over
+    bending, is at least 1/2 and less than 1.
+    """
+    ratio = 2.0 * torsion_limit / bending_limit - 1.0
+    if not 0.0 <= ratio < 1.0:
+        raise ValueError(
+            f"the torsion limit must be at least half the bending limit and less than it, not {torsion_limit / bending_limit} of it"
+        )
+    return float(ratio / np.sqrt(1.0 - ratio**2))
+
+
+def _critical_plane(name: str, cycle: StressCycle, value: Callable[[Array], Array]) -> ParameterMap:
+    """The largest value over all planes; `value` has it for angles of the normal, one per point."""
+    best = np.full(cycle.x.shape, -np.inf)
+    angle = np.zeros(cycle.x.shape)
+    interval = np.pi / PLANES
+    offsets = interval * np.arange(PLANES)
+    for _ in range(REFINEMENTS + 1):
+        middle = angle.copy()
+        for offset in offsets:
+            here = value(middle + offset)
+            is_better = here > best
+            best, angle = np.where(is_better, here, best), np.where(is_better, middle + offset, angle)
+        interval = interval / 5.0
+        offsets = interval * np.arange(-5, 6)
+    is_outside = np.isnan(cycle.stress).any(axis=(0, -1))
+    angle = np.pi / 2.0 - np.mod(np.pi / 2.0 - angle, np.pi)
+    return ParameterMap(name, cycle.x, cycle.y, np.where(is_outside, np.nan, best), np.where(is_outside, np.nan, angle))
+
+
+def _invariant(name: str, cycle: StressCycle, values: Array) -> ParameterMap:
+    return ParameterMap(name, cycle.x, cycle.y, values, np.full(cycle.x.shape, np.nan))
+
+
+def _normal_stress(cycle: StressCycle, angle: Array) -> Array:
+    """Normal stress on planes with normals at these angles, shape (states, *shape)."""
+    c, s = np.cos(angle), np.sin(angle)
+    return np.asarray(cycle.stress[..., 0] * c**2 + cycle.stress[..., 1] * s**2 + 2.0 * cycle.stress[..., 2] * s * c)
+
+
+def _shear_stress(cycle: StressCycle, angle: Array) -> Array:
+    """Shear stress on these planes."""
+    c, s = np.cos(angle), np.sin(angle)
+    return np.asarray((cycle.stress[..., 1] - cycle.stress[..., 0]) * s * c + cycle.stress[..., 2] * (c**2 - s**2))
+
+
+def _amplitude(history: Array) -> Array:
+    """Half the range over the states."""
+    return np.asarray(0.5 * np.ptp(history, axis=0))
+
+
+def _deviator(cycle: StressCycle) -> Array:
+    """The deviator as a vector of three components whose square is that of the tensor, s:s = 2 J2; shape (states, *shape, 3)."""
+    xx, yy, xy, zz = np.moveaxis(cycle.stress, -1, 0)
+    return np.stack([(xx - yy) / np.sqrt(2.0), (2.0 * zz - xx - yy) / np.sqrt(6.0), np.sqrt(2.0) * xy], axis=-1)
+
+
+def _tresca_shear(deviator: Array) -> Array:
+    """Largest shear stress of deviators: half the difference of the largest and the smallest principal stress."""
+    zz = np.sqrt(2.0 / 3.0) * deviator[..., 1]
+    radius = np.hypot(deviator[..., 0], deviator[..., 2]) / np.sqrt(2.0)
+    first, second = -0.5 * zz + radius, -0.5 * zz - radius
+    return np.asarray(0.5 * (np.maximum(first, zz) - np.minimum(second, zz)))
+
+
+def _sphere_centre(path: Array) -> Array:
+    """Centres, shape (*shape, 3), of the smallest spheres around the states of paths, shape (states, *shape, 3).
+
+    The farthest state joins those that determine the sphere until none is outside; the sphere of at most five states is the smallest
+    of those through two to four of them (Welzl 1991, LNCS 555, 359: such a set determines it).
+    """
+    points = np.moveaxis(path, 0, -2).reshape(-1, len(path), 3)
+    centre = 0.5 * (points[:, 0] + points[:, 1])
+    chosen = np.zeros((len(points), 4), dtype=int)
+    chosen[:, 1:] = 1
+    active = np.flatnonzero(np.isfinite(points).all(axis=(1, 2)))
+    if len(path) == 2:
+        active = active[:0]
+    for _ in range(10 * len(path)):
+        if not active.size:
+            break
+        here, rows = points[active], np.arange(active.size)
+        distance = np.linalg.norm(here - centre[active, None], axis=2)
+        radius = distance[rows[:, None], chosen[active]].max(axis=1)
+        farthest = distance.argmax(axis=1)
+        is_outside = distance[rows, farthest] > radius * (1.0 + SPHERE_TOLERANCE)
+        active, here = active[is_outside], here[is_outside]
+        five = np.column_stack([chosen[active], farthest[is_outside]])
+        candidates = here[np.arange(active.size)[:, None], five]
+        smallest = np.full(active.size, np.inf)
+        for size in (2, 3, 4):
+            for members in combinations(range(5), size):
+                trial = _circumcentre(candidates[:, members])
+                around = np.linalg.norm(candidates - trial[:, None], axis=2).max(axis=1)
+                is_smaller = around < smallest * (1.0 - SPHERE_TOLERANCE)
+                smallest = np.where(is_smaller, around, smallest)
+                centre[active[is_smaller]] = trial[is_smaller]
+                padded = (*members, *members[:1] * (4 - size))
+                chosen[active[is_smaller]] = five[is_smaller][:, padded]
+    return centre.reshape(path.shape[1:])
+
+
+def _circumcentre(points: Array) -> Array:
+    """Points at the same distance of all members of sets, in the plane or line through them; shapes (sets, members, 3), (sets, 3)."""
+    edges = points[:, 1:] - points[:, :1]
+    squares = 0.5 * np.sum(edges**2, axis=2)
+    return np.asarray(points[:, 0] + np.einsum("sij,sj->si", np.linalg.pinv(edges), squares))

@@ -1,0 +1,150 @@
+"""Stresses at points of a body over a whole load cycle."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from ..load_history import kept_states
+from ..loads import MOTIONS
+from ..result import Group, Result
+from ..stress import BODIES, stress, surface
+
+Array = NDArray[np.float64]
+
+#: The stresses of a cycle, in this order along the last dimension.
+COMPONENTS = ("sigma_xx", "sigma_yy", "sigma_xy", "sigma_zz")
+
+#: Loads that differ by less, relative to the largest of the history, are equal.
+EQUAL_LOADS = 1.0e-9
+
+
+@dataclass(frozen=True)
+class StressCycle:
+    """Stresses over a cycle at the points (x, y), lengths, of any shape; `stress` has the shape (states, *shape, 4) and the components
+    sigma_xx, sigma_yy, sigma_xy, sigma_zz [force/length^2], tension positive. The body is isotropic with a `shear_modulus`
+    [force/length^2] and a `poisson_ratio`. Stresses from anywhere will do.
+    """
+
+    x: Array
+    y: Array
+    stress: Array
+    shear_modulus: float
+    poisson_ratio: float
+
+    def __post_init__(self) -> None:
+        for name in ("x", "y", "stress"):
+            object.__setattr__(self, name, np.asarray(getattr(self, name), dtype=np.float64))
+        if self.stress.shape[1:] != (*self.x.shape, len(COMPONENTS)) or self.y.shape != self.x.shape or len(self.stress) < 2:
+            raise ValueError(
+                f"stress must have the shape (states, *x.shape, 4) with at least two states, not {self.stress.shape} for "
+                f"{self.x.shape} points"
+            )
+
+    @property
+    def youngs_modulus(self) -> float:
+        """Young's modulus [force/length^2]."""
+        return 2.0 * self.shear_modulus * (1.0 + self.poisson_ratio)
+
+    @property
+    def hydrostatic(self) -> Array:
+        """Hydrostatic stress, a third of the trace [force/length^2], shape (states, *shape)."""
+        return np.asarray((self.stress[..., 0] + self.stress[..., 1] + self.stress[..., 3]) / 3.0)
+
+    def average(self, weights: ArrayLike) -> StressCycle:
+        """The cycle of the weighted average of the stresses at all points, a single one at the average position. `weights`: shape
+        (points), sum 1."""
+        share = np.asarray(weights, dtype=np.float64)
+        if share.shape != self.x.shape:
+            raise ValueError(f"weights must have the shape of the points {self.x.shape}, not {share.shape}")
+        every = tuple(range(share.ndim))
+        averaged = np.tensordot(self.stress, share, axes=([axis + 1 for axis in every], every))
+        x, y = (np.asarray(np.sum(share * values)) for values in (self.x, self.y))
+        return StressCycle(x, y, averaged, self.shear_modulus, self.poisson_ratio)
+
+
+def stress_cycle(
+    result: Result, x: ArrayLike, y: ArrayLike, *, body: str = "lower", states: Sequence[int] | None = None
+) -> StressCycle:
+    """Stresses of a body at the points (x, y), lengths, y up from the contact, over the last cycle of a result.
+
+    `body`: 'lower' or 'upper'. `states`: the numbers in `result.steps`, from 1, of the states of the cycle; those of `last_cycle` by
+    default. The states of a result are its turning points; `mfv.load_history.with_states_between` computes more, which a cycle out of
+    phase needs. Raises ValueError without a closed cycle and as `mfv.stress.stress`.
+    """
+    across, up = (np.array(values, dtype=np.float64) for values in np.broadcast_arrays(x, y))
+    numbers = last_cycle(result) if states is None else tuple(states)
+    result = kept_states(result)
+    fields = [stress(result, across, up, body=body, step=number) for number in numbers]
+    components = [np.stack([field[name].reshape(across.shape) for name in COMPONENTS], axis=-1) for field in fields]
+    scene = result.scene
+    return StressCycle(
+        across, up, np.stack(components), float(scene[f"{body}_shear_modulus"]), float(scene[f"{body}_poisson_ratio"])
+    )
+
+
+def last_cycle(result: Result) -> tuple[int, ...]:
+    """Numbers in `result.steps`, from 1, of the states of the last cycle: those after the latest state with the loads of the last one.
+
+    A cycle must contain another state between the two. Raises ValueError if the loads never return; then repeat the load cycle once, by
+    `cycles` or by another step, which also removes the influence of the first loading.
+    """
+    states = kept_states(result).steps
+    loads = np.array([_loads(state) for state in states])
+    if len(loads) > 2:
+        scale = np.where(np.any(loads != 0.0, axis=0), np.max(np.abs(loads), axis=0), 1.0)
+        is_equal = np.all(np.abs(loads - loads[-1]) <= EQUAL_LOADS * scale, axis=1)
+        earlier = np.flatnonzero(is_equal[:-2])
+        if earlier.size:
+            return tuple(range(int(earlier[-1]) + 2, len(states) + 1))
+    raise ValueError(
+        f"the {len(states)} states in /steps do not contain a closed cycle: no earlier state has the loads of the last one; "
+        "repeat the cycle (cycles=2 in &step), or name the states of the cycle by their numbers"
+    )
+
+
+def graded_points(result: Result, *, body: str = "lower", depth: float = 1.0, finest: float = 1.0e-4) -> tuple[Array, Array]:
+    """Points (x, y) of a body, concentrated at the surface and at the edges of contact, where stresses vary like a square root; arrays
+    (down, across).
+
+    `depth`: below the surface, in half-widths of the contact; to either side, a half-width beyond the edges. `finest`: the smallest
+    distance from an edge and from the surface, in half-widths. Raises ValueError without load, or for another body.
+    """
+    if body not in BODIES:
+        raise ValueError(f"body must be 'lower' or 'upper', not '{body}'")
+    edges = _edges(result)
+    half = 0.5 * (edges[-1] - edges[0])
+    away = half * np.logspace(np.log10(finest), 0.0, 25)
+    regular = np.linspace(edges[0] - half, edges[-1] + half, 81)
+    across = np.unique(np.concatenate([regular, edges, *(edge + sign * away for edge in edges for sign in (-1.0, 1.0))]))
+    down = half * np.concatenate([[0.0], np.logspace(np.log10(finest), np.log10(depth), 40)])
+    x, below = np.meshgrid(across, down)
+    return x, inside(result, body, x, below)
+
+
+def inside(result: Result, body: str, x: Array, depth: Array) -> Array:
+    """y of points of a body at a `depth` below its surface, lengths."""
+    y = surface(result, body, x) - depth
+    return y if body == "lower" else -y
+
+
+def _edges(result: Result) -> Array:
+    """Positions of the edges of contact in the last state."""
+    edges = np.asarray(result.state.get("contact_edge", np.empty(0)))
+    edges = np.unique(edges[np.isfinite(edges)])
+    if edges.size < 2:
+        loaded = np.flatnonzero(result.state.pressure > 0.0)
+        if not loaded.size:
+            raise ValueError("no load in the last state")
+        ends, half = loaded[[0, -1]], 0.5 * result.mesh.width
+        edges = result.mesh.x[ends] + np.array([-half[ends[0]], half[ends[1]]])
+    return edges
+
+
+def _loads(state: Group) -> list[float]:
+    """The forces and bulk stresses of a state."""
+    names = [motion.displacement if motion.is_stress else motion.force for motion in MOTIONS]
+    return [float(state.get(name, 0.0)) for name in names]

@@ -1,0 +1,158 @@
+"""Backbone and cycles of growing amplitude of a scene, computed by MFV."""
+
+from __future__ import annotations
+
+import copy
+import dataclasses
+from collections.abc import Sequence
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..result import Group, Result
+from ..scene import Scene, Step
+from .backbone import Backbone
+
+Array = NDArray[np.float64]
+
+#: Amplitudes over the sliding limit by default.
+RATIOS = (0.05, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9, 0.95)
+
+#: The backbone goes on, displacement controlled, to twice the shift until no node sticks, at most this number of times.
+DOUBLINGS = 12
+
+#: A mesh refined for the cycles is continued on either side by this part of its length.
+MARGIN = 0.25
+
+#: Dissipation over force times displacement, of the amplitudes, up to which it is round-off: nothing slips.
+ROUND_OFF = 1.0e-8
+
+
+class Cycle(NamedTuple):
+    """A closed cycle of tangential force, from +Q to -Q and back."""
+
+    displacement: Array  #: at all events [length]
+    force: Array  #: [force/length]
+    dissipation: float  #: of this cycle [force], from MFV's own sum over the nodes that slip
+
+    @property
+    def amplitude(self) -> float:
+        """Half the range of displacement [length]."""
+        return float(0.5 * np.ptp(self.displacement))
+
+    @property
+    def force_amplitude(self) -> float:
+        """Half the range of force [force/length]."""
+        return float(0.5 * np.ptp(self.force))
+
+    @property
+    def stiffness(self) -> float:
+        """Secant stiffness [force/length^2]."""
+        return self.force_amplitude / self.amplitude
+
+    @property
+    def slips(self) -> bool:
+        """Whether the dissipation is more than round-off."""
+        return self.dissipation > ROUND_OFF * self.amplitude * self.force_amplitude
+
+    def backbone(self) -> Backbone:
+        """The branch after the turning point +Q at half its size: the backbone of a Masing model with this cycle.
+
+        It has no sliding limit unless the cycle slides.
+        """
+        end = int(np.argmin(self.force))
+        return _points(0.5 * (self.displacement[0] - self.displacement[: end + 1]), 0.5 * (self.force[0] - self.force[: end + 1]))
+
+
+class Measurement(NamedTuple):
+    """What models are fitted to and compared with."""
+
+    backbone: Backbone  #: first loading after pressing, until all slides
+    cycles: list[Cycle]  #: of growing amplitude, one after the other on the same contact
+
+    @property
+    def sliding_force(self) -> float:
+        """The force at which all slides [force/length]."""
+        return float(self.backbone.force[-1])
+
+
+def measure(scene: Scene, force_ratios: Sequence[float] = RATIOS, *, repeats: int = 1) -> Measurement:
+    """Shear a scene: a backbone up to sliding, and cycles between +Q and -Q of growing amplitude.
+
+    `scene`: its steps bring the bodies together; the last of them with a normal quantity must prescribe `normal_force`, which is
+    then constant. `force_ratios`: Q/(mu P), increasing, between 0 and 1. `repeats`: cycles of every amplitude, of which the last is
+    returned; with full coupling the first one differs. With refine='edges' in the mesh the intervals are small where slip zones end
+    at these amplitudes; the backbone has the same mesh. Every event is a point, so `accuracy` of the solver must be 0.
+    Raises ValueError, InputError, and the exception of a run that ends early.
+    """
+    ratios = [float(ratio) for ratio in force_ratios]
+    if not ratios or not all(0.0 < low < high < 1.0 for low, high in zip(ratios, [*ratios[1:], np.nextafter(1.0, 0.0)])):
+        raise ValueError("force_ratios must increase, between 0 and 1")
+    if repeats < 1:
+        raise ValueError(f"repeats={repeats}: must be at least 1")
+    if scene.solver is not None and (scene.solver.accuracy or scene.solver.stepping == "leap"):
+        raise ValueError("measure needs every event: remove accuracy and stepping='leap' from the solver")
+    sheared = copy.deepcopy(scene)
+    sheared.output = None
+    for ratio in ratios:
+        sheared.steps += [Step(force_ratio=ratio), Step(force_ratio=-ratio, cycles=repeats)]
+    result = sheared.run(check=True)
+    origin = len(scene.steps)
+    cycles = [_last_cycle(result.history, origin, step) for step in range(origin + 2, origin + 2 * len(ratios) + 1, 2)]
+    return Measurement(_backbone(scene, result, cycles[-1].force_amplitude), cycles)
+
+
+def _last_cycle(history: Group, origin: int, step: int) -> Cycle:
+    """The last cycle of a step of a result; shifts are measured from the end of the step `origin`."""
+    records = np.append(np.flatnonzero(history.step < step)[-1], np.flatnonzero(history.step == step))
+    force = history.tangential_force[records]
+    at_top = np.isclose(force, force[0], rtol=1.0e-9, atol=0.0)
+    at_bottom = np.isclose(force, force.min(), rtol=1.0e-9, atol=0.0)
+    begin = np.flatnonzero(at_top[: np.flatnonzero(at_bottom)[-1]])[-1]
+    records = records[begin:]
+    shift = history.shift[records] - history.shift[history.step <= origin][-1]
+    lost = history.dissipation[records]
+    return Cycle(shift, force[begin:], float(lost[-1] - lost[0]))
+
+
+def _backbone(scene: Scene, result: Result, force: float) -> Backbone:
+    """First loading of a scene on the mesh of a result, to a force, and on until all slides."""
+    pressed = copy.deepcopy(scene)
+    pressed.output = None
+    if pressed.mesh is not None and pressed.mesh.refine == "edges":
+        others = {"refine": None, "nodes": None, "half_width": None, "half_angle": None}
+        pressed.mesh = dataclasses.replace(pressed.mesh, ends=_wider(result.mesh), **others)
+    with pressed.contact() as contact:
+        contact.run(check=True)
+        origin = contact.loads
+        contact.advance(tangential_force=force, check=True)
+        for _ in range(DOUBLINGS):
+            contact.advance(shift=contact.loads.shift - origin.shift, relative=True, check=True)
+            if contact.loads.stick_nodes == 0:
+                break
+        history = contact.result().history
+    sheared = np.append(np.flatnonzero(history.step <= len(scene.steps))[-1], np.flatnonzero(history.step > len(scene.steps)))
+    return _points(history.shift[sheared] - origin.shift, history.tangential_force[sheared])
+
+
+def _wider(mesh: Group) -> Array:
+    """The ends of the intervals of a mesh, and of more intervals on either side: with coupling the contact moves until all slides."""
+    ends = np.append(mesh.x[0] - 0.5 * mesh.width[0], mesh.x + 0.5 * mesh.width)
+    more = np.linspace(0.0, MARGIN * np.ptp(ends), 17)[1:]
+    return np.concatenate((ends[0] - more[::-1], ends, ends[-1] + more))
+
+
+def _points(displacement: Array, force: Array) -> Backbone:
+    """The backbone through points whose displacements increase, apart from repeated ones and round-off."""
+    least = 1.0e-12 * displacement[-1]
+    kept = [0]
+    for point in range(1, displacement.size):
+        if displacement[point] > displacement[kept[-1]] + least:
+            kept.append(point)
+    rising = np.maximum.accumulate(force[kept])
+    if np.max(rising - force[kept]) > 1.0e-9 * rising[-1]:
+        raise ValueError(
+            "the tangential force falls while the displacement grows (weakening, stress drops): no joint model has such a backbone"
+        )
+    return Backbone.of(displacement[kept], rising)

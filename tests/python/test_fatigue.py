@@ -1,0 +1,370 @@
+"""Fatigue parameters, critical distances, lives and short cracks against closed forms and other algorithms."""
+
+import runpy
+from pathlib import Path
+
+import numpy as np
+import pytest
+from matplotlib import pyplot
+from scipy.optimize import minimize, minimize_scalar
+
+import mfv
+from mfv import fatigue
+
+EXAMPLES = Path(__file__).resolve().parents[2] / "examples"
+
+E, NU = 74000.0, 0.33
+G = 0.5 * E / (1.0 + NU)
+#: A turn in equal steps, extremes of sine and cosine included.
+TURN = 2.0 * np.pi * np.arange(48) / 48
+
+
+def history(xx=0.0, yy=0.0, xy=0.0, zz=0.0) -> fatigue.StressCycle:
+    """A cycle at one point from histories of the components."""
+    components = np.broadcast_arrays(*map(np.atleast_1d, (xx, yy, xy, zz)))
+    return fatigue.StressCycle(0.0, 0.0, np.stack(components, axis=-1), G, NU)
+
+
+TENSION = history(xx=200.0 * np.sin(TURN))
+REPEATED = history(xx=[0.0, 300.0])
+TORSION = history(xy=120.0 * np.sin(TURN))
+
+
+def test_uniaxial() -> None:
+    """Closed forms of tension and compression with the amplitude s, and of repeated tension."""
+    s, k = 200.0, 0.3
+    swt = fatigue.smith_watson_topper(TENSION).maximum
+    assert swt.value == pytest.approx(s**2 / E, rel=1e-9) and swt.angle == pytest.approx(0.0, abs=1e-4)
+    assert fatigue.smith_watson_topper(REPEATED).maximum.value == pytest.approx(300.0 * 150.0 / E, rel=1e-9)
+    findley = fatigue.findley(TENSION, k=k).maximum
+    assert findley.value == pytest.approx(0.5 * s * (k + np.hypot(1.0, k)), rel=1e-9)
+    assert abs(findley.angle) == pytest.approx(0.5 * np.arctan(1.0 / k), abs=1e-4)
+    assert fatigue.crossland(TENSION, k=k).maximum.value == pytest.approx(s * (1.0 / np.sqrt(3.0) + k / 3.0), rel=1e-9)
+    assert fatigue.crossland(REPEATED, k=k).maximum.value == pytest.approx(150.0 / np.sqrt(3.0) + k * 100.0, rel=1e-9)
+    assert fatigue.dang_van(TENSION, k=k).maximum.value == pytest.approx(s * (0.5 + k / 3.0), rel=1e-9)
+    assert fatigue.dang_van(REPEATED, k=k).maximum.value == pytest.approx(75.0 + k * 100.0, rel=1e-9)
+    strain = fatigue.fatemi_socie(TENSION, yield_strength=465.0, k=0.0).maximum
+    assert strain.value == pytest.approx((1.0 + NU) * s / E, rel=1e-9) and abs(strain.angle) == pytest.approx(
+        0.25 * np.pi, abs=1e-4
+    )
+
+
+def test_torsion() -> None:
+    """Closed forms of torsion with the amplitude t."""
+    t, k = 120.0, 0.3
+    swt = fatigue.smith_watson_topper(TORSION).maximum
+    assert swt.value == pytest.approx(t**2 * (1.0 + NU) / E, rel=1e-9) and abs(swt.angle) == pytest.approx(0.25 * np.pi, abs=1e-4)
+    assert fatigue.findley(TORSION, k=k).maximum.value == pytest.approx(t * np.hypot(1.0, k), rel=1e-9)
+    assert fatigue.crossland(TORSION, k=k).maximum.value == pytest.approx(t, rel=1e-9)
+    assert fatigue.dang_van(TORSION, k=k).maximum.value == pytest.approx(t, rel=1e-9)
+    # gamma cos(u) (1 + c sin(u)), u twice the angle of the plane, is largest where sin(u) = (sqrt(1 + 8 c^2) - 1)/(4 c).
+    c = 0.8 * t / 465.0
+    sine = (np.sqrt(1.0 + 8.0 * c**2) - 1.0) / (4.0 * c)
+    expected = t / G * np.sqrt(1.0 - sine**2) * (1.0 + c * sine)
+    found = fatigue.fatemi_socie(TORSION, yield_strength=465.0, k=0.8).maximum
+    assert found.value == pytest.approx(expected, rel=1e-8)
+    assert min(abs(found.angle), 0.5 * np.pi - abs(found.angle)) == pytest.approx(0.5 * np.arcsin(sine), abs=1e-4)
+
+
+@pytest.mark.parametrize("phase", [0.0, 0.5 * np.pi])
+@pytest.mark.parametrize("stress, shear", [(200.0, 120.0), (200.0, 90.0)])
+def test_tension_with_torsion_in_and_out_of_phase(stress: float, shear: float, phase: float) -> None:
+    """The path of the deviator is a line or an ellipse: amplitudes combine or the larger one counts."""
+    cycle = history(xx=stress * np.sin(TURN), xy=shear * np.sin(TURN + phase))
+    out = phase > 0.0
+    octahedral = max(stress / np.sqrt(3.0), shear) if out else np.hypot(stress / np.sqrt(3.0), shear)
+    assert fatigue.crossland(cycle, k=0.0).maximum.value == pytest.approx(octahedral, rel=1e-9)
+    tresca = max(0.5 * stress, shear) if out else np.hypot(0.5 * stress, shear)
+    assert fatigue.findley(cycle, k=0.0).maximum.value == pytest.approx(tresca, rel=1e-9)
+    assert fatigue.dang_van(cycle, k=0.0).maximum.value == pytest.approx(tresca, rel=1e-9)
+
+    def negative(angle: float) -> float:
+        """Of Smith, Watson and Topper on one plane, from amplitudes of sine and cosine parts instead of histories."""
+        cosine, sine, double = np.cos(angle) ** 2, np.sin(angle) ** 2, np.sin(2.0 * angle)
+        parts = [(stress * cosine, shear * double), (stress * (cosine - NU * sine) / E, shear * double * (1.0 + NU) / E)]
+        values = [np.hypot(*part) if out else abs(sum(part)) for part in parts]
+        return -values[0] * values[1]
+
+    best = min(minimize_scalar(negative, (a, a + 0.1), options={"xtol": 1e-10}).fun for a in np.linspace(-1.5, 1.5, 9))
+    # The extremes of a plane are between the 48 states: 1 - cos(pi/48) twice.
+    assert fatigue.smith_watson_topper(cycle).maximum.value == pytest.approx(-best, rel=5e-3 if out else 1e-8)
+
+
+def test_constants_give_the_fatigue_limits() -> None:
+    """k from two fatigue limits: both tests reach the same value of the parameter."""
+    bending, torsion = 200.0, 120.0
+    tests = history(xx=[bending, -bending]), history(xy=[torsion, -torsion])
+    for parameter, constant in (
+        (fatigue.crossland, fatigue.crossland_constant),
+        (fatigue.dang_van, fatigue.dang_van_constant),
+        (fatigue.findley, fatigue.findley_constant),
+    ):
+        first, second = (parameter(test, k=constant(bending, torsion)).maximum.value for test in tests)
+        assert first == pytest.approx(second, rel=1e-8)
+    with pytest.raises(ValueError, match="at least half the bending limit"):
+        fatigue.findley_constant(200.0, 90.0)
+
+
+def test_smallest_sphere_of_random_paths() -> None:
+    """Crossland's amplitude is a radius that encloses the path; no smaller one does, since the dual problem has the same value."""
+    random = np.random.default_rng(3)
+    stress = random.normal(size=(9, 40, 4))
+    found = fatigue.crossland(fatigue.StressCycle(np.zeros(40), np.zeros(40), stress, G, NU), k=0.0).values
+    tensors = np.zeros((9, 40, 3, 3))
+    tensors[..., 0, 0], tensors[..., 1, 1], tensors[..., 2, 2] = stress[..., 0], stress[..., 1], stress[..., 3]
+    tensors[..., 0, 1] = tensors[..., 1, 0] = stress[..., 2]
+    deviators = (tensors - np.trace(tensors, axis1=2, axis2=3)[..., None, None] * np.eye(3) / 3.0).reshape(9, 40, 9)
+    for place in range(0, 40, 4):
+        path = deviators[:, place]
+
+        def dual(share: np.ndarray, path: np.ndarray = path) -> float:
+            """Minus the square of a radius that no enclosing sphere can have less of; `share` of the states, sum 1."""
+            return float(np.sum((share @ path) ** 2) - share @ np.sum(path**2, axis=1))
+
+        total = {"type": "eq", "fun": lambda share: np.sum(share) - 1.0}
+        best = minimize(
+            dual, np.full(9, 1.0 / 9.0), bounds=[(0.0, 1.0)] * 9, constraints=total, method="SLSQP", options={"ftol": 1e-14}
+        )
+        assert found[place] == pytest.approx(np.sqrt(-0.5 * best.fun), rel=1e-5)
+
+
+def test_map_ignores_points_outside_and_wrong_shapes_are_refused() -> None:
+    stress = np.array([[[np.nan] * 4, [10.0, 0.0, 0.0, 0.0]], [[np.nan] * 4, [-10.0, 0.0, 0.0, 0.0]]])
+    peak = fatigue.smith_watson_topper(fatigue.StressCycle(np.array([0.0, 1.0]), np.zeros(2), stress, G, NU)).maximum
+    assert peak.x == 1.0 and peak.value == pytest.approx(100.0 / E)
+    with pytest.raises(ValueError, match="at least two states"):
+        fatigue.StressCycle(0.0, 0.0, np.zeros((1, 4)), G, NU)
+    with pytest.raises(ValueError, match="inside the body"):
+        fatigue.smith_watson_topper(history(xx=[np.nan, np.nan])).maximum
+
+
+MATERIAL = fatigue.StrainLife(E, 1015.0, -0.11, 0.21, -0.52, poisson_ratio=NU)
+
+
+def test_lives_invert_the_curves() -> None:
+    cycles = np.array([1e2, 1e5, 3e8])
+    for name in ("strain_amplitude", "smith_watson_topper", "stress_amplitude"):
+        curve = getattr(MATERIAL, name)
+        np.testing.assert_allclose(fatigue.life(curve(cycles), curve), cycles, rtol=1e-9)
+    curve = MATERIAL.smith_watson_topper
+    assert fatigue.life(0.0, curve) == np.inf and fatigue.life(1e9, curve) == 0.5 and np.isnan(fatigue.life(np.nan, curve))
+    with pytest.raises(ValueError, match="decrease with the number of cycles"):
+        fatigue.life(1.0, lambda n: n)
+
+
+def test_parameters_of_the_material_test_give_its_life() -> None:
+    """Elastic tension and compression of the amplitude at N cycles has the life N by every parameter."""
+    elastic = fatigue.StrainLife(E, 1015.0, -0.11, 0.0, -0.52, poisson_ratio=NU)
+    cycles = 2.0e5
+    amplitude = float(elastic.stress_amplitude(cycles))
+    cycle = history(xx=[amplitude, -amplitude])
+    k = 0.3
+    values = {
+        "smith_watson_topper": (fatigue.smith_watson_topper(cycle), elastic.smith_watson_topper),
+        "findley": (fatigue.findley(cycle, k=k), lambda n: elastic.findley(n, k=k)),
+        "crossland": (fatigue.crossland(cycle, k=k), lambda n: elastic.crossland(n, k=k)),
+        "dang_van": (fatigue.dang_van(cycle, k=k), lambda n: elastic.dang_van(n, k=k)),
+    }
+    for found, curve in values.values():
+        assert fatigue.life(found.maximum.value, curve) == pytest.approx(cycles, rel=1e-6)
+    # The curve of Fatemi and Socie is that of the plane at 45 degrees; the largest value is on another plane if k > 0.
+    found = fatigue.fatemi_socie(cycle, yield_strength=465.0, k=0.0).maximum.value
+    assert fatigue.life(found, lambda n: elastic.fatemi_socie(n, yield_strength=465.0, k=0.0)) == pytest.approx(cycles, rel=1e-6)
+
+
+def test_basquin_is_the_woehler_curve_of_pylife() -> None:
+    woehler = pytest.importorskip("pylife.materiallaws.woehlercurve")
+    import pandas
+
+    curve = pandas.Series({"k_1": -1.0 / MATERIAL.strength_exponent, "ND": 1.0e6, "SD": float(MATERIAL.stress_amplitude(1.0e6))})
+    loads = MATERIAL.stress_amplitude(np.array([1e3, 1e5]))
+    np.testing.assert_allclose(woehler.WoehlerCurve(curve).cycles(loads), fatigue.life(loads, MATERIAL.stress_amplitude), rtol=1e-8)
+
+
+def test_rainflow() -> None:
+    """The example of ASTM E1049 for repeating histories: cycles of the ranges 3, 4, 7 and 9."""
+    counted = fatigue.count_cycles([-2.0, 1.0, -3.0, 5.0, -1.0, 3.0, -4.0, 4.0])
+    values = np.array([-2.0, 1.0, -3.0, 5.0, -1.0, 3.0, -4.0, 4.0])
+    ranges = np.abs(values[counted.first] - values[counted.second])
+    assert sorted(ranges) == [3.0, 4.0, 7.0, 9.0]
+    assert fatigue.count_cycles([1.0, 1.0]).first.size == 0
+
+
+def test_damage_of_two_blocks_adds_up() -> None:
+    """Two unequal cycles in one history: Miner's sum of both, on the plane across the tension."""
+    cycle = history(xx=[300.0, 0.0, 200.0, 0.0])
+    damage = fatigue.smith_watson_topper_damage(cycle, MATERIAL.smith_watson_topper)
+    both = [fatigue.life(s * 0.5 * s / E, MATERIAL.smith_watson_topper) for s in (300.0, 200.0)]
+    assert damage.value == pytest.approx(sum(1.0 / n for n in both), rel=1e-9) and damage.angle == pytest.approx(0.0)
+    with pytest.raises(ValueError, match="of one point, not 2"):
+        fatigue.smith_watson_topper_damage(
+            fatigue.StressCycle(np.zeros(2), np.zeros(2), np.zeros((2, 2, 4)), G, NU), lambda n: 1 / n
+        )
+
+
+def edge_crack_by_dislocations(stress, points: int = 200) -> float:
+    """K/sqrt(pi a) of an edge crack 0 < x < 1 in a half-plane from its singular integral equation, by Gauss-Chebyshev collocation.
+
+    Edge dislocations at t have the stress 1/(x - t) - 1/(x + t) - 2 t (x - t)/(x + t)^3 on the crack, with their images in the free
+    surface (Hills, Kelly, Dai, Korsunsky 1996, Solution of Crack Problems, chapter 2); their density is singular at the tip only.
+    """
+    i = np.arange(1, points + 1)
+    odd = (2 * i - 1) * np.pi / (2 * points + 1)
+    t, x = 0.5 * (1.0 + np.cos(odd)), 0.5 * (1.0 + np.cos(2 * i * np.pi / (2 * points + 1)))
+    kernel = 1.0 / (x[:, None] - t) - 1.0 / (x[:, None] + t) - 2.0 * t * (x[:, None] - t) / (x[:, None] + t) ** 3
+    density = np.linalg.solve(-kernel * 2.0 * t / (2 * points + 1), stress(x))
+    # K from the density at the tip, by Krenk's interpolation.
+    return float(2.0 * np.sqrt(2.0) / (2 * points + 1) * np.sum(np.sin(points * odd) / np.tan(0.5 * odd) * density))
+
+
+def test_edge_crack_in_a_half_plane() -> None:
+    """1.1215 sqrt(pi a) in tension (Koiter 1965); gradients as steep as those of a contact against the integral equation."""
+    assert fatigue.stress_intensity(np.ones_like, 2.0) == pytest.approx(1.12152 * np.sqrt(2.0 * np.pi), rel=1e-4)
+    for stress in (np.ones_like, lambda x: x, lambda x: np.exp(-5.0 * x), lambda x: 1.0 - 2.0 * np.sqrt(x)):
+        expected = edge_crack_by_dislocations(stress)
+        assert fatigue.stress_intensity(stress, 1.0) == pytest.approx(expected * np.sqrt(np.pi), rel=2e-3)
+
+
+@pytest.mark.parametrize("ratio", [0.05, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6])
+def test_edge_crack_in_a_plate(ratio: float) -> None:
+    """Tension and bending of a plate: Tada, Paris, Irwin (2000), section 2.10, and Gross and Srawley (1965), good to 0.5 and 0.2 %."""
+    angle = 0.5 * np.pi * ratio
+    tension = np.sqrt(np.tan(angle) / angle) / np.cos(angle) * (0.752 + 2.02 * ratio + 0.37 * (1.0 - np.sin(angle)) ** 3)
+    bending = np.polynomial.polynomial.polyval(ratio, (1.122, -1.40, 7.33, -13.08, 14.0))
+    scale = np.sqrt(np.pi * ratio)
+    assert fatigue.stress_intensity(np.ones_like, ratio, thickness=1.0) == pytest.approx(tension * scale, rel=0.015)
+    assert fatigue.stress_intensity(lambda x: 1.0 - 2.0 * x, ratio, thickness=1.0) == pytest.approx(bending * scale, rel=0.02)
+
+
+def test_crack_through_the_plate_is_refused() -> None:
+    with pytest.raises(ValueError, match="goes through the thickness"):
+        fatigue.stress_intensity(np.ones_like, 1.0, thickness=1.0)
+
+
+def test_short_cracks() -> None:
+    """El Haddad: at the fatigue limit a crack of any length is at the threshold 1.1215 limit sqrt(pi (a + a0))."""
+    threshold, limit = 130.0, 248.0
+    a0 = fatigue.critical_length(threshold, limit, geometry_factor=1.12152)
+    length = np.geomspace(1e-4, 10.0, 9)
+    allowed = fatigue.short_crack_threshold(length, threshold, a0) / (1.12152 * np.sqrt(np.pi * length))
+    np.testing.assert_allclose(allowed, threshold / (1.12152 * np.sqrt(np.pi * (length + a0))))
+    assert allowed[0] == pytest.approx(limit, rel=1e-3)
+    falling = fatigue.EdgeCrack(0.0, np.array([1.0, 2.0, 3.0]), np.array([[0.0, 0.0, 0.0], [10.0, 8.0, 4.0]]))
+    assert falling.arrest_length(5.0) == pytest.approx(2.75) and np.isnan(falling.arrest_length(3.0))
+    assert falling.arrest_length(11.0) == 1.0
+
+
+def pad_scene(name: str = "fretting_fatigue") -> mfv.Scene:
+    """An example of a pad test on a small mesh."""
+    scene = mfv.Scene.from_file(EXAMPLES / f"{name}.nml")
+    scene.mesh = mfv.Mesh(nodes=81)
+    return scene
+
+
+@pytest.fixture(scope="module")
+def pad() -> mfv.Result:
+    """A pad test with the bulk stress in phase with the shear."""
+    return pad_scene().run()
+
+
+def test_states_of_the_last_cycle(pad: mfv.Result) -> None:
+    assert fatigue.last_cycle(pad) == (5, 6)
+    turning = pad_scene()
+    turning.mesh = mfv.Mesh(nodes=31)
+    angles = 0.25 * np.pi * np.arange(17)
+    loads = [mfv.Step(tangential_force=100.0 * np.sin(angle), lower_bulk_stress=60.0 * np.cos(angle)) for angle in angles]
+    turning.steps = [mfv.Step(normal_force=500.0, friction=False), *loads]
+    assert fatigue.last_cycle(turning.run()) == tuple(range(11, 19))
+    once = pad_scene()
+    once.steps = once.steps[:2]
+    with pytest.raises(ValueError, match="repeat the cycle"):
+        fatigue.last_cycle(once.run())
+
+
+def test_surface_stresses_of_a_cycle(pad: mfv.Result) -> None:
+    """The largest tension of the cycle is that of the library; plane strain; the mirrored half of the cycle has the mirrored stresses."""
+    tension = mfv.stress.stress(pad, 0.0, 0.0).tension
+    cycle = fatigue.stress_cycle(pad, np.array([tension.x, -tension.x]), np.zeros(2))
+    xx, yy, _xy, zz = np.moveaxis(cycle.stress, -1, 0)
+    assert xx[1, 0] == pytest.approx(tension.value, rel=1e-3)
+    np.testing.assert_allclose(zz, 0.33 * (xx + yy), atol=1e-9)
+    wide = fatigue.stress_cycle(pad, np.array([-3.0, 3.0]), np.full(2, -0.5)).stress
+    half = pad_scene()
+    half.steps[1:] = (
+        mfv.Step(tangential_force=-162.5, lower_bulk_stress=-80.0),
+        mfv.Step(tangential_force=162.5, lower_bulk_stress=80.0, cycles=2),
+    )
+    other = fatigue.stress_cycle(half.run(), np.array([-3.0, 3.0]), np.full(2, -0.5)).stress
+    np.testing.assert_allclose(other[::-1], wide, rtol=1e-6, atol=1e-6)
+
+
+def test_upper_body_is_the_mirror_image() -> None:
+    """Two equal bodies, no bulk stress: the shear on the upper one is reversed, so it is in tension at the other edge."""
+    scene = pad_scene("fretting_pad")
+    scene.upper = mfv.Body.power(0.5 / 127.0, 2.0, youngs_modulus=74100, poisson_ratio=0.33)
+    result = scene.run()
+    edge = float(result.summary.edge_half_width)
+    x = np.array([-edge, edge])
+    lower, upper = (fatigue.stress_cycle(result, x, np.zeros(2), body=body).stress for body in mfv.stress.BODIES)
+    assert lower[-1, 0, 0] > 50.0
+    np.testing.assert_allclose(upper[:, ::-1, 0], lower[..., 0], rtol=1e-6)
+
+
+def test_averages(pad: mfv.Result) -> None:
+    """Averages over vanishing distances are the value at the hot spot; the line is the integral of stresses at its points."""
+    tension = mfv.stress.stress(pad, 0.0, 0.0).tension
+    for method in ("point", "area"):
+        tiny = fatigue.averaged_cycle(pad, tension.x, 1e-7, method=method).stress
+        assert tiny[-1, 0] == pytest.approx(tension.value, abs=0.3)
+    depth = np.linspace(0.0, np.sqrt(0.1), 2001) ** 2
+    along = fatigue.stress_cycle(pad, tension.x, -depth).stress
+    expected = np.trapezoid(along, depth, axis=1) / 0.1
+    np.testing.assert_allclose(fatigue.averaged_cycle(pad, tension.x, 0.05, method="line").stress, expected, rtol=1e-4, atol=1e-3)
+    with pytest.raises(ValueError, match="'point', 'line' or 'area'"):
+        fatigue.averaged_cycle(pad, tension.x, 0.05, method="volume")
+
+
+def test_crack_below_a_pad(pad: mfv.Result) -> None:
+    """A crack that is short beside the stress gradient is in uniform tension; far from the contact in the bulk stress alone."""
+    tension = mfv.stress.stress(pad, 0.0, 0.0).tension
+    surface = np.ptp(fatigue.stress_cycle(pad, tension.x, 0.0).stress[..., 0])
+    short = fatigue.edge_crack(pad, tension.x, [1e-7]).range
+    assert short[0] == pytest.approx(1.12152 * surface * np.sqrt(np.pi * 1e-7), rel=2e-3)
+    remote = fatigue.edge_crack(pad, -4000.0, [1.0]).range
+    assert remote[0] == pytest.approx(1.12152 * 160.0 * np.sqrt(np.pi), rel=2e-3)
+
+
+def test_ruiz(pad: mfv.Result) -> None:
+    """Zero where the contact sticks during the whole cycle; the second parameter is largest near the trailing edge."""
+    found = fatigue.ruiz(pad)
+    last = pad.steps[-1]
+    inner = np.abs(found.x) < 0.4
+    assert np.all(pad.state.status[inner] == mfv.NodeStatus.STICK)
+    assert np.max(found.first[inner]) < 1e-9 * np.max(found.first)
+    place = int(np.argmax(found.second))
+    assert found.x[place] < -0.9 * 1.39 and found.shear[place] == pytest.approx(0.65 * last.pressure[place], rel=1e-9)
+    assert found.slip[place] == pytest.approx(abs(pad.steps[5].slip[place] - pad.steps[4].slip[place]), rel=1e-12)
+
+
+def test_size_effect_needs_a_critical_distance() -> None:
+    """Pads of one material and peak pressure: similar stresses, so the same life at the hot spot; below it a longer one under smaller pads."""
+    script = runpy.run_path(str(EXAMPLES / "fretting_lives.py"))
+    alloy, tests = script["ALLOYS"]["al_4cu"], script["rows"](EXAMPLES / "fatigue_tests/al_4cu.csv")
+    small, large = (script["lives"](alloy, script["solved"](alloy, tests[row], 61), ("hot spot", "point")) for row in (1, 7))
+    assert (tests[1]["pad_radius"], tests[7]["pad_radius"]) == ("25", "150")
+    for parameter in ("SWT", "FS"):
+        assert small[f"{parameter}, hot spot"] == pytest.approx(large[f"{parameter}, hot spot"], rel=1e-3)
+        assert small[f"{parameter}, point"] > 10.0 * large[f"{parameter}, point"] > 50.0 * large[f"{parameter}, hot spot"]
+
+
+@pytest.mark.parametrize("side", [-1.0, 1.0])
+def test_picture_of_a_map(side: float) -> None:
+    """The title has the maximum; the line along the critical plane goes into the body, at the angle of the plane."""
+    x, y = np.meshgrid(np.linspace(-1.0, 1.0, 5), side * np.linspace(0.0, 1.0, 4))
+    angle = np.full(x.shape, np.radians(30.0))
+    values = np.where((x == 0.0) & (y == 0.0), 2.5, 1.0)
+    ax = mfv.plot.parameter_contours(fatigue.ParameterMap("Findley", x, y, values, angle), pyplot.figure().subplots())
+    line = np.diff(ax.lines[0].get_xydata(), axis=0)[0]
+    assert line[1] * side > 0.0 and line[0] / line[1] == pytest.approx(-np.tan(np.radians(30.0)))
+    assert ax.get_title() == "Findley: 2.5 at (0, 0), 30\N{DEGREE SIGN}"
+    pyplot.close("all")
