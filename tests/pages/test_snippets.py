@@ -26,6 +26,7 @@ PAGES = (
     "docs/identify.md",
     "docs/joints.md",
     "docs/namelist.md",
+    "docs/pad_to_life.md",
 )
 #: Pages whose Python blocks print what is shown below them; those of other pages are run by tests/python/test_docs.py.
 PYTHON_PAGES = ("docs/tutorial.md", "docs/fatigue.md", "docs/identify.md", "docs/joints.md")

@@ -113,7 +113,7 @@ contains
       character(*), intent(in) :: line
       type(string_type), allocatable, intent(out) :: names(:)
       character(len=len(line)) :: words
-      character(:), allocatable :: ends
+      character(:), allocatable :: ends, name
       integer :: first, length
 
       words = line
@@ -126,23 +126,24 @@ contains
       first = 1
       do while (first <= len_trim(words))
          length = scan(words(first:)//ends(1:1), ends) - 1
-         call add_text(names, unquoted(words(first:first + length - 1)))
+         call strip(words(first:first + length - 1), name)
+         call add_text(names, name)
          first = first + length + 1
          if (scan(line, separators) == 0) first = first + max(verify(words(first:)//'x', blanks) - 1, 0)
       end do
    end subroutine read_names
 
    !> A name without blanks and quotation marks around it.
-   pure function unquoted(name) result(bare)
+   pure subroutine strip(name, bare)
       character(*), intent(in) :: name
-      character(:), allocatable :: bare
+      character(:), allocatable, intent(out) :: bare
       character(*), parameter :: around = blanks//'"'''
       integer :: first
 
       bare = ''
       first = verify(name, around)
       if (first > 0) bare = name(first:verify(name, around, back=.true.))
-   end function unquoted
+   end subroutine strip
 
    !> Number of the lines of a text.
    pure integer function lines_of(text)
