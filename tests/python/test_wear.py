@@ -155,3 +155,43 @@ def test_invalid_wear() -> None:
     assert "has no effect with block" in refusal(wear={"block": 2, "tolerance": 0.1})
     with pytest.raises(mfv.errors.InputError, match="&wear: coefficient is missing"):
         mfv.run(text=worn(2).attributes["input"].replace("coefficient=0.01", "block=2"))
+
+
+def random_scene(seed: int, *, length: float = 1.0, force: float = 1.0, mirror: bool = False, exchange: bool = False) -> mfv.Scene:
+    """Two elastic bodies under a random cycle of both forces, with wear; in other units, mirrored, or turned upside down."""
+    random = np.random.default_rng(seed)
+    stress, loads = force / length**2, 10 ** random.uniform(-4, -3)
+    ratios, modulus, mu = random.uniform(0.0, 0.45, 2), 10 ** random.uniform(-0.5, 0.5), random.uniform(0.2, 0.8)
+    normal = loads * random.uniform(0.7, 1.3, random.integers(3, 7))
+    tangential = (-1 if mirror else 1) * mu * normal * random.uniform(-0.8, 0.8, len(normal))
+    bodies = [
+        mfv.Body.half_plane(shear_modulus=stress, poisson_ratio=ratios[0]),
+        mfv.Body.power(0.5 / length, 2.0, shear_modulus=modulus * stress, poisson_ratio=ratios[1]),
+    ]
+    flexibility = (1.0 - ratios[0]) / 2.0 + (1.0 - ratios[1]) / (2.0 * modulus)
+    return mfv.Scene(
+        *(bodies[::-1] if exchange else bodies),
+        coupling=("full", "goodman", "none")[seed % 3],
+        friction=mfv.Friction.coulomb(mu),
+        mesh=mfv.Mesh(nodes=61, half_width=2.5 * np.sqrt(4.0 * loads * flexibility / np.pi) * length),
+        wear=mfv.Wear(coefficient=10 ** random.uniform(-2, 0) / stress),
+        steps=[mfv.Step(normal_force=loads * force / length)],
+        history=mfv.History(normal_force=normal * force / length, tangential_force=tangential * force / length, cycles=400),
+    )
+
+
+@pytest.mark.parametrize("seed", range(9))
+def test_wear_in_other_units_mirrored_and_upside_down(seed: int) -> None:
+    def compared(name: str, result: mfv.Result, factor: float, turned: bool) -> None:
+        values, expected = factor * result.state[name], first.state[name]
+        assert np.allclose(values[::-1] if turned else values, expected, rtol=0.0, atol=1e-11 * np.max(np.abs(expected))), name
+
+    first = random_scene(seed).run(check=True)
+    length, force = 37.0, 5.0e4
+    scaled = random_scene(seed, length=length, force=force).run(check=True)
+    mirrored, exchanged = random_scene(seed, mirror=True).run(check=True), random_scene(seed, exchange=True).run(check=True)
+    for name, unit, side in (("pressure", length**2 / force, 1), ("shear", length**2 / force, -1), ("wear_depth", 1.0 / length, 1)):
+        compared(name, scaled, unit, False)
+        compared(name, mirrored, side, True)
+        compared(name, exchanged, 1.0, True)
+    assert np.max(first.state.wear_depth) > 0.0
