@@ -53,6 +53,8 @@ def test_equal_widths_give_what_the_half_plane_gives(coupling: str, poisson_rati
     given = dict(read_off(matrix))
     for name, expected in read_off(plane):
         scale = P if name.endswith("force") else 1.0 if "patch_shift" in name or "centre" in name else np.max(np.abs(expected))
+        if name.endswith("_force_work"):  # round-off where the force is constant
+            scale = np.max(plane.cycles.dissipation)
         np.testing.assert_allclose(given[name], expected, atol=tolerance * float(scale), rtol=0.0, err_msg=name)
 
 

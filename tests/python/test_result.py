@@ -237,4 +237,4 @@ def test_panels_are_all_tested_here() -> None:
         for name, function in inspect.getmembers(mfv.plot, inspect.isfunction)
         if not name.startswith("_") and function.__module__ == "mfv.plot" and "ax" in inspect.signature(function).parameters
     }
-    assert taking_axes == {*PANELS, "stress_contours"}
+    assert taking_axes == {*PANELS, "stress_contours", "parameter_contours"}
