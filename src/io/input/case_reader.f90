@@ -9,18 +9,16 @@ module mfv_case_reader
    use mfv_error, only: error_type
    use mfv_friction, only: friction_type, new_friction_law
    use mfv_friction_reader
-   use mfv_history_reader, only: check_bulk_stress, read_history
+   use mfv_history_reader, only: read_history
    use mfv_key_reader
    use mfv_kinds, only: wp
    use mfv_material, only: plane_strain, plane_stress
    use mfv_mesh_reader, only: read_mesh
-   use mfv_motions, only: motions, motion_count, motion_approach, motion_shift, motion_upper_bulk, control_keep, &
-                          control_force, control_displacement, controlled_key
    use mfv_namelist, only: group_type, parse_namelists
    use mfv_scene
    use mfv_simulation, only: history_events, history_none, history_steps, states_last_cycle, states_none, &
                              states_reversals, states_steps
-   use mfv_strings, only: to_text
+   use mfv_step_reader, only: read_steps
    use mfv_text_file, only: directory_of, read_text
    implicit none
    private
@@ -178,100 +176,5 @@ contains
       method%friction_tolerance = reader%real_value('solver', 1, 'friction_tolerance')
       method%most_iterations = reader%integer_value('solver', 1, 'iterations')
    end subroutine read_method
-
-   !> The steps of the load history.
-   subroutine read_steps(reader, scene, error)
-      type(reader_type), intent(in) :: reader
-      type(scene_type), intent(inout) :: scene
-      type(error_type), allocatable, intent(out) :: error
-      integer :: i, j
-
-      if (count_groups(reader, 'step') + count_groups(reader, 'history') == 0 .and. .not. reader%without_steps) then
-         call fail(reader, 0, '&step: at least one step is needed', error)
-         return
-      end if
-      allocate (scene%steps(count_groups(reader, 'step')))
-      do i = 1, size(scene%steps)
-         associate (step => scene%steps(i))
-            do j = 1, motion_count
-               call read_target(reader, i, j, step%control(j), step%target(j), error)
-               if (motions(j)%is_stress .and. step%control(j) /= control_keep .and. .not. allocated(error)) &
-                  call check_bulk_stress(reader, 'step', i, j, scene, error)
-               if (j == motion_shift .and. .not. allocated(error)) call read_force_ratio(reader, i, scene, error)
-               if (allocated(error)) return
-            end do
-            step%friction = reader%logical_value('step', i, 'friction')
-            step%cycles = reader%integer_value('step', i, 'cycles')
-            if (reader%has('step', i, 'steady_tolerance')) then
-               step%steady_tolerance = reader%real_value('step', i, 'steady_tolerance')
-               if (step%cycles < 2) call reader%complain('step', i, 'steady_tolerance', 'has no effect without cycles of 2 '// &
-                                                         'or more; remove it', error)
-               if (allocated(error)) return
-            end if
-            if (all(step%control == control_keep)) then
-               call fail(reader, line_of(reader, 'step', i), '&step '//to_text(i)//': needs a target: normal_force or '// &
-                         'approach, tangential_force, force_ratio or shift, moment or rotation, lower_bulk_stress, '// &
-                         'upper_bulk_stress', error)
-               return
-            end if
-         end associate
-      end do
-   end subroutine read_steps
-
-   !> The tangential target of step `number` as a fraction of the sliding limit mu P. The normal targets up to this step are known.
-   subroutine read_force_ratio(reader, number, scene, error)
-      type(reader_type), intent(in) :: reader
-      integer, intent(in) :: number
-      type(scene_type), intent(inout) :: scene
-      type(error_type), allocatable, intent(inout) :: error
-      integer :: last
-
-      if (.not. reader%has('step', number, 'force_ratio')) return
-      ! A step with cycles ends at its initial loads. The cycles of this step are read later.
-      last = findloc(scene%steps(:number)%control(motion_approach) /= control_keep .and. scene%steps(:number)%cycles == 0, .true., &
-                     dim=1, back=.true.)
-      if (scene%steps(number)%control(motion_shift) /= control_keep) then
-         call reader%complain('step', number, 'force_ratio', 'tangential_force or shift is also given; prescribe only one '// &
-                              'of them', error)
-      else if (.not. scene%friction%acts()) then
-         call reader%complain('step', number, 'force_ratio', "needs a &friction law with a coefficient above 0", error)
-      else if (.not. reader%logical_value('step', number, 'friction')) then
-         call reader%complain('step', number, 'force_ratio', 'has no effect in a step without friction; remove it', error)
-      else if (last == 0) then
-         call reader%complain('step', number, 'force_ratio', 'needs a normal_force, in this step or in an earlier one '// &
-                              'without cycles', error)
-      else if (scene%steps(last)%control(motion_approach) /= control_force) then
-         call reader%complain('step', number, 'force_ratio', 'needs a normal_force, but step '//to_text(last)// &
-                              ' prescribes an approach', error)
-      else
-         scene%steps(number)%control(motion_shift) = control_force
-         scene%steps(number)%target(motion_shift) = reader%real_value('step', number, 'force_ratio') &
-                                                    *scene%friction%static%largest()*scene%steps(last)%target(motion_approach)
-      end if
-   end subroutine read_force_ratio
-
-   !> The target of one motion of step `number`: a force or a displacement.
-   subroutine read_target(reader, number, motion, control, target, error)
-      type(reader_type), intent(in) :: reader
-      integer, intent(in) :: number, motion
-      integer, intent(out) :: control
-      real(wp), intent(out) :: target
-      type(error_type), allocatable, intent(out) :: error
-      integer :: i
-
-      control = control_keep
-      target = 0.0_wp
-      do i = merge(control_displacement, control_force, motions(motion)%is_stress), control_displacement
-         if (.not. reader%has('step', number, trim(controlled_key(motion, i)))) cycle
-         if (control /= control_keep) then
-            call reader%complain('step', number, trim(motions(motion)%key), trim(motions(motion)%force_key)// &
-                                 ' is also given; prescribe only one of '//trim(motions(motion)%force_key)//' and '// &
-                                 trim(motions(motion)%key), error)
-            return
-         end if
-         control = i
-         target = reader%real_value('step', number, trim(controlled_key(motion, i)))
-      end do
-   end subroutine read_target
 
 end module mfv_case_reader

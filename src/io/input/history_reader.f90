@@ -4,14 +4,15 @@ module mfv_history_reader
    use mfv_key_reader
    use mfv_keys, only: suggest
    use mfv_kinds, only: wp
-   use mfv_motions, only: motions, motion_count, motion_approach, motion_shift, motion_upper_bulk, control_keep, control_force, &
+   use mfv_motions, only: motions, motion_count, motion_approach, motion_shift, control_keep, control_force, &
                           control_displacement, controlled_key
    use mfv_profile_file, only: read_named_table
    use mfv_scene, only: scene_type, step_type
+   use mfv_step_reader, only: check_bulk_stress, last_pressing, read_steady_tolerance
    use mfv_strings, only: add_text, has_word, string_type, to_text
    implicit none
    private
-   public :: check_bulk_stress, read_history
+   public :: read_history
 
    character(*), parameter :: group = 'history'
    !> Keys that are no loads, and a column that is ignored.
@@ -45,8 +46,9 @@ contains
       if (.not. allocated(error)) call check_loads(reader, scene, step, targets, error)
       if (.not. allocated(error)) call read_period(reader, size(targets, 2), period, error)
       if (allocated(error)) return
-      step%steady_tolerance = reader%real_value(group, 1, 'steady_tolerance')
-      call append_steps(step, targets, period, reader%integer_value(group, 1, 'cycles'), scene%steps)
+      step%cycles = reader%integer_value(group, 1, 'cycles')
+      call read_steady_tolerance(reader, group, 1, step, error)
+      if (.not. allocated(error)) call append_steps(step, targets, period, scene%steps)
    end subroutine read_history
 
    !> The loads in the lists of keys.
@@ -174,8 +176,7 @@ contains
       force = targets(motion_approach, :)
       is_known = step%control(motion_approach) == control_force
       if (step%control(motion_approach) == control_keep) then
-         last = findloc(scene%steps%control(motion_approach) /= control_keep .and. scene%steps%cycles == 0, .true., dim=1, &
-                        back=.true.)
+         last = last_pressing(scene%steps)
          if (last > 0) is_known = scene%steps(last)%control(motion_approach) == control_force
          if (last > 0) force = scene%steps(last)%target(motion_approach)
       end if
@@ -230,16 +231,15 @@ contains
          call reader%complain(group, 1, 'period', 'must be at most '//to_text(rows)//', the number of turning points', error)
       else if (period == 1) then
          call reader%complain(group, 1, 'cycles', 'needs at least two turning points; the history has one', error)
-      else if (reader%has(group, 1, 'steady_tolerance') .and. reader%integer_value(group, 1, 'cycles') < 2) then
-         call reader%complain(group, 1, 'steady_tolerance', 'has no effect without cycles of 2 or more; remove it', error)
       end if
    end subroutine read_period
 
-   !> Append a step for every turning point, or one with cycles for the last `period` of them. `pattern`: their controls.
-   subroutine append_steps(pattern, targets, period, cycles, steps)
+   !> Append a step for every turning point, or one with cycles for the last `period` of them. `pattern`: their controls, cycles and
+   !> tolerance.
+   subroutine append_steps(pattern, targets, period, steps)
       type(step_type), intent(in) :: pattern
       real(wp), intent(in) :: targets(:, :)
-      integer, intent(in) :: period, cycles
+      integer, intent(in) :: period
       type(step_type), allocatable, intent(inout) :: steps(:)
       type(step_type), allocatable :: longer(:)
       integer :: i, n, singles, rows
@@ -258,32 +258,12 @@ contains
             if (i <= singles) cycle
             step%target = targets(:, rows)
             step%path = targets(:, singles + 1:)
-            step%cycles = cycles
+            step%cycles = pattern%cycles
             step%steady_tolerance = pattern%steady_tolerance
          end associate
       end do
       call move_alloc(longer, steps)
    end subroutine append_steps
-
-   !> Error for a bulk stress (`motion`), a key of a group, in a body that does not deform like a half-plane.
-   subroutine check_bulk_stress(reader, group, number, motion, scene, error)
-      type(reader_type), intent(in) :: reader
-      character(*), intent(in) :: group
-      integer, intent(in) :: number, motion
-      type(scene_type), intent(in) :: scene
-      type(error_type), allocatable, intent(out) :: error
-      character(:), allocatable :: kind
-      integer :: body
-      logical :: upper
-
-      upper = motion == motion_upper_bulk
-      if (scene%can_have_bulk_stress(upper)) return
-      body = merge(2, 1, upper)
-      kind = reader%text_value('body', body, 'shape')
-      if (reader%logical_value('body', body, 'rigid')) kind = 'rigid '//kind
-      call reader%complain(group, number, trim(motions(motion)%key), 'the '//merge('upper', 'lower', upper)//' body is a '// &
-                           kind//'; a bulk stress needs an elastic half_plane, wedge, power, rounded_punch or profile', error)
-   end subroutine check_bulk_stress
 
    !> Column of a name, 0 for none.
    pure integer function column_of(table, name) result(column)

@@ -1,0 +1,147 @@
+!> The steps of a case, from its text, and what they have in common with a load history (mfv_history_reader).
+module mfv_step_reader
+   use mfv_error, only: error_type
+   use mfv_key_reader
+   use mfv_kinds, only: wp
+   use mfv_motions, only: motions, motion_count, motion_approach, motion_shift, motion_upper_bulk, control_keep, control_force, &
+                          control_displacement, controlled_key
+   use mfv_scene, only: scene_type, step_type
+   use mfv_strings, only: to_text
+   implicit none
+   private
+   public :: check_bulk_stress, last_pressing, read_steady_tolerance, read_steps
+
+contains
+
+   !> The steps of the load history.
+   subroutine read_steps(reader, scene, error)
+      type(reader_type), intent(in) :: reader
+      type(scene_type), intent(inout) :: scene
+      type(error_type), allocatable, intent(out) :: error
+      integer :: i, j
+
+      if (count_groups(reader, 'step') + count_groups(reader, 'history') == 0 .and. .not. reader%without_steps) then
+         call fail(reader, 0, '&step: at least one step is needed', error)
+         return
+      end if
+      allocate (scene%steps(count_groups(reader, 'step')))
+      do i = 1, size(scene%steps)
+         associate (step => scene%steps(i))
+            do j = 1, motion_count
+               call read_target(reader, i, j, step%control(j), step%target(j), error)
+               if (motions(j)%is_stress .and. step%control(j) /= control_keep .and. .not. allocated(error)) &
+                  call check_bulk_stress(reader, 'step', i, j, scene, error)
+               if (j == motion_shift .and. .not. allocated(error)) call read_force_ratio(reader, i, scene, error)
+               if (allocated(error)) return
+            end do
+            step%friction = reader%logical_value('step', i, 'friction')
+            step%cycles = reader%integer_value('step', i, 'cycles')
+            call read_steady_tolerance(reader, 'step', i, step, error)
+            if (allocated(error)) return
+            if (all(step%control == control_keep)) then
+               call fail(reader, line_of(reader, 'step', i), '&step '//to_text(i)//': needs a target: normal_force or '// &
+                         'approach, tangential_force, force_ratio or shift, moment or rotation, lower_bulk_stress, '// &
+                         'upper_bulk_stress', error)
+               return
+            end if
+         end associate
+      end do
+   end subroutine read_steps
+
+   !> The tangential target of step `number` as a fraction of the sliding limit mu P. The normal targets up to this step are known.
+   subroutine read_force_ratio(reader, number, scene, error)
+      type(reader_type), intent(in) :: reader
+      integer, intent(in) :: number
+      type(scene_type), intent(inout) :: scene
+      type(error_type), allocatable, intent(inout) :: error
+      integer :: last
+
+      if (.not. reader%has('step', number, 'force_ratio')) return
+      ! The cycles of this step are read later.
+      last = last_pressing(scene%steps(:number))
+      if (scene%steps(number)%control(motion_shift) /= control_keep) then
+         call reader%complain('step', number, 'force_ratio', 'tangential_force or shift is also given; prescribe only one '// &
+                              'of them', error)
+      else if (.not. scene%friction%acts()) then
+         call reader%complain('step', number, 'force_ratio', "needs a &friction law with a coefficient above 0", error)
+      else if (.not. reader%logical_value('step', number, 'friction')) then
+         call reader%complain('step', number, 'force_ratio', 'has no effect in a step without friction; remove it', error)
+      else if (last == 0) then
+         call reader%complain('step', number, 'force_ratio', 'needs a normal_force, in this step or in an earlier one '// &
+                              'without cycles', error)
+      else if (scene%steps(last)%control(motion_approach) /= control_force) then
+         call reader%complain('step', number, 'force_ratio', 'needs a normal_force, but step '//to_text(last)// &
+                              ' prescribes an approach', error)
+      else
+         scene%steps(number)%control(motion_shift) = control_force
+         scene%steps(number)%target(motion_shift) = reader%real_value('step', number, 'force_ratio') &
+                                                    *scene%friction%static%largest()*scene%steps(last)%target(motion_approach)
+      end if
+   end subroutine read_force_ratio
+
+   !> The target of one motion of step `number`: a force or a displacement.
+   subroutine read_target(reader, number, motion, control, target, error)
+      type(reader_type), intent(in) :: reader
+      integer, intent(in) :: number, motion
+      integer, intent(out) :: control
+      real(wp), intent(out) :: target
+      type(error_type), allocatable, intent(out) :: error
+      integer :: i
+
+      control = control_keep
+      target = 0.0_wp
+      do i = merge(control_displacement, control_force, motions(motion)%is_stress), control_displacement
+         if (.not. reader%has('step', number, trim(controlled_key(motion, i)))) cycle
+         if (control /= control_keep) then
+            call reader%complain('step', number, trim(motions(motion)%key), trim(motions(motion)%force_key)// &
+                                 ' is also given; prescribe only one of '//trim(motions(motion)%force_key)//' and '// &
+                                 trim(motions(motion)%key), error)
+            return
+         end if
+         control = i
+         target = reader%real_value('step', number, trim(controlled_key(motion, i)))
+      end do
+   end subroutine read_target
+
+   !> Error for a bulk stress (`motion`), a key of a group, in a body that does not deform like a half-plane.
+   subroutine check_bulk_stress(reader, group, number, motion, scene, error)
+      type(reader_type), intent(in) :: reader
+      character(*), intent(in) :: group
+      integer, intent(in) :: number, motion
+      type(scene_type), intent(in) :: scene
+      type(error_type), allocatable, intent(out) :: error
+      character(:), allocatable :: kind
+      integer :: body
+      logical :: upper
+
+      upper = motion == motion_upper_bulk
+      if (scene%can_have_bulk_stress(upper)) return
+      body = merge(2, 1, upper)
+      kind = reader%text_value('body', body, 'shape')
+      if (reader%logical_value('body', body, 'rigid')) kind = 'rigid '//kind
+      call reader%complain(group, number, trim(motions(motion)%key), 'the '//merge('upper', 'lower', upper)//' body is a '// &
+                           kind//'; a bulk stress needs an elastic half_plane, wedge, power, rounded_punch or profile', error)
+   end subroutine check_bulk_stress
+
+   !> The tolerance of a step with cycles, from its key in a group. Error for one without effect.
+   subroutine read_steady_tolerance(reader, group, number, step, error)
+      type(reader_type), intent(in) :: reader
+      character(*), intent(in) :: group
+      integer, intent(in) :: number
+      type(step_type), intent(inout) :: step
+      type(error_type), allocatable, intent(out) :: error
+
+      if (.not. reader%has(group, number, 'steady_tolerance')) return
+      step%steady_tolerance = reader%real_value(group, number, 'steady_tolerance')
+      if (step%cycles < 2) call reader%complain(group, number, 'steady_tolerance', 'has no effect without cycles of 2 or more; '// &
+                                                'remove it', error)
+   end subroutine read_steady_tolerance
+
+   !> The last step that prescribes a normal force or approach, 0 for none. A step with cycles ends at its initial loads.
+   pure integer function last_pressing(steps)
+      type(step_type), intent(in) :: steps(:)
+
+      last_pressing = findloc(steps%control(motion_approach) /= control_keep .and. steps%cycles == 0, .true., dim=1, back=.true.)
+   end function last_pressing
+
+end module mfv_step_reader
