@@ -139,6 +139,7 @@ module mfv_simulation
       procedure, private :: advance_segment
       procedure, private :: apply_leg
       procedure, private :: begin_segment
+      procedure, private :: apply_segment
       procedure, private :: keeps_state
       procedure, private :: wears
       procedure, private :: apply_wear
@@ -291,11 +292,7 @@ contains
       targets = self%load
       targets(motion_wear) = load_type(control_displacement, 1.0_wp)
       call self%begin_segment(targets, step, before, segments)
-      if (self%contact%model%scene%method%algorithm == algorithm_conventional) then
-         call apply_conventionally(self%contact, self%leg%segment, error=error)
-      else
-         call apply_directly(self%contact, self%leg%segment, error=error)
-      end if
+      call self%apply_segment(error=error)
       call self%contact%end_wear()
       self%cycles_done = self%cycles_done + cycles - 1
       self%leg%number = self%leg%number + turns*(cycles - 1)
@@ -606,15 +603,7 @@ contains
          call self%contact%derivatives%begin_segment(mod(self%leg%number, 2) == 0 .and. .not. allocated(step%path), &
                                                      targets%control)
       call self%begin_segment(targets, step, before, segments)
-      associate (method => self%contact%model%scene%method)
-         if (method%algorithm == algorithm_conventional) then
-            call apply_conventionally(self%contact, self%leg%segment, observer, error)
-         else if (method%stepping == stepping_leap .and. .not. strains(self%leg%segment)) then
-            call apply_by_large_increments(self%contact, self%leg%segment, observer, error)
-         else
-            call apply_directly(self%contact, self%leg%segment, observer, error)
-         end if
-      end associate
+      call self%apply_segment(observer, error)
       if (allocated(self%contact%derivatives)) then
          if (allocated(error)) then
             call self%contact%derivatives%fail('the last step ended early')
@@ -629,6 +618,23 @@ contains
       if (self%keep_history /= history_none) &
          call self%contact%record(merge(event_stopped, event_step_end, allocated(error)), 0, 0, self%leg%segment%step)
    end subroutine apply_leg
+
+   !> Apply the loads of the current segment by the algorithm of the scene.
+   subroutine apply_segment(self, observer, error)
+      class(simulation_type), intent(inout) :: self
+      class(observer_type), intent(inout), optional :: observer
+      type(error_type), allocatable, intent(out) :: error
+
+      associate (method => self%contact%model%scene%method)
+         if (method%algorithm == algorithm_conventional) then
+            call apply_conventionally(self%contact, self%leg%segment, observer, error)
+         else if (method%stepping == stepping_leap .and. .not. strains(self%leg%segment)) then
+            call apply_by_large_increments(self%contact, self%leg%segment, observer, error)
+         else
+            call apply_directly(self%contact, self%leg%segment, observer, error)
+         end if
+      end associate
+   end subroutine apply_segment
 
    !> Whether a bulk stress or the wear changes in a segment. They move the stick zone while the shear narrows it, so that an edge
    !> may turn within the segment, which large increments do not resolve.

@@ -22,11 +22,11 @@ module mfv_wear_block
    private
    public :: find_wear_block
 
-   !> The problem of a block: nodes near the contact, their softness k s per cycle, pressure, gap, arm and width, and the compliance
-   !> between them; in terms of the modulus and the length of the mesh.
+   !> The problem of a block: nodes near the contact, their softness k s per cycle, present pressure, gap without any pressure on
+   !> them, arm and width, and the compliance between them; in terms of the modulus and the length of the mesh.
    type :: problem_type
       integer, allocatable :: node(:)
-      real(wp), allocatable :: softness(:), pressure(:), gap(:), arm(:), width(:), compliance(:, :)
+      real(wp), allocatable :: softness(:), pressure(:), opening(:), arm(:), width(:), compliance(:, :)
       logical :: presses = .true.
    end type problem_type
 
@@ -104,13 +104,13 @@ contains
          associate (length => model%length(), stress => model%compliance%modulus, node => problem%node)
             problem%softness = softness(node)*stress/length
             problem%pressure = merge(pressure(node), 0.0_wp, contact(node))/stress
-            problem%gap = merge(0.0_wp, gap(node), contact(node))/length
             problem%arm = model%normal_arm(node, motion_approach)
             problem%width = model%width(node)/length
             if (allocated(problem%compliance)) deallocate (problem%compliance)
             allocate (problem%compliance(size(node), size(node)))
             call model%compliance%entries(block_wp, node, node, problem%compliance)
             problem%compliance = problem%compliance*(stress/length)
+            problem%opening = merge(0.0_wp, gap(node), contact(node))/length - matmul(problem%compliance, problem%pressure)
          end associate
       end associate
    end subroutine gather
@@ -144,8 +144,7 @@ contains
       active = pressure > 0.0_wp
       do pass = 1, most_passes
          call solve_active(problem, cycles, active, pressure, approach)
-         gap = problem%gap - approach*problem%arm + matmul(problem%compliance, pressure - problem%pressure) &
-               + cycles*problem%softness*pressure
+         gap = problem%opening - approach*problem%arm + matmul(problem%compliance, pressure) + cycles*problem%softness*pressure
          wanted = merge(pressure >= 0.0_wp, gap < 0.0_wp, active)
          if (all(wanted .eqv. active)) exit
          active = wanted
@@ -161,7 +160,7 @@ contains
       logical, intent(in) :: active(:)
       real(wp), intent(inout) :: pressure(:)
       real(wp), intent(out) :: approach
-      real(wp), allocatable :: matrix(:, :), right(:), known(:)
+      real(wp), allocatable :: matrix(:, :), right(:)
       integer, allocatable :: at(:), pivot(:)
       integer :: i, m, code
 
@@ -169,13 +168,12 @@ contains
       m = size(at)
       approach = 0.0_wp
       allocate (matrix(m + 1, m + 1), right(m + 1), pivot(m + 1))
-      known = matmul(problem%compliance, problem%pressure)
       matrix(:m, :m) = problem%compliance(at, at)
       do i = 1, m
          matrix(i, i) = matrix(i, i) + cycles*problem%softness(at(i))
       end do
       matrix(:m, m + 1) = -problem%arm(at)
-      right(:m) = known(at) - problem%gap(at)
+      right(:m) = -problem%opening(at)
       matrix(m + 1, :m) = merge(problem%width(at)*problem%arm(at), 0.0_wp, problem%presses)
       matrix(m + 1, m + 1) = merge(0.0_wp, 1.0_wp, problem%presses)
       right(m + 1) = merge(sum(problem%width*problem%arm*problem%pressure), 0.0_wp, problem%presses)

@@ -28,8 +28,8 @@ module mfv_case_parameters
 
 contains
 
-   !> The parameters with these names. Error MFV_BAD_ARGUMENT: a name that is none, the simulation is past it, or the scene has no
-   !> such derivatives.
+   !> The parameters with these names. Error MFV_BAD_ARGUMENT: an unknown name, a parameter that the simulation has passed, or a
+   !> scene without derivatives.
    subroutine read_parameters(case, simulation, names, parameters, error)
       type(case_type), intent(in) :: case
       type(simulation_type), intent(in) :: simulation
@@ -224,7 +224,7 @@ contains
       if (needs_equal_intervals(scene)) scene%mesh%half_width = model%length()*scene%arc_radius()/model%scene%arc_radius()
    end subroutine hold_mesh
 
-   !> Distance of the nearest edge of a body from the origin, length; huge if there is none.
+   !> Distance of the nearest edge of a body from the origin, length; huge for bodies without edges.
    pure real(wp) function edge(model)
       type(contact_model_type), intent(in) :: model
 

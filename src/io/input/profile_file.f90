@@ -47,14 +47,35 @@ contains
       logical, intent(in) :: increasing
       real(wp), allocatable, intent(out) :: table(:, :)
       type(error_type), allocatable, intent(out) :: error
-      type(error_type), allocatable :: fault_of_header
-      character(:), allocatable :: text, line
-      real(wp) :: numbers(columns)
-      integer :: first, number, n
+      character(:), allocatable :: text
+
+      call read_lines(path, text, error)
+      if (.not. allocated(error)) call parse_table(text, path, names, columns, increasing, table, error)
+   end subroutine read_table
+
+   !> The text of a file, with blanks in place of a byte-order mark. Error MFV_INPUT_ERROR.
+   subroutine read_lines(path, text, error)
+      character(*), intent(in) :: path
+      character(:), allocatable, intent(out) :: text
+      type(error_type), allocatable, intent(out) :: error
 
       call read_text(path, text, error)
       if (allocated(error)) return
       if (index(text, byte_order_mark) == 1) text(:len(byte_order_mark)) = ''
+   end subroutine read_lines
+
+   !> The same of the text of the file `path`.
+   subroutine parse_table(text, path, names, columns, increasing, table, error)
+      character(*), intent(in) :: text, path, names
+      integer, intent(in) :: columns
+      logical, intent(in) :: increasing
+      real(wp), allocatable, intent(out) :: table(:, :)
+      type(error_type), allocatable, intent(out) :: error
+      type(error_type), allocatable :: fault_of_header
+      character(:), allocatable :: line
+      real(wp) :: numbers(columns)
+      integer :: first, number, n
+
       allocate (table(columns, lines_of(text)))
       n = 0
       first = 1
@@ -77,7 +98,7 @@ contains
       table = table(:, :n)
       if (allocated(error)) deallocate (error)
       if (n == 0) call move_alloc(fault_of_header, error)
-   end subroutine read_table
+   end subroutine parse_table
 
    !> Columns of numbers from a text file whose first line, but for comments, has their names. `table`: shape (columns, lines).
    !> Error MFV_INPUT_ERROR with the line and what would be right.
@@ -89,9 +110,8 @@ contains
       character(:), allocatable :: text, line
       integer :: first, number
 
-      call read_text(path, text, error)
+      call read_lines(path, text, error)
       if (allocated(error)) return
-      if (index(text, byte_order_mark) == 1) text = text(len(byte_order_mark) + 1:)
       first = 1
       number = 0
       line = ''
@@ -101,7 +121,7 @@ contains
       end do
       if (is_header(line) .and. .not. is_comment(line)) then
          call read_names(line, names)
-         call read_table(path, 'one for each name in line '//to_text(number), size(names), .false., table, error)
+         call parse_table(text, path, 'one for each name in line '//to_text(number), size(names), .false., table, error)
       else
          call set_error(error, MFV_INPUT_ERROR, path//':'//to_text(number)//': must have the names of the columns, such as '// &
                         "normal_force,tangential_force, not '"//shortened(trim(line))//"'")

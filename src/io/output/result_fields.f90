@@ -323,8 +323,8 @@ contains
 
       associate (model => simulation%contact%model)
          call list%add('x', model%x, along_nodes, 'length', 'position of the nodes')
-      call list%add('initial_gap', visible_gap(simulation, model%initial_gap - model%worn), along_nodes, 'length', 'gap of the '// &
-                       'undeformed bodies, infinite where one of them has no surface')
+         call list%add('initial_gap', visible_gap(simulation, model%initial_gap - model%worn), along_nodes, 'length', &
+                       'gap of the undeformed bodies, infinite where one of them has no surface')
          if (model%scene%arc_radius() > 0.0_wp) call list%add('arc', model%arc, along_nodes, 'length', 'distance of the nodes '// &
                                                               'from the origin along the surface')
          call list%add('interval', model%interval(), 'length', 'width of an interval')
@@ -351,16 +351,15 @@ contains
          call list%add('pressure', state%fields%pressure, along_nodes, 'force/length^2', pressure_meaning)
          call list%add('shear', state%fields%shear, along_nodes, 'force/length^2', shear_meaning)
          call list%add('gap', visible_gap(simulation, model%gap(state%fields) + state%worn - model%worn), along_nodes, 'length', &
-                       'gap between the '// &
-                       'bodies, infinite where one of them has no surface')
+                       'gap between the bodies, infinite where one of them has no surface')
          call list%add('slip', modelled(simulation, state%fields%slip()), along_nodes, 'length', 'slip s = u - U of the lower '// &
                        'surface relative to the upper one (not modelled without friction)')
          call list%add('status', state%status, along_nodes, 'contact status of the nodes', node_status_names)
          if (model%tangential) call list%add('friction_work', state%friction_work, along_nodes, 'force/length', 'energy '// &
                                              'dissipated so far per unit of surface')
       end associate
-    if (simulation%contact%model%scene%wear%acts()) call list%add('wear_depth', state%worn, along_nodes, 'length', 'depth worn '// &
-                                                                    'off both surfaces together')
+      if (simulation%contact%model%scene%wear%acts()) &
+         call list%add('wear_depth', state%worn, along_nodes, 'length', 'depth worn off both surfaces together')
       call find_edges_at_nodes(simulation%contact%model, state, contact_edge, stick_edge)
       call list%add('contact_edge', contact_edge, along_nodes, 'length', 'edges of contact'//where_from)
       if (simulation%contact%model%tangential) call list%add('stick_edge', stick_edge, along_nodes, 'length', 'edges of stick'// &
@@ -377,7 +376,8 @@ contains
       integer :: side
 
       do side = lower_body, upper_body
-      associate (pair => simulation%contact%model%compliance, arm => simulation%contact%model%tangential_arm(:, bulk_motions(side)))
+         associate (pair => simulation%contact%model%compliance, &
+                    arm => simulation%contact%model%tangential_arm(:, bulk_motions(side)))
             if (.not. pair%deforms(side)) cycle
             call pair%body_displacements(side, state%fields%pressure, state%fields%shear, normal, tangential)
             tangential = tangential + merge(-1.0_wp, 1.0_wp, side == lower_body)*arm*state%fields%motion(bulk_motions(side))
